@@ -1,0 +1,43 @@
+# skitter_add_shaders(<target> SOURCES <file>... [LOAD_VARIANTS]): compiles GLSL to optimised, validated SPIR-V and
+# embeds it in the target (skitter_embed), `ik.comp` as `ik_comp`. With LOAD_VARIANTS each file is built twice, with
+# LOAD4_TEXEL=1 as `ik_comp_texel` and with LOAD4_TEXEL=0 as `ik_comp_storage` (shaders/lib/load4.glsl).
+# Includes are found from shaders/ and beside the file. DEFINES <name[=value]>... are passed on.
+find_program(GLSLANG NAMES glslangValidator glslang REQUIRED)
+find_program(SPIRV_OPT spirv-opt REQUIRED)
+find_program(SPIRV_VAL spirv-val REQUIRED)
+
+function(skitter_add_shaders target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LOAD_VARIANTS" "" "SOURCES;DEFINES")
+  if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
+    message(FATAL_ERROR "skitter_add_shaders(${target}): expected SOURCES <file>..., got ${ARGN}")
+  endif()
+  foreach(source IN LISTS arg_SOURCES)
+    get_filename_component(source ${source} ABSOLUTE)
+    get_filename_component(file ${source} NAME)
+    string(MAKE_C_IDENTIFIER ${file} name)
+    if(arg_LOAD_VARIANTS)
+      skitter_add_shader(${target} ${source} ${name}_texel ${arg_DEFINES} LOAD4_TEXEL=1)
+      skitter_add_shader(${target} ${source} ${name}_storage ${arg_DEFINES} LOAD4_TEXEL=0)
+    else()
+      skitter_add_shader(${target} ${source} ${name} ${arg_DEFINES})
+    endif()
+  endforeach()
+endfunction()
+
+function(skitter_add_shader target source name)
+  set(dir ${CMAKE_CURRENT_BINARY_DIR}/spirv)
+  file(MAKE_DIRECTORY ${dir})
+  set(shaders ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../shaders)
+  list(TRANSFORM ARGN PREPEND -D OUTPUT_VARIABLE defines)
+  # --quiet would also silence warnings, so the file name that glslang prints is what a clean compile says.
+  add_custom_command(OUTPUT ${dir}/${name}.raw.spv
+    COMMAND ${GLSLANG} -V --target-env vulkan1.3 -I${shaders} ${defines}
+            --depfile ${dir}/${name}.d -o ${dir}/${name}.raw.spv ${source}
+    DEPENDS ${source} DEPFILE ${dir}/${name}.d COMMENT "GLSL ${name}" VERBATIM)
+  add_custom_command(OUTPUT ${dir}/${name}.spv
+    COMMAND ${SPIRV_OPT} --target-env=vulkan1.3 -O ${dir}/${name}.raw.spv -o ${dir}/${name}.spv
+    COMMAND ${SPIRV_VAL} --target-env vulkan1.3 ${dir}/${name}.spv
+    DEPENDS ${dir}/${name}.raw.spv COMMENT "SPIR-V ${name}" VERBATIM)
+  target_sources(${target} PRIVATE ${dir}/${name}.spv)
+  skitter_embed(${target} ${name} ${dir}/${name}.spv)
+endfunction()

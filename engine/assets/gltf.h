@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+// What a rig needs of a glTF 2.0 binary, as plain data in which every index is in range and every number
+// finite.
+namespace skitter::gltf {
+
+struct Node {
+  std::string name;
+  int parent = -1;
+  int mesh = -1, skin = -1;
+  bool inScene = false;  // reachable from the default scene, or any node of a file without scenes
+  glm::dmat4 modelFromNode{1};
+};
+
+struct Influence {
+  uint32_t joint = 0;  // into Skin::joints
+  double weight = 0;
+};
+
+struct Primitive {
+  std::vector<glm::dvec3> positions;
+  std::vector<glm::dvec3> normals;    // empty where the file has none
+  std::vector<glm::dvec3> colours;    // linear, the material's base colour included
+  std::vector<Influence> influences;  // influencesPerVertex for each vertex
+  size_t influencesPerVertex = 0;
+  std::vector<uint32_t> indices;  // triangles
+};
+
+struct Mesh {
+  std::vector<Primitive> primitives;
+};
+
+struct Skin {
+  std::vector<int> joints;  // into Document::nodes
+  std::vector<glm::dmat4> nodeFromBind;
+};
+
+struct Document {
+  std::vector<Node> nodes;
+  std::vector<int> parentsFirst;  // every node, after its parent
+  std::vector<Mesh> meshes;
+  std::vector<Skin> skins;
+  nlohmann::json extras;  // `skitter` of the default scene's extras or of the first node that has it, or null
+};
+
+// Throws Error(input) that begins with `name`.
+Document parse(std::span<const uint8_t> glb, const std::string& name);
+
+}  // namespace skitter::gltf

@@ -1,0 +1,92 @@
+#include "gpu/buffer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace skitter::gpu {
+namespace {
+
+constexpr uint64_t kTexelBytes = 16;
+
+// Whole texels, so that a view reaches the last bytes too.
+uint64_t allocatedBytes(uint64_t bytes) {
+  return std::max(kTexelBytes, (bytes + kTexelBytes - 1) / kTexelBytes * kTexelBytes);
+}
+
+void checkSize(const Context& context, uint64_t bytes, const std::string& name) {
+  const uint64_t most = context.limits().maxAllocationBytes;
+  if (bytes > most - kTexelBytes) {
+    throw deviceError(
+        fmt::format("out of device memory: \"{}\" needs {:.1f} MiB, {} allows {:.1f} MiB in a buffer", name,
+                    double(bytes) / (1 << 20), context.report().name, double(most) / (1 << 20)));
+  }
+}
+
+vk::raii::Buffer makeBuffer(const Context& context, uint64_t bytes, vk::BufferUsageFlags usage,
+                            const std::string& name) {
+  auto buffer = guarded("the buffer \"" + name + "\"", [&] {
+    return vk::raii::Buffer(context.device(), vk::BufferCreateInfo{.size = bytes, .usage = usage});
+  });
+  context.name(*buffer, name);
+  return buffer;
+}
+
+}  // namespace
+
+Buffer::Buffer(const Context& context, uint64_t bytes, std::string name, BufferUse use)
+    : context_(&context), bytes_(bytes), name_(std::move(name)) {
+  using Usage = vk::BufferUsageFlagBits;
+  checkSize(context, bytes_, name_);
+  allocated_ = allocatedBytes(bytes_);
+  vk::BufferUsageFlags usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst;
+  if (context.texelLoads()) usage |= Usage::eUniformTexelBuffer;
+  if (has(use, BufferUse::indirect)) usage |= Usage::eIndirectBuffer;
+  if (has(use, BufferUse::vertex)) usage |= Usage::eVertexBuffer;
+  if (has(use, BufferUse::index)) usage |= Usage::eIndexBuffer;
+  if (has(use, BufferUse::uniform)) usage |= Usage::eUniformBuffer;
+  buffer_ = makeBuffer(context, allocated_, usage, name_);
+  memory_ =
+      context.allocate(buffer_.getMemoryRequirements(), vk::MemoryPropertyFlagBits::eDeviceLocal, {}, name_);
+  context.name(*memory_, name_);
+  guarded(name_, [&] { buffer_.bindMemory(*memory_, 0); });
+}
+
+vk::BufferView Buffer::texelView() const {
+  if (*view_) return *view_;
+  const uint64_t texels = allocated_ / kTexelBytes;
+  const uint64_t most = context_->limits().maxTexelBufferElements;
+  if (texels > most) {
+    throw deviceError(fmt::format("\"{}\" has {} texels, {} reaches {} through one view", name_, texels,
+                                  context_->report().name, most));
+  }
+  view_ = guarded("the texel view of \"" + name_ + "\"", [&] {
+    return vk::raii::BufferView(
+        context_->device(),
+        vk::BufferViewCreateInfo{
+            .buffer = *buffer_, .format = vk::Format::eR32G32B32A32Sfloat, .range = allocated_});
+  });
+  context_->name(*view_, name_);
+  return *view_;
+}
+
+HostBuffer::HostBuffer(const Context& context, uint64_t bytes, HostUse use, std::string name)
+    : bytes_(bytes), name_(std::move(name)) {
+  using Usage = vk::BufferUsageFlagBits;
+  using Memory = vk::MemoryPropertyFlagBits;
+  checkSize(context, bytes_, name_);
+  buffer_ = makeBuffer(
+      context, allocatedBytes(bytes_),
+      Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eTransferSrc | Usage::eTransferDst, name_);
+  const auto preferred =
+      use == HostUse::readback ? vk::MemoryPropertyFlags(Memory::eHostCached) : vk::MemoryPropertyFlags();
+  memory_ = context.allocate(buffer_.getMemoryRequirements(), Memory::eHostVisible | Memory::eHostCoherent,
+                             preferred, name_);
+  context.name(*memory_, name_);
+  guarded(name_, [&] {
+    buffer_.bindMemory(*memory_, 0);
+    data_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE));
+  });
+}
+
+}  // namespace skitter::gpu

@@ -1,0 +1,279 @@
+#include "gpu/choice.h"
+
+#include "gpu/context.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+
+namespace skitter::gpu {
+namespace {
+
+// Under this, a page of records may not fit one texel view.
+constexpr uint64_t kEnoughTexels = 1ull << 24;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+int rankOf(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+uint64_t largestDeviceHeap(const vk::PhysicalDeviceMemoryProperties& memory) {
+  uint64_t bytes = 0;
+  for (uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+    if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal) {
+      bytes = std::max<uint64_t>(bytes, memory.memoryHeaps[i].size);
+    }
+  }
+  return bytes;
+}
+
+// 0 where the system does not tell.
+uint64_t freeRam() {
+  std::ifstream file("/proc/meminfo");
+  std::string key;
+  for (uint64_t kibibytes = 0; file >> key >> kibibytes; file.ignore(64, '\n')) {
+    if (key == "MemAvailable:") return kibibytes * 1024;
+  }
+  return 0;
+}
+
+std::optional<uint32_t> findQueueFamily(const std::vector<vk::QueueFamilyProperties>& families) {
+  constexpr auto wanted = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
+  for (uint32_t i = 0; i < families.size(); ++i) {
+    if (families[i].queueCount > 0 && (families[i].queueFlags & wanted) == wanted) return i;
+  }
+  return {};
+}
+
+void inspectFeatures(const vk::raii::PhysicalDevice& physical, bool adopted, DeviceReport& report) {
+  const auto chain =
+      physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features,
+                            vk::PhysicalDeviceVulkan12Features, vk::PhysicalDeviceVulkan13Features>();
+  const auto& core = chain.get<vk::PhysicalDeviceFeatures2>().features;
+  const auto& v11 = chain.get<vk::PhysicalDeviceVulkan11Features>();
+  const auto& v12 = chain.get<vk::PhysicalDeviceVulkan12Features>();
+  const auto& v13 = chain.get<vk::PhysicalDeviceVulkan13Features>();
+  if (!v13.dynamicRendering) report.refusals.push_back("has no dynamicRendering");
+  if (!v13.synchronization2) report.refusals.push_back("has no synchronization2");
+  if (!v12.timelineSemaphore) report.refusals.push_back("has no timelineSemaphore");
+  if (adopted) return;
+  report.features.drawIndirectCount = v12.drawIndirectCount;
+  report.features.multiDrawIndirect = core.multiDrawIndirect;
+  report.features.drawIndirectFirstInstance = core.drawIndirectFirstInstance;
+  report.features.shaderDrawParameters = v11.shaderDrawParameters;
+  report.features.fillModeNonSolid = core.fillModeNonSolid;
+  report.features.samplerAnisotropy = core.samplerAnisotropy;
+  report.features.presentation = hasExtension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+}
+
+void inspectLimits(const vk::raii::PhysicalDevice& physical, DeviceReport& report) {
+  const auto chain =
+      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
+                              vk::PhysicalDeviceVulkan12Properties, vk::PhysicalDeviceVulkan13Properties>();
+  const auto& core = chain.get<vk::PhysicalDeviceProperties2>().properties.limits;
+  const auto& v11 = chain.get<vk::PhysicalDeviceVulkan11Properties>();
+  const auto& v12 = chain.get<vk::PhysicalDeviceVulkan12Properties>();
+  const auto& v13 = chain.get<vk::PhysicalDeviceVulkan13Properties>();
+  report.driver = fmt::format("{} {}", v12.driverName.data(), v12.driverInfo.data());
+
+  DeviceLimits& limits = report.limits;
+  limits.subgroupSize = v11.subgroupSize;
+  limits.maxStorageBufferRange = core.maxStorageBufferRange;
+  limits.maxTexelBufferElements = core.maxTexelBufferElements;
+  limits.minTexelBufferOffsetAlignment = core.minTexelBufferOffsetAlignment;
+  limits.minStorageBufferOffsetAlignment = core.minStorageBufferOffsetAlignment;
+  limits.minUniformBufferOffsetAlignment = core.minUniformBufferOffsetAlignment;
+  limits.maxAllocationBytes = std::min(v11.maxMemoryAllocationSize, v13.maxBufferSize);
+  limits.maxImageDimension2D = core.maxImageDimension2D;
+  limits.maxComputeWorkGroupInvocations = core.maxComputeWorkGroupInvocations;
+  limits.maxComputeWorkGroupCountX = core.maxComputeWorkGroupCount[0];
+  limits.maxPushConstantsSize = core.maxPushConstantsSize;
+  limits.heapBytes = largestDeviceHeap(physical.getMemoryProperties());
+  limits.availableBytes = availableBytes(physical);
+  limits.timestampPeriod = double(core.timestampPeriod);
+  limits.texelRgba32f = bool(physical.getFormatProperties(vk::Format::eR32G32B32A32Sfloat).bufferFeatures &
+                             vk::FormatFeatureFlagBits::eUniformTexelBuffer);
+  limits.sampledR32f = bool(physical.getFormatProperties(vk::Format::eR32Sfloat).optimalTilingFeatures &
+                            vk::FormatFeatureFlagBits::eSampledImage);
+  if (!limits.sampledR32f) report.refusals.push_back("cannot sample R32_SFLOAT images");
+}
+
+void inspectQueue(const vk::raii::PhysicalDevice& physical, std::optional<uint32_t> given,
+                  Candidate& candidate) {
+  const auto families = physical.getQueueFamilyProperties();
+  const auto family = given ? given : findQueueFamily(families);
+  if (!family) {
+    candidate.report.refusals.push_back("has no queue for graphics and compute");
+    return;
+  }
+  constexpr auto wanted = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
+  if (*family >= families.size()) {
+    candidate.report.refusals.push_back(
+        fmt::format("has {} queue families, so no number {}", families.size(), *family));
+  } else if ((families[*family].queueFlags & wanted) != wanted) {
+    candidate.report.refusals.push_back(fmt::format("queue family {} lacks graphics or compute", *family));
+  } else {
+    candidate.queueFamily = *family;
+    candidate.report.limits.timestampBits = families[*family].timestampValidBits;
+  }
+}
+
+void chooseLoads(std::optional<LoadPath> wanted, DeviceReport& report) {
+  const bool enough = report.limits.maxTexelBufferElements >= kEnoughTexels;
+  const bool isCpu = report.type == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  report.loads = isCpu && report.limits.texelRgba32f && enough ? LoadPath::texel : LoadPath::storage;
+  if (!wanted) return;
+  report.loads = *wanted;
+  if (*wanted == LoadPath::texel && !report.limits.texelRgba32f) {
+    report.refusals.push_back("has no RGBA32F texel buffers, which were asked for");
+  }
+}
+
+std::string describe(const DeviceReport& report) {
+  return fmt::format("{} \"{}\" ({})", report.index, report.name, report.typeName());
+}
+
+std::string joined(const std::vector<std::string>& parts, const char* separator) {
+  return fmt::format("{}", fmt::join(parts, separator));
+}
+
+std::optional<uint32_t> asIndex(const std::string& selector) {
+  uint32_t index = 0;
+  const auto [end, error] = std::from_chars(selector.data(), selector.data() + selector.size(), index);
+  if (error != std::errc() || end != selector.data() + selector.size()) return {};
+  return index;
+}
+
+bool selects(const std::string& selector, const DeviceReport& report) {
+  if (const auto index = asIndex(selector)) return report.index == *index;
+  return lower(report.name).find(lower(selector)) != std::string::npos;
+}
+
+}  // namespace
+
+bool hasExtension(const vk::raii::PhysicalDevice& physical, const char* name) {
+  const auto list = physical.enumerateDeviceExtensionProperties();
+  return std::any_of(list.begin(), list.end(), [&](const auto& extension) {
+    return std::strcmp(extension.extensionName.data(), name) == 0;
+  });
+}
+
+uint64_t availableBytes(const vk::raii::PhysicalDevice& physical) {
+  const auto memory = physical.getMemoryProperties();
+  if (physical.getProperties().deviceType == vk::PhysicalDeviceType::eCpu) {
+    if (const uint64_t ram = freeRam(); ram > 0) return ram;
+  } else if (hasExtension(physical, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME)) {
+    const auto chain = physical.getMemoryProperties2<vk::PhysicalDeviceMemoryProperties2,
+                                                     vk::PhysicalDeviceMemoryBudgetPropertiesEXT>();
+    const auto& budget = chain.get<vk::PhysicalDeviceMemoryBudgetPropertiesEXT>();
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+      if (!(memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)) continue;
+      if (budget.heapBudget[i] > budget.heapUsage[i]) {
+        bytes = std::max<uint64_t>(bytes, budget.heapBudget[i] - budget.heapUsage[i]);
+      }
+    }
+    return bytes;
+  }
+  return largestDeviceHeap(memory);
+}
+
+Candidate inspect(vk::raii::PhysicalDevice physical, uint32_t index, const DeviceRequest& request,
+                  std::optional<uint32_t> queueFamily) {
+  Candidate candidate{.physical = std::move(physical), .report = {}};
+  const vk::raii::PhysicalDevice& device = candidate.physical;
+  DeviceReport& report = candidate.report;
+  const auto properties = device.getProperties();
+  report.name = properties.deviceName.data();
+  report.index = index;
+  report.type = VkPhysicalDeviceType(properties.deviceType);
+  report.apiVersion = properties.apiVersion;
+  if (report.apiVersion < VK_API_VERSION_1_3) {
+    // What 1.3 knows cannot even be asked.
+    report.refusals.push_back(fmt::format("has Vulkan {}.{}, not 1.3",
+                                          VK_API_VERSION_MAJOR(report.apiVersion),
+                                          VK_API_VERSION_MINOR(report.apiVersion)));
+  } else {
+    inspectLimits(device, report);
+    inspectFeatures(device, queueFamily.has_value(), report);
+    inspectQueue(device, queueFamily, candidate);
+    chooseLoads(request.loads, report);
+    if (request.presentation && !report.features.presentation) {
+      report.refusals.push_back("has no VK_KHR_swapchain, which showing a window needs");
+    }
+  }
+  report.suitable = report.refusals.empty();
+  report.whyNot = joined(report.refusals, ", ");
+  return candidate;
+}
+
+std::vector<Candidate> candidates(const vk::raii::Instance& instance, const DeviceRequest& request) {
+  std::vector<Candidate> all;
+  uint32_t index = 0;
+  for (vk::raii::PhysicalDevice& physical : vk::raii::PhysicalDevices(instance)) {
+    all.push_back(inspect(std::move(physical), index++, request));
+  }
+
+  Candidate* best = nullptr;
+  for (Candidate& candidate : all) {
+    DeviceReport& report = candidate.report;
+    if (request.device && !selects(*request.device, report)) {
+      report.whyNot = fmt::format("is not \"{}\", which was asked for", *request.device);
+    } else if (report.suitable && (!best || rankOf(report.type) > rankOf(best->report.type))) {
+      best = &candidate;
+    }
+  }
+  if (!best) return all;
+  best->report.chosen = true;
+  for (Candidate& candidate : all) {
+    if (!candidate.report.chosen && candidate.report.whyNot.empty()) {
+      candidate.report.whyNot = fmt::format("comes after {}", describe(best->report));
+    }
+  }
+  return all;
+}
+
+Candidate& chosen(std::vector<Candidate>& all, const DeviceRequest& request) {
+  for (Candidate& candidate : all) {
+    if (candidate.report.chosen) return candidate;
+  }
+  if (all.empty()) {
+    throw deviceError("there is a Vulkan driver but no device (on Debian: apt install mesa-vulkan-drivers)");
+  }
+  std::vector<std::string> present;
+  std::vector<std::string> refused;
+  for (const Candidate& candidate : all) {
+    const DeviceReport& report = candidate.report;
+    present.push_back(describe(report));
+    if (!request.device || selects(*request.device, report)) {
+      refused.push_back(fmt::format("{} {}", describe(report), report.whyNot));
+    }
+  }
+  if (refused.empty()) {
+    throw deviceError(
+        fmt::format("there is no Vulkan device \"{}\"; present: {}", *request.device, joined(present, "; ")));
+  }
+  throw deviceError(fmt::format("no Vulkan device is suitable: {}", joined(refused, "; ")));
+}
+
+}  // namespace skitter::gpu

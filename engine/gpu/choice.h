@@ -1,0 +1,30 @@
+#pragma once
+
+#include "gpu/vulkan.h"
+#include "skitter/device.h"
+
+#include <vector>
+
+namespace skitter::gpu {
+
+struct Candidate {
+  vk::raii::PhysicalDevice physical;
+  DeviceReport report;
+  uint32_t queueFamily = 0;
+};
+
+// Bytes that can be allocated on it now (DeviceLimits::availableBytes).
+uint64_t availableBytes(const vk::raii::PhysicalDevice&);
+bool hasExtension(const vk::raii::PhysicalDevice&, const char* name);
+
+// Reports on a device and what speaks against it; the queue family is the best one, or the one given.
+Candidate inspect(vk::raii::PhysicalDevice, uint32_t index, const DeviceRequest&,
+                  std::optional<uint32_t> queueFamily = {});
+
+// Every device, in Vulkan's order, with the request's choice marked if there is one.
+std::vector<Candidate> candidates(const vk::raii::Instance&, const DeviceRequest&);
+
+// The one marked. Throws Error(device) listing all and their reasons when there is none.
+Candidate& chosen(std::vector<Candidate>&, const DeviceRequest&);
+
+}  // namespace skitter::gpu

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "gpu/context.h"
+
+#include <string>
+
+namespace skitter::gpu {
+
+struct ImageInfo {
+  vk::Format format = vk::Format::eUndefined;
+  vk::Extent2D extent = {};
+  vk::ImageUsageFlags usage =
+      {};               // TRANSFER_SRC and TRANSFER_DST are added where the format allows, but for MSAA
+  uint32_t layers = 1;  // more than one makes the view an array
+  vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
+};
+
+// A device-local 2D image with one mip level and a view of all of it: heights, colour, depth, shadow. It does
+// not track its layout; barrier.h moves it from state to state.
+class Image {
+ public:
+  Image() = default;
+  // Throws Error(device) when the format, the extent or the memory is not to be had.
+  Image(const Context&, const ImageInfo&, std::string name);
+
+  const ImageInfo& info() const { return info_; }
+  vk::Extent2D extent() const { return info_.extent; }
+  vk::Format format() const { return info_.format; }
+  vk::ImageAspectFlags aspect() const { return aspect_; }
+  const std::string& name() const { return name_; }
+  vk::Image handle() const { return *image_; }
+  vk::ImageView view() const { return *view_; }
+  explicit operator bool() const { return !!*image_; }
+
+ private:
+  ImageInfo info_;
+  vk::ImageAspectFlags aspect_;
+  std::string name_;
+  vk::raii::DeviceMemory memory_ = nullptr;
+  vk::raii::Image image_ = nullptr;
+  vk::raii::ImageView view_ = nullptr;
+};
+
+}  // namespace skitter::gpu

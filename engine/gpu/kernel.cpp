@@ -1,0 +1,74 @@
+#include "gpu/kernel.h"
+
+#include <cassert>
+
+namespace skitter::gpu {
+
+vk::raii::ShaderModule makeModule(const Context& context, const ShaderCode& code, const std::string& name) {
+  const std::span<const uint8_t> bytes = code.pick(context);
+  assert(bytes.size() >= 20 && bytes.size() % 4 == 0 && uintptr_t(bytes.data()) % 4 == 0);
+  auto module = guarded("the shader \"" + name + "\"", [&] {
+    return vk::raii::ShaderModule(
+        context.device(),
+        vk::ShaderModuleCreateInfo{.codeSize = bytes.size(),
+                                   .pCode = reinterpret_cast<const uint32_t*>(bytes.data())});
+  });
+  context.name(*module, name);
+  return module;
+}
+
+Kernel::Kernel(const Context& context, const KernelInfo& info)
+    : layout_(context, info.name, info.bindings, info.pushBytes),
+      maxGroups_(context.limits().maxComputeWorkGroupCountX) {
+  const auto module = makeModule(context, info.code, info.name);
+  std::vector<vk::SpecializationMapEntry> entries;
+  std::vector<uint32_t> values;
+  for (const SpecConstant& constant : info.constants) {
+    entries.push_back({.constantID = constant.id,
+                       .offset = uint32_t(values.size() * sizeof(uint32_t)),
+                       .size = sizeof(uint32_t)});
+    values.push_back(constant.bits);
+  }
+  const vk::SpecializationInfo specialization{.mapEntryCount = uint32_t(entries.size()),
+                                              .pMapEntries = entries.data(),
+                                              .dataSize = values.size() * sizeof(uint32_t),
+                                              .pData = values.data()};
+  pipeline_ = guarded("the kernel \"" + info.name + "\"", [&] {
+    return vk::raii::Pipeline(
+        context.device(), context.pipelineCache(),
+        vk::ComputePipelineCreateInfo{.stage = {.stage = vk::ShaderStageFlagBits::eCompute,
+                                                .module = *module,
+                                                .pName = "main",
+                                                .pSpecializationInfo = &specialization},
+                                      .layout = layout_.pipelineLayout()});
+  });
+  context.name(*pipeline_, info.name);
+}
+
+void Kernel::prepare(vk::CommandBuffer cmd, const Bindings& bindings, std::span<const std::byte> push) const {
+  assert(*pipeline_ && bindings);
+  assert(push.size() == layout_.pushBytes());
+  cmd.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
+  cmd.bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_.pipelineLayout(), 0, bindings.set(), {});
+  if (!push.empty()) {
+    cmd.pushConstants(layout_.pipelineLayout(), layout_.stages(), 0, uint32_t(push.size()), push.data());
+  }
+}
+
+void Kernel::dispatch(vk::CommandBuffer cmd, const Bindings& bindings, std::span<const std::byte> push,
+                      uint32_t groups) const {
+  assert(groups <= maxGroups_);
+  if (groups == 0) return;
+  prepare(cmd, bindings, push);
+  cmd.dispatch(groups, 1, 1);
+}
+
+void Kernel::dispatchIndirect(vk::CommandBuffer cmd, const Bindings& bindings,
+                              std::span<const std::byte> push, const Buffer& arguments,
+                              uint64_t offset) const {
+  assert(offset % 4 == 0 && offset + 3 * sizeof(uint32_t) <= arguments.size());
+  prepare(cmd, bindings, push);
+  cmd.dispatchIndirect(arguments.handle(), offset);
+}
+
+}  // namespace skitter::gpu

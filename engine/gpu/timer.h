@@ -1,0 +1,46 @@
+#pragma once
+
+#include "gpu/context.h"
+
+#include <string>
+#include <vector>
+
+namespace skitter::gpu {
+
+struct StageTime {
+  std::string stage;
+  double milliseconds = 0;
+};
+
+// Device time per named stage, by timestamps, with a debug label around each stage. One timer serves one
+// command buffer in flight: keep one per slot of a CommandRing. When disabled, or where the queue has no
+// timestamps, only the labels remain and milliseconds() is empty. Software devices may lie: measure host time
+// beside it.
+class StageTimer {
+ public:
+  StageTimer() = default;
+  StageTimer(const Context&, uint32_t maxStages, bool enabled = true);
+
+  // First in the command buffer, before any begin().
+  void reset(vk::CommandBuffer);
+  // Stages may nest. The same name twice is two entries. Beyond maxStages a caller's bug. `stage` is a
+  // literal.
+  void begin(vk::CommandBuffer, const char* stage);
+  void end(vk::CommandBuffer, const char* stage);
+
+  // Of the last reset(), in the order of begin(), once the submission is complete.
+  std::vector<StageTime> milliseconds() const;
+  bool measures() const { return !!*pool_; }
+
+ private:
+  struct Entry {
+    const char* stage;
+    bool ended;
+  };
+  const Context* context_ = nullptr;
+  uint32_t maxStages_ = 0;
+  vk::raii::QueryPool pool_ = nullptr;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace skitter::gpu

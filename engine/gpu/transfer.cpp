@@ -1,0 +1,114 @@
+#include "gpu/transfer.h"
+
+#include "gpu/submit.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace skitter::gpu {
+namespace {
+
+// Calls step(done, bytes) until `total` bytes are done.
+template <class Step>
+void inChunks(uint64_t total, uint64_t chunk, Step&& step) {
+  assert(chunk > 0);
+  for (uint64_t done = 0; done < total; done += chunk) step(done, std::min(chunk, total - done));
+}
+
+// An image goes by whole rows, at least one a chunk.
+struct Rows {
+  uint64_t bytes;     // of a row
+  uint64_t perChunk;  // rows
+};
+
+Rows rowsOf(const Image& image, uint64_t chunk) {
+  const uint64_t bytes = uint64_t(image.extent().width) * vk::blockSize(image.format());
+  return {bytes, std::clamp<uint64_t>(chunk / bytes, 1, image.extent().height)};
+}
+
+vk::BufferImageCopy regionOf(const Image& image, uint64_t firstRow, uint64_t rows) {
+  return {.imageSubresource = {image.aspect(), 0, 0, 1},
+          .imageOffset = {0, int32_t(firstRow), 0},
+          .imageExtent = {image.extent().width, uint32_t(rows), 1}};
+}
+
+}  // namespace
+
+void uploadBytes(const Context& context, const Buffer& buffer, std::span<const std::byte> data,
+                 uint64_t offset, uint64_t chunk) {
+  assert(offset <= buffer.size() && data.size() <= buffer.size() - offset);
+  if (data.empty()) return;
+  const HostBuffer staging(context, std::min<uint64_t>(chunk, data.size()), HostUse::upload,
+                           "upload staging");
+  inChunks(data.size(), chunk, [&](uint64_t done, uint64_t bytes) {
+    std::memcpy(staging.bytes().data(), data.data() + done, bytes);
+    submitAndWait(context, [&](vk::CommandBuffer cmd) {
+      allToAll(cmd);
+      cmd.copyBuffer(staging.handle(), buffer.handle(),
+                     vk::BufferCopy{.srcOffset = 0, .dstOffset = offset + done, .size = bytes});
+      allToAll(cmd);
+    });
+  });
+}
+
+void downloadBytes(const Context& context, const Buffer& buffer, std::span<std::byte> data, uint64_t offset,
+                   uint64_t chunk) {
+  assert(offset <= buffer.size() && data.size() <= buffer.size() - offset);
+  if (data.empty()) return;
+  const HostBuffer staging(context, std::min<uint64_t>(chunk, data.size()), HostUse::readback,
+                           "download staging");
+  inChunks(data.size(), chunk, [&](uint64_t done, uint64_t bytes) {
+    submitAndWait(context, [&](vk::CommandBuffer cmd) {
+      allToAll(cmd);
+      cmd.copyBuffer(buffer.handle(), staging.handle(),
+                     vk::BufferCopy{.srcOffset = offset + done, .dstOffset = 0, .size = bytes});
+      transferToHost(cmd);
+    });
+    std::memcpy(data.data() + done, staging.bytes().data(), bytes);
+  });
+}
+
+void clear(const Context& context, const Buffer& buffer) {
+  submitAndWait(context, [&](vk::CommandBuffer cmd) {
+    allToAll(cmd);
+    cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 0);
+    allToAll(cmd);
+  });
+}
+
+void uploadImageBytes(const Context& context, const Image& image, std::span<const std::byte> data,
+                      ImageState after, uint64_t chunk) {
+  const Rows rows = rowsOf(image, chunk);
+  assert(data.size() == rows.bytes * image.extent().height);
+  const HostBuffer staging(context, rows.bytes * rows.perChunk, HostUse::upload, "image upload staging");
+  inChunks(image.extent().height, rows.perChunk, [&](uint64_t row, uint64_t count) {
+    std::memcpy(staging.bytes().data(), data.data() + row * rows.bytes, count * rows.bytes);
+    submitAndWait(context, [&](vk::CommandBuffer cmd) {
+      transition(cmd, image, row == 0 ? ImageState::discard : ImageState::transferDst,
+                 ImageState::transferDst);
+      cmd.copyBufferToImage(staging.handle(), image.handle(), layoutOf(ImageState::transferDst),
+                            regionOf(image, row, count));
+      if (row + count == image.extent().height) transition(cmd, image, ImageState::transferDst, after);
+    });
+  });
+}
+
+void downloadImageBytes(const Context& context, const Image& image, ImageState now, std::span<std::byte> data,
+                        uint64_t chunk) {
+  const Rows rows = rowsOf(image, chunk);
+  assert(data.size() == rows.bytes * image.extent().height);
+  const HostBuffer staging(context, rows.bytes * rows.perChunk, HostUse::readback, "image download staging");
+  inChunks(image.extent().height, rows.perChunk, [&](uint64_t row, uint64_t count) {
+    submitAndWait(context, [&](vk::CommandBuffer cmd) {
+      allToAll(cmd);
+      transition(cmd, image, now, ImageState::transferSrc);
+      cmd.copyImageToBuffer(image.handle(), layoutOf(ImageState::transferSrc), staging.handle(),
+                            regionOf(image, row, count));
+      transition(cmd, image, ImageState::transferSrc, now);
+      transferToHost(cmd);
+    });
+    std::memcpy(data.data() + row * rows.bytes, staging.bytes().data(), count * rows.bytes);
+  });
+}
+
+}  // namespace skitter::gpu

@@ -1,0 +1,151 @@
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace skitter {
+
+namespace gpu {
+class Context;
+}
+
+// How shaders read records (LOAD4 in shaders/lib/load4.glsl).
+enum class LoadPath {
+  texel,    // RGBA32F texel buffers: 35 times cheaper than storage loads on lavapipe
+  storage,  // storage buffers: wherever texel buffers are too small (SwiftShader) or no quicker (GPUs)
+};
+
+struct DeviceLimits {
+  uint32_t subgroupSize = 0;
+  uint64_t maxStorageBufferRange = 0;   // bytes that one storage buffer binding reaches
+  uint64_t maxTexelBufferElements = 0;  // vec4 that one texel buffer view reaches
+  uint64_t minTexelBufferOffsetAlignment = 0;
+  uint64_t minStorageBufferOffsetAlignment = 0;
+  uint64_t minUniformBufferOffsetAlignment = 0;
+  uint64_t maxAllocationBytes = 0;  // in one buffer or image
+  uint32_t maxImageDimension2D = 0;
+  uint32_t maxComputeWorkGroupInvocations = 0;
+  uint32_t maxComputeWorkGroupCountX = 0;
+  uint32_t maxPushConstantsSize = 0;
+  uint64_t heapBytes = 0;  // the largest device-local heap, as reported (lavapipe says 2 GiB and gives more)
+  uint64_t availableBytes = 0;  // what can be allocated now: free RAM on a CPU device, the memory budget
+                                // where the driver tells it, the heap otherwise
+  double timestampPeriod = 0;   // nanoseconds a timestamp tick
+  uint32_t timestampBits = 0;   // of a timestamp that count; 0 where the queue has none
+  bool texelRgba32f = false;    // R32G32B32A32_SFLOAT uniform texel buffers
+  bool sampledR32f = false;     // R32_SFLOAT sampled images: heightfields need them
+};
+
+// Optional features. Those present are enabled on a device that create() makes; on an adopted device all are
+// false, because Vulkan cannot be asked what its maker enabled.
+struct DeviceFeatures {
+  bool drawIndirectCount = false;
+  bool multiDrawIndirect = false;
+  bool drawIndirectFirstInstance = false;
+  bool shaderDrawParameters = false;
+  bool fillModeNonSolid = false;  // wireframe overlays
+  bool samplerAnisotropy = false;
+  bool presentation = false;  // VK_KHR_swapchain
+};
+
+struct DeviceReport {
+  std::string name;
+  std::string driver;  // name and version as the driver tells them
+  uint32_t index = 0;  // the number that DeviceRequest::device accepts
+  VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
+  uint32_t apiVersion = 0;
+  DeviceLimits limits;
+  DeviceFeatures features;
+  LoadPath loads = LoadPath::storage;  // the path taken unless a request names one
+  bool suitable = false;
+  std::vector<std::string> refusals;  // each reason why it is not suitable
+  bool chosen = false;
+  std::string whyNot;  // for a device not chosen: its refusals, or what outranked it
+
+  const char* typeName() const;  // "discrete", "integrated", "virtual", "cpu", "other"
+};
+
+struct DeviceRequest {
+  // INDEX, or part of the NAME in any case; the best suitable device where there is none.
+  std::optional<std::string> device = {};
+  // Validation layer with synchronization validation, into validationLog().
+  bool validation = false;
+  // A swapchain will be made, for which the window system needs these instance extensions.
+  bool presentation = false;
+  std::vector<std::string> instanceExtensions = {};
+  // Overrides the device's own load path (tests run both).
+  std::optional<LoadPath> loads = {};
+};
+
+struct ValidationMessage {
+  std::string id;  // the VUID or the SYNC- name
+  std::string text;
+  uint32_t count = 0;  // how often exactly this text came
+};
+
+// What the validation layer said, warnings and errors. It may outlive its device, so that complaints about
+// the device's own destruction can still be read. Thread-safe.
+class ValidationLog {
+ public:
+  std::vector<ValidationMessage> messages() const;
+  void clear();
+  void add(std::string id, std::string text);
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<ValidationMessage> messages_;
+};
+
+// Every device of this machine, suitable or not, in Vulkan's order, with the choice that create() would make.
+// Throws Error(device) when there is no Vulkan driver at all.
+std::vector<DeviceReport> listDevices(const DeviceRequest& = {});
+
+// One Vulkan device with one queue that does graphics, compute and transfer. Everything made on it must be
+// gone before it is destroyed. Work is submitted from one thread at a time.
+class Device {
+ public:
+  // The best suitable device: Vulkan 1.3, a graphics and compute queue, dynamicRendering, synchronization2
+  // and timelineSemaphore; discrete before integrated before virtual before cpu. Throws Error(device) listing
+  // each candidate with its reasons.
+  static Device create(const DeviceRequest& = {});
+
+  // A device that the caller made and keeps; it is never destroyed here. It needs what create() asks for,
+  // with those three features enabled; the queue is used from the calling threads only and the caller keeps
+  // its own submissions to it apart from ours. The handles must come from the Vulkan loader (GLFW, SDL and
+  // volk all use it). Throws Error(device) when the physical device is unsuitable.
+  static Device adopt(VkInstance, VkPhysicalDevice, VkDevice, uint32_t queueFamily, VkQueue,
+                      PFN_vkGetInstanceProcAddr, std::optional<LoadPath> loads = {});
+
+  Device(Device&&) noexcept;
+  Device& operator=(Device&&) noexcept;
+  ~Device();
+
+  const DeviceReport& report() const;
+  VkDevice handle() const;
+  VkInstance instance() const;
+  VkPhysicalDevice physicalDevice() const;
+  VkQueue queue() const;
+  uint32_t queueFamily() const;
+
+  // Throws Error(device) when the device is lost.
+  void waitIdle() const;
+
+  // Empty unless the request asked for validation.
+  std::vector<ValidationMessage> validationMessages() const;
+  std::shared_ptr<ValidationLog> validationLog() const;
+
+  // The engine's own view (engine/gpu/context.h); of no use outside it.
+  gpu::Context& context() const { return *context_; }
+
+ private:
+  explicit Device(std::unique_ptr<gpu::Context>);
+  std::unique_ptr<gpu::Context> context_;
+};
+
+}  // namespace skitter

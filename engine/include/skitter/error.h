@@ -1,0 +1,29 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace skitter {
+
+// Wrong input or a failing world. what() is one line that names the file or object, what was found and what
+// was expected. A caller's own bug is an assertion, never an Error.
+class Error : public std::runtime_error {
+ public:
+  // The values are the exit codes of the `skitter` command.
+  enum class Kind {
+    check = 1,   // a check ran and failed
+    input = 2,   // wrong usage, unreadable or malformed input, unwritable output
+    device = 3,  // no usable Vulkan device, or the device failed
+  };
+
+  Error(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
+};
+
+inline Error inputError(const std::string& message) { return {Error::Kind::input, message}; }
+inline Error deviceError(const std::string& message) { return {Error::Kind::device, message}; }
+
+}  // namespace skitter

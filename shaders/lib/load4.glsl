@@ -1,0 +1,32 @@
+#ifndef SKITTER_LOAD4
+#define SKITTER_LOAD4
+
+// Records of vec4, read by LOAD4 and written by STORE4. Reads go through an RGBA32F texel buffer or a storage
+// buffer, as LOAD4_TEXEL says: on lavapipe a storage load costs 35 texel loads, on some devices texel buffers
+// are too small. LOAD4 is the sole declaration that differs, so both variants compute the same bits.
+//
+//   LOAD4_BUFFER(0, legs)           declares; set 0, binding 0
+//   vec4 a = LOAD4(legs, i);
+//   STORE4_BUFFER(1, joints)
+//   STORE4(joints, i, a);
+//
+// One VkBuffer may be bound both ways in a dispatch if each record is read only by the invocation that writes
+// it, and before it does.
+#if !defined(LOAD4_TEXEL)
+#error "LOAD4_TEXEL is set by skitter_add_shaders(... LOAD_VARIANTS)"
+#endif
+
+#if LOAD4_TEXEL
+#define LOAD4_BUFFER(bindingNumber, name) layout(set = 0, binding = bindingNumber) uniform samplerBuffer name;
+#define LOAD4(name, i) texelFetch(name, int(i))
+#else
+#define LOAD4_BUFFER(bindingNumber, name) \
+  layout(set = 0, binding = bindingNumber, std430) readonly buffer name##Load4 { vec4 record[]; } name;
+#define LOAD4(name, i) (name.record[i])
+#endif
+
+#define STORE4_BUFFER(bindingNumber, name) \
+  layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store4 { vec4 record[]; } name;
+#define STORE4(name, i, value) name.record[i] = (value)
+
+#endif

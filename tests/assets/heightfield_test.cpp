@@ -1,0 +1,54 @@
+#include "skitter/heightfield.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace skitter {
+namespace {
+
+// Heights 0 1 2 / 10 11 12, 2 m apart in x and 4 m in z.
+Heightfield ramp() {
+  Heightfield field;
+  field.columns = 3;
+  field.rows = 2;
+  field.spacingX = 2;
+  field.spacingZ = 4;
+  field.heights = {0, 1, 2, 10, 11, 12};
+  return field;
+}
+
+TEST(Heightfield, IsCentredOnTheOrigin) {
+  EXPECT_EQ(ramp().originX(), -2);
+  EXPECT_EQ(ramp().originZ(), -2);
+  EXPECT_EQ(ramp().extentX(), 4);
+  EXPECT_EQ(ramp().extentZ(), 4);
+}
+
+TEST(Heightfield, MeetsItsSamples) {
+  const Heightfield field = ramp();
+  EXPECT_EQ(field.at(-2, -2), 0);
+  EXPECT_EQ(field.at(0, -2), 1);
+  EXPECT_EQ(field.at(2, -2), 2);
+  EXPECT_EQ(field.at(-2, 2), 10);
+  EXPECT_EQ(field.at(2, 2), 12);
+}
+
+TEST(Heightfield, IsBilinearBetween) {
+  const Heightfield field = ramp();
+  EXPECT_FLOAT_EQ(field.at(-1, -2), 0.5f);
+  EXPECT_FLOAT_EQ(field.at(0, 0), 6);
+  EXPECT_FLOAT_EQ(field.at(1.5f, 1), 1.75f + 7.5f);
+}
+
+TEST(Heightfield, ClampsOutside) {
+  const Heightfield field = ramp();
+  EXPECT_EQ(field.at(-100, -100), 0);
+  EXPECT_EQ(field.at(100, 1e30f), 12);
+  EXPECT_FLOAT_EQ(field.at(-1e30f, 0), 5);
+  EXPECT_TRUE(std::isfinite(field.at(std::numeric_limits<float>::quiet_NaN(), 0)));
+}
+
+}  // namespace
+}  // namespace skitter

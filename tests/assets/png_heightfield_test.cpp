@@ -1,0 +1,207 @@
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "files.h"
+#include "skitter/heightfield.h"
+
+namespace skitter {
+namespace {
+
+using test::inputFault;
+using test::TemporaryFolder;
+
+TEST(PngHeightfield, DefaultsWithoutSidecar) {
+  TemporaryFolder folder;
+  test::writePng(folder / "a.png", 3, 2, 16, {0, 65535, 0, 32768, 0, 6554});
+  const Heightfield field = loadHeightfield(folder / "a.png");
+  EXPECT_EQ(field.name, "a");
+  EXPECT_EQ(field.columns, 3u);
+  EXPECT_EQ(field.rows, 2u);
+  EXPECT_EQ(field.spacingX, 0.5f);
+  EXPECT_EQ(field.spacingZ, 0.5f);
+  EXPECT_FLOAT_EQ(field.heights[0], -5);
+  EXPECT_FLOAT_EQ(field.heights[1], 5);
+  EXPECT_NEAR(field.heights[3], 0, 1e-3);
+  EXPECT_NEAR(field.heights[5], -4, 1e-3);
+  // The first row lies at -z.
+  EXPECT_FLOAT_EQ(field.at(0, -0.25f), 5);
+  EXPECT_FLOAT_EQ(field.at(0, 0.25f), -5);
+}
+
+TEST(PngHeightfield, EightBits) {
+  TemporaryFolder folder;
+  test::writePng(folder / "a.png", 2, 2, 8, {0, 255, 51, 0});
+  const Heightfield field = loadHeightfield(folder / "a.png");
+  EXPECT_FLOAT_EQ(field.heights[1], 5);
+  EXPECT_FLOAT_EQ(field.heights[2], -3);
+}
+
+TEST(PngHeightfield, MidHeightIsOfTheSamplesThere) {
+  TemporaryFolder folder;
+  test::writePng(folder / "a.png", 2, 2, 8, {102, 153, 102, 102});
+  HeightfieldUnits units;
+  units.minHeight = 100;
+  units.maxHeight = 110;
+  units.scale = 2;
+  const Heightfield field = loadHeightfield(folder / "a.png", units);
+  EXPECT_FLOAT_EQ(field.heights[0], -2);
+  EXPECT_FLOAT_EQ(field.heights[1], 2);
+  EXPECT_FLOAT_EQ(field.spacingX, 1);
+}
+
+TEST(PngHeightfield, SidecarAndFlagsOverIt) {
+  TemporaryFolder folder;
+  test::writePng(folder / "hill_2x3.png", 2, 3, 16, {0, 65535, 0, 0, 0, 0});
+  test::writeText(folder / "hill.json", R"({"spacing_x_m": 3, "spacing_y_m": 4, "min_m": 10, "max_m": 30})");
+  Heightfield field = loadHeightfield(folder / "hill_2x3.png");
+  EXPECT_EQ(field.spacingX, 3);
+  EXPECT_EQ(field.spacingZ, 4);
+  EXPECT_FLOAT_EQ(field.heights[1], 10);
+  HeightfieldUnits units;
+  units.spacingZ = 7;
+  field = loadHeightfield(folder / "hill_2x3.png", units);
+  EXPECT_EQ(field.spacingX, 3);
+  EXPECT_EQ(field.spacingZ, 7);
+  // A sidecar of the whole name comes first.
+  test::writeText(folder / "hill_2x3.json", R"({"spacing_x_m": 5})");
+  EXPECT_EQ(loadHeightfield(folder / "hill_2x3.png").spacingX, 5);
+  test::writeText(folder / "hill_2x3.json", R"({"spacing_x_m": "5"})");
+  EXPECT_NE(inputFault([&] { loadHeightfield(folder / "hill_2x3.png"); }).find("spacing_x_m is \"5\""),
+            std::string::npos);
+  test::writeText(folder / "hill_2x3.json", R"({"width": 4, "height": 3})");
+  EXPECT_NE(inputFault([&] { loadHeightfield(folder / "hill_2x3.png"); }).find("4 x 3"), std::string::npos);
+  test::writeText(folder / "hill_2x3.json", "{");
+  EXPECT_NE(inputFault([&] { loadHeightfield(folder / "hill_2x3.png"); }).find("hill_2x3.json"),
+            std::string::npos);
+}
+
+TEST(PngHeightfield, RefusesBadFilesByName) {
+  TemporaryFolder folder;
+  const auto fault = [&](const std::string& name) {
+    const std::string what = inputFault([&] { loadHeightfield(folder / name); });
+    EXPECT_NE(what.find(name), std::string::npos) << what;
+    return what;
+  };
+  EXPECT_NE(fault("missing.png").find("no such file"), std::string::npos);
+  std::filesystem::create_directory(folder / "directory.png");
+  EXPECT_NE(fault("directory.png").find("is a directory"), std::string::npos);
+  test::writeText(folder / "empty.png", "");
+  EXPECT_NE(fault("empty.png").find("is empty"), std::string::npos);
+  test::writeText(folder / "text.png", "not a picture at all");
+  EXPECT_NE(fault("text.png").find("not a PNG"), std::string::npos);
+  test::writePng(folder / "thin.png", 1, 4, 8, {0, 0, 0, 0});
+  EXPECT_NE(fault("thin.png").find("1 x 4"), std::string::npos);
+  test::writePng(folder / "wide.png", 16385, 2, 8, std::vector<uint16_t>(2 * 16385));
+  EXPECT_NE(fault("wide.png").find("16385 x 2"), std::string::npos);
+}
+
+TEST(PngHeightfield, RefusesEveryTruncationAndHugeClaims) {
+  TemporaryFolder folder;
+  test::writePng(folder / "whole.png", 8, 8, 16, std::vector<uint16_t>(64, 7));
+  const std::vector<uint8_t> whole = test::readBytes(folder / "whole.png");
+  EXPECT_NO_THROW(loadHeightfield(folder / "whole.png"));
+  for (size_t size = 1; size < whole.size(); ++size) {
+    test::writeBytes(folder / "cut.png", {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+    EXPECT_FALSE(inputFault([&] { loadHeightfield(folder / "cut.png"); }).empty()) << size;
+  }
+  // A few hundred bytes whose header claims 16384 x 16384 samples, with a checksum that agrees.
+  test::writePng(folder / "claim.png", 16384, 2, 16, std::vector<uint16_t>(2 * 16384));
+  std::vector<uint8_t> claim = test::readBytes(folder / "claim.png");
+  constexpr size_t headerAt = 12, heightAt = 20, checksumAt = 29;
+  claim[heightAt + 2] = 0x40;
+  claim[heightAt + 3] = 0;
+  const uLong checksum = crc32(0, claim.data() + headerAt, checksumAt - headerAt);
+  for (size_t k = 0; k < 4; ++k) claim[checksumAt + k] = static_cast<uint8_t>(checksum >> (24 - 8 * k));
+  test::writeBytes(folder / "claim.png", claim);
+  EXPECT_NE(inputFault([&] { loadHeightfield(folder / "claim.png"); }).find("cannot hold 16384 x 16384"),
+            std::string::npos);
+}
+
+TEST(PngHeightfield, RefusesUnitsThatAreNotSane) {
+  TemporaryFolder folder;
+  test::writePng(folder / "a.png", 2, 2, 8, {0, 1, 2, 3});
+  const auto fault = [&](auto change) {
+    HeightfieldUnits units;
+    change(units);
+    return inputFault([&] { loadHeightfield(folder / "a.png", units); });
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NE(fault([&](HeightfieldUnits& u) { u.scale = nan; }).find("scale is nan"), std::string::npos);
+  EXPECT_NE(fault([](HeightfieldUnits& u) { u.scale = -1; }).find("scale"), std::string::npos);
+  EXPECT_NE(fault([](HeightfieldUnits& u) { u.spacingX = 0; }).find("spacing x"), std::string::npos);
+  EXPECT_NE(fault([](HeightfieldUnits& u) {
+              u.spacingZ = std::numeric_limits<float>::infinity();
+            }).find("spacing z"),
+            std::string::npos);
+  EXPECT_NE(fault([&](HeightfieldUnits& u) { u.minHeight = nan; }).find("minimum height"), std::string::npos);
+  EXPECT_NE(fault([](HeightfieldUnits& u) { u.minHeight = 11; }).find("above maximum height"),
+            std::string::npos);
+}
+
+class SharedData : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is absent";
+  }
+  const std::filesystem::path data = SKITTER_SHARED_DATA;
+};
+
+TEST_F(SharedData, RealTerrains) {
+  const Heightfield jacksboro = loadHeightfield(data / "terrain/jacksboro_403x344.png");
+  EXPECT_EQ(jacksboro.columns, 403u);
+  EXPECT_EQ(jacksboro.rows, 344u);
+  EXPECT_FLOAT_EQ(jacksboro.spacingX, 74.475f);
+  EXPECT_FLOAT_EQ(jacksboro.spacingZ, 92.145f);
+  const auto [low, high] = std::minmax_element(jacksboro.heights.begin(), jacksboro.heights.end());
+  EXPECT_NEAR(*high, 420, 0.02);
+  EXPECT_NEAR(*low, -420, 0.02);
+
+  // The same samples in 32-bit floats.
+  const std::vector<uint8_t> raw = test::readBytes(data / "terrain/jacksboro_403x344.r32f");
+  ASSERT_EQ(raw.size(), 4 * jacksboro.heights.size());
+  for (size_t k = 0; k < jacksboro.heights.size(); ++k) {
+    float metres = 0;
+    std::copy_n(raw.data() + 4 * k, 4, reinterpret_cast<uint8_t*>(&metres));
+    ASSERT_NEAR(jacksboro.heights[k], metres - 656, 0.02) << k;
+  }
+
+  HeightfieldUnits units;
+  units.scale = 0.01f;
+  const Heightfield everest = loadHeightfield(data / "terrain/everest_513x513.png", units);
+  EXPECT_EQ(everest.columns, 513u);
+  EXPECT_EQ(everest.rows, 513u);
+  EXPECT_NEAR(everest.extentX(), 420.184, 0.01);
+  const auto [deep, peak] = std::minmax_element(everest.heights.begin(), everest.heights.end());
+  EXPECT_NEAR(*peak - *deep, 74.36, 0.01);
+}
+
+TEST_F(SharedData, CorruptPngsAreRefusedAndGreyOnesRead) {
+  size_t refused = 0, read = 0, colour = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(data / "bad_png")) {
+    if (entry.path().extension() != ".png") continue;
+    const std::string name = entry.path().filename().string();
+    SCOPED_TRACE(name);
+    // PngSuite names a file by colour type (0g grey, 2c colour, 4a grey with alpha, 6a colour with alpha) and
+    // depth.
+    if (name.rfind("corrupt_", 0) == 0) {
+      EXPECT_NE(inputFault([&] { loadHeightfield(entry.path()); }).find(name), std::string::npos);
+      ++refused;
+    } else if (name.find("0g16") != std::string::npos || name.find("4a16") != std::string::npos) {
+      EXPECT_NO_THROW({ EXPECT_EQ(loadHeightfield(entry.path()).columns, 32u); });
+      ++read;
+    } else {
+      EXPECT_NE(inputFault([&] { loadHeightfield(entry.path()); }).find("is a colour PNG"),
+                std::string::npos);
+      ++colour;
+    }
+  }
+  EXPECT_GE(refused, 10u);
+  EXPECT_GE(read, 5u);
+  EXPECT_GE(colour, 5u);
+}
+
+}  // namespace
+}  // namespace skitter

@@ -1,0 +1,136 @@
+#include "skitter/scene.h"
+
+#include <gtest/gtest.h>
+
+#include "files.h"
+
+namespace skitter {
+namespace {
+
+using test::inputFault;
+
+TEST(Scene, BuiltinIsTheCrossing) {
+  const Scene scene = builtinScene();
+  EXPECT_EQ(scene.name, "crossing");
+  EXPECT_EQ(scene.agentCount(), 1000u);
+  ASSERT_EQ(scene.herds.size(), 1u);
+  EXPECT_EQ(scene.herds[0].rig, "spider");
+  EXPECT_EQ(scene.herds[0].goal.kind, Goal::Kind::cross);
+  ASSERT_TRUE(std::holds_alternative<TerrainNoise>(scene.terrain));
+  EXPECT_EQ(scene.loadTerrain().heights, generateHeightfield({}).heights);
+}
+
+TEST(Scene, BuiltinIsTheFileInTheTree) {
+  const Scene file = loadScene(SKITTER_ROOT "/assets/scenes/crossing.json");
+  EXPECT_EQ(file.name, builtinScene().name);
+  EXPECT_EQ(file.herds[0].agents, builtinScene().herds[0].agents);
+}
+
+TEST(Scene, EmptyObjectIsAllDefaults) {
+  const Scene scene = parseScene("{}", "plain.json", "");
+  EXPECT_EQ(scene.name, "plain");
+  EXPECT_EQ(scene.agentCount(), 1000u);
+  EXPECT_EQ(scene.camera.kind, Camera::Kind::follow);
+}
+
+TEST(Scene, EveryKey) {
+  const Scene scene = parseScene(R"({
+    "name": "all", "seed": 18446744073709551615,
+    "terrain": {"kind": "file", "file": "hill.png", "spacingX": 1, "spacingZ": 2, "minHeight": -3, "maxHeight": 4.5,
+                "scale": 0.5},
+    "herds": [{"rig": "crab.glb", "controller": "loop", "agents": 7,
+               "spawn": {"kind": "grid", "spacing": 3, "centre": [1, -2], "heading": 1.5},
+               "goal": {"kind": "point", "target": [5, 6], "speed": 0}},
+              {"agents": 0, "goal": {"kind": "none"}}],
+    "camera": {"kind": "fixed", "position": [1, 2, 3], "target": [4, 5, 6], "distance": 2, "fieldOfView": 1}
+  })",
+                                 "all.json", "folder");
+  EXPECT_EQ(scene.seed, UINT64_MAX);
+  const auto& terrain = std::get<TerrainFile>(scene.terrain);
+  EXPECT_EQ(terrain.file, std::filesystem::path("folder/hill.png"));
+  EXPECT_EQ(terrain.units.spacingX, 1.0f);
+  EXPECT_EQ(terrain.units.spacingZ, 2.0f);
+  EXPECT_EQ(terrain.units.minHeight, -3.0f);
+  EXPECT_EQ(terrain.units.maxHeight, 4.5f);
+  EXPECT_EQ(terrain.units.scale, 0.5f);
+  ASSERT_EQ(scene.herds.size(), 2u);
+  const Herd& herd = scene.herds[0];
+  EXPECT_EQ(std::filesystem::path(herd.rig), std::filesystem::path("folder/crab.glb"));
+  EXPECT_EQ(herd.controller, "loop");
+  EXPECT_EQ(herd.agents, 7u);
+  EXPECT_EQ(herd.spawn.kind, Spawn::Kind::grid);
+  EXPECT_EQ(herd.spawn.centre, glm::vec2(1, -2));
+  EXPECT_EQ(herd.spawn.heading, 1.5f);
+  EXPECT_EQ(herd.goal.kind, Goal::Kind::point);
+  EXPECT_EQ(herd.goal.target, glm::vec2(5, 6));
+  EXPECT_EQ(herd.goal.speed, 0);
+  EXPECT_EQ(scene.herds[1].goal.kind, Goal::Kind::none);
+  EXPECT_EQ(scene.camera.kind, Camera::Kind::fixed);
+  EXPECT_EQ(scene.camera.target, glm::vec3(4, 5, 6));
+  EXPECT_EQ(scene.camera.fieldOfView, 1);
+  EXPECT_EQ(scene.agentCount(), 7u);
+}
+
+TEST(Scene, FaultsNameFileAndField) {
+  const std::pair<const char*, const char*> cases[] = {
+      {R"([])", "the scene"},
+      {R"({"sed": 1})", "sed is no known key"},
+      {R"({"seed": -1})", "seed is -1"},
+      {R"({"seed": 1.5})", "seed is 1.5"},
+      {R"({"name": 5})", "name is 5"},
+      {R"({"herds": {}})", "herds is an object"},
+      {R"({"herds": [5]})", "herds[0] is 5"},
+      {R"({"herds": [{}, {"agents": "many"}]})", "herds[1].agents is \"many\""},
+      {R"({"herds": [{"agents": -1}]})", "herds[0].agents is -1"},
+      {R"({"herds": [{"agents": 16777217}]})", "herds[0].agents is 16777217"},
+      {R"({"herds": [{"agents": 16777216}, {"agents": 1}]})", "16777217 agents in all"},
+      {R"({"herds": [{"controller": "magic"}]})", "herds[0].controller is \"magic\""},
+      {R"({"herds": [{"spawn": {"spacing": 0}}]})", "herds[0].spawn.spacing is 0"},
+      {R"({"herds": [{"spawn": {"spacing": 1e400}}]})", "number overflow"},
+      {R"({"herds": [{"spawn": {"spacing": null}}]})", "herds[0].spawn.spacing is null"},
+      {R"({"herds": [{"spawn": {"kind": "ring"}}]})", "herds[0].spawn.kind is \"ring\""},
+      {R"({"herds": [{"spawn": {"centre": [1]}}]})", "herds[0].spawn.centre is an array of 1"},
+      {R"({"herds": [{"spawn": {"centre": [1, 4001]}}]})", "herds[0].spawn.centre[1] is 4001"},
+      {R"({"herds": [{"spawn": {"center": [1, 2]}}]})", "herds[0].spawn.center is no known key"},
+      {R"({"herds": [{"goal": {"speed": -0.5}}]})", "herds[0].goal.speed is -0.5"},
+      {R"({"terrain": {"columns": 1}})", "terrain.columns is 1"},
+      {R"({"terrain": {"rows": 16385}})", "terrain.rows is 16385"},
+      {R"({"terrain": {"octaves": 0}})", "terrain.octaves is 0"},
+      {R"({"terrain": {"file": "a.png"}})", "terrain.file is no known key"},
+      {R"({"terrain": {"kind": "file"}})", "terrain.file is missing"},
+      {R"({"terrain": {"kind": "file", "file": "a.png", "scale": -1}})", "terrain.scale is -1"},
+      {R"({"camera": {"fieldOfView": 7}})", "camera.fieldOfView is 7"},
+      {R"({"camera": {"kind": "fixed"}})", "camera.position equals camera.target"},
+      {R"({"seed": 1, "seed": 2})", "\"seed\" appears twice"},
+      {R"({"seed": NaN})", "line 1"},
+      {"", "not valid JSON"},
+      {"{\"a\n\": 1}", "not valid JSON"},
+  };
+  for (const auto& [json, expected] : cases) {
+    const std::string what = inputFault([&, text = json] { parseScene(text, "bad.json", ""); });
+    EXPECT_NE(what.find("bad.json: "), std::string::npos) << what;
+    EXPECT_NE(what.find(expected), std::string::npos) << what << "\nexpected: " << expected;
+  }
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  EXPECT_NE(inputFault([&] { parseScene(deep, "deep.json", ""); }).find("nested"), std::string::npos);
+}
+
+TEST(Scene, FilesAreRefusedByName) {
+  test::TemporaryFolder folder;
+  EXPECT_NE(inputFault([&] { loadScene(folder / "none.json"); }).find("none.json: no such file"),
+            std::string::npos);
+  EXPECT_NE(inputFault([&] { loadScene(folder.path()); }).find("is a directory"), std::string::npos);
+  test::writeText(folder / "scene.json", R"({"terrain": {"kind": "file", "file": "none.png"}})");
+  const Scene scene = loadScene(folder / "scene.json");
+  EXPECT_NE(inputFault([&] { scene.loadTerrain(); }).find((folder / "none.png").string()), std::string::npos);
+}
+
+TEST(Scene, TerrainFileIsRelativeToTheScene) {
+  test::TemporaryFolder folder;
+  test::writePng(folder / "flat.png", 4, 3, 8, std::vector<uint16_t>(12, 9));
+  test::writeText(folder / "scene.json", R"({"terrain": {"kind": "file", "file": "flat.png"}})");
+  EXPECT_EQ(loadScene(folder / "scene.json").loadTerrain().columns, 4u);
+}
+
+}  // namespace
+}  // namespace skitter

@@ -1,0 +1,126 @@
+#include "support/gpu_fixture.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace skitter {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+template <class Call>
+std::string deviceErrorOf(Call&& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::device);
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return {};
+}
+
+// Sets an environment variable for a scope.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    setenv(name, value, 1);
+  }
+  ~Environment() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+TEST(DeviceChoice, ListsDevicesAndMarksOne) {
+  const auto devices = listDevices();
+  ASSERT_FALSE(devices.empty());
+  EXPECT_EQ(std::count_if(devices.begin(), devices.end(), [](const auto& d) { return d.chosen; }), 1);
+  for (const DeviceReport& device : devices) {
+    EXPECT_FALSE(device.name.empty());
+    EXPECT_EQ(device.suitable, device.refusals.empty());
+    EXPECT_EQ(device.chosen, device.whyNot.empty()) << device.name;
+    if (!device.suitable) continue;
+    EXPECT_GE(device.limits.maxStorageBufferRange, 1u << 27);
+    EXPECT_GE(device.limits.subgroupSize, 1u);
+    EXPECT_GT(device.limits.availableBytes, 0u);
+    EXPECT_TRUE(device.limits.sampledR32f);
+  }
+}
+
+TEST(DeviceChoice, CreatesWhatTheListMarks) {
+  const auto devices = listDevices();
+  const auto marked = std::find_if(devices.begin(), devices.end(), [](const auto& d) { return d.chosen; });
+  ASSERT_NE(marked, devices.end());
+  const Device device = Device::create();
+  EXPECT_EQ(device.report().name, marked->name);
+  EXPECT_EQ(device.report().index, marked->index);
+  EXPECT_TRUE(device.report().chosen);
+}
+
+TEST(DeviceChoice, TakesIndexAndPartOfNameInAnyCase) {
+  const auto devices = listDevices();
+  for (const DeviceReport& wanted : devices) {
+    if (!wanted.suitable) continue;
+    EXPECT_EQ(Device::create({.device = std::to_string(wanted.index)}).report().index, wanted.index);
+    std::string name = wanted.name.substr(1);
+    for (char& c : name) c = char(std::toupper(static_cast<unsigned char>(c)));
+    EXPECT_EQ(Device::create({.device = name}).report().name, wanted.name);
+  }
+}
+
+TEST(DeviceChoice, UnknownNameListsThosePresent) {
+  const auto present = listDevices().front().name;
+  const auto message = deviceErrorOf([] { Device::create({.device = "no such device"}); });
+  EXPECT_THAT(message, AllOf(HasSubstr("no such device"), HasSubstr(present)));
+}
+
+TEST(DeviceChoice, UnknownIndexListsThosePresent) {
+  const auto present = listDevices().front().name;
+  const auto message = deviceErrorOf([] { Device::create({.device = "4711"}); });
+  EXPECT_THAT(message, AllOf(HasSubstr("4711"), HasSubstr(present)));
+}
+
+TEST(DeviceChoice, OthersSayWhyNot) {
+  for (const DeviceReport& device : listDevices({.device = "no such device"})) {
+    EXPECT_FALSE(device.chosen);
+    EXPECT_THAT(device.whyNot, HasSubstr("no such device"));
+  }
+}
+
+TEST(DeviceChoice, NoDriverSaysWhatToInstall) {
+  const Environment drivers("VK_DRIVER_FILES", "/nowhere/no_icd.json");
+  const Environment older("VK_ICD_FILENAMES", "/nowhere/no_icd.json");
+  for (const std::string& message :
+       {deviceErrorOf([] { Device::create(); }), deviceErrorOf([] { listDevices(); })}) {
+    EXPECT_THAT(message, HasSubstr("mesa-vulkan-drivers"));
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(DeviceChoice, MissingWindowExtensionIsNamed) {
+  const auto message = deviceErrorOf(
+      [] { Device::create({.presentation = true, .instanceExtensions = {"VK_KHR_no_such_surface"}}); });
+  EXPECT_THAT(message, HasSubstr("VK_KHR_no_such_surface"));
+}
+
+TEST(DeviceChoice, LoadPathFollowsTheDeviceUnlessNamed) {
+  const Device natural = Device::create(test::validatedRequest());
+  const bool texel = natural.report().type == VK_PHYSICAL_DEVICE_TYPE_CPU &&
+                     natural.report().limits.texelRgba32f &&
+                     natural.report().limits.maxTexelBufferElements >= 1u << 24;
+  EXPECT_EQ(natural.report().loads, texel ? LoadPath::texel : LoadPath::storage);
+  for (const LoadPath path : {LoadPath::texel, LoadPath::storage}) {
+    EXPECT_EQ(Device::create(test::validatedRequest(path)).report().loads, path);
+  }
+}
+
+}  // namespace
+}  // namespace skitter

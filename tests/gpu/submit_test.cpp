@@ -1,0 +1,86 @@
+#include "gpu/submit.h"
+
+#include "gpu/barrier.h"
+#include "gpu/buffer.h"
+#include "gpu/timer.h"
+#include "support/gpu_fixture.h"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+
+namespace skitter::gpu {
+namespace {
+
+class SubmitTest : public test::GpuTest {};
+
+TEST_F(SubmitTest, RingKeepsOrderAndCounts) {
+  const HostBuffer counter(context(), 4 * 8, HostUse::readback, "counter");
+  CommandRing ring(context(), 2);
+  EXPECT_EQ(ring.completed(), 0u);
+  for (uint32_t i = 0; i < 8; ++i) {
+    const vk::CommandBuffer cmd = ring.begin();
+    EXPECT_EQ(ring.slot(), i % 2);
+    cmd.fillBuffer(counter.handle(), 4 * i, 4, i + 1);
+    transferToHost(cmd);
+    EXPECT_EQ(ring.submit(), i + 1);
+  }
+  ring.wait(3);
+  EXPECT_GE(ring.completed(), 3u);
+  ring.waitAll();
+  EXPECT_EQ(ring.completed(), 8u);
+  EXPECT_THAT(counter.as<uint32_t>(), ::testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+}
+
+TEST_F(SubmitTest, RingMayEndInFlight) {
+  const Buffer buffer(context(), 1 << 20, "filled");
+  CommandRing ring(context());
+  ring.begin().fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 1);
+  ring.submit();
+}
+
+TEST_F(SubmitTest, TimersAreMonotone) {
+  StageTimer timer(context(), 4);
+  const Buffer buffer(context(), 32 << 20, "timed");
+  const auto before = std::chrono::steady_clock::now();
+  submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+    timer.reset(cmd);
+    timer.begin(cmd, "all");
+    timer.begin(cmd, "first");
+    cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 1);
+    timer.end(cmd, "first");
+    transferToTransfer(cmd);
+    timer.begin(cmd, "second");
+    cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 2);
+    timer.end(cmd, "second");
+    timer.end(cmd, "all");
+  });
+  const std::chrono::duration<double, std::milli> host = std::chrono::steady_clock::now() - before;
+  const auto times = timer.milliseconds();
+  ASSERT_EQ(timer.measures(), context().timestamps());
+  if (!timer.measures()) return;
+  ASSERT_EQ(times.size(), 3u);
+  EXPECT_EQ(times[0].stage, "all");
+  EXPECT_EQ(times[1].stage, "first");
+  EXPECT_EQ(times[2].stage, "second");
+  for (const StageTime& time : times) EXPECT_GE(time.milliseconds, 0) << time.stage;
+  EXPECT_GE(times[0].milliseconds, times[1].milliseconds + times[2].milliseconds);
+  EXPECT_LE(times[0].milliseconds, host.count());
+}
+
+TEST_F(SubmitTest, DisabledTimerIsSilent) {
+  StageTimer off(context(), 4, false);
+  StageTimer none;
+  submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+    for (StageTimer* timer : {&off, &none}) {
+      timer->reset(cmd);
+      timer->begin(cmd, "stage");
+      timer->end(cmd, "stage");
+    }
+  });
+  EXPECT_TRUE(off.milliseconds().empty());
+  EXPECT_TRUE(none.milliseconds().empty());
+}
+
+}  // namespace
+}  // namespace skitter::gpu

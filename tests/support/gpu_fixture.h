@@ -1,0 +1,67 @@
+#pragma once
+
+#include "gpu/context.h"
+#include "skitter/device.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace skitter::test {
+
+// The device under test is the best one, or the one that SKITTER_TEST_DEVICE names (NAME or INDEX).
+inline DeviceRequest validatedRequest(std::optional<LoadPath> loads = {}) {
+  DeviceRequest request{.validation = true, .loads = loads};
+  if (const char* selector = std::getenv("SKITTER_TEST_DEVICE")) request.device = selector;
+  return request;
+}
+
+inline void failOnMessages(const ValidationLog& log) {
+  for (const ValidationMessage& message : log.messages()) {
+    ADD_FAILURE() << "validation, " << message.count << " times: " << message.text;
+  }
+}
+
+// A device with validation and synchronization validation. There must be one: without, the test fails, it is
+// never skipped. Any validation message fails it too, those about the device's destruction included; so what
+// is made on the device lives in the test's body, or is released before GpuTest::TearDown().
+class GpuTest : public ::testing::Test {
+ protected:
+  explicit GpuTest(std::optional<LoadPath> loads = {}) : loads_(loads) {}
+
+  void SetUp() override {
+    device_ = std::make_unique<Device>(Device::create(validatedRequest(loads_)));
+    log_ = device_->validationLog();
+  }
+
+  void TearDown() override {
+    device_.reset();
+    if (log_) failOnMessages(*log_);
+  }
+
+  Device& device() { return *device_; }
+  gpu::Context& context() { return device_->context(); }
+  ValidationLog& log() { return *log_; }
+
+ private:
+  std::optional<LoadPath> loads_;
+  std::shared_ptr<ValidationLog> log_;
+  std::unique_ptr<Device> device_;
+};
+
+// The same test body on both load paths: TEST_P with INSTANTIATE_TEST_SUITE_P(..., bothLoadPaths(),
+// loadPathName).
+class GpuLoadTest : public GpuTest, public ::testing::WithParamInterface<LoadPath> {
+ protected:
+  GpuLoadTest() : GpuTest(GetParam()) {}
+};
+
+inline auto bothLoadPaths() { return ::testing::Values(LoadPath::texel, LoadPath::storage); }
+inline std::string loadPathName(const ::testing::TestParamInfo<LoadPath>& info) {
+  return info.param == LoadPath::texel ? "texel" : "storage";
+}
+
+}  // namespace skitter::test
