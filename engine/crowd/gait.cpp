@@ -1,0 +1,25 @@
+#include "crowd/stage.h"
+#include "embedded/gait_comp_storage.h"
+#include "embedded/gait_comp_texel.h"
+#include "shared/bindings.h"
+
+namespace skitter::crowd {
+
+Stage gaitStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"gait",
+          {embedded::gait_comp_texel(), embedded::gait_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_RIG, load4},
+           {BINDING_BODY, load4},
+           {BINDING_STEP, load4},
+           {BINDING_CHAIN, load4},
+           {BINDING_GAIT, load4},
+           {BINDING_GAIT_OUT, store},
+           {BINDING_LIST, store},
+           {BINDING_COUNTERS, store}},
+          Stage::Over::agents};
+}
+
+}  // namespace skitter::crowd

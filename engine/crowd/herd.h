@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/image.h"
+#include "gpu/kernel.h"
+#include "gpu/timer.h"
+#include "shared/bindings.h"
+#include "shared/parameters.h"
+#include "shared/records.h"
+#include "skitter/crowd.h"
+
+// What a crowd is made of on the device; the stages and the renderer read it.
+namespace skitter::crowd {
+
+// A run of agents whose records fit the device's bindings. Layouts: shaders/shared/records.h.
+struct Page {
+  uint32_t firstAgent = 0;
+  uint32_t agents = 0;
+  gpu::Buffer goal, steer, body, gait, step, foot, chain, pose, metric;
+  gpu::Buffer list;                     // legs that begin a step this tick
+  gpu::Buffer counters;                 // indirect arguments and counts
+  gpu::Buffer histogram;                // of reach errors
+  std::vector<gpu::Bindings> bindings;  // one a stage, in the frame's order
+};
+
+struct Herd {
+  Rig rig;
+  int legs = 0, bones = 0, groups = 0;  // bones of the longest chain
+  shared::Parameters parameters{};
+  gpu::HostBuffer parameterBlock;  // uniform; written once, before the first tick
+  std::vector<float> rigRecords;   // as uploaded to rigBuffer
+  gpu::Buffer rigBuffer;
+  std::vector<gpu::Kernel> kernels;  // one a stage, specialised by legs, bones and groups
+  std::vector<Page> pages;
+};
+
+}  // namespace skitter::crowd
+
+namespace skitter {
+
+struct Crowd::Impl {
+  const gpu::Context* context = nullptr;
+  CrowdOptions options;
+  Heightfield terrain;  // heights in memory too: cameras and tools look up the ground
+  gpu::Image heights;   // R32F, columns x rows, in state sampled; what every stage and the picture read
+  std::vector<crowd::Herd> herds;
+  uint64_t tick = 0;
+  float dt = 0;  // of the first tick; 0 before it
+  gpu::StageTimer timer;
+};
+
+}  // namespace skitter

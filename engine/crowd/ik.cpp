@@ -1,0 +1,23 @@
+#include "crowd/stage.h"
+#include "embedded/ik_comp_storage.h"
+#include "embedded/ik_comp_texel.h"
+#include "shared/bindings.h"
+
+namespace skitter::crowd {
+
+Stage ikStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"ik",
+          {embedded::ik_comp_texel(), embedded::ik_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_RIG, load4},
+           {BINDING_BODY, load4},
+           {BINDING_FOOT, load4},
+           {BINDING_CHAIN, load4},
+           {BINDING_CHAIN_OUT, store},
+           {BINDING_COUNTERS, store}},
+          Stage::Over::legs};
+}
+
+}  // namespace skitter::crowd

@@ -1,0 +1,25 @@
+#include "crowd/stage.h"
+#include "embedded/measure_comp_storage.h"
+#include "embedded/measure_comp_texel.h"
+#include "shared/bindings.h"
+
+namespace skitter::crowd {
+
+Stage measureStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"measure",
+          {embedded::measure_comp_texel(), embedded::measure_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_HEIGHTS, heights},
+           {BINDING_RIG, load4},
+           {BINDING_BODY, load4},
+           {BINDING_STEP, load4},
+           {BINDING_CHAIN, load4},
+           {BINDING_METRIC, load4},
+           {BINDING_METRIC_OUT, store},
+           {BINDING_HISTOGRAM, store}},
+          Stage::Over::legs};
+}
+
+}  // namespace skitter::crowd

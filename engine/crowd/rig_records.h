@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "skitter/rig.h"
+
+namespace skitter::crowd {
+
+// The rig as the stages read it: per leg rigStride(rig.maxBones()) vec4 (shaders/shared/records.h).
+std::vector<float> rigRecords(const Rig& rig);
+
+}  // namespace skitter::crowd

@@ -1,0 +1,125 @@
+#include "crowd/spawn.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "shared/records.h"
+
+namespace skitter::crowd {
+namespace {
+
+// SplitMix64 (Steele, Lea & Flood 2014): one draw per agent and purpose, whatever the order.
+float uniform(uint64_t seed, uint64_t agent, uint64_t purpose) {
+  uint64_t z = seed + 0x9e3779b97f4a7c15ull * (agent * 4 + purpose + 1);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return static_cast<float>((z ^ (z >> 31)) >> 40) * 0x1p-24f;
+}
+
+void push(std::vector<float>& records, float a, float b, float c, float d) {
+  records.insert(records.end(), {a, b, c, d});
+}
+
+}  // namespace
+
+Spawner::Spawner(const skitter::Herd& herd, const Rig& rig, const Heightfield& terrain,
+                 const shared::Parameters& tuning, uint64_t seed)
+    : herd_(herd), rig_(rig), terrain_(terrain), tuning_(tuning), seed_(seed) {
+  // A block about as deep as wide; closer together only where the terrain has no room.
+  const float spacing = herd.spawn.spacing;
+  const float roomX = terrain.extentX() - 4 * tuning.edgeMargin;
+  const float roomZ = terrain.extentZ() - 4 * tuning.edgeMargin;
+  const auto agents = std::max(1u, herd.agents);
+  const auto side = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(agents))));
+  const auto widest = std::max(1u, static_cast<uint32_t>(roomX / spacing));
+  lanes_ = std::min(side, std::max(widest, static_cast<uint32_t>(std::sqrt(agents * roomX / roomZ))));
+  rows_ = (agents + lanes_ - 1) / lanes_;
+  laneSpacing_ = std::min(spacing, roomX / static_cast<float>(std::max(1u, lanes_ - 1)));
+  rowSpacing_ = std::min(1.2f * spacing, 0.9f * roomZ / static_cast<float>(std::max(1u, rows_ - 1)));
+}
+
+Spawner::Placement Spawner::place(uint32_t agent) const {
+  const uint32_t row = agent / lanes_, lane = agent % lanes_;
+  const auto centred = [](uint32_t i, uint32_t n, float spacing) {
+    return (static_cast<float>(i) - 0.5f * static_cast<float>(n - 1)) * spacing;
+  };
+  const Spawn& spawn = herd_.spawn;
+  Placement p{};
+  p.heading = spawn.heading;
+  p.x = spawn.centre.x + centred(lane, lanes_, laneSpacing_);
+  p.z = spawn.centre.y + centred(row, rows_, rowSpacing_);
+  const float limitX = tuning_.halfExtentX - 1.5f * tuning_.edgeMargin;
+  const float limitZ = tuning_.halfExtentZ - 1.5f * tuning_.edgeMargin;
+  if (spawn.kind == Spawn::Kind::lanes) {
+    // Nobody walks in step or in file: every agent is a little off its place.
+    p.x += 0.4f * laneSpacing_ * (uniform(seed_, agent, 0) - 0.5f);
+    p.z = -limitZ + static_cast<float>(row) * rowSpacing_ + 0.5f * rowSpacing_ * uniform(seed_, agent, 1);
+    p.heading = 0;
+  }
+  p.x = std::clamp(p.x, -limitX, limitX);
+  p.z = std::clamp(p.z, -limitZ, limitZ);
+  if (herd_.goal.kind == Goal::Kind::point) {
+    p.targetX = p.otherX = std::clamp(herd_.goal.target.x, -limitX, limitX);
+    p.targetZ = p.otherZ = std::clamp(herd_.goal.target.y, -limitZ, limitZ);
+  } else {
+    p.targetX = p.x;
+    p.targetZ = limitZ;
+    p.otherX = std::min(p.x + 0.5f * laneSpacing_, limitX);
+    p.otherZ = -limitZ;
+  }
+  return p;
+}
+
+void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
+  const int bones = rig_.maxBones();
+  for (uint32_t agent = first; agent < first + count; ++agent) {
+    const Placement p = place(agent);
+    const float kind = herd_.goal.kind == Goal::Kind::cross   ? shared::GOAL_CROSS
+                       : herd_.goal.kind == Goal::Kind::point ? shared::GOAL_POINT
+                                                              : shared::GOAL_NONE;
+    push(state.goal, p.targetX, p.targetZ, p.otherX, p.otherZ);
+    push(state.goal, herd_.goal.speed, 0.5f * rig_.legLength, kind, 0);
+    push(state.steer, 0, 0, 0, 0);
+
+    // Standing on the plane through the ground a leg length around.
+    const float reach = rig_.legLength;
+    const float left = terrain_.at(p.x - reach, p.z), right = terrain_.at(p.x + reach, p.z);
+    const float back = terrain_.at(p.x, p.z - reach), ahead = terrain_.at(p.x, p.z + reach);
+    const glm::vec3 normal =
+        glm::normalize(glm::vec3((left - right) / (2 * reach), 1, (back - ahead) / (2 * reach)));
+    const float height = (left + right + back + ahead) / 4;
+    const glm::vec2 heading(std::sin(p.heading), std::cos(p.heading));
+    const glm::vec3 forward = glm::normalize(
+        glm::vec3(heading.x, -(normal.x * heading.x + normal.z * heading.y) / normal.y, heading.y));
+    const glm::quat q = glm::quat_cast(glm::mat3(glm::cross(normal, forward), normal, forward));
+    const float tileX = std::floor(p.x / shared::TILE_SIZE), tileZ = std::floor(p.z / shared::TILE_SIZE);
+    const float localX = p.x - tileX * shared::TILE_SIZE, localZ = p.z - tileZ * shared::TILE_SIZE;
+    push(state.body, localX, height, localZ, heading.x);
+    push(state.body, tileX, tileZ, heading.y, 0);
+    push(state.body, q.x, q.y, q.z, q.w);
+    push(state.body, 0, 0, 1, 0);
+    push(state.gait, uniform(seed_, agent, 2), 0, 0, 1);
+    push(state.gait, 0, 1, 0, 0);
+
+    for (const Leg& leg : rig_.legs) {
+      const glm::vec3 home = q * leg.home;
+      const glm::vec3 foot(localX + home.x, terrain_.at(p.x + home.x, p.z + home.z), localZ + home.z);
+      push(state.step, foot.x, foot.y, foot.z, tileX);
+      push(state.step, foot.x, foot.y, foot.z, tileZ);
+      push(state.step, 0, 0, 0, -1000);
+      push(state.step, 0, 0, 0, 1);
+      push(state.foot, home.x, foot.y - height, home.z, 1);
+      for (int i = 0; i < shared::chainDirections(bones); ++i) push(state.chain, 0, 0, 0, 0);
+      push(state.chain, home.x, home.y, home.z, 0);
+      push(state.chain, 1, 0, 0, 0);
+      push(state.metric, 0, 0, 0, -1);
+      push(state.metric, 0, 0, 0, 0);
+      push(state.metric, 0, 0, 0, 0);
+    }
+  }
+  state.agents += count;
+  state.pose.resize(size_t{state.agents} * static_cast<size_t>(rig_.paletteSize() * shared::POSE_STRIDE) * 4);
+}
+
+}  // namespace skitter::crowd

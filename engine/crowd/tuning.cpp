@@ -1,0 +1,78 @@
+#include "crowd/tuning.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skitter::crowd {
+
+// Each value says its unit, and what breaks when it is wrong. L is the leg length.
+shared::Parameters tuningFor(const Rig& rig, const Heightfield& terrain, float dt) {
+  const float length = rig.legLength;
+  shared::Parameters p{};
+  p.dt = dt;
+  p.legLength = length;
+  for (const Leg& leg : rig.legs) p.homeRadius = std::max(p.homeRadius, std::hypot(leg.home.x, leg.home.z));
+  p.bodyHeight = rig.bodyHeight;
+  p.bodyRadius = rig.bodyRadius;
+
+  p.originX = terrain.originX();
+  p.originZ = terrain.originZ();
+  p.inverseSpacingX = 1 / terrain.spacingX;
+  p.inverseSpacingZ = 1 / terrain.spacingZ;
+  p.halfExtentX = terrain.extentX() / 2;
+  p.halfExtentZ = terrain.extentZ() / 2;
+
+  p.edgeMargin = std::min(2 * length, 0.2f * std::min(terrain.extentX(), terrain.extentZ()));
+  p.slowRadius = length;
+
+  p.acceleration = 2.5f * length;  // m/s^2; more, and the feet are left behind at the start
+  p.braking = 6 * length;          // m/s^2; less, and stretched legs are pulled off the ground
+  p.turnRate = 1.5f;               // rad/s; more, and the outer feet cross before their group may step
+  p.turnAcceleration = 8;          // rad/s^2
+  p.turnGain = 4;                  // 1/s
+  p.stretchSlow = 0.93f;           // of the reach
+  p.stretchStop = 1.0f;            // of the reach; beyond 1 a planted foot would be torn off
+  p.errorStop = 0.02f;             // of the reach
+  p.heightBlend = 1 - std::exp(-dt / 0.10f);  // seconds; less bounces over every foothold, more lags in dips
+  p.tiltBlend = 1 - std::exp(-dt / 0.15f);
+  p.maxSlope = 2.75f;  // 70 degrees
+  p.bellyClearance = 0.6f * rig.bodyHeight;
+  p.ridge = 1e-4f * length * length;
+
+  p.halfStrideStill = 0.12f * length;
+  p.halfStrideGain = 0.08f;          // s
+  p.halfStrideMax = 0.30f * length;  // more, and side legs leave their reach
+  p.swingStill = 0.35f;              // s
+  p.swingSpeed = 1.7f * length;      // m/s
+  p.cycleMax = 1.0f;                 // s; longer, and a standing group reacts too late to a start
+  p.windowSlack = 1.1f;              // less, and a group's landing delays the next one's window
+  p.windowOpen = 0.5f;               // of the window; more, and late lifts disturb the rhythm
+  p.liftShare = 0.35f;               // of the half stride; less, and feet fidget at low speed
+  p.stretchLift = 0.95f;             // of the reach
+  p.strayShare = 1.8f;               // of the half stride; less, and a steady walk would trip over it
+  p.errorLift = 1e-3f;               // of the reach
+  p.rootShare = 0.25f;               // of the reach
+  p.settleTime = 1;                  // s
+  p.reaimDistance = 0.15f * length;  // less than a ladder's spacing, and steps are re-aimed for nothing
+  p.reaimLatest = 0.7f;
+
+  p.reachMost = 0.95f;  // of the reach: IK converges sublinearly beyond
+  p.reachLeast = 0.30f;
+  p.reachComfort = 0.85f;
+  p.slopeLeast = 0.35f;  // cosine: 70 degrees from the body's up
+  p.slopeWeight = 0.05f;
+  p.reachWeight = 4;
+  p.nearestOnly = 0;
+
+  p.stepHeight = 0.12f * length;
+  p.stepClearance = 0.03f * length;
+  p.stepHeightMax = 0.5f * length;
+
+  p.fabrikError = 0.25f;  // of the reach; less, and FABRIK bends a tracked leg more than it need be
+  p.restPull = 0.05f;     // a step; more, and it fights the target near the limits
+  p.pullError = 0.1f;    // of the reach: about a fast tick; out of reach no pull may act
+  p.ikTolerance = 2e-5f;  // of the reach; a planted foot's slide is the sum of such errors
+  return p;
+}
+
+}  // namespace skitter::crowd

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "skitter/device.h"
+#include "skitter/heightfield.h"
+#include "skitter/rig.h"
+#include "skitter/scene.h"
+
+namespace skitter {
+
+struct CrowdOptions {
+  bool measure = true;        // keep the fidelity figures, about 5 % of a tick
+  bool timestamps = false;    // time every stage on the device
+  uint32_t pageAgents = 0;    // most agents a page; 0: as many as the device's limits allow
+};
+
+// What the feet did, over every tick since the crowd was made. Lengths in leg lengths.
+struct Fidelity {
+  double slip = 0;            // mean horizontal slide of a planted foot, a stance
+  double penetration = 0;     // mean depth of all feet below the ground
+  double floating = 0;        // mean height of planted feet above the ground
+  double reachErrorP99 = 0;   // 99th percentile distance of a foot from its target
+  double limitViolation = 0;  // largest violation of a joint limit, radians
+  uint64_t lastResorts = 0;   // landings for which no foothold fitted
+  uint64_t notFinite = 0;     // targets that were not finite; the leg kept its pose
+};
+
+// One herd's records as the host sees them, agent after agent: the layouts are those of
+// shaders/shared/records.h. For tools, traces and validation.
+struct HerdState {
+  uint32_t agents = 0;
+  std::vector<float> goal, steer, body, gait, step, foot, chain, pose, metric;
+};
+
+struct StageTime {
+  std::string stage;
+  double milliseconds = 0;  // of the last tick that has finished on the device
+};
+
+// The herds on one terrain, living on one device. Not thread-safe; one crowd may be recorded while another is.
+class Crowd {
+ public:
+  // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
+  // cannot be (an unknown rig or controller) and Error(device) when memory does not suffice.
+  Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
+  ~Crowd();
+  Crowd(Crowd&&) noexcept;
+  Crowd& operator=(Crowd&&) noexcept;
+
+  // Records one tick of `dt` seconds into the caller's command buffer (outside a render pass). It begins with a
+  // barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible to
+  // vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in order.
+  // dt must stay the same from call to call (steps are timed in ticks).
+  void record(VkCommandBuffer commandBuffer, float dt);
+
+  uint64_t tick() const;      // ticks recorded so far
+  uint32_t herdCount() const;
+  uint64_t agentCount() const;
+  uint64_t memoryBytes() const;  // device memory of all records
+  const Rig& rig(uint32_t herd) const;
+
+  // Each of these waits for the device.
+  HerdState download(uint32_t herd) const;
+  Fidelity fidelity() const;
+  uint64_t stateHash() const;    // of every record that the next tick depends on
+  std::vector<StageTime> stageTimes() const;  // empty without CrowdOptions::timestamps
+
+  struct Impl;
+  Impl& impl() { return *impl_; }
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skitter

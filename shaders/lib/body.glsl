@@ -1,0 +1,54 @@
+#ifndef BODY_GLSL
+#define BODY_GLSL
+// The pieces of the body stage (docs/stages.md, body).
+
+// 1. How much a planted leg slows the body: 1 not at all, 0 to a stop.
+float followFactor(Parameters q, vec3 root, vec3 foot, float reach, float error, vec2 velocity) {
+  vec3 d = foot - root;
+  float stretch = length(d) / reach;
+  bool stretching = dot(d.xz, velocity) < 0.0;
+  float follow = stretching ? clamp((q.stretchStop - stretch) / (q.stretchStop - q.stretchSlow), 0.0, 1.0) : 1.0;
+  return min(follow, clamp(1.0 - error / (q.errorStop * reach), 0.0, 1.0));
+}
+
+// 2. Turn rate and heading toward `wanted` (unit).
+float turnRateToward(Parameters q, vec2 heading, vec2 wanted, float turnRate, float follow) {
+  float c = wanted.x * heading.y - wanted.y * heading.x, d = dot(wanted, heading);
+  float e = d > 0.0 ? c : (c >= 0.0 ? 1.0 : -1.0);
+  float rate = clamp(q.turnGain * e, -q.turnRate, q.turnRate) * mix(0.25, 1.0, follow);
+  float limit = q.turnAcceleration * q.dt;
+  return turnRate + clamp(rate - turnRate, -limit, limit);
+}
+
+// 4. Weighted sums of ground points for the plane y = mean + b (x - mean.x) + c (z - mean.z).
+struct PlaneSums {
+  vec3 sum;         // x, y, z
+  vec3 xx_xz_zz;
+  vec2 xy_zy;
+};
+
+void addPoint(inout PlaneSums s, vec3 g) {
+  s.sum += g;
+  s.xx_xz_zz += vec3(g.x * g.x, g.x * g.z, g.z * g.z);
+  s.xy_zy += vec2(g.x * g.y, g.z * g.y);
+}
+
+// Slope (b, c) and, third, the plane's height at x = z = 0.
+vec3 fitPlane(Parameters q, PlaneSums s, float count) {
+  vec3 m = s.sum / count;
+  vec3 a = s.xx_xz_zz - count * vec3(m.x * m.x, m.x * m.z, m.z * m.z);
+  vec2 r = s.xy_zy - count * vec2(m.x * m.y, m.z * m.y);
+  float ridge = q.ridge * count;
+  float xx = a.x + ridge, zz = a.z + ridge;
+  float inverse = 1.0 / (xx * zz - a.y * a.y);
+  vec2 slope = vec2(r.x * zz - r.y * a.y, r.y * xx - r.x * a.y) * inverse;
+  slope *= min(1.0, q.maxSlope * inversesqrt(max(dot(slope, slope), 1e-20)));
+  return vec3(slope, m.y - slope.x * m.x - slope.y * m.z);
+}
+
+// 5. R_0 with up axis `normal` and a forward axis whose horizontal direction is `heading`.
+vec3 forwardAxis(vec3 normal, vec2 heading) {
+  return unit(vec3(heading.x, -(normal.x * heading.x + normal.z * heading.y) / normal.y, heading.y));
+}
+
+#endif

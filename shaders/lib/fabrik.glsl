@@ -1,0 +1,48 @@
+#ifndef FABRIK_GLSL
+#define FABRIK_GLSL
+#include "chain.glsl"
+// FABRIK (Aristidou & Lasenby 2011) with cones: tip to base free, base to tip within the limits, whose frames
+// are carried along the chain (docs/stages.md, ik).
+
+// A straight chain with its target nearer on the same line would never bend: bend it first.
+void breakDeadlock(Limb limb, vec3 target, inout Pose pose) {
+  vec3 line = unit(pose.tip);
+  float off = 0.0;
+  for (int i = 1; i < BONES; ++i) off = max(off, length(cross(line, pose.joint[i])));
+  bool stuck = off < 1e-3 && length(target) < 0.999 * length(pose.tip);
+  Pose bent;
+  keepIf(true, bent, pose);
+  for (int i = 0; i < BONES; ++i) {
+    vec2 s = toStereographic(pose.d[i]);
+    s.x += (i & 1) == 0 ? 0.05 : -0.05;
+    bent.d[i] = clampCone(fromStereographic(s), limb.cosLimit[i], limb.sinLimit[i]);
+  }
+  forwardKinematics(limb, bent);
+  keepIf(stuck, pose, bent);
+}
+
+void fabrikIteration(Limb limb, vec3 target, inout Pose pose) {
+  vec3 q[BONES];  // where bone i should end
+  vec3 end = target;
+  for (int i = BONES - 1; i >= 0; --i) {
+    q[i] = end;
+    end += limb.bone[i] * unit(pose.joint[i] - end);
+  }
+  vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
+  vec3 p = vec3(0.0);
+  for (int i = 0; i < BONES; ++i) {
+    vec3 v = q[i] - p;
+    float distance = length(v);
+    vec3 u = rotateBack(r, v) / max(distance, 1e-6);
+    vec3 d = vec3(dot(limb.x[i], u), dot(limb.y[i], u), dot(limb.z[i], u));
+    d = clampCone(d, limb.cosLimit[i], limb.sinLimit[i]);
+    pose.d[i] = distance < 1e-6 || limb.bone[i] == 0.0 ? pose.d[i] : d;
+    pose.joint[i] = p;
+    pose.parent[i] = r;
+    r = swung(limb, i, r, pose.d[i]);
+    p += limb.bone[i] * rotate(r, limb.z[i]);
+  }
+  pose.tip = p;
+}
+
+#endif

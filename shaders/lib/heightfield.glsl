@@ -1,0 +1,21 @@
+#ifndef HEIGHTFIELD_GLSL
+#define HEIGHTFIELD_GLSL
+
+// Height and gradient (h, gx, gz) at world (x, z). Four fetches and a lerp written out: a sampler's own filter
+// has 8-bit weights on real GPUs.
+vec3 heightAt(sampler2D heights, vec2 origin, vec2 inverseSpacing, vec2 world) {
+  ivec2 size = textureSize(heights, 0);
+  vec2 u = clamp((world - origin) * inverseSpacing, vec2(0.0), vec2(size - 1));
+  ivec2 i = min(ivec2(floor(u)), size - 2);
+  vec2 f = u - vec2(i);
+  float h00 = texelFetch(heights, i, 0).r;
+  float h10 = texelFetch(heights, i + ivec2(1, 0), 0).r;
+  float h01 = texelFetch(heights, i + ivec2(0, 1), 0).r;
+  float h11 = texelFetch(heights, i + ivec2(1, 1), 0).r;
+  float h0 = h00 + f.x * (h10 - h00);
+  float h1 = h01 + f.x * (h11 - h01);
+  float gx0 = h10 - h00, gx1 = h11 - h01;
+  return vec3(h0 + f.y * (h1 - h0), (gx0 + f.y * (gx1 - gx0)) * inverseSpacing.x, (h1 - h0) * inverseSpacing.y);
+}
+
+#endif

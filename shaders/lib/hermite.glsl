@@ -1,0 +1,35 @@
+#ifndef HERMITE_GLSL
+#define HERMITE_GLSL
+
+// The swing's spline: two cubic Hermite segments through p0, (p0 + p1)/2 + lift, p1 (docs/stages.md, swing).
+struct Swing {
+  vec3 p0, p1, lift, m0;
+};
+
+void swingSegment(Swing w, float u, out vec3 a, out vec3 ma, out vec3 b, out vec3 mb, out float s) {
+  vec3 middle = 0.5 * (w.p0 + w.p1) + w.lift, mm = 0.5 * (w.p1 - w.p0);
+  bool first = u < 0.5;
+  s = first ? 2.0 * u : 2.0 * u - 1.0;
+  a = first ? w.p0 : middle;
+  ma = first ? w.m0 : mm;
+  b = first ? middle : w.p1;
+  mb = first ? mm : -w.lift;
+}
+
+vec3 swingPoint(Swing w, float u) {
+  vec3 a, ma, b, mb;
+  float s;
+  swingSegment(w, u, a, ma, b, mb, s);
+  float s2 = s * s, s3 = s2 * s;
+  return (2.0 * s3 - 3.0 * s2 + 1.0) * a + (s3 - 2.0 * s2 + s) * ma + (3.0 * s2 - 2.0 * s3) * b + (s3 - s2) * mb;
+}
+
+vec3 swingTangent(Swing w, float u) {
+  vec3 a, ma, b, mb;
+  float s;
+  swingSegment(w, u, a, ma, b, mb, s);
+  float s2 = s * s;
+  return (6.0 * s2 - 6.0 * s) * (a - b) + (3.0 * s2 - 4.0 * s + 1.0) * ma + (3.0 * s2 - 2.0 * s) * mb;
+}
+
+#endif

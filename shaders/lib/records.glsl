@@ -1,0 +1,40 @@
+#ifndef RECORDS_GLSL
+#define RECORDS_GLSL
+// The records of shaders/shared/records.h, unpacked.
+
+struct Body {
+  vec3 local;         // x and z within the tile, world y
+  vec2 tile;
+  vec2 heading;       // unit, world x, z
+  float speed;        // horizontal, along the heading
+  vec4 orientation;   // R_0
+  float turnRate, still, follow, surfaceSpeed;
+};
+
+Body unpackBody(vec4 a, vec4 b, vec4 c, vec4 d) {
+  return Body(a.xyz, b.xy, vec2(a.w, b.z), b.w, c, d.x, d.y, d.z, d.w);
+}
+
+struct Step {
+  vec3 landing, liftOff;  // tile-local in x and z, world in y
+  vec2 tile;
+  vec3 lift, startTangent;
+  float firstTick, ticks;
+  bool lastResort;
+};
+
+Step unpackStep(vec4 a, vec4 b, vec4 c, vec4 d) {
+  return Step(a.xyz, b.xyz, vec2(a.w, b.w), c.xyz, d.xyz, c.w, abs(d.w), d.w < 0.0);
+}
+
+float stepProgress(Step s, float tick) { return clamp((tick - s.firstTick) / s.ticks, 0.0, 1.0); }
+
+// A point of a step relative to a body's position, along world axes.
+vec3 fromTile(vec3 point, vec2 tile, vec3 bodyLocal, vec2 bodyTile) {
+  vec2 offset = (tile - bodyTile) * TILE_SIZE;
+  return vec3(point.x + offset.x - bodyLocal.x, point.y - bodyLocal.y, point.z + offset.y - bodyLocal.z);
+}
+
+vec2 worldOf(vec3 local, vec2 tile) { return tile * TILE_SIZE + local.xz; }
+
+#endif

@@ -1,0 +1,60 @@
+// Binding numbers of set 0 (every stage declares those it uses), push constants and specialization constants.
+#ifndef SKITTER_BINDINGS_H
+#define SKITTER_BINDINGS_H
+
+#ifdef __cplusplus
+namespace skitter::shared {
+#define BINDING inline constexpr int
+#else
+#define BINDING const int
+#endif
+
+BINDING BINDING_PARAMETERS = 0;  // uniform block Parameters
+BINDING BINDING_HEIGHTS = 1;     // R32F image, sampled by texelFetch
+BINDING BINDING_RIG = 2;
+BINDING BINDING_LIST = 3;        // legs that begin a step: uint, leg record * 2 + (1 if aimed anew)
+BINDING BINDING_COUNTERS = 4;
+BINDING BINDING_HISTOGRAM = 5;
+// Records: read at the even number, written at the odd one.
+BINDING BINDING_GOAL = 6;
+BINDING BINDING_GOAL_OUT = 7;
+BINDING BINDING_STEER = 8;
+BINDING BINDING_STEER_OUT = 9;
+BINDING BINDING_BODY = 10;
+BINDING BINDING_BODY_OUT = 11;
+BINDING BINDING_GAIT = 12;
+BINDING BINDING_GAIT_OUT = 13;
+BINDING BINDING_STEP = 14;
+BINDING BINDING_STEP_OUT = 15;
+BINDING BINDING_FOOT = 16;
+BINDING BINDING_FOOT_OUT = 17;
+BINDING BINDING_CHAIN = 18;
+BINDING BINDING_CHAIN_OUT = 19;
+BINDING BINDING_POSE = 20;
+BINDING BINDING_POSE_OUT = 21;
+BINDING BINDING_METRIC = 22;
+BINDING BINDING_METRIC_OUT = 23;
+
+// Specialization constants.
+BINDING CONSTANT_LEGS = 0;
+BINDING CONSTANT_BONES = 1;
+BINDING CONSTANT_GROUPS = 2;
+BINDING CONSTANT_FABRIK_ITERATIONS = 3;
+BINDING CONSTANT_POLISH_ITERATIONS = 4;
+#undef BINDING
+
+// Push constants of every stage.
+struct TickConstants {
+#ifdef __cplusplus
+  uint32_t count;  // invocations with work: agents or legs of the page
+  float tick;      // n, the tick being computed
+#else
+  uint count;
+  float tick;
+#endif
+};
+
+#ifdef __cplusplus
+}  // namespace skitter::shared
+#endif
+#endif

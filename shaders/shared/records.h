@@ -1,0 +1,98 @@
+// The records that the stages exchange, as GLSL and C++ both see them. Every buffer is an array of vec4; a
+// record is `stride` consecutive vec4. Small integers travel as exact floats. docs/stages.md has the meaning
+// of each symbol. One stage writes each record; `written by` names it.
+#ifndef SKITTER_RECORDS_H
+#define SKITTER_RECORDS_H
+
+#ifdef __cplusplus
+namespace skitter::shared {
+#define SKITTER_CONST inline constexpr
+#define SKITTER_FUNCTION inline constexpr
+#else
+#define SKITTER_CONST const
+#define SKITTER_FUNCTION
+#endif
+
+// Invocations a work group in every stage.
+SKITTER_CONST int WORK_GROUP = 64;
+// Metres; body positions are tile * TILE_SIZE + local, 0 <= local < TILE_SIZE.
+SKITTER_CONST float TILE_SIZE = 16.0;
+
+// goal, per agent, written by navigate.
+//   [0] target x, target z, other end x, other end z    world metres
+//   [1] speed (m/s), arrival radius (m), kind (0 none, 1 point, 2 cross), unused
+SKITTER_CONST int GOAL_STRIDE = 2;
+SKITTER_CONST float GOAL_NONE = 0.0;
+SKITTER_CONST float GOAL_POINT = 1.0;
+SKITTER_CONST float GOAL_CROSS = 2.0;
+
+// steer, per agent, written by navigate.
+//   [0] desired velocity x, z (m/s), unused, unused
+SKITTER_CONST int STEER_STRIDE = 1;
+
+// body, per agent, written by body.
+//   [0] local x, y (world), local z, heading x
+//   [1] tile x, tile z, heading z, speed s (m/s, horizontal, along the heading)
+//   [2] R_0, quaternion xyzw, worldFromModel
+//   [3] turn rate omega (rad/s), still time (s), follow factor kappa, surface speed v3 (m/s)
+SKITTER_CONST int BODY_STRIDE = 4;
+
+// gait, per agent, written by gait.
+//   [0] phase phi in [0,1), lift mask, re-aim mask, step duration (ticks)
+//   [1] half stride a (m), cycle C (s), mask of legs in the air before lifting, unused
+SKITTER_CONST int GAIT_STRIDE = 2;
+
+// step, per leg, written by foothold when a step begins or is aimed anew.
+//   [0] landing x, y, z, tile x      positions are tile-local in x and z, world in y
+//   [1] lift-off x, y, z, tile z
+//   [2] lift vector b x, y, z, first tick
+//   [3] start tangent m0 x, y, z, duration in ticks (negative: the landing is a last resort)
+SKITTER_CONST int STEP_STRIDE = 4;
+
+// foot, per leg, written by swing.
+//   [0] foot target relative to the body's position, world axes, x, y, z; progress u in [0,1], 1 = stance
+SKITTER_CONST int FOOT_STRIDE = 1;
+
+// chain, per leg, written by ik.
+//   [0 .. ceil(bones/2)-1] stereographic directions X, Y of two bones each
+//   [n]   tip relative to the body's position, world axes, x, y, z; reach error (m)
+//   [n+1] damping of the next solve, error before solving (m), unused, unused
+SKITTER_FUNCTION int chainDirections(int bones) { return (bones + 1) / 2; }
+SKITTER_FUNCTION int chainStride(int bones) { return (bones + 1) / 2 + 2; }
+
+// pose, per agent, written by pose: 1 + legs * bones entries of
+//   [0] R, quaternion xyzw, world from rest
+//   [1] joint position relative to the body's position, world axes, x, y, z; unused
+// A vertex v of that bone is at  body + [1] + R (v - rest start).
+SKITTER_CONST int POSE_STRIDE = 2;
+
+// metric, per leg, written by measure.
+//   [0] previous tip: tile-local x, y, z of the step's tile; slip of the stance so far (m)
+//   [1] slip over finished stances (m), finished stances, penetration sum (m), float sum (m)
+//   [2] ticks measured, stance ticks, largest reach error (m), largest limit violation (rad)
+SKITTER_CONST int METRIC_STRIDE = 3;
+
+// rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE a bone (zero-length bones pad short legs).
+//   leg  [0] root x, y, z (model), reach (m)
+//        [1] home x, y, z (model), group
+//   bone [0] x axis of the bone frame B_i (model), length / reach
+//        [1] z axis of B_i, the rest direction r_i (model), tan(half-angle / 2)
+//        [2] rest start p_i x, y, z (model), stiffness
+SKITTER_CONST int RIG_LEG_STRIDE = 2;
+SKITTER_CONST int RIG_BONE_STRIDE = 3;
+SKITTER_FUNCTION int rigStride(int bones) { return RIG_LEG_STRIDE + RIG_BONE_STRIDE * bones; }
+
+// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] listed legs,
+// [4] last resorts since the start, [5] targets that were not finite since the start.
+SKITTER_CONST int COUNTER_DISPATCH_X = 0;
+SKITTER_CONST int COUNTER_LISTED = 3;
+SKITTER_CONST int COUNTER_LAST_RESORTS = 4;
+SKITTER_CONST int COUNTER_NOT_FINITE = 5;
+SKITTER_CONST int COUNTERS = 8;
+// reach errors, per page: counts per bucket of a leg length; bucket k holds errors of 2^(k/4 - 20) and more.
+SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
+
+#ifdef __cplusplus
+}  // namespace skitter::shared
+#endif
+#endif

@@ -1,0 +1,101 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stage.glsl"
+#include "lib/foothold.glsl"
+#include "lib/gait.glsl"
+#include "lib/heightfield.glsl"
+#include "lib/hermite.glsl"
+
+layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
+LOAD4_BUFFER(BINDING_RIG, rig);
+LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_GAIT, gaits);
+LOAD4_BUFFER(BINDING_STEP, steps);
+STORE4_BUFFER(BINDING_STEP_OUT, stepsOut);
+layout(set = 0, binding = BINDING_LIST, std430) readonly buffer ListBlock { uint list[]; };
+layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+
+vec3 ground(vec2 world) {
+  return heightAt(heights, vec2(parameters.originX, parameters.originZ),
+                  vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), world);
+}
+
+void main() {
+  uint listed = gl_GlobalInvocationID.x;
+  if (listed >= counters[COUNTER_LISTED]) return;
+  int record = int(list[listed] >> 1);
+  bool again = (list[listed] & 1u) != 0u;
+  int agent = record / LEGS, leg = record - agent * LEGS;
+
+  int at = agent * BODY_STRIDE, stepAt = record * STEP_STRIDE, rigAt = leg * rigStride(BONES);
+  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  Step old = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
+                        LOAD4(steps, stepAt + 3));
+  vec4 root = LOAD4(rig, rigAt), home = LOAD4(rig, rigAt + 1);
+  float reach = root.w;
+  float freshTicks = LOAD4(gaits, agent * GAIT_STRIDE).w, cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;
+  float flown = constants.tick - 1.0 - old.firstTick;
+  float ticks = again ? old.ticks - flown : freshTicks;
+  float time = ticks * parameters.dt, stance = cycle - freshTicks * parameters.dt;
+
+  vec3 tau = predictLanding(home.xyz, body.turnRate, body.surfaceSpeed, time, stance);
+  vec3 rootThen = predictRoot(root.xyz, body.turnRate, body.surfaceSpeed, time);
+  vec2 out2 = tau.xz - rootThen.xz;
+  float span = length(out2);
+  vec2 o = span < 1e-6 ? unit(home.xz - root.xz) : out2 / span;
+  float rho = max(span, 0.1 * reach);
+  vec3 up = rotate(body.orientation, vec3(0.0, 1.0, 0.0));
+  vec3 predicted = rotate(body.orientation, tau), rootWorld = rotate(body.orientation, rootThen);
+  vec2 world = worldOf(body.local, body.tile);
+
+  Candidate best;
+  best.score = 3e38;
+  best.fits = false;
+  best.point = predicted;
+  best.distance = 0.0;
+  vec3 nearest = predicted;  // of those out of range, if none fits
+  float nearestMiss = 3e38;
+  for (int k = 1; k <= RUNGS; ++k) {
+    for (int j = -k; j <= k; ++j) {
+      vec2 c = tau.xz + o * (rho * (float(k - CENTRE_RUNG) / 3.0)) + vec2(-o.y, o.x) * (float(j) * rho / 6.0);
+      vec3 q = rotate(body.orientation, vec3(c.x, tau.y, c.y));
+      vec3 g = ground(world + q.xz);
+      q.y = g.x - body.local.y;
+      Candidate candidate = judge(parameters, q, g, up, rootWorld, predicted, reach);
+      if (candidate.fits && candidate.score < best.score) best = candidate;
+      float range = clamp(candidate.distance, parameters.reachLeast * reach, parameters.reachMost * reach);
+      float miss = abs(candidate.distance - range);
+      if (miss < nearestMiss) {
+        nearestMiss = miss;
+        nearest = q;
+      }
+    }
+  }
+  bool lastResort = !best.fits;
+  if (lastResort) {
+    vec3 d = nearest - rootWorld;
+    float far = length(d);
+    float range = clamp(far, parameters.reachLeast * reach, parameters.reachMost * reach);
+    best.point = rootWorld + d * (range / max(far, 1e-6));
+    atomicAdd(counters[COUNTER_LAST_RESORTS], 1u);
+  }
+
+  // Relative to the body's position, as the old step too; stored relative to its tile.
+  Swing flight = Swing(fromTile(old.liftOff, old.tile, body.local, body.tile),
+                       fromTile(old.landing, old.tile, body.local, body.tile), old.lift, old.startTangent);
+  float u = stepProgress(old, constants.tick - 1.0);
+  vec3 p0 = again ? swingPoint(flight, u) : flight.p1;
+  vec3 p1 = best.point;
+  vec3 gaps;
+  for (int i = 0; i < 3; ++i) {
+    vec3 p = mix(p0, p1, LIFT_AT[i]);
+    gaps[i] = ground(world + p.xz).x - (body.local.y + p.y);
+  }
+  vec3 lift = up * liftHeight(parameters, gaps, up.y, again ? 1.0 - u : 1.0);
+  vec3 m0 = again ? swingTangent(flight, u) * (ticks / old.ticks) : lift;
+
+  STORE4(stepsOut, stepAt, vec4(p1 + body.local, body.tile.x));
+  STORE4(stepsOut, stepAt + 1, vec4(p0 + body.local, body.tile.y));
+  STORE4(stepsOut, stepAt + 2, vec4(lift, constants.tick - 1.0));
+  STORE4(stepsOut, stepAt + 3, vec4(m0, lastResort ? -ticks : ticks));
+}

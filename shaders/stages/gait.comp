@@ -1,0 +1,88 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stage.glsl"
+#include "lib/gait.glsl"
+
+LOAD4_BUFFER(BINDING_RIG, rig);
+LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_STEP, steps);
+LOAD4_BUFFER(BINDING_CHAIN, chains);
+LOAD4_BUFFER(BINDING_GAIT, gaits);
+STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
+layout(set = 0, binding = BINDING_LIST, std430) writeonly buffer ListBlock { uint list[]; };
+layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+
+void main() {
+  int agent = int(gl_GlobalInvocationID.x);
+  if (agent >= int(constants.count)) return;
+  int at = agent * BODY_STRIDE;
+  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  Stride stride = strideFor(parameters, body.surfaceSpeed, body.turnRate, float(GROUPS));
+  float stance = stride.cycle - stride.swing;
+  float phase = LOAD4(gaits, agent * GAIT_STRIDE).x + parameters.dt / stride.cycle;
+  phase -= floor(phase);
+
+  uint air = 0u, airGroups = 0u, wants = 0u, again = 0u;
+  float urgency = 0.0;
+  int urgentGroup = 0;
+  uint groupOf[LEGS];
+  for (int leg = 0; leg < LEGS; ++leg) {
+    int stepAt = (agent * LEGS + leg) * STEP_STRIDE;
+    Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
+                        LOAD4(steps, stepAt + 3));
+    int rigAt = leg * rigStride(BONES);
+    vec4 root = LOAD4(rig, rigAt), home = LOAD4(rig, rigAt + 1);
+    int group = int(home.w);
+    groupOf[leg] = 1u << group;
+    float flown = constants.tick - 1.0 - s.firstTick;
+    float u = clamp(flown / s.ticks, 0.0, 1.0);
+    vec3 foot = rotateBack(body.orientation, fromTile(s.landing, s.tile, body.local, body.tile));
+    if (u >= 1.0) {
+      float stretch = length(foot - root.xyz) / root.w;
+      float off = distance(foot.xz, home.xz);
+      float error = LOAD4(chains, (agent * LEGS + leg) * chainStride(BONES) + chainDirections(BONES)).w;
+      bool close = stretch < parameters.rootShare;
+      bool must = close || stretch > parameters.stretchLift || off > parameters.strayShare * stride.halfStride ||
+                  error > parameters.errorLift * root.w;
+      bool far = off > parameters.liftShare * stride.halfStride;
+      wants |= far || must || s.lastResort ? 1u << leg : 0u;
+      float urgent = must ? (close ? 3.0 : stretch + off / parameters.legLength) : 0.0;
+      urgentGroup = urgent > urgency ? group : urgentGroup;
+      urgency = max(urgency, urgent);
+    } else {
+      air |= 1u << leg;
+      airGroups |= 1u << group;
+      vec3 predicted = predictLanding(home.xyz, body.turnRate, body.surfaceSpeed, (s.ticks - flown) * parameters.dt, stance);
+      bool strayed = distance(predicted.xz, foot.xz) > parameters.reaimDistance;
+      again |= strayed && flown >= 4.0 && u < parameters.reaimLatest ? 1u << leg : 0u;
+    }
+  }
+
+  float groups = float(GROUPS);
+  int group = min(int(phase * groups), GROUPS - 1);
+  bool open = phase * groups - float(group) < parameters.windowOpen;
+  if (urgency > 0.0 && air == 0u && !(open && group == urgentGroup)) {
+    group = urgentGroup;
+    phase = float(group) / groups;
+    open = true;
+  }
+  bool may = open && (airGroups & ~(1u << group)) == 0u && body.still < parameters.settleTime;
+  uint lift = 0u;
+  for (int leg = 0; leg < LEGS; ++leg) lift |= may && groupOf[leg] == 1u << group ? wants & (1u << leg) : 0u;
+
+  STORE4(gaitsOut, agent * GAIT_STRIDE, vec4(phase, float(lift), float(again), stride.ticks));
+  STORE4(gaitsOut, agent * GAIT_STRIDE + 1, vec4(stride.halfStride, stride.cycle, float(air), 0.0));
+
+  // Few legs begin a step in a tick: they are listed, and foothold runs over the list alone.
+  uint begin = lift | again;
+  if (begin != 0u) {
+    uint next = atomicAdd(counters[COUNTER_LISTED], bitCount(begin));
+    atomicMax(counters[COUNTER_DISPATCH_X], (next + bitCount(begin) + WORK_GROUP - 1u) / WORK_GROUP);
+    for (int leg = 0; leg < LEGS; ++leg) {
+      if ((begin & (1u << leg)) != 0u) {
+        list[next] = uint(agent * LEGS + leg) * 2u + ((again >> leg) & 1u);
+        ++next;
+      }
+    }
+  }
+}

@@ -1,0 +1,69 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stage.glsl"
+#include "lib/active_set.glsl"
+#include "lib/fabrik.glsl"
+#include "lib/limb.glsl"
+
+layout(constant_id = CONSTANT_FABRIK_ITERATIONS) const int FABRIK_ITERATIONS = 4;
+layout(constant_id = CONSTANT_POLISH_ITERATIONS) const int POLISH_ITERATIONS = 2;
+
+LOAD4_BUFFER(BINDING_RIG, rig);
+LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_FOOT, feet);
+LOAD4_BUFFER(BINDING_CHAIN, chains);
+STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
+layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+
+void main() {
+  int record = int(gl_GlobalInvocationID.x);
+  if (record >= int(constants.count)) return;
+  int agent = record / LEGS, leg = record - agent * LEGS;
+  int at = record * chainStride(BONES), rigAt = leg * rigStride(BONES);
+
+  Limb limb;
+  LOAD_LIMB(limb, rig, rigAt);
+  vec4 root = LOAD4(rig, rigAt);
+  float reach = root.w;
+  Pose pose;
+  LOAD_DIRECTIONS(pose.d, chains, at);
+  forwardKinematics(limb, pose);
+
+  vec4 orientation = LOAD4(bodies, agent * BODY_STRIDE + 2);
+  vec3 target = (rotateBack(orientation, LOAD4(feet, record).xyz) - root.xyz) / reach;
+  if (!finite(target)) {
+    atomicAdd(counters[COUNTER_NOT_FINITE], 1u);
+    target = pose.tip;
+  }
+  float damping = LOAD4(chains, at + chainDirections(BONES) + 1).x;
+  float before = distance(target, pose.tip);
+
+  breakDeadlock(limb, target, pose);
+  float error = distance(target, pose.tip);
+  // FABRIK brings a chain near that is far from its target (a start, a jump). The loop ends at once where no
+  // chain of the subgroup is far, which is nearly always.
+  Pose trial;
+  keepIf(true, trial, pose);
+  for (int i = 0; i < FABRIK_ITERATIONS && error > parameters.fabrikError; ++i) {
+    fabrikIteration(limb, target, trial);
+    float e = distance(target, trial.tip);
+    bool better = e < error;
+    keepIf(better, pose, trial);
+    error = better ? e : error;
+  }
+  for (int i = 0; i < POLISH_ITERATIONS; ++i) {
+    float pull = i + 1 < POLISH_ITERATIONS && error < parameters.pullError ? parameters.restPull : 0.0;
+    keepIf(true, trial, pose);
+    activeSetStep(limb, target, trial, damping, pull);
+    float e = distance(target, trial.tip);
+    bool kept = !(e > error && e > parameters.ikTolerance);
+    keepIf(kept, pose, trial);
+    error = kept ? e : error;
+    damping = kept ? max(damping / 10.0, 1.0) : min(16.0 * damping, 4096.0);
+  }
+
+  STORE_DIRECTIONS(chainsOut, at, pose.d);
+  vec3 tip = rotate(orientation, root.xyz + reach * pose.tip);
+  STORE4(chainsOut, at + chainDirections(BONES), vec4(tip, error * reach));
+  STORE4(chainsOut, at + chainDirections(BONES) + 1, vec4(damping, before * reach, 0.0, 0.0));
+}

@@ -1,0 +1,15 @@
+// What every stage's entry point begins with.
+#include "lib/load4.glsl"
+#include "shared/bindings.h"
+#include "shared/records.h"
+#include "shared/parameters.h"
+#include "lib/math.glsl"
+#include "lib/records.glsl"
+
+layout(local_size_x = WORK_GROUP) in;
+layout(constant_id = CONSTANT_LEGS) const int LEGS = 8;
+layout(constant_id = CONSTANT_BONES) const int BONES = 4;
+layout(constant_id = CONSTANT_GROUPS) const int GROUPS = 2;
+
+layout(std140, set = 0, binding = BINDING_PARAMETERS) uniform ParametersBlock { Parameters parameters; };
+layout(push_constant) uniform TickBlock { TickConstants constants; };
