@@ -31,11 +31,13 @@ const std::vector<Stage>& stages() {
   };
   return list;
 }
-constexpr size_t kFoothold = 3, kSwing = 4, kIk = 5, kMeasure = 7;
+constexpr size_t kFoothold = 3, kSwing = 4, kIk = 5, kPose = 6, kMeasure = 7;
 
 // The chains start at rest and must reach their feet before the first tick.
 constexpr int kSettleIterations = 24;
 constexpr uint32_t kMostPageAgents = 65536;
+// World coordinates beyond it are too coarse in float32 for a foot to be placed.
+constexpr float kFarthest = 4096;
 
 // Bytes an agent in each of the page's record buffers.
 struct RecordBytes {
@@ -165,10 +167,12 @@ Page makePage(const Impl& crowd, const crowd::Herd& herd, const crowd::Spawner& 
   return page;
 }
 
-void makeKernels(const gpu::Context& context, crowd::Herd& herd) {
+void makeKernels(const gpu::Context& context, const CrowdOptions& options, crowd::Herd& herd) {
   using namespace shared;
   for (const Stage& stage : stages()) {
     gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
+    for (const StageShader& other : options.shaders)
+      if (other.stage == stage.name) info.code = {other.texel, other.storage};
     info.constants = {
         {CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
     if (std::strcmp(stage.name, "ik") == 0) {
@@ -221,6 +225,8 @@ void settle(Impl& crowd) {
       gpu::computeToCompute(cmd);
       recordStage(crowd, kIk, 0, cmd);
     }
+    gpu::computeToCompute(cmd);
+    recordStage(crowd, kPose, 0, cmd);
   });
 }
 
@@ -252,6 +258,11 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, con
   const gpu::Context& context = device.context();
   crowd.context = &context;
   crowd.options = options;
+  if (std::max(terrain.extentX(), terrain.extentZ()) > 2 * kFarthest)
+    throw inputError(terrain.name + ": the terrain is " +
+                     std::to_string(static_cast<int>(terrain.extentX())) + " x " +
+                     std::to_string(static_cast<int>(terrain.extentZ())) +
+                     " m, expected at most 8192 m a side; --scale or the scene's scale makes it smaller");
   crowd.terrain = terrain;
   crowd.heights = gpu::Image(
       context, {vk::Format::eR32Sfloat, {terrain.columns, terrain.rows}, vk::ImageUsageFlagBits::eSampled},
@@ -272,7 +283,7 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, con
     herd.rigRecords = crowd::rigRecords(herd.rig);
     herd.rigBuffer = gpu::Buffer(context, herd.rigRecords.size() * sizeof(float), "rig");
     gpu::upload(context, herd.rigBuffer, herd.rigRecords);
-    makeKernels(context, herd);
+    makeKernels(context, options, herd);
 
     const RecordBytes bytes = recordBytes(herd.rig);
     const uint64_t needed = bytes.sum() * from.agents;
@@ -305,7 +316,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   clearLists(crowd, cmd);
   gpu::transferToCompute(cmd);
   for (size_t i = 0; i < stages().size(); ++i) {
-    if (i == kMeasure && !crowd.options.measure) continue;
+    if ((i == kPose && !crowd.options.pose) || (i == kMeasure && !crowd.options.measure)) continue;
     crowd.timer.begin(cmd, stages()[i].name);
     recordStage(crowd, i, tick, cmd);
     crowd.timer.end(cmd, stages()[i].name);

@@ -33,6 +33,7 @@ shared::Parameters tuningFor(const Rig& rig, const Heightfield& terrain, float d
   p.stretchSlow = 0.93f;           // of the reach
   p.stretchStop = 1.0f;            // of the reach; beyond 1 a planted foot would be torn off
   p.errorStop = 0.02f;             // of the reach
+  p.followLeast = 0.1f;            // 0, and a body whose feet find no hold stands before a wall for ever
   p.heightBlend = 1 - std::exp(-dt / 0.10f);  // seconds; less bounces over every foothold, more lags in dips
   p.tiltBlend = 1 - std::exp(-dt / 0.15f);
   p.maxSlope = 2.75f;  // 70 degrees
@@ -70,7 +71,7 @@ shared::Parameters tuningFor(const Rig& rig, const Heightfield& terrain, float d
 
   p.fabrikError = 0.25f;  // of the reach; less, and FABRIK bends a tracked leg more than it need be
   p.restPull = 0.05f;     // a step; more, and it fights the target near the limits
-  p.pullError = 0.1f;    // of the reach: about a fast tick; out of reach no pull may act
+  p.pullError = 0.1f;     // of the reach: about a fast tick; out of reach no pull may act
   p.ikTolerance = 2e-5f;  // of the reach; a planted foot's slide is the sum of such errors
   return p;
 }

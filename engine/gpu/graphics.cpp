@@ -36,8 +36,9 @@ struct VertexInput {
 };
 
 vk::PipelineDepthStencilStateCreateInfo depthState(DepthUse use) {
-  vk::PipelineDepthStencilStateCreateInfo state{.depthTestEnable = true};
-  state.depthWriteEnable = use != DepthUse::background;
+  vk::PipelineDepthStencilStateCreateInfo state{};
+  state.depthTestEnable = use != DepthUse::none;
+  state.depthWriteEnable = use == DepthUse::reversed || use == DepthUse::shadow;
   state.depthCompareOp = use == DepthUse::reversed     ? vk::CompareOp::eGreater
                          : use == DepthUse::background ? vk::CompareOp::eGreaterOrEqual
                                                        : vk::CompareOp::eLessOrEqual;

@@ -27,6 +27,7 @@ struct VertexStream {
 enum class DepthUse {
   reversed,    // nearer is greater, tested and written
   background,  // drawn where nothing nearer than infinity has been, not written
+  none,        // drawn over whatever is there
   shadow,      // nearer is less, tested and written, with a slope-scaled bias
 };
 

@@ -5,20 +5,23 @@
 // are carried along the chain (docs/stages.md, ik).
 
 // A straight chain with its target nearer on the same line would never bend: bend it first.
-void breakDeadlock(Limb limb, vec3 target, inout Pose pose) {
+bool deadlocked(vec3 target, Pose pose) {
   vec3 line = unit(pose.tip);
   float off = 0.0;
-  for (int i = 1; i < BONES; ++i) off = max(off, length(cross(line, pose.joint[i])));
-  bool stuck = off < 1e-3 && length(target) < 0.999 * length(pose.tip);
-  Pose bent;
-  keepIf(true, bent, pose);
+  for (int i = 1; i < BONES; ++i) {
+    vec3 away = cross(line, pose.joint[i]);
+    off = max(off, dot(away, away));
+  }
+  return off < 1e-6 && length(target) < 0.999 * length(pose.tip);
+}
+
+void bend(Limb limb, inout Pose pose) {
   for (int i = 0; i < BONES; ++i) {
     vec2 s = toStereographic(pose.d[i]);
-    s.x += (i & 1) == 0 ? 0.05 : -0.05;
-    bent.d[i] = clampCone(fromStereographic(s), limb.cosLimit[i], limb.sinLimit[i]);
+    s.x += i == 0 ? -0.025 * float(BONES - 1) : 0.05;
+    pose.d[i] = clampCone(fromStereographic(s), limb.cosLimit[i], limb.sinLimit[i]);
   }
-  forwardKinematics(limb, bent);
-  keepIf(stuck, pose, bent);
+  forwardKinematics(limb, pose);
 }
 
 void fabrikIteration(Limb limb, vec3 target, inout Pose pose) {

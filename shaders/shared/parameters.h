@@ -1,5 +1,6 @@
 // Tuning values of one herd, a uniform block to GLSL (std140: scalars only, so both layouts are the same) and
-// a struct to C++. Lengths are metres, already scaled by the rig's leg length; docs/stages.md states each use.
+// a struct to C++. Lengths are metres, already scaled by the rig's leg length; docs/stages.md states each
+// use.
 #ifndef SKITTER_PARAMETERS_H
 #define SKITTER_PARAMETERS_H
 
@@ -8,69 +9,71 @@ namespace skitter::shared {
 #endif
 
 struct Parameters {
-  float dt;              // seconds a tick
-  float legLength;       // L
-  float homeRadius;      // largest horizontal distance of a home from the body's origin
-  float bodyHeight;      // centre of the body above the ground at rest
-  float bodyRadius;      // half the body's length
+  float dt;          // seconds a tick
+  float legLength;   // L
+  float homeRadius;  // largest horizontal distance of a home from the body's origin
+  float bodyHeight;  // centre of the body above the ground at rest
+  float bodyRadius;  // half the body's length
   // terrain
-  float originX;         // world x of column 0
-  float originZ;         // world z of row 0
-  float inverseSpacingX; // samples a metre
+  float originX;          // world x of column 0
+  float originZ;          // world z of row 0
+  float inverseSpacingX;  // samples a metre
   float inverseSpacingZ;
   float halfExtentX;
   float halfExtentZ;
   // navigate
-  float edgeMargin;      // agents turn back this far inside the terrain's edge
-  float slowRadius;      // a point goal is approached more slowly from here
+  float edgeMargin;  // agents turn back this far inside the terrain's edge
+  float slowRadius;  // a point goal is approached more slowly from here
   // body
-  float acceleration;    // m/s^2
-  float braking;         // m/s^2
-  float turnRate;        // rad/s
-  float turnAcceleration;// rad/s^2
-  float turnGain;        // 1/s, turn rate per radian of heading error
-  float stretchSlow;     // share of the reach at which a planted leg begins to slow the body
-  float stretchStop;     // share of the reach at which it stops the body
-  float errorStop;       // share of the reach: a planted foot that misses by this much stops the body
-  float heightBlend;     // 1 - exp(-dt / time constant)
+  float acceleration;      // m/s^2
+  float braking;           // m/s^2
+  float turnRate;          // rad/s
+  float turnAcceleration;  // rad/s^2
+  float turnGain;          // 1/s, turn rate per radian of heading error
+  float stretchSlow;       // share of the reach at which a planted leg begins to slow the body
+  float stretchStop;       // share of the reach at which it stops the body
+  float errorStop;         // share of the reach: a planted foot that misses by this much stops the body
+  float followLeast;  // least follow factor: a body that waits for its feet still creeps, or it could wait
+                      // for ever
+  float heightBlend;  // 1 - exp(-dt / time constant)
   float tiltBlend;
   float maxSlope;        // tangent of the steepest tilt
   float bellyClearance;  // least height of the body's centre above the ground
   float ridge;           // regularisation of the plane fit, m^2
   // gait
-  float halfStrideStill; // a0
-  float halfStrideGain;  // a1, seconds
+  float halfStrideStill;  // a0
+  float halfStrideGain;   // a1, seconds
   float halfStrideMax;
-  float swingStill;      // T0, seconds
-  float swingSpeed;      // v0, m/s: swing time halves at this speed
-  float cycleMax;        // seconds
-  float windowSlack;     // a cycle is at least groups * swing * windowSlack
-  float windowOpen;      // share of a group's window in which its legs may lift
-  float liftShare;       // of the half stride, distance from home that lifts a foot
-  float stretchLift;     // share of the reach beyond which a foot must lift
-  float strayShare;      // of the half stride, distance from home beyond which a foot must lift
-  float errorLift;       // share of the reach: a planted foot that misses by more must lift
-  float rootShare;       // share of the reach below which a foot is too close to its root
-  float settleTime;      // seconds of standing after which nobody steps
-  float reaimDistance;   // a landing point further than this from the prediction is chosen anew
-  float reaimLatest;     // progress after which it is kept
+  float swingStill;     // T0, seconds
+  float swingSpeed;     // v0, m/s: swing time halves at this speed
+  float cycleMax;       // seconds
+  float windowSlack;    // a cycle is at least groups * swing * windowSlack
+  float windowOpen;     // share of a group's window in which its legs may lift
+  float liftShare;      // of the half stride, distance from home that lifts a foot
+  float stretchLift;    // share of the reach beyond which a foot must lift
+  float strayShare;     // of the half stride, distance from home beyond which a foot must lift
+  float errorLift;      // share of the reach: a planted foot that misses by more must lift
+  float rootShare;      // share of the reach below which a foot is too close to its root
+  float settleTime;     // seconds of standing after which nobody steps
+  float reaimDistance;  // a landing point further than this from the prediction is chosen anew
+  float reaimLatest;    // progress after which it is kept
   // foothold
-  float reachMost;       // landing points stay within this share of the reach
+  float reachMost;  // landing points stay within this share of the reach
   float reachLeast;
-  float reachComfort;    // share of the reach from which a landing point costs
-  float slopeLeast;      // least cosine between ground normal and body up
+  float reachComfort;  // share of the reach from which a landing point costs
+  float slopeLeast;    // least cosine between ground normal and body up
   float slopeWeight;
   float reachWeight;
-  float nearestOnly;     // 1: the dissertation's rule, nearest to the target wins
+  float nearestOnly;  // 1: the dissertation's rule, nearest to the target wins
   // swing
   float stepHeight;
   float stepClearance;
   float stepHeightMax;
   // ik
-  float fabrikError;     // share of the reach beyond which FABRIK iterates
-  float restPull;        // share of the angle from rest taken back a step once on target
-  float pullError;       // share of the reach below which the rest pull acts
-  float ikTolerance;     // share of the reach that counts as arrived
+  float fabrikError;  // share of the reach beyond which FABRIK iterates
+  float restPull;     // share of the angle from rest taken back a step once on target
+  float pullError;    // share of the reach below which the rest pull acts
+  float ikTolerance;  // share of the reach that counts as arrived
 };
 
 #ifdef __cplusplus

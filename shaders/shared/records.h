@@ -72,7 +72,8 @@ SKITTER_CONST int POSE_STRIDE = 2;
 //   [2] ticks measured, stance ticks, largest reach error (m), largest limit violation (rad)
 SKITTER_CONST int METRIC_STRIDE = 3;
 
-// rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE a bone (zero-length bones pad short legs).
+// rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE a bone (zero-length bones pad short
+// legs).
 //   leg  [0] root x, y, z (model), reach (m)
 //        [1] home x, y, z (model), group
 //   bone [0] x axis of the bone frame B_i (model), length / reach

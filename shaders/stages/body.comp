@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stage.glsl"
+#include "stages/stage.glsl"
 #include "lib/body.glsl"
 #include "lib/heightfield.glsl"
 
@@ -36,6 +36,8 @@ void main() {
     follow = u >= 1.0 ? min(follow, slow) : follow;
     addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));
   }
+
+  follow = max(follow, parameters.followLeast);
 
   float commanded = length(velocity);
   bool going = commanded > 1e-4 * parameters.legLength;

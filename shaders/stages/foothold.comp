@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stage.glsl"
+#include "stages/stage.glsl"
 #include "lib/foothold.glsl"
 #include "lib/gait.glsl"
 #include "lib/heightfield.glsl"

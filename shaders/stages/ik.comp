@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stage.glsl"
+#include "stages/stage.glsl"
 #include "lib/active_set.glsl"
 #include "lib/fabrik.glsl"
 #include "lib/limb.glsl"
@@ -31,17 +31,19 @@ void main() {
 
   vec4 orientation = LOAD4(bodies, agent * BODY_STRIDE + 2);
   vec3 target = (rotateBack(orientation, LOAD4(feet, record).xyz) - root.xyz) / reach;
-  if (!finite(target)) {
+  bool lost = !finite(target);
+  if (lost) {
     atomicAdd(counters[COUNTER_NOT_FINITE], 1u);
     target = pose.tip;
   }
   float damping = LOAD4(chains, at + chainDirections(BONES) + 1).x;
   float before = distance(target, pose.tip);
 
-  breakDeadlock(limb, target, pose);
+  // What few chains need stands in loops: where no chain of a subgroup needs it the loop is skipped, while an
+  // `if` would be paid for by all.
+  for (bool stuck = deadlocked(target, pose); stuck; stuck = false) bend(limb, pose);
   float error = distance(target, pose.tip);
-  // FABRIK brings a chain near that is far from its target (a start, a jump). The loop ends at once where no
-  // chain of the subgroup is far, which is nearly always.
+  // FABRIK brings a chain near that is far from its target (a start, a jump).
   Pose trial;
   keepIf(true, trial, pose);
   for (int i = 0; i < FABRIK_ITERATIONS && error > parameters.fabrikError; ++i) {
@@ -56,10 +58,10 @@ void main() {
     keepIf(true, trial, pose);
     activeSetStep(limb, target, trial, damping, pull);
     float e = distance(target, trial.tip);
-    bool kept = !(e > error && e > parameters.ikTolerance);
+    bool kept = !lost && !(e > error && e > parameters.ikTolerance);
     keepIf(kept, pose, trial);
     error = kept ? e : error;
-    damping = kept ? max(damping / 10.0, 1.0) : min(16.0 * damping, 4096.0);
+    damping = lost ? damping : (kept ? max(damping / 10.0, 1.0) : min(16.0 * damping, 4096.0));
   }
 
   STORE_DIRECTIONS(chainsOut, at, pose.d);

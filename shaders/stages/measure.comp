@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stage.glsl"
+#include "stages/stage.glsl"
 #include "lib/heightfield.glsl"
 
 layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;

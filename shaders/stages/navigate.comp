@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stage.glsl"
+#include "stages/stage.glsl"
 #include "lib/navigate.glsl"
 
 LOAD4_BUFFER(BINDING_GOAL, goals);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,18 @@
 
 namespace skitter {
 
+// Another shader for a stage: SPIR-V of shaders/stages/<stage>.comp changed, in both load paths.
+struct StageShader {
+  std::string stage;
+  std::span<const uint8_t> texel, storage;
+};
+
 struct CrowdOptions {
-  bool measure = true;        // keep the fidelity figures, about 5 % of a tick
-  bool timestamps = false;    // time every stage on the device
-  uint32_t pageAgents = 0;    // most agents a page; 0: as many as the device's limits allow
+  bool pose = true;                       // bone rotations and positions, for drawing and traces
+  bool measure = true;                    // keep the fidelity figures
+  bool timestamps = false;                // time every stage on the device
+  uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
+  std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
 };
 
 // What the feet did, over every tick since the crowd was made. Lengths in leg lengths.
@@ -44,23 +53,25 @@ struct StageTime {
   double milliseconds = 0;  // of the last tick that has finished on the device
 };
 
-// The herds on one terrain, living on one device. Not thread-safe; one crowd may be recorded while another is.
+// The herds on one terrain, living on one device. Not thread-safe; one crowd may be recorded while another
+// is.
 class Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
-  // cannot be (an unknown rig or controller) and Error(device) when memory does not suffice.
+  // cannot be (an unknown rig or controller, a terrain that reaches beyond 4 km from the origin) and
+  // Error(device) when memory does not suffice.
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   ~Crowd();
   Crowd(Crowd&&) noexcept;
   Crowd& operator=(Crowd&&) noexcept;
 
-  // Records one tick of `dt` seconds into the caller's command buffer (outside a render pass). It begins with a
-  // barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible to
-  // vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in order.
-  // dt must stay the same from call to call (steps are timed in ticks).
+  // Records one tick of `dt` seconds into the caller's command buffer (outside a render pass). It begins with
+  // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
+  // to vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in
+  // order. dt must stay the same from call to call (steps are timed in ticks).
   void record(VkCommandBuffer commandBuffer, float dt);
 
-  uint64_t tick() const;      // ticks recorded so far
+  uint64_t tick() const;  // ticks recorded so far
   uint32_t herdCount() const;
   uint64_t agentCount() const;
   uint64_t memoryBytes() const;  // device memory of all records
@@ -69,7 +80,7 @@ class Crowd {
   // Each of these waits for the device.
   HerdState download(uint32_t herd) const;
   Fidelity fidelity() const;
-  uint64_t stateHash() const;    // of every record that the next tick depends on
+  uint64_t stateHash() const;                 // of every record that the next tick depends on
   std::vector<StageTime> stageTimes() const;  // empty without CrowdOptions::timestamps
 
   struct Impl;

@@ -14,20 +14,20 @@ namespace skitter {
 
 // One bone of a leg, from joint p_i to joint p_(i+1).
 struct Bone {
-  std::string joint;                                // the joint at its start
-  glm::vec3 start{0};                               // p_i at rest
-  glm::vec3 direction{0, 0, 1};                     // r_i, unit, the rest direction
-  float length = 0;                                 // metres, > 0
-  float coneHalfAngle = 3.14159265f;                // radians about r_i carried by R_(i-1); pi: unlimited
+  std::string joint;                  // the joint at its start
+  glm::vec3 start{0};                 // p_i at rest
+  glm::vec3 direction{0, 0, 1};       // r_i, unit, the rest direction
+  float length = 0;                   // metres, > 0
+  float coneHalfAngle = 3.14159265f;  // radians about r_i carried by R_(i-1); pi: unlimited
 };
 
 // One limb: the chain of bones from its root to its foot (the end effector).
 struct Leg {
-  std::string name;          // e.g. "L1"
-  int group = 0;             // legs of one group swing together; two groups never do
-  std::vector<Bone> bones;   // 1 to 15, root first
-  glm::vec3 home{0};         // where the foot stands at rest
-  float reach = 0;           // sum of the bone lengths
+  std::string name;         // e.g. "L1"
+  int group = 0;            // legs of one group swing together; two groups never do
+  std::vector<Bone> bones;  // 1 to 15, root first
+  glm::vec3 home{0};        // where the foot stands at rest
+  float reach = 0;          // sum of the bone lengths
 
   const glm::vec3& root() const { return bones.front().start; }
 };
@@ -35,25 +35,25 @@ struct Leg {
 struct SkinVertex {
   glm::vec3 position{0};
   glm::vec3 normal{0, 1, 0};
-  glm::vec3 colour{1};                 // linear RGB
-  uint16_t bones[4] = {0, 0, 0, 0};    // into the pose palette: 0 the body, 1 + leg * maxBones + bone
-  float weights[4] = {1, 0, 0, 0};     // sum to 1
+  glm::vec3 colour{1};               // linear RGB
+  uint16_t bones[4] = {0, 0, 0, 0};  // into the pose palette: 0 the body, 1 + leg * maxBones + bone
+  float weights[4] = {1, 0, 0, 0};   // sum to 1
 };
 
 // A skeleton, its skin, its legs and their limits; immutable once loaded.
 struct Rig {
   std::string name;
-  std::vector<Leg> legs;                // 1 to 24
-  std::vector<std::string> groups;      // group names, in the order in which they step
-  float legLength = 1;                  // the longest reach: the unit of every gait length
-  float bodyHeight = 0;                 // metres, centre of the body above the ground at rest
-  float bodyRadius = 0;                 // metres, half the body's length: what must clear the ground
+  std::vector<Leg> legs;            // 1 to 24
+  std::vector<std::string> groups;  // group names, in the order in which they step
+  float legLength = 1;              // the longest reach: the unit of every gait length
+  float bodyHeight = 0;             // metres, centre of the body above the ground at rest
+  float bodyRadius = 0;             // metres, half the body's length: what must clear the ground
   std::vector<SkinVertex> vertices;
-  std::vector<uint32_t> indices;        // triangles, counter-clockwise from outside
+  std::vector<uint32_t> indices;  // triangles, counter-clockwise from outside
 
   int legCount() const { return static_cast<int>(legs.size()); }
   int groupCount() const { return static_cast<int>(groups.size()); }
-  int maxBones() const;                 // the longest chain; shorter ones are padded in the palette
+  int maxBones() const;  // the longest chain; shorter ones are padded in the palette
   int paletteSize() const { return 1 + legCount() * maxBones(); }
 };
 

@@ -24,20 +24,20 @@ struct Spawn {
   // lanes: parallel lanes along +z across the terrain, agents evenly along each lane.
   // grid: a square grid of agents about `centre`.
   enum class Kind { lanes, grid } kind = Kind::lanes;
-  float spacing = 2.5f;          // metres between lanes, or between agents of a grid
-  glm::vec2 centre{0};           // x, z
-  float heading = 0;             // radians about +Y, 0 faces +Z
+  float spacing = 2.5f;  // metres between lanes, or between agents of a grid
+  glm::vec2 centre{0};   // x, z
+  float heading = 0;     // radians about +Y, 0 faces +Z
 };
 struct Goal {
   // cross: walk to the far side of the terrain, turn, and come back beside the own lane, for ever.
   // point: walk to `target` and stand there.   none: stand.
   enum class Kind { cross, point, none } kind = Kind::cross;
-  glm::vec2 target{0};           // x, z
-  float speed = 1;               // commanded horizontal speed, metres a second, >= 0
+  glm::vec2 target{0};  // x, z
+  float speed = 1;      // commanded horizontal speed, metres a second, >= 0
 };
 
 struct Herd {
-  std::string rig = "spider";    // "spider" or a .glb file, relative to the scene
+  std::string rig = "spider";  // "spider" or a .glb file, relative to the scene
   std::string controller = "adaptive";
   uint32_t agents = 1000;
   Spawn spawn;
@@ -48,8 +48,8 @@ struct Camera {
   // follow: behind and above the middle of the crowd.  fixed: from `position` at `target`.
   enum class Kind { follow, fixed } kind = Kind::follow;
   glm::vec3 position{0}, target{0};
-  float distance = 9;            // metres from the crowd's middle, follow only
-  float fieldOfView = 0.8f;      // radians, vertical
+  float distance = 9;        // metres from the crowd's middle, follow only
+  float fieldOfView = 0.8f;  // radians, vertical
 };
 
 struct Scene {
@@ -59,11 +59,12 @@ struct Scene {
   Camera camera;
   uint64_t seed = 1;
 
-  Heightfield loadTerrain() const;   // throws Error(input)
+  Heightfield loadTerrain() const;  // throws Error(input)
   uint64_t agentCount() const;
 };
 
-// The built-in scene: 1,000 spiders crossing generated ground in parallel lanes (assets/scenes/crossing.json).
+// The built-in scene: 1,000 spiders crossing generated ground in parallel lanes
+// (assets/scenes/crossing.json).
 Scene builtinScene();
 // Throws Error(input) that names the file and the field.
 Scene loadScene(const std::filesystem::path& file);

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "cpu_reference/types.h"
+
+namespace skitter::reference {
+
+// How one leg bears on the follow factor.
+struct LegFollow {
+  bool planted = false;
+  double behind = 0;  // cosine between the desired velocity and (rho_l - f_l); the leg counts if positive
+  double errorFactor = 1;  // clamp(1 - e_l / (errorStop reach_l), 0, 1), of every planted leg
+  double factor = 1;       // clamp((stretchStop - stretch) / (stretchStop - stretchSlow), 0, 1)
+};
+
+// y = height + b x + c z relative to the new position, with what its conditioning depends on.
+struct SupportPlane {
+  double b = 0, c = 0, height = 0;
+  double leastEigenvalue = 0, largestEigenvalue = 0;  // of the regularised normal matrix
+  glm::dvec3 mean{0};                                 // of the ground points, relative
+  double spread = 0;        // root of the sum of squared horizontal distances from it
+  double heightSpread = 0;  // of squared heights above it
+  double unclampedSlope = 0;
+};
+
+struct BodyResult {
+  AgentBody body;
+  std::vector<LegFollow> follow;
+  double turnMargin = 0;  // |c| where its sign chose the way round (d <= 0), infinite elsewhere
+  SupportPlane plane;
+  double wantedSpeed = 0;  // |v|
+  bool isStill = false;
+  double stillMargin = 0;  // nearest of the three thresholds of standing still, as a share of it
+};
+
+// Decisions that the caller takes instead of the rule, to recompute the other side of a tie.
+struct BodyChoices {
+  std::optional<double> kappa;
+  int turnSign = 0;  // +1, -1: forced
+};
+
+// `reachErrors`: of each leg after the last tick, metres. `tick` is n, the tick being computed.
+BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
+                const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
+                std::span<const double> reachErrors, double tick, const BodyChoices& choices = {});
+
+}  // namespace skitter::reference

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "cpu_reference/types.h"
+
+namespace skitter::reference {
+
+// What a leg was judged by and how far each judgement was from falling the other way. Margins of lengths are
+// metres; a margin is infinite where the decision was not asked for.
+struct LegDecision {
+  bool planted = false, must = false, wants = false;
+  double progress = 1;  // u_l after the last tick
+  double offset = 0;    // off_l
+  double stretch = 0;   // r_l
+  double urgency = 0;
+  double mustMargin = 0;
+  double wantsMargin = 0;
+  double reaimMargin = 0;          // of the distance between landing and prediction
+  double reaimProgressMargin = 0;  // of u_l against reaimLatest
+};
+
+struct GaitResult {
+  Gait gait;
+  std::vector<LegDecision> legs;
+  bool emergency = false;      // the phase was moved to the group of the leg that must lift
+  double unmovedPhase = 0;     // phi had there been no emergency
+  double emergencyMargin = 0;  // between the most needy leg and the next one of another group, and of must
+  double phaseMargin = 0;      // phi groups from the nearest edge of a window, in windows
+  double durationMargin = 0;   // ticks, of the rounding of D
+  double settleMargin = 0;     // seconds
+};
+
+// Decisions that the caller takes instead of the rule, to recompute the other side of a tie.
+struct GaitChoices {
+  std::optional<double> duration;  // D
+};
+
+// `phase` is the last tick's, `body` the new one, `reachErrors` of each leg after the last tick (metres),
+// `tick` is n.
+GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody& body, double phase,
+                std::span<const Step> steps, std::span<const double> reachErrors, double tick,
+                const GaitChoices& choices = {});
+
+// Where leg `limb` would land, and where its root would then be, `seconds` before touchdown (model space).
+glm::dvec3 predictedLanding(const Limb& limb, const AgentBody& body, double seconds, double stanceTime);
+glm::dvec3 predictedRoot(const Limb& limb, const AgentBody& body, double seconds);
+
+}  // namespace skitter::reference

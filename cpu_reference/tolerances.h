@@ -1,0 +1,165 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "cpu_reference/body.h"
+#include "cpu_reference/foothold.h"
+#include "cpu_reference/gait.h"
+#include "cpu_reference/heightfield.h"
+#include "cpu_reference/types.h"
+
+// How far a float32 implementation of docs/stages.md may be from the reference, stage by stage, when both
+// start from the same float32 records. First-order bounds: each operation errs by `roundoff` of its result;
+// Vulkan allows 2.5 ulp for division, 2 for inversesqrt and 3 for sqrt, so a normalisation is counted as 6.
+namespace skitter::reference::tolerance {
+
+// Half an ulp of 1 in float32.
+inline constexpr double roundoff = 0x1p-24;
+// Rounding of a tile-local coordinate, below 16 m.
+inline constexpr double local = tileSize * roundoff;
+// Difference of two tile-local points: the tile difference times 16 is exact, its sum with one coordinate is
+// below 32 m (2 local), the difference with the other rounds once more (2 local at most).
+inline constexpr double relative = 4 * local;
+// A cubic Hermite spline in tile-local coordinates: four products and three sums of terms below 16 m, the
+// basis functions err by 4 roundoff each; half of these roundings cancel at worst.
+inline constexpr double spline = 12 * local;
+// Scores of footholds closer than this are a tie by the project's rule.
+inline constexpr double footholdScore = 1e-4;
+// Reach errors of chains closer than this share of the reach are a tie by the project's rule.
+inline constexpr double ikTie = 1e-4;
+// Ties may be this share of a stage's samples, one is always allowed.
+inline constexpr double tieShare = 1e-3;
+
+// heightAt at a point known to within `horizontal`, on a terrain that reaches `extent` from the origin:
+// forming the world coordinate errs by 1 roundoff of it, subtracting the origin and scaling by 2 each of
+// twice it (6 in all); the three lerps add 8 roundoff of the height.
+inline double height(const Relief& relief, double extent, double horizontal) {
+  return (horizontal + 6 * roundoff * extent) * (relief.slopeX + relief.slopeZ) +
+         8 * roundoff * relief.height;
+}
+
+// Difference of a target and a body in world coordinates: as in `height`, without the scaling.
+inline double goalDistance(double extent) { return 4 * roundoff * extent; }
+// Desired velocity as a share of the goal's speed: the angle under which the error of the difference is seen,
+// and one normalisation.
+inline double desiredVelocity(double extent, double distance, double slowRadius) {
+  return goalDistance(extent) * (1 / std::max(distance, 1e-9) + 1 / slowRadius) + 8 * roundoff;
+}
+
+// A rotation by a unit quaternion: 12 operations on lengths up to |v|, and the quaternion's own norm.
+inline double rotated(double length) { return 16 * roundoff * length; }
+// Distance of a foot from its root or home.
+inline double footDistance(double length) { return relative + rotated(length); }
+
+struct BodyBounds {
+  double kappa, turnRate, heading, speed, position, slope, orientation, height, v3;
+};
+// Follows the steps of the stage in order; each bound feeds the next.
+inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, const Creature& creature,
+                       const AgentBody& previous, const BodyResult& result) {
+  BodyBounds bound{};
+  const AgentBody& next = result.body;
+  const SupportPlane& plane = result.plane;
+  double shortest = t.legLength;
+  for (const Limb& limb : creature.limbs) shortest = std::min(shortest, limb.reach);
+
+  // kappa: a stretch divided by the narrow band between slowing and stopping.
+  bound.kappa = footDistance(2 * t.legLength) / shortest / (t.stretchStop - t.stretchSlow) + 4 * roundoff;
+  // omega: turnGain e with e from two normalised vectors, scaled by kappa_turn = 1/4 + 3/4 kappa.
+  bound.turnRate =
+      t.turnGain * 10 * roundoff + 0.75 * t.turnRate * bound.kappa + 8 * roundoff * (t.turnRate + 1);
+  bound.heading = bound.turnRate * t.dt + 10 * roundoff;
+  bound.speed = result.wantedSpeed * (bound.kappa + bound.heading + 12 * roundoff) + 4 * roundoff;
+  bound.position = 3 * local + t.dt * (bound.speed + next.speed * bound.heading);
+
+  // (b, c) = M^-1 (Sxy, Szy): errors of the points through M^-1 (at most 1 / least eigenvalue), roundings of
+  // the sums, and of the determinant in Cramer's rule (the condition number of M).
+  const double legs = static_cast<double>(creature.limbs.size());
+  const double slope = plane.unclampedSlope;
+  const double point = relative + bound.position;
+  const double vertical = 4 * roundoff * (std::abs(previous.y) + plane.heightSpread);
+  const double condition = plane.largestEigenvalue / plane.leastEigenvalue;
+  bound.slope =
+      (2 * std::sqrt(legs) * (plane.spread * (vertical + slope * point) + plane.heightSpread * point) +
+       (8 + legs) * roundoff * plane.spread * plane.heightSpread) /
+          plane.leastEigenvalue +
+      8 * roundoff * condition * (1 + slope);
+  const double up = t.tiltBlend * bound.slope + 16 * roundoff;
+  // F = (h.x, -(N . h) / N.y, h.z): a steep body amplifies by 1 / N.y.
+  const double upY = (next.orientation * glm::dvec3(0, 1, 0)).y;
+  const double forward = 2 * (up + bound.heading) / upY + 8 * roundoff;
+  bound.orientation = up + forward + 16 * roundoff;
+  const glm::dvec3 f = next.orientation * glm::dvec3(0, 0, 1);
+  const double level = std::hypot(f.x, f.z);
+  bound.v3 = (bound.speed + next.speed * forward / level) / level + 8 * roundoff;
+
+  const double planeHeight = vertical + std::hypot(plane.mean.x, plane.mean.z) * bound.slope + slope * point +
+                             8 * roundoff * slope * t.legLength;
+  const double arm = t.bodyHeight + t.bodyRadius;
+  double belly = 0;
+  const glm::dvec2 position = next.world();
+  for (int k = -1; k <= 1; ++k) {
+    const glm::dvec3 q = next.orientation * glm::dvec3(0, t.bodyHeight, k * t.bodyRadius);
+    const Relief relief = reliefNear(heights, position.x + q.x, position.y + q.z);
+    const double q_error = arm * (up + forward);
+    belly = std::max(belly, height(relief, extent, bound.position + q_error) + q_error);
+  }
+  bound.height = t.heightBlend * std::max(planeHeight, belly) +
+                 t.dt * (next.speed * bound.slope + slope * bound.speed) + 6 * roundoff * std::abs(next.y) +
+                 4 * roundoff;
+  return bound;
+}
+
+struct GaitBounds {
+  double phase, halfStride, cycle, duration, length, window;
+};
+inline GaitBounds gait(const Tuning& t, const GaitResult& result, int groups, double longestForecast) {
+  GaitBounds bound{};
+  // One addition below 2, and dt / C with C good to 16 roundoff.
+  bound.phase = 6 * roundoff;
+  bound.halfStride = 8 * roundoff * t.halfStrideMax;
+  bound.cycle = 24 * roundoff * result.gait.cycle;
+  bound.duration = 12 * roundoff * (t.swingStill / t.dt + 1);
+  // Where a foot stands in the model, and where it is predicted to (a Cayley turn and v3 times a time).
+  bound.length = footDistance(2 * t.legLength) + 16 * roundoff * longestForecast;
+  bound.window = groups * bound.phase + 2 * roundoff * groups;
+  return bound;
+}
+
+struct FootholdBounds {
+  double candidate;  // horizontally, before the ground is looked up
+};
+inline FootholdBounds foothold(const Tuning& t, const FootholdResult& result) {
+  // tau and r': a Cayley turn of home and v3 (t + S/2), with S = C - T.
+  const double target = 16 * roundoff * (glm::length(result.target) + t.legLength);
+  // The ladder's direction o / |o| turns by the error of o over |o|; rungs reach 4/3 and 2/3 of rho from r'.
+  const double ladder = target * (1 + 4 * result.stretch / std::max(result.side, 1e-6));
+  return {ladder + rotated(glm::length(result.target) + 2 * result.stretch)};
+}
+// A candidate's height above the body.
+inline double candidateHeight(const Relief& relief, double extent, double candidate, double bodyY) {
+  return height(relief, extent, candidate) + 4 * roundoff * std::abs(bodyY);
+}
+inline double candidateDistance(const Limb& limb, double candidate, double vertical) {
+  return candidate + vertical + rotated(2 * limb.reach);
+}
+
+// Share of the unit quaternion's components after `bones` products of 12 operations.
+inline double boneRotation(int bones) { return (12.0 * bones + 8) * roundoff; }
+// Joint positions down a chain as a share of the reach: each bone adds the error of its rotation times its
+// length, and the root is rotated once.
+inline double bonePosition(int bones) { return (16.0 * bones + 16) * roundoff; }
+
+// A direction just clamped: scaling by tan / |(X, Y)| errs by 8 roundoff of tan; dtheta = 2 d tan / (1 +
+// tan^2), which is at most 8 roundoff.
+inline constexpr double limit = 10 * roundoff;
+// Forward kinematics of `bones` bones in float32, as a share of the reach; 24 operations a bone.
+inline double forwardKinematics(int bones) { return (24.0 * bones + 32) * roundoff; }
+
+// Joints of a solved chain, as a share of the reach. A damped step solves with a matrix of least eigenvalue
+// mu >= 1e-5; rounding of its entries (2^-22) moves a step of x radians by up to 2^-22 x / sqrt(mu) = 8e-5 x
+// in the weakest direction, and x stays below 0.5.
+inline constexpr double jointPosition = 5e-5;
+
+}  // namespace skitter::reference::tolerance

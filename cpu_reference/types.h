@@ -1,0 +1,157 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <vector>
+
+// What the stages of docs/stages.md pass to each other, in double precision. Metres, seconds, radians; +Y up,
+// a creature faces +Z. "Relative" means relative to the body's position along world axes.
+namespace skitter::reference {
+
+// Metres; a body's position is tile * tileSize + local, 0 <= local < tileSize.
+inline constexpr double tileSize = 16;
+
+// The tuning values of docs/stages.md, under the names that it uses.
+struct Tuning {
+  double dt = 0, legLength = 0, homeRadius = 0, bodyHeight = 0, bodyRadius = 0;
+  double halfExtentX = 0, halfExtentZ = 0;
+  double edgeMargin = 0, slowRadius = 0;
+  double acceleration = 0, braking = 0, turnRate = 0, turnAcceleration = 0, turnGain = 0;
+  double stretchSlow = 0, stretchStop = 0, errorStop = 0, followLeast = 0, heightBlend = 0, tiltBlend = 0,
+         maxSlope = 0;
+  double bellyClearance = 0, ridge = 0;
+  double halfStrideStill = 0, halfStrideGain = 0, halfStrideMax = 0, swingStill = 0, swingSpeed = 0;
+  double cycleMax = 0, windowSlack = 0, windowOpen = 0, liftShare = 0, stretchLift = 0, strayShare = 0;
+  double errorLift = 0, rootShare = 0;
+  double settleTime = 0, reaimDistance = 0, reaimLatest = 0;
+  double reachMost = 0, reachLeast = 0, reachComfort = 0, slopeLeast = 0, slopeWeight = 0, reachWeight = 0;
+  bool nearestOnly = false;
+  double stepHeight = 0, stepClearance = 0, stepHeightMax = 0;
+  double fabrikError = 0, restPull = 0, pullError = 0, ikTolerance = 0;
+};
+
+// Samples of a heightfield, row after row; owned by the caller.
+struct Heights {
+  const float* samples = nullptr;
+  int columns = 0, rows = 0;
+  double originX = 0, originZ = 0;                  // world position of column 0, row 0
+  double inverseSpacingX = 0, inverseSpacingZ = 0;  // samples a metre
+};
+
+struct BoneRest {
+  glm::dmat3 frame{1};     // B_i, its z axis the rest direction r_i, model space
+  double length = 0;       // share of the limb's reach; 0 pads a short limb
+  double tanHalfCone = 0;  // tan(alpha_i / 2)
+  glm::dvec3 start{0};     // p_i at rest, model space
+  double stiffness = 0;    // of the rest pull
+};
+
+struct Limb {
+  glm::dvec3 root{0}, home{0};  // model space
+  double reach = 0;             // metres
+  int group = 0;
+  std::vector<BoneRest> bones;
+};
+
+struct Creature {
+  std::vector<Limb> limbs;
+  int groups = 0;
+};
+
+enum class GoalKind { none, point, cross };
+
+struct Goal {
+  glm::dvec2 target{0}, otherEnd{0};  // world x, z
+  double speed = 0, arrivalRadius = 0;
+  GoalKind kind = GoalKind::none;
+};
+
+struct AgentBody {
+  double tileX = 0, tileZ = 0;
+  double localX = 0, y = 0, localZ = 0;
+  glm::dvec2 heading{0, 1};  // x, z
+  double speed = 0;          // m/s, horizontal, along the heading
+  glm::dquat orientation{1, 0, 0, 0};
+  double turnRate = 0;  // omega
+  double still = 0;     // seconds
+  double kappa = 1;     // follow factor
+  double v3 = 0;        // m/s along the ground
+
+  glm::dvec2 world() const { return {tileX * tileSize + localX, tileZ * tileSize + localZ}; }
+};
+
+struct Gait {
+  double phase = 0;
+  uint32_t lift = 0, reaim = 0;  // bit l: leg l
+  double duration = 0;           // ticks a step that begins now lasts
+  double halfStride = 0, cycle = 0;
+  uint32_t air = 0;  // legs in the air before any lifts
+};
+
+// Positions are local to the tile in x and z, world in y.
+struct Step {
+  double tileX = 0, tileZ = 0;
+  glm::dvec3 landing{0}, liftOff{0}, lift{0}, startTangent{0};
+  double firstTick = 0;
+  double duration = 1;  // ticks; negative: the landing is a last resort
+
+  // Progress u in [0, 1] at the end of a tick; 1 is stance.
+  double progress(double tick) const { return glm::clamp((tick - firstTick) / std::abs(duration), 0.0, 1.0); }
+  // A point of this step relative to a body.
+  glm::dvec3 relative(const glm::dvec3& point, const AgentBody& body) const {
+    return {(tileX - body.tileX) * tileSize + (point.x - body.localX), point.y - body.y,
+            (tileZ - body.tileZ) * tileSize + (point.z - body.localZ)};
+  }
+};
+
+struct Foot {
+  glm::dvec3 target{0};  // relative
+  double progress = 1;
+};
+
+struct Chain {
+  std::vector<glm::dvec2> directions;  // (d.x, d.y) / (1 + d.z) of each bone in its frame B_i
+  glm::dvec3 tip{0};                   // relative
+  double reachError = 0;               // metres
+  double damping = 1;
+  double errorBefore = 0;  // metres, of the warm start
+};
+
+struct BonePose {
+  glm::dquat rotation{1, 0, 0, 0};  // world from rest
+  glm::dvec3 position{0};           // relative
+};
+
+struct Metric {
+  glm::dvec3 previousTip{0};  // local to the step's tile
+  double slip = -1;           // of the stance so far; -1: there is no planted previous tip
+  double finishedSlip = 0, finishedStances = 0;
+  double penetration = 0, floating = 0;  // sums, metres
+  double ticks = 0, stanceTicks = 0;
+  double largestError = 0;      // metres
+  double largestViolation = 0;  // radians
+};
+
+// normalize(v) = v / sqrt(max(|v|^2, 1e-20))
+template <typename Vector>
+Vector normalized(const Vector& v) {
+  return v / std::sqrt(std::max(glm::dot(v, v), 1e-20));
+}
+
+// Cayley form of a rotation by about `angle`: its cosine and sine, without trigonometry.
+struct Turn {
+  explicit Turn(double angle) {
+    const double t = angle / 2;
+    cosine = (1 - t * t) / (1 + t * t);
+    sine = 2 * t / (1 + t * t);
+  }
+  glm::dvec3 operator()(const glm::dvec3& v) const {
+    return {cosine * v.x + sine * v.z, v.y, cosine * v.z - sine * v.x};
+  }
+  double cosine, sine;
+};
+
+}  // namespace skitter::reference

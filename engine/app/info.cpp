@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "commands.h"
+#include "part_file.h"
+#include "skitter/device.h"
+#include "skitter/error.h"
+
+namespace skitter::app {
+namespace {
+
+struct InfoOptions {
+  std::optional<std::string> device;
+  std::string json;
+};
+
+std::string version(uint32_t api) {
+  return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(api), VK_API_VERSION_MINOR(api),
+                     VK_API_VERSION_PATCH(api));
+}
+
+const char* loadsName(LoadPath loads) {
+  return loads == LoadPath::texel ? "texel buffers" : "storage buffers";
+}
+
+std::string amount(uint64_t bytes) {
+  return bytes < 10ull << 30 ? fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20))
+                             : fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1ull << 30));
+}
+
+void printDevice(const DeviceReport& report) {
+  const DeviceLimits& limits = report.limits;
+  const DeviceFeatures& features = report.features;
+  const auto row = [](const char* name, const std::string& value) {
+    fmt::print("    {:<26}{}\n", name, value);
+  };
+  const auto yes = [](bool value) { return std::string(value ? "yes" : "no"); };
+  fmt::print("{} {}: {} ({})\n", report.chosen ? "*" : " ", report.index, report.name, report.typeName());
+  row("driver", report.driver);
+  row("Vulkan", version(report.apiVersion));
+  row("records are read by", loadsName(report.loads));
+  row("subgroup", fmt::format("{} invocations", limits.subgroupSize));
+  row("work group, at most", fmt::format("{} invocations", limits.maxComputeWorkGroupInvocations));
+  row("storage buffer, at most", amount(limits.maxStorageBufferRange));
+  row("texel buffer, at most", fmt::format("{} vec4", limits.maxTexelBufferElements));
+  row("allocation, at most", amount(limits.maxAllocationBytes));
+  row("memory", fmt::format("{}, {} free", amount(limits.heapBytes), amount(limits.availableBytes)));
+  row("image, at most", fmt::format("{0} x {0}", limits.maxImageDimension2D));
+  row("timestamps", limits.timestampBits > 0 ? fmt::format("{} ns", limits.timestampPeriod) : "no");
+  row("indirect draws",
+      fmt::format("multi {}, count {}", yes(features.multiDrawIndirect), yes(features.drawIndirectCount)));
+  row("window", yes(features.presentation));
+  if (report.chosen) row("chosen", "yes");
+  if (!report.chosen) row("not chosen", report.whyNot);
+  for (const std::string& refusal : report.refusals) row("unsuitable", refusal);
+}
+
+nlohmann::ordered_json describe(const DeviceReport& report) {
+  const DeviceLimits& limits = report.limits;
+  const DeviceFeatures& features = report.features;
+  return {{"index", report.index},
+          {"name", report.name},
+          {"type", report.typeName()},
+          {"driver", report.driver},
+          {"apiVersion", version(report.apiVersion)},
+          {"loads", report.loads == LoadPath::texel ? "texel" : "storage"},
+          {"limits",
+           {{"subgroupSize", limits.subgroupSize},
+            {"maxStorageBufferRange", limits.maxStorageBufferRange},
+            {"maxTexelBufferElements", limits.maxTexelBufferElements},
+            {"minTexelBufferOffsetAlignment", limits.minTexelBufferOffsetAlignment},
+            {"minStorageBufferOffsetAlignment", limits.minStorageBufferOffsetAlignment},
+            {"minUniformBufferOffsetAlignment", limits.minUniformBufferOffsetAlignment},
+            {"maxAllocationBytes", limits.maxAllocationBytes},
+            {"maxImageDimension2D", limits.maxImageDimension2D},
+            {"maxComputeWorkGroupInvocations", limits.maxComputeWorkGroupInvocations},
+            {"maxComputeWorkGroupCountX", limits.maxComputeWorkGroupCountX},
+            {"maxPushConstantsSize", limits.maxPushConstantsSize},
+            {"heapBytes", limits.heapBytes},
+            {"availableBytes", limits.availableBytes},
+            {"timestampPeriod", limits.timestampPeriod},
+            {"timestampBits", limits.timestampBits},
+            {"texelRgba32f", limits.texelRgba32f},
+            {"sampledR32f", limits.sampledR32f}}},
+          {"features",
+           {{"drawIndirectCount", features.drawIndirectCount},
+            {"multiDrawIndirect", features.multiDrawIndirect},
+            {"drawIndirectFirstInstance", features.drawIndirectFirstInstance},
+            {"shaderDrawParameters", features.shaderDrawParameters},
+            {"fillModeNonSolid", features.fillModeNonSolid},
+            {"samplerAnisotropy", features.samplerAnisotropy},
+            {"presentation", features.presentation}}},
+          {"suitable", report.suitable},
+          {"refusals", report.refusals},
+          {"chosen", report.chosen},
+          {"whyNot", report.whyNot}};
+}
+
+int info(const InfoOptions& options) {
+  if (!options.json.empty()) checkFileTarget("--json", options.json);
+  DeviceRequest request;
+  request.device = options.device;
+  const std::vector<DeviceReport> reports = listDevices(request);
+
+  nlohmann::ordered_json devices = nlohmann::ordered_json::array(), chosen = nullptr;
+  for (const DeviceReport& report : reports) {
+    printDevice(report);
+    devices.push_back(describe(report));
+    if (report.chosen) chosen = report.index;
+  }
+  if (!options.json.empty()) {
+    const nlohmann::ordered_json json = {{"devices", devices}, {"chosen", chosen}};
+    writeText(options.json, json.dump(2) + "\n");
+  }
+  if (chosen.is_null()) throw deviceError("none of these devices will do");
+  return 0;
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command =
+      app.add_subcommand("info", "Vulkan devices, which one is used (*) and why not the others");
+  command
+      ->add_option_function<std::string>(
+          "--device", [options](const std::string& text) { options->device = text; },
+          "show the choice that this --device would make")
+      ->type_name("NAME|INDEX");
+  command->add_option("--json", options->json, "write all of it to a file")->type_name("FILE");
+  command->footer("Examples:\n  skitter info\n  skitter info --json devices.json");
+  command->callback([options, &chosen] { chosen = [options] { return info(*options); }; });
+}
+
+}  // namespace skitter::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "skitter/device.h"
+#include "skitter/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace skitter::app {
+
+// What is simulated and where: a scene file, and the flags that change it.
+struct SceneOptions {
+  std::string scene;  // empty: the built-in scene
+  std::optional<uint64_t> agents, seed;
+  std::string terrain;  // empty: the scene's own
+  std::optional<std::pair<double, double>> spacing, heights;
+  std::optional<double> scale;
+  double dt = 1.0 / 60;
+  std::optional<std::string> device;
+
+  // `agentsHelp` says what happens without --agents.
+  void addTo(CLI::App& command, const char* agentsHelp);
+  // The scene as the flags leave it. Throws Error(input).
+  Scene load() const;
+};
+
+// Refuses a scene whose records cannot fit the device's free memory, before anything is allocated.
+void checkMemory(const Scene& scene, const Device& device);
+
+}  // namespace skitter::app

@@ -1,0 +1,174 @@
+#include "trace.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "shared/records.h"
+#include "skitter/error.h"
+
+namespace skitter::app {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace skitter::shared;
+
+constexpr double maxBytes = 4.0 * (1ull << 30);
+
+struct EntrySizes {  // values an agent and tick
+  uint64_t joints, rotations, stance, body;
+
+  explicit EntrySizes(const Rig& rig) {
+    const auto legs = static_cast<uint64_t>(rig.legCount()), bones = static_cast<uint64_t>(rig.maxBones());
+    joints = legs * (bones + 1) * 3;
+    rotations = legs * bones * 4;
+    stance = legs;
+    body = 7;
+  }
+  uint64_t bytes() const { return 4 * (joints + rotations + body) + stance; }
+};
+
+void checkSize(const fs::path& folder, const Crowd& crowd, const Scene& scene, uint64_t ticks, bool force) {
+  uint64_t bytesPerTick = 0;
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    bytesPerTick += scene.herds[h].agents * EntrySizes(crowd.rig(h)).bytes();
+  }
+  const double bytes = static_cast<double>(bytesPerTick) * static_cast<double>(ticks);
+  if (bytes > maxBytes && !force) {
+    throw inputError(fmt::format("--trace {}: {} ticks would take {:.1f} GiB, more than 4 GiB need --force",
+                                 folder.string(), ticks, bytes / (1ull << 30)));
+  }
+  std::error_code error;
+  fs::path existing = fs::absolute(folder);
+  while (!fs::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
+  const fs::space_info space = fs::space(existing, error);
+  if (!error && bytes > static_cast<double>(space.available)) {
+    throw inputError(fmt::format("--trace {}: {} ticks would take {:.0f} MiB, the disk has {} MiB free",
+                                 folder.string(), ticks, bytes / (1 << 20), space.available >> 20));
+  }
+}
+
+// The record at vec4 index `at`.
+const float* vec4(const std::vector<float>& records, size_t at) { return records.data() + 4 * at; }
+
+// What the files hold of one agent and tick, appended.
+struct Values {
+  std::vector<float> joints, rotations, body;
+  std::vector<uint8_t> stance;
+};
+
+void appendAgent(const HerdState& state, const Rig& rig, size_t agent, Values& values) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto legs = static_cast<size_t>(rig.legCount()), bones = static_cast<size_t>(rig.maxBones());
+  const auto chainSize = static_cast<size_t>(chainStride(rig.maxBones()));
+  const auto tipAt = static_cast<size_t>(chainDirections(rig.maxBones()));
+
+  const float* body = vec4(state.body, agent * BODY_STRIDE);
+  const double position[3] = {double{body[4]} * TILE_SIZE + body[0], body[1],
+                              double{body[5]} * TILE_SIZE + body[2]};
+  for (double coordinate : position) values.body.push_back(static_cast<float>(coordinate));
+  values.body.insert(values.body.end(), body + 8, body + 12);
+
+  const auto pushJoint = [&](const float* relative) {
+    for (size_t k = 0; k < 3; ++k)
+      values.joints.push_back(static_cast<float>(position[k] + double{relative[k]}));
+  };
+  for (size_t l = 0; l < legs; ++l) {
+    const size_t leg = agent * legs + l, own = rig.legs[l].bones.size();
+    for (size_t b = 0; b < own; ++b) {
+      const float* pose = vec4(state.pose, (agent * (1 + legs * bones) + 1 + l * bones + b) * POSE_STRIDE);
+      values.rotations.insert(values.rotations.end(), pose, pose + 4);
+      pushJoint(pose + 4);
+    }
+    pushJoint(vec4(state.chain, leg * chainSize + tipAt));
+    values.rotations.insert(values.rotations.end(), 4 * (bones - own), nan);
+    values.joints.insert(values.joints.end(), 3 * (bones - own), nan);
+    values.stance.push_back(vec4(state.foot, leg * FOOT_STRIDE)[3] >= 1 ? 1 : 0);
+  }
+}
+
+nlohmann::json describe(const Rig& rig, uint32_t agents) {
+  nlohmann::json legNames = nlohmann::json::array(), groups = legNames, boneLengths = legNames,
+                 restDirections = legNames, limits = legNames;
+  for (const Leg& leg : rig.legs) {
+    legNames.push_back(leg.name);
+    groups.push_back(leg.group);
+    nlohmann::json lengths = nlohmann::json::array(), directions = lengths, angles = lengths;
+    for (const Bone& bone : leg.bones) {
+      lengths.push_back(bone.length);
+      directions.push_back({bone.direction.x, bone.direction.y, bone.direction.z});
+      angles.push_back(bone.coneHalfAngle);
+    }
+    boneLengths.push_back(lengths);
+    restDirections.push_back(directions);
+    limits.push_back(angles);
+  }
+  return {{"rig", rig.name},
+          {"agents", agents},
+          {"legLength", rig.legLength},
+          {"legNames", legNames},
+          {"groupNames", rig.groups},
+          {"groups", groups},
+          {"boneLengths", boneLengths},
+          {"restDirections", restDirections},
+          {"limits", limits}};
+}
+
+}  // namespace
+
+Trace::Trace(fs::path folder, const Crowd& crowd, const Scene& scene, double dt, uint64_t ticks, bool force)
+    : folder_(std::move(folder)), dt_(dt) {
+  checkSize(folder_, crowd, scene, ticks, force);
+  fs::create_directories(folder_);
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    const fs::path herd = folder_ / fmt::format("herd{}", h);
+    fs::create_directories(herd);
+    const Rig& rig = crowd.rig(h);
+    const uint32_t agents = scene.herds[h].agents;
+    const uint64_t legs = static_cast<uint64_t>(rig.legCount()),
+                   bones = static_cast<uint64_t>(rig.maxBones());
+    herds_.push_back({agents, NpyWriter(herd / "joints.npy", "<f4", {agents, legs, bones + 1, 3}),
+                      NpyWriter(herd / "rotations.npy", "<f4", {agents, legs, bones, 4}),
+                      NpyWriter(herd / "stance.npy", "|u1", {agents, legs}),
+                      NpyWriter(herd / "body.npy", "<f4", {agents, 7})});
+  }
+}
+
+void Trace::append(const Crowd& crowd) {
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    const HerdState state = crowd.download(h);
+    Values values;
+    for (size_t agent = 0; agent < state.agents; ++agent) appendAgent(state, crowd.rig(h), agent, values);
+    herds_[h].joints.append(std::span<const float>(values.joints));
+    herds_[h].rotations.append(std::span<const float>(values.rotations));
+    herds_[h].stance.append(std::span<const uint8_t>(values.stance));
+    herds_[h].body.append(std::span<const float>(values.body));
+  }
+  ++entries_;
+}
+
+void Trace::finish(const Crowd& crowd, const Heightfield& terrain) {
+  NpyWriter heights(folder_ / "heights.npy", "<f4", {terrain.columns});
+  heights.append(std::span<const float>(terrain.heights));
+  heights.finish(terrain.rows);
+  nlohmann::json herds = nlohmann::json::array();
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    herds_[h].joints.finish(entries_);
+    herds_[h].rotations.finish(entries_);
+    herds_[h].stance.finish(entries_);
+    herds_[h].body.finish(entries_);
+    herds.push_back(describe(crowd.rig(h), herds_[h].agents));
+  }
+  const nlohmann::json json = {{"dt", dt_},
+                               {"ticks", entries_},
+                               {"herds", herds},
+                               {"terrain",
+                                {{"originX", terrain.originX()},
+                                 {"originZ", terrain.originZ()},
+                                 {"spacingX", terrain.spacingX},
+                                 {"spacingZ", terrain.spacingZ}}}};
+  writeText(folder_ / "trace.json", json.dump(2) + "\n");
+}
+
+}  // namespace skitter::app

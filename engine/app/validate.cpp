@@ -1,0 +1,184 @@
+#include "validation/replay.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "crowd/herd.h"
+#include "crowd/tuning.h"
+#include "gpu/submit.h"
+#include "part_file.h"
+#include "progress.h"
+#include "scene_options.h"
+#include "signals.h"
+#include "simulate.h"
+#include "skitter/error.h"
+#include "values.h"
+
+namespace skitter::app {
+namespace {
+
+using validation::Replay;
+using validation::StageResult;
+
+constexpr uint64_t defaultAgents = 64, defaultFrames = 120, maxFrames = 1000000;
+// The reference takes about a millisecond for one of them; of larger herds every so many-th agent is
+// compared, others in each tick.
+constexpr uint32_t agentsATick = 1024;
+
+struct ValidateOptions {
+  SceneOptions scene;
+  uint64_t frames = defaultFrames;
+  std::string json;
+  bool quiet = false;
+};
+
+std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd, uint64_t seed) {
+  std::vector<std::unique_ptr<Replay>> replays;
+  for (const crowd::Herd& herd : crowd.impl().herds) {
+    replays.push_back(std::make_unique<Replay>(herd.rig, crowd.impl().terrain, herd.parameters,
+                                               herd.rigRecords, crowd::kFabrikIterations,
+                                               crowd::kPolishIterations, seed));
+  }
+  return replays;
+}
+
+std::vector<HerdState> download(const Crowd& crowd) {
+  std::vector<HerdState> states;
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) states.push_back(crowd.download(h));
+  return states;
+}
+
+double ratioOf(const StageResult& result) {
+  if (result.tolerance > 0) return result.maxError / result.tolerance;
+  return result.maxError > 0 ? HUGE_VAL : 0;
+}
+
+// Of all herds; the worst herd gives a stage's error.
+std::vector<StageResult> merge(const std::vector<std::unique_ptr<Replay>>& replays) {
+  std::vector<StageResult> all;
+  for (size_t h = 0; h < replays.size(); ++h) {
+    std::vector<StageResult> results = replays[h]->results();
+    if (replays.size() > 1) {
+      for (StageResult& result : results) result.worst = fmt::format("herd {}: {}", h, result.worst);
+    }
+    if (all.empty()) {
+      all = results;
+      continue;
+    }
+    for (size_t s = 0; s < all.size(); ++s) {
+      StageResult& sum = all[s];
+      const StageResult& result = results[s];
+      const bool worse = result.pass == sum.pass ? ratioOf(result) > ratioOf(sum) : !result.pass;
+      const StageResult least = worse ? result : sum;
+      const uint64_t samples = sum.samples + result.samples, ties = sum.ties + result.ties;
+      sum = least;
+      sum.samples = samples;
+      sum.ties = ties;
+    }
+  }
+  return all;
+}
+
+void print(const Device& device, const Scene& scene, uint64_t ticks,
+           const std::vector<StageResult>& results) {
+  fmt::print("{}: {} agents, {} ticks, seed {}\n", device.report().name, scene.agentCount(), ticks,
+             scene.seed);
+  fmt::print("{}", validation::table(results));
+  const auto closest = std::max_element(results.begin(), results.end(),
+                                        [](const auto& a, const auto& b) { return ratioOf(a) < ratioOf(b); });
+  if (closest != results.end() && closest->pass && closest->samples > 0) {
+    fmt::print("closest to its tolerance: {}: {}\n", closest->name, closest->worst);
+  }
+}
+
+nlohmann::ordered_json describe(const Device& device, const std::vector<StageResult>& results, bool pass) {
+  nlohmann::ordered_json stages = nlohmann::ordered_json::array();
+  for (const StageResult& result : results) {
+    stages.push_back({{"name", result.name},
+                      {"samples", result.samples},
+                      {"maxError", result.maxError},
+                      {"tolerance", result.tolerance},
+                      {"ties", result.ties},
+                      {"pass", result.pass}});
+  }
+  return {{"device", device.report().name}, {"stages", stages}, {"pass", pass}};
+}
+
+int validate(const ValidateOptions& options) {
+  if (!options.json.empty()) checkFileTarget("--json", options.json);
+  const Scene scene = options.scene.load();
+  const Heightfield terrain = scene.loadTerrain();
+  DeviceRequest request;
+  request.device = options.scene.device;
+  Device device = Device::create(request);
+  checkMemory(scene, device);
+  Crowd crowd(device, terrain, scene);
+
+  gpu::CommandRing ring(device.context());
+  TickTimes times;
+  std::vector<std::unique_ptr<Replay>> replays;
+  std::vector<HerdState> before = download(crowd);
+  Progress progress("ticks", options.frames, options.quiet);
+  while (crowd.tick() < options.frames && !stopRequested()) {
+    runTick(ring, crowd, static_cast<float>(options.scene.dt), times);
+    // A herd's parameters are complete only once the length of a tick is known.
+    if (replays.empty()) replays = replaysOf(crowd, scene.seed);
+    std::vector<HerdState> after = download(crowd);
+    for (size_t h = 0; h < replays.size(); ++h) {
+      validation::ReplayRange range;
+      range.stride = after[h].agents / agentsATick + 1;
+      replays[h]->tick(crowd.tick(), before[h], after[h], range);
+    }
+    before = std::move(after);
+    progress.update(crowd.tick());
+  }
+  if (replays.empty()) replays = replaysOf(crowd, scene.seed);
+
+  const std::vector<StageResult> results = merge(replays);
+  std::string failed;
+  for (const StageResult& result : results) {
+    if (!result.pass) failed += (failed.empty() ? "" : ", ") + result.name;
+  }
+  print(device, scene, crowd.tick(), results);
+  if (!options.json.empty())
+    writeText(options.json, describe(device, results, failed.empty()).dump(2) + "\n");
+  if (!failed.empty())
+    throw Error(Error::Kind::check, fmt::format("stages differ from the reference: {}", failed));
+  return 0;
+}
+
+}  // namespace
+
+void addValidate(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<ValidateOptions>();
+  options->scene.agents = defaultAgents;
+  CLI::App* command = app.add_subcommand(
+      "validate", "Replay a scene in lock-step: every stage, every tick, against the CPU reference");
+  options->scene.addTo(*command, fmt::format("{}", defaultAgents).c_str());
+  command
+      ->add_option_function<std::string>(
+          "--frames",
+          [options](const std::string& text) {
+            options->frames = parseWhole("--frames", text, 0, maxFrames);
+          },
+          fmt::format("ticks to compare [{}]", defaultFrames))
+      ->type_name("N");
+  command->add_option("--json", options->json, "write the table to a file")->type_name("FILE");
+  command->add_flag("--quiet", options->quiet, "no progress on stderr");
+  command->footer(
+      fmt::format("Of herds of more than {} agents a part is compared, another one in each tick.\n"
+                  "\n"
+                  "Examples:\n"
+                  "  skitter validate\n"
+                  "  skitter validate scene.json --agents 256 --frames 600 --json validation.json",
+                  agentsATick));
+  command->callback([options, &chosen] { chosen = [options] { return validate(*options); }; });
+}
+
+}  // namespace skitter::app

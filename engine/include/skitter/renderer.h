@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "skitter/crowd.h"
+#include "skitter/device.h"
+#include "skitter/scene.h"
+
+namespace skitter {
+
+// Where a picture is taken from. World metres; the projection is reversed-Z with an infinite far plane.
+struct View {
+  glm::vec3 eye{0, 4, -8};
+  glm::vec3 target{0};
+  float fieldOfView = 0.8f;  // radians, vertical
+};
+
+// The scene's camera at a time. `follow` frames the action: one walker and those about it, seen from behind,
+// aside and above, moving as the first herd is commanded to, never below the ground. It needs no readback.
+// `crowd` was made of `scene`.
+View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
+
+// Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.
+class Renderer {
+ public:
+  // Throws Error(input) for a picture without pixels, Error(device) when width or height exceed the device's
+  // limits or memory does not suffice. The crowd outlives the renderer and stays where it is.
+  Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+
+  // Records shadow map, terrain, crowd and sky after the crowd's tick in the same or an earlier submission.
+  // The picture ends in image(), RGBA8 sRGB, ready to be copied from (TRANSFER_SRC).
+  void record(VkCommandBuffer commandBuffer, const View& view);
+  VkImage image() const;
+  uint32_t width() const;
+  uint32_t height() const;
+
+  // Waits for the device; tightly packed RGBA8 rows, top row first.
+  std::vector<uint8_t> download() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skitter

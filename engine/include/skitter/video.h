@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+namespace skitter {
+
+// An H.264 video (.mp4), encoded by the `ffmpeg` program. It is written as NAME.part and gets its name in
+// finish(); a writer that is destroyed before leaves nothing. ffmpeg does not hear a Ctrl-C at the terminal,
+// so that finish() still makes a playable file of the frames so far.
+class VideoWriter {
+ public:
+  // Throws Error(input) when the file cannot be written or there is no ffmpeg. Odd sizes are padded to even
+  // ones.
+  VideoWriter(const std::filesystem::path& file, uint32_t width, uint32_t height, uint32_t framesPerSecond);
+  ~VideoWriter();
+  VideoWriter(VideoWriter&&) noexcept;
+  VideoWriter& operator=(VideoWriter&&) noexcept;
+
+  // Tightly packed RGBA8 sRGB rows, top row first. Throws Error(input) with what ffmpeg said when it has
+  // failed.
+  void write(std::span<const uint8_t> rgba);
+  // Throws Error(input) when ffmpeg failed, or there was no frame.
+  void finish();
+
+  uint64_t frames() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skitter

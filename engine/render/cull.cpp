@@ -1,0 +1,50 @@
+#include "render/cull.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "embedded/cull_comp_storage.h"
+#include "embedded/cull_comp_texel.h"
+#include "render/bindings.h"
+#include "shared/records.h"
+
+namespace skitter::render {
+namespace {
+
+// Pixels that an agent's radius covers, down to which each level of detail serves.
+constexpr float kLodPixels[shared::CAMERA_LODS] = {75, 28, 12, 0};
+
+}  // namespace
+
+Cull::Cull(const gpu::Context& context)
+    : kernel_(context, {.name = "cull",
+                        .code = {embedded::cull_comp_texel(), embedded::cull_comp_storage()},
+                        .bindings = {{shared::DRAW_PICTURE, gpu::BindingKind::uniform},
+                                     {shared::DRAW_BODY, gpu::BindingKind::load4},
+                                     {shared::DRAW_INSTANCES, gpu::BindingKind::store},
+                                     {shared::DRAW_COMMANDS, gpu::BindingKind::store}},
+                        .pushBytes = sizeof(shared::CullConstants)}) {}
+
+CulledPage Cull::makePage(const gpu::Context& context, const gpu::Buffer& picture, const gpu::Buffer& bodies,
+                          uint32_t agents) const {
+  CulledPage page;
+  page.agents = agents;
+  page.instances = gpu::Buffer(context, uint64_t(agents) * shared::INSTANCE_LISTS * sizeof(uint32_t),
+                               "visible agents", gpu::BufferUse::vertex);
+  page.commands = gpu::Buffer(context, shared::INSTANCE_LISTS * sizeof(VkDrawIndexedIndirectCommand),
+                              "agent draws", gpu::BufferUse::indirect);
+  page.bindings = kernel_.bind(context, {{shared::DRAW_PICTURE, &picture},
+                                         {shared::DRAW_BODY, &bodies},
+                                         {shared::DRAW_INSTANCES, &page.instances},
+                                         {shared::DRAW_COMMANDS, &page.commands}});
+  return page;
+}
+
+void Cull::record(vk::CommandBuffer cmd, const CulledPage& page, float radius) const {
+  shared::CullConstants constants{.agents = page.agents, .radius = radius, .lodPixels = {}};
+  std::copy(std::begin(kLodPixels), std::end(kLodPixels), constants.lodPixels);
+  kernel_.dispatch(cmd, page.bindings, gpu::bytesOf(constants),
+                   gpu::groupsFor(page.agents, shared::WORK_GROUP));
+}
+
+}  // namespace skitter::render

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "gpu/kernel.h"
+#include "render/picture.h"
+
+namespace skitter::render {
+
+// A page's instance lists and their indirect draws, chosen on the device.
+struct CulledPage {
+  uint32_t agents = 0;
+  gpu::Buffer instances;  // uint32: list after list of `agents` entries each
+  gpu::Buffer commands;   // a VkDrawIndexedIndirectCommand a list
+  gpu::Bindings bindings;
+};
+
+class Cull {
+ public:
+  Cull() = default;
+  explicit Cull(const gpu::Context&);
+
+  CulledPage makePage(const gpu::Context&, const gpu::Buffer& picture, const gpu::Buffer& bodies,
+                      uint32_t agents) const;
+  void record(vk::CommandBuffer, const CulledPage&, float radius) const;
+
+ private:
+  gpu::Kernel kernel_;
+};
+
+}  // namespace skitter::render

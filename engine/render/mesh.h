@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+
+#include "gpu/buffer.h"
+#include "gpu/graphics.h"
+#include "render/picture.h"
+#include "skitter/rig.h"
+
+namespace skitter::render {
+
+struct MeshVertex {
+  uint16_t bones[4];
+  glm::vec4 influences[4];  // vertex relative to the bone's rest start, weight
+  glm::vec3 normal;
+  glm::vec3 colour;
+};
+
+// Indices of one level of detail; its vertices are a range of their own.
+struct MeshLod {
+  uint32_t firstIndex = 0, indexCount = 0;
+  int32_t firstVertex = 0;
+};
+
+// A rig's skin at its levels of detail, on the host.
+struct MeshData {
+  std::vector<MeshVertex> vertices;
+  std::vector<uint32_t> indices;
+  std::array<MeshLod, shared::CAMERA_LODS> lods;
+  int influences = 1;  // most bones that carry one vertex, 1 to 4
+  float radius = 0;    // of a sphere about the body's position that holds every pose, metres
+};
+MeshData makeMesh(const Rig&);
+
+struct Mesh {
+  gpu::Buffer vertices, indices;
+  std::array<MeshLod, shared::CAMERA_LODS> lods;
+  int influences = 1;
+  float radius = 0;
+};
+Mesh uploadMesh(const gpu::Context&, const MeshData&, const std::string& name);
+
+}  // namespace skitter::render

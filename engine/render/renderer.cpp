@@ -1,0 +1,166 @@
+#include "skitter/renderer.h"
+
+#include <fmt/format.h>
+
+#include "gpu/barrier.h"
+#include "gpu/transfer.h"
+#include "render/antialias.h"
+#include "render/composition.h"
+#include "render/crowd_drawing.h"
+#include "render/sky.h"
+#include "render/terrain.h"
+
+namespace skitter {
+namespace {
+
+constexpr vk::Format kColour = vk::Format::eR8G8B8A8Srgb;
+constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
+
+vk::Extent2D checkedExtent(const gpu::Context& context, uint32_t width, uint32_t height) {
+  const uint32_t most = context.limits().maxImageDimension2D;
+  if (width == 0 || height == 0)
+    throw inputError(fmt::format("a picture of {} x {} pixels: both must be at least 1", width, height));
+  if (width > most || height > most)
+    throw deviceError(fmt::format("a picture of {} x {} pixels: {} draws at most {} x {}", width, height,
+                                  context.report().name, most, most));
+  return {width, height};
+}
+
+// Four samples where a GPU gives them almost for nothing; a software device pays sevenfold.
+vk::SampleCountFlagBits sampleCount(const gpu::Context& context) {
+  return context.isCpu() ? vk::SampleCountFlagBits::e1 : vk::SampleCountFlagBits::e4;
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  Impl(const gpu::Context& context, const Crowd::Impl& crowd, uint32_t width, uint32_t height);
+
+  void record(vk::CommandBuffer, const View&);
+  bool filtered() const { return samples == vk::SampleCountFlagBits::e1; }
+  void drawShadows(vk::CommandBuffer);
+  void drawPicture(vk::CommandBuffer);
+  void smoothEdges(vk::CommandBuffer);
+
+  const gpu::Context& context;
+  vk::SampleCountFlagBits samples;
+  gpu::Image colour, depth;
+  gpu::Image drawn;  // before its edges are smoothed: multisampled, or to be filtered
+  gpu::Buffer picture;
+  gpu::Image ground;
+  vk::raii::Sampler groundSampler;
+  render::ShadowMap shadow;
+  render::Setting setting;
+  render::Terrain terrain;
+  render::CrowdDrawing crowd;
+  render::Sky sky;
+  render::Antialias antialias;  // where there are no samples to resolve
+};
+
+Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height)
+    : context(c),
+      samples(sampleCount(c)),
+      colour(c,
+             {.format = kColour,
+              .extent = checkedExtent(c, width, height),
+              .usage = vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc},
+             "picture"),
+      depth(c,
+            {.format = kDepth,
+             .extent = {width, height},
+             .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment,
+             .samples = samples},
+            "picture depth"),
+      picture(c, sizeof(shared::Picture), "picture block", gpu::BufferUse::uniform),
+      ground(render::makeGroundMap(c, source.terrain, render::sunDirection())),
+      groundSampler(gpu::makeSampler(c, {.name = "ground map"})),
+      shadow(c),
+      setting{c,      source.terrain, source.heights, picture, ground, *groundSampler,
+              shadow, kColour,        kDepth,         samples},
+      terrain(setting),
+      crowd(setting, source),
+      sky(setting) {
+  drawn = gpu::Image(c,
+                     {.format = kColour,
+                      .extent = {width, height},
+                      .usage = vk::ImageUsageFlagBits::eColorAttachment |
+                               (filtered() ? vk::ImageUsageFlagBits::eSampled : vk::ImageUsageFlags()),
+                      .samples = samples},
+                     "picture, drawn");
+  if (filtered()) antialias = render::Antialias(c, drawn, kColour);
+}
+
+// The whole picture.
+void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view) {
+  const vk::Extent2D extent = colour.extent();
+  const render::Composition composition =
+      render::compose(view, setting.terrain, terrain.lowest(), terrain.highest(), extent.width, extent.height,
+                      shadow.texels());
+  context.beginLabel(cmd, "picture");
+
+  gpu::graphicsToTransfer(cmd);  // the last picture may still be reading what is written now
+  gpu::graphicsToCompute(cmd);
+  cmd.updateBuffer(picture.handle(), 0, sizeof(shared::Picture), &composition.block);
+  terrain.prepare(cmd, composition);
+  crowd.prepare(cmd);
+  gpu::transferToCompute(cmd);
+  gpu::transferToGraphics(cmd);
+
+  crowd.cull(cmd);
+  gpu::computeToGraphics(cmd);
+
+  drawShadows(cmd);
+  drawPicture(cmd);
+  if (filtered()) smoothEdges(cmd);
+  gpu::transition(cmd, colour, gpu::ImageState::colour, gpu::ImageState::transferSrc);
+  context.endLabel(cmd);
+}
+
+void Renderer::Impl::drawShadows(vk::CommandBuffer cmd) {
+  gpu::transition(cmd, shadow.image(), gpu::ImageState::discard, gpu::ImageState::depth);
+  {
+    const gpu::Rendering rendering(cmd, {.depth = &shadow.image(), .depthClear = 1, .keepDepth = true},
+                                   false);
+    for (int cascade = 0; cascade < shared::SHADOW_CASCADES; ++cascade) {
+      rendering.confine(shadow.square(cascade));
+      crowd.drawShadows(cmd, cascade);
+    }
+  }
+  gpu::transition(cmd, shadow.image(), gpu::ImageState::depth, gpu::ImageState::sampled);
+}
+
+void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
+  gpu::transition(cmd, colour, gpu::ImageState::discard, gpu::ImageState::colour);
+  gpu::transition(cmd, depth, gpu::ImageState::discard, gpu::ImageState::depth);
+  gpu::transition(cmd, drawn, gpu::ImageState::discard, gpu::ImageState::colour);
+  {
+    const gpu::Rendering rendering(
+        cmd, {.colour = &drawn, .resolve = filtered() ? nullptr : &colour, .depth = &depth}, true);
+    crowd.draw(cmd);
+    terrain.draw(cmd);
+    sky.draw(cmd);
+  }
+}
+
+void Renderer::Impl::smoothEdges(vk::CommandBuffer cmd) {
+  gpu::transition(cmd, drawn, gpu::ImageState::colour, gpu::ImageState::sampled);
+  const gpu::Rendering rendering(cmd, {.colour = &colour}, true);
+  antialias.draw(cmd);
+}
+
+Renderer::Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height)
+    : impl_(std::make_unique<Impl>(device.context(), crowd.impl(), width, height)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+
+void Renderer::record(VkCommandBuffer commandBuffer, const View& view) { impl_->record(commandBuffer, view); }
+VkImage Renderer::image() const { return impl_->colour.handle(); }
+uint32_t Renderer::width() const { return impl_->colour.extent().width; }
+uint32_t Renderer::height() const { return impl_->colour.extent().height; }
+
+std::vector<uint8_t> Renderer::download() const {
+  impl_->context.waitIdle();
+  return gpu::downloadImage<uint8_t>(impl_->context, impl_->colour, gpu::ImageState::transferSrc);
+}
+
+}  // namespace skitter

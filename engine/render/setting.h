@@ -1,0 +1,23 @@
+#pragma once
+
+#include "gpu/graphics.h"
+#include "render/ground_map.h"
+#include "render/shadow.h"
+#include "skitter/heightfield.h"
+
+namespace skitter::render {
+
+// What every drawing of a picture shares; it outlives them.
+struct Setting {
+  const gpu::Context& context;
+  const Heightfield& terrain;
+  const gpu::Image& heights;
+  const gpu::Buffer& picture;  // the block shared::Picture
+  const gpu::Image& ground;
+  vk::Sampler groundSampler;
+  const ShadowMap& shadow;
+  vk::Format colour, depth;
+  vk::SampleCountFlagBits samples;
+};
+
+}  // namespace skitter::render

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "render/setting.h"
+
+namespace skitter::render {
+
+// Wherever nothing else was drawn.
+class Sky {
+ public:
+  explicit Sky(const Setting&);
+  void draw(vk::CommandBuffer) const;
+
+ private:
+  gpu::GraphicsPipeline pipeline_;
+  gpu::Bindings bindings_;
+};
+
+}  // namespace skitter::render

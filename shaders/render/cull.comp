@@ -1,0 +1,46 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Which agents each list draws: an agent in the camera's pyramid joins the list of its level of detail, one
+// in reach of a shadow cascade that cascade's. The order within a list is of no consequence.
+#include "picture.glsl"
+#include "lib/load4.glsl"
+
+layout(local_size_x = WORK_GROUP) in;
+layout(push_constant) uniform ConstantBlock { CullConstants constants; };
+LOAD4_BUFFER(DRAW_BODY, bodies)
+layout(set = 0, binding = DRAW_INSTANCES, std430) writeonly buffer Instances { uint instances[]; };
+layout(set = 0, binding = DRAW_COMMANDS, std430) buffer Commands { uint commands[]; };
+
+void append(uint list, uint agent) {
+  uint place = atomicAdd(commands[list * DRAW_WORDS + 1], 1u);
+  instances[list * constants.agents + place] = agent;
+}
+
+bool inCascade(int cascade, vec3 p) {
+  vec4 clip = picture.clipFromPicture[1 + cascade] * vec4(p, 1.0);
+  float texel = cascade == 0 ? picture.shadow.x : picture.shadow.y;
+  float margin = 2.0 * constants.radius / (texel * picture.shadow.w);
+  return max(abs(clip.x), abs(clip.y)) < 1.0 + margin;
+}
+
+void main() {
+  uint agent = gl_GlobalInvocationID.x;
+  if (agent >= constants.agents) return;
+  vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE), b = LOAD4(bodies, int(agent) * BODY_STRIDE + 1);
+  vec3 p = vec3(a.x, a.y, a.z) + TILE_SIZE * vec3(b.x - picture.tile.x, 0.0, b.y - picture.tile.y);
+  float away = distance(p, picture.eye.xyz);
+
+  float inside = picture.tile.z - away;
+  for (int i = 0; i < 4; ++i) inside = min(inside, dot(picture.planes[i].xyz, p) + picture.planes[i].w);
+  bool seen = inside > -constants.radius;
+  if (seen) {
+    float pixels = constants.radius / (max(away, 1e-3) * picture.eye.w);
+    uint lod = 0u;
+    for (int i = 0; i + 1 < CAMERA_LODS; ++i) lod += pixels < constants.lodPixels[i] ? 1u : 0u;
+    append(lod, agent);
+  }
+  // An agent outside the picture may cast its shadow into it.
+  bool casts = inside > -4.0 * constants.radius;
+  for (int cascade = 0; cascade < SHADOW_CASCADES; ++cascade)
+    if (casts && inCascade(cascade, p)) append(uint(CAMERA_LODS + cascade), agent);
+}

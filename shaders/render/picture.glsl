@@ -1,0 +1,5 @@
+#include "shared/records.h"
+#include "render/bindings.h"
+#include "render/picture.h"
+
+layout(std140, set = 0, binding = DRAW_PICTURE) uniform PictureBlock { Picture picture; };

@@ -1,0 +1,63 @@
+// What every shader of a picture knows, a uniform block to GLSL (std140: matrices and vec4 only) and a struct
+// to C++. Picture space is the world moved by a whole number of tiles, so that the camera is near its origin
+// and float32 stays exact wherever on the map the camera is.
+#ifndef SKITTER_PICTURE_H
+#define SKITTER_PICTURE_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/glm.hpp>
+namespace skitter::shared {
+#define SKITTER_PICTURE_CONST inline constexpr int
+using glm::mat4;
+using glm::vec4;
+using uint = uint32_t;
+#else
+#define SKITTER_PICTURE_CONST const int
+#endif
+
+// Two squares beside each other in one shadow map: sharp near the camera, coarse further away.
+SKITTER_PICTURE_CONST SHADOW_CASCADES = 2;
+// Instance lists of a page, and their indirect draws: the camera's levels of detail, then the cascades'.
+SKITTER_PICTURE_CONST CAMERA_LODS = 4;
+SKITTER_PICTURE_CONST INSTANCE_LISTS = 6;
+// clipFromPicture[VIEW_CAMERA], then one of each cascade.
+SKITTER_PICTURE_CONST VIEW_CAMERA = 0;
+SKITTER_PICTURE_CONST VIEWS = 3;
+// uint32 of a VkDrawIndexedIndirectCommand.
+SKITTER_PICTURE_CONST DRAW_WORDS = 5;
+
+struct Picture {
+  mat4 clipFromPicture[VIEWS];
+  vec4 planes[4];  // of the camera's pyramid: inside where dot(xyz, p) + w > 0
+  vec4 eye;        // xyz; metres across a pixel one metre away
+  vec4 right;      // scaled to the edge of the picture one metre ahead
+  vec4 up;         // likewise
+  vec4 forward;    // unit
+  vec4 sun;        // unit, towards the sun
+  vec4 tile;       // x, z of the tile at the origin of picture space; distance at which drawing ends;
+                   // 1 / distance at which fog has taken 63 %
+  vec4 ground;     // picture x, z of height sample (0, 0); metres a sample in x and z
+  vec4 shadow;     // metres a texel in the near and the far cascade; height of the eye above the terrain's
+                   // highest point, 0 if below; size of the shadow map's square in texels
+};
+
+// Push constants of crowd drawing.
+struct CrowdConstants {
+  uint view;        // into clipFromPicture
+  uint palette;     // pose entries an agent
+  uint firstAgent;  // of the page in its herd
+  uint herd;
+};
+
+// Push constants of cull.
+struct CullConstants {
+  uint agents;
+  float radius;                  // about the body's position, metres
+  float lodPixels[CAMERA_LODS];  // the radius in pixels from which each level serves; the last is 0
+};
+
+#ifdef __cplusplus
+}  // namespace skitter::shared
+#endif
+#endif

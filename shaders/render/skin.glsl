@@ -1,0 +1,41 @@
+// A vertex of an agent, carried by up to four bones. Each influence brings the vertex relative to the rest
+// start of its bone, so that a bone costs two loads: rotation and joint position.
+#include "lib/load4.glsl"
+#include "lib/math.glsl"
+
+layout(constant_id = CONSTANT_INFLUENCES) const int INFLUENCES = 4;
+layout(push_constant) uniform ConstantBlock { CrowdConstants constants; };
+LOAD4_BUFFER(DRAW_BODY, bodies)
+LOAD4_BUFFER(DRAW_POSE, poses)
+
+layout(location = 0) in uint agent;
+layout(location = 1) in uvec4 bones;
+layout(location = 2) in vec4 influence0;  // vertex - rest start, weight
+layout(location = 3) in vec4 influence1;
+layout(location = 4) in vec4 influence2;
+layout(location = 5) in vec4 influence3;
+
+struct Skinned {
+  vec3 position, normal;  // picture space
+  vec3 body;              // the agent's position
+};
+
+void influence(uint bone, vec4 part, vec3 normal, inout Skinned s) {
+  int entry = (int(agent * constants.palette) + int(bone)) * POSE_STRIDE;
+  vec4 rotation = LOAD4(poses, entry);
+  s.position += part.w * (LOAD4(poses, entry + 1).xyz + rotate(rotation, part.xyz));
+  s.normal += part.w * rotate(rotation, normal);
+}
+
+Skinned skinned(vec3 normal) {
+  vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE), b = LOAD4(bodies, int(agent) * BODY_STRIDE + 1);
+  Skinned s;
+  s.body = a.xyz + TILE_SIZE * vec3(b.x - picture.tile.x, 0.0, b.y - picture.tile.y);
+  s.position = s.body;
+  s.normal = vec3(0.0);
+  influence(bones.x, influence0, normal, s);
+  if (INFLUENCES > 1) influence(bones.y, influence1, normal, s);
+  if (INFLUENCES > 2) influence(bones.z, influence2, normal, s);
+  if (INFLUENCES > 3) influence(bones.w, influence3, normal, s);
+  return s;
+}

@@ -1,0 +1,80 @@
+#include <set>
+
+#include "process.h"
+
+namespace skitter::test {
+namespace {
+
+using Running = AppTest;
+
+std::set<std::string> keysOf(const nlohmann::json& object) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.insert(key);
+  return keys;
+}
+
+TEST_F(Running, JsonHasTheDocumentedFields) {
+  const Result result = skitter({"run", "--headless", "--agents", "20", "--frames", "30", "--seed", "7",
+                                 "--json", file("run.json"), "--timings"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(files(), std::vector<std::string>{"run.json"});
+  const nlohmann::json run = json("run.json");
+  EXPECT_EQ(keysOf(run), (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
+                                                "cpuMicrosecondsPerAgentTick", "fidelity", "stateHash"}));
+  EXPECT_EQ(run.at("agents"), 20);
+  EXPECT_EQ(run.at("ticks"), 30);
+  EXPECT_EQ(run.at("seed"), 7);
+  const nlohmann::json& tick = run.at("tickMilliseconds");
+  EXPECT_EQ(keysOf(tick), (std::set<std::string>{"min", "median", "max"}));
+  EXPECT_GT(tick.at("min"), 0);
+  EXPECT_LE(tick.at("min"), tick.at("median"));
+  EXPECT_LE(tick.at("median"), tick.at("max"));
+  EXPECT_GT(run.at("cpuMicrosecondsPerAgentTick"), 0);
+  EXPECT_EQ(keysOf(run.at("fidelity")),
+            (std::set<std::string>{"slip", "penetration", "float", "reachErrorP99", "limitViolation"}));
+  EXPECT_EQ(run.at("stateHash").get<std::string>().size(), 16u);
+  for (const char* word : {"device", "agents", "median", "state hash", "slip"}) {
+    EXPECT_NE(result.out.find(word), std::string::npos) << word;
+  }
+}
+
+TEST_F(Running, QuietAndShortRunsSayNothingOnStderr) {
+  const Result result = skitter({"run", "--headless", "--agents", "1", "--frames", "2", "--quiet"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.err, "");
+}
+
+TEST_F(Running, NoAgentsAndNoFramesAreLegal) {
+  ASSERT_EQ(
+      skitter({"run", "--headless", "--agents", "0", "--frames", "5", "--json", file("agents.json")}).code,
+      0);
+  EXPECT_EQ(json("agents.json").at("agents"), 0);
+  EXPECT_EQ(json("agents.json").at("ticks"), 5);
+  EXPECT_TRUE(json("agents.json").at("cpuMicrosecondsPerAgentTick").is_null());
+
+  ASSERT_EQ(
+      skitter({"run", "--headless", "--agents", "3", "--frames", "0", "--json", file("frames.json")}).code,
+      0);
+  EXPECT_EQ(json("frames.json").at("ticks"), 0);
+  EXPECT_TRUE(json("frames.json").at("tickMilliseconds").at("median").is_null());
+}
+
+TEST_F(Running, AgentsScalesEveryHerd) {
+  write("two.json", R"({"herds": [{"agents": 10}, {"agents": 20}]})");
+  ASSERT_EQ(skitter({"run", file("two.json"), "--headless", "--agents", "5", "--frames", "1", "--json",
+                     file("run.json")})
+                .code,
+            0);
+  EXPECT_EQ(json("run.json").at("agents"), 15);
+}
+
+TEST_F(Running, TicksPerFrame) {
+  ASSERT_EQ(skitter({"run", "--headless", "--agents", "1", "--frames", "3", "--ticks-per-frame", "4",
+                     "--json", file("run.json")})
+                .code,
+            0);
+  EXPECT_EQ(json("run.json").at("ticks"), 12);
+}
+
+}  // namespace
+}  // namespace skitter::test

@@ -1,0 +1,29 @@
+#include "process.h"
+
+namespace skitter::test {
+namespace {
+
+using Validate = AppTest;
+
+TEST_F(Validate, EveryStageAgreesWithTheReference) {
+  const Result result =
+      skitter({"validate", "--agents", "16", "--frames", "30", "--seed", "5", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("seed 5"), std::string::npos);
+  const nlohmann::json validation = json("v.json");
+  EXPECT_TRUE(validation.at("pass"));
+  EXPECT_TRUE(validation.at("device").is_string());
+  std::vector<std::string> names;
+  for (const nlohmann::json& stage : validation.at("stages")) {
+    names.push_back(stage.at("name"));
+    EXPECT_TRUE(stage.at("pass"));
+    EXPECT_GT(stage.at("samples"), 0) << names.back();
+    EXPECT_LE(stage.at("maxError"), stage.at("tolerance")) << names.back();
+    EXPECT_TRUE(stage.at("ties").is_number_unsigned());
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"navigate", "body", "gait", "foothold", "swing", "ik", "pose",
+                                             "measure"}));
+}
+
+}  // namespace
+}  // namespace skitter::test

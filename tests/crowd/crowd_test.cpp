@@ -1,0 +1,91 @@
+// Goals of the whole simulation, on a device with synchronization validation: agents walk, feet hold.
+#include <algorithm>
+#include <cmath>
+
+#include "crowd/simulation.h"
+
+namespace skitter::test {
+namespace {
+
+using CrowdTest = GpuTest;
+
+TEST_F(CrowdTest, WalksAtTheCommandedSpeedWithoutSlipping) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device(), ground, sceneOf(64));
+  simulate(device(), crowd, 120);
+  const HerdState start = crowd.download(0);
+  simulate(device(), crowd, 300);
+  const HerdState end = crowd.download(0);
+  for (size_t agent = 0; agent < 64; ++agent) {
+    const glm::dvec3 way = positionOf(end, agent) - positionOf(start, agent);
+    EXPECT_GT(std::hypot(way.x, way.z), 0.9 * 5) << "agent " << agent;
+  }
+  const Fidelity f = crowd.fidelity();
+  EXPECT_LT(f.slip, 0.01);
+  EXPECT_LT(f.penetration, 1e-3);
+  EXPECT_LT(f.floating, 1e-3);
+  EXPECT_LT(f.reachErrorP99, 1e-3);
+  EXPECT_LT(f.limitViolation, 1e-4);
+  EXPECT_EQ(f.notFinite, 0u);
+}
+
+TEST_F(CrowdTest, BodiesFollowTheSlope) {
+  // A plane that rises one in two across the way: bodies must come to lie parallel to it.
+  Heightfield slope = flatGround();
+  for (uint32_t row = 0; row < slope.rows; ++row)
+    for (uint32_t column = 0; column < slope.columns; ++column)
+      slope.heights[row * slope.columns + column] = 0.5f * slope.spacingX * static_cast<float>(column);
+  Crowd crowd(device(), slope, sceneOf(8));
+  simulate(device(), crowd, 240);
+  const HerdState state = crowd.download(0);
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(-0.5, 1, 0));
+  for (size_t agent = 0; agent < 8; ++agent) {
+    const float* q = state.body.data() + agent * 16 + 8;
+    const glm::dvec3 up(2.0 * (q[0] * q[1] - q[3] * q[2]), 1 - 2.0 * (q[0] * q[0] + q[2] * q[2]),
+                        2.0 * (q[1] * q[2] + q[3] * q[0]));
+    EXPECT_GT(glm::dot(up, normal), 0.999) << "agent " << agent;
+    EXPECT_NEAR(positionOf(state, agent).y, slope.at(float(positionOf(state, agent).x), 0), 0.02);
+  }
+}
+
+TEST_F(CrowdTest, ReachesAPointAndStands) {
+  Scene scene = sceneOf(9);
+  scene.herds[0].spawn.kind = Spawn::Kind::grid;
+  scene.herds[0].spawn.heading = 3;  // nearly away from the target: it must turn around first
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 12}, .speed = 1};
+  Crowd crowd(device(), flatGround(), scene);
+  simulate(device(), crowd, 1500);
+  const HerdState arrived = crowd.download(0);
+  for (size_t agent = 0; agent < 9; ++agent) {
+    const glm::dvec3 p = positionOf(arrived, agent);
+    EXPECT_LT(std::hypot(p.x, p.z - 12), 0.6) << "agent " << agent;
+  }
+  simulate(device(), crowd, 120);
+  const HerdState later = crowd.download(0);
+  EXPECT_EQ(later.step, arrived.step) << "somebody stepped while standing";
+}
+
+TEST_F(CrowdTest, TurnsBackAtTheFarSide) {
+  const Heightfield ground = flatGround();
+  Crowd crowd(device(), ground, sceneOf(4, 2));
+  double farthest = -1e9, last = 0;
+  for (int i = 0; i < 40; ++i) {
+    simulate(device(), crowd, 60);
+    last = positionOf(crowd.download(0), 0).z;
+    farthest = std::max(farthest, last);
+    EXPECT_LT(std::abs(last), ground.extentZ() / 2);
+  }
+  EXPECT_LT(last, farthest - 2);
+}
+
+TEST_F(CrowdTest, FollowsItsGoalPastACliff) {
+  // Never stuck while the goal can be reached: down the wall by last resorts, and on.
+  Crowd crowd(device(), cliffGround(), sceneOf(8));
+  simulate(device(), crowd, 2400);
+  const HerdState state = crowd.download(0);
+  for (size_t agent = 0; agent < 8; ++agent) EXPECT_GT(positionOf(state, agent).z, -10) << "agent " << agent;
+  EXPECT_GT(crowd.fidelity().lastResorts, 0u);
+}
+
+}  // namespace
+}  // namespace skitter::test

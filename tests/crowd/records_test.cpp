@@ -1,0 +1,87 @@
+// The layouts that GLSL and C++ share, as the compiled shaders really have them.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstring>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "crowd/stage.h"
+#include "shared/bindings.h"
+#include "shared/parameters.h"
+
+namespace skitter::test {
+namespace {
+
+// SPIR-V opcodes and decorations (SPIR-V specification 1.6, sections 3.52 and 3.20).
+constexpr uint32_t kOpName = 5, kOpMemberName = 6, kOpDecorate = 71, kOpMemberDecorate = 72;
+constexpr uint32_t kArrayStride = 6, kOffset = 35;
+
+struct Layout {
+  std::map<std::string, std::map<std::string, uint32_t>> offsets;  // struct -> member -> bytes
+  std::vector<uint32_t> arrayStrides;
+};
+
+Layout layoutOf(std::span<const uint8_t> spirv) {
+  std::vector<uint32_t> words(spirv.size() / 4);
+  std::memcpy(words.data(), spirv.data(), words.size() * 4);
+  const auto text = [&](size_t at) { return std::string(reinterpret_cast<const char*>(&words[at])); };
+  std::map<uint32_t, std::string> names;
+  std::map<uint32_t, std::map<uint32_t, std::string>> members;
+  std::map<uint32_t, std::map<uint32_t, uint32_t>> offsets;
+  Layout layout;
+  for (size_t at = 5; at < words.size(); at += words[at] >> 16) {
+    const uint32_t op = words[at] & 0xffff;
+    if (op == kOpName) names[words[at + 1]] = text(at + 2);
+    if (op == kOpMemberName) members[words[at + 1]][words[at + 2]] = text(at + 3);
+    if (op == kOpMemberDecorate && words[at + 3] == kOffset)
+      offsets[words[at + 1]][words[at + 2]] = words[at + 4];
+    if (op == kOpDecorate && words[at + 2] == kArrayStride) layout.arrayStrides.push_back(words[at + 3]);
+  }
+  for (const auto& [id, list] : offsets)
+    for (const auto& [member, offset] : list) layout.offsets[names[id]][members[id][member]] = offset;
+  return layout;
+}
+
+const std::map<std::string, size_t>& parameterOffsets() {
+  static const std::map<std::string, size_t> offsets = {
+#include "parameter_offsets.inc"
+  };
+  return offsets;
+}
+
+std::vector<crowd::Stage> everyStage() {
+  return {crowd::navigateStage(), crowd::bodyStage(), crowd::gaitStage(), crowd::footholdStage(),
+          crowd::swingStage(),    crowd::ikStage(),   crowd::poseStage(), crowd::measureStage()};
+}
+
+TEST(Records, ParametersLieWhereBothSidesThink) {
+  ASSERT_EQ(parameterOffsets().size() * sizeof(float), sizeof(shared::Parameters));
+  int found = 0;
+  for (const crowd::Stage& stage : everyStage())
+    for (const auto code : {stage.code.texel, stage.code.storage}) {
+      const Layout layout = layoutOf(code);
+      if (!layout.offsets.contains("Parameters")) continue;  // swing and pose need no tuning
+      ++found;
+      const auto& offsets = layout.offsets.at("Parameters");
+      ASSERT_EQ(offsets.size(), parameterOffsets().size()) << stage.name;
+      for (const auto& [member, offset] : parameterOffsets())
+        EXPECT_EQ(offsets.at(member), offset) << stage.name << ": " << member;
+    }
+  EXPECT_EQ(found, 12);
+}
+
+TEST(Records, PushConstantsAndStrides) {
+  for (const crowd::Stage& stage : everyStage()) {
+    const Layout layout = layoutOf(stage.code.storage);
+    const auto& constants = layout.offsets.at("TickConstants");
+    EXPECT_EQ(constants.at("count"), offsetof(shared::TickConstants, count)) << stage.name;
+    EXPECT_EQ(constants.at("tick"), offsetof(shared::TickConstants, tick)) << stage.name;
+    for (const uint32_t stride : layout.arrayStrides) EXPECT_TRUE(stride == 16 || stride == 4) << stage.name;
+  }
+}
+
+}  // namespace
+}  // namespace skitter::test

@@ -1,0 +1,27 @@
+// Lock-step replay: every tick, each stage of the reference starts from what the device's stage started from.
+#include "crowd/simulation.h"
+
+namespace skitter::test {
+namespace {
+
+using ReplayTest = GpuLoadTest;
+
+TEST_P(ReplayTest, SixHundredTicksOnRollingGround) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device(), ground, sceneOf(64));
+  const auto results = replay(device(), crowd, ground, 600);
+  expectAllPass(results);
+  for (const validation::StageResult& stage : results) EXPECT_GT(stage.samples, 0u) << stage.name;
+}
+
+TEST_P(ReplayTest, FastAndTurning) {
+  const Heightfield ground = flatGround();
+  Crowd crowd(device(), ground, sceneOf(16, 3, 7));
+  simulate(device(), crowd, 600);
+  expectAllPass(replay(device(), crowd, ground, 240, 7));
+}
+
+INSTANTIATE_TEST_SUITE_P(, ReplayTest, bothLoadPaths(), loadPathName);
+
+}  // namespace
+}  // namespace skitter::test

@@ -1,0 +1,74 @@
+#include "crowd/simulation.h"
+
+#include <algorithm>
+
+#include "crowd/herd.h"
+#include "crowd/tuning.h"
+#include "gpu/submit.h"
+
+namespace skitter::test {
+
+Scene sceneOf(uint32_t agents, float speed, uint64_t seed) {
+  Scene scene;
+  scene.herds = {Herd{}};
+  scene.herds[0].agents = agents;
+  scene.herds[0].goal.speed = speed;
+  scene.seed = seed;
+  return scene;
+}
+
+Heightfield rollingGround() { return generateHeightfield({}); }
+
+Heightfield flatGround() {
+  Heightfield flat = generateHeightfield({.columns = 129, .rows = 129});
+  std::fill(flat.heights.begin(), flat.heights.end(), 0.0f);
+  return flat;
+}
+
+Heightfield cliffGround() {
+  Heightfield cliff = flatGround();
+  for (uint32_t row = cliff.rows / 4; row < cliff.rows; ++row)
+    for (uint32_t column = 0; column < cliff.columns; ++column)
+      cliff.heights[row * cliff.columns + column] = -6;
+  return cliff;
+}
+
+void simulate(Device& device, Crowd& crowd, int ticks, float dt) {
+  gpu::CommandRing ring(device.context());
+  for (int i = 0; i < ticks; ++i) {
+    crowd.record(ring.begin(), dt);
+    ring.submit();
+  }
+  ring.waitAll();
+}
+
+std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
+                                            int ticks, uint64_t seed) {
+  // The first tick fixes dt, and with it the tuning that the reference is given.
+  simulate(device, crowd, 1);
+  const crowd::Herd& herd = crowd.impl().herds.at(0);
+  validation::Replay replay(herd.rig, terrain, herd.parameters, herd.rigRecords, crowd::kFabrikIterations,
+                            crowd::kPolishIterations, seed);
+  HerdState before = crowd.download(0);
+  for (int i = 0; i < ticks; ++i) {
+    simulate(device, crowd, 1);
+    HerdState after = crowd.download(0);
+    replay.tick(crowd.tick(), before, after);
+    before = std::move(after);
+  }
+  return replay.results();
+}
+
+void expectAllPass(const std::vector<validation::StageResult>& results) {
+  for (const validation::StageResult& stage : results)
+    EXPECT_TRUE(stage.pass) << stage.name << ": " << stage.worst;
+}
+
+glm::dvec3 positionOf(const HerdState& state, size_t agent) {
+  const float* b = state.body.data() + agent * shared::BODY_STRIDE * 4;
+  return {double{b[4]} * shared::TILE_SIZE + b[0], b[1], double{b[5]} * shared::TILE_SIZE + b[2]};
+}
+
+bool plantedOf(const HerdState& state, size_t leg) { return state.foot.at(leg * 4 + 3) >= 1; }
+
+}  // namespace skitter::test

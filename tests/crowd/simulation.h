@@ -1,0 +1,36 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "skitter/crowd.h"
+#include "skitter/scene.h"
+#include "support/gpu_fixture.h"
+#include "validation/replay.h"
+
+namespace skitter::test {
+
+constexpr float kTick = 1.0f / 60;
+
+// A scene of one herd on generated ground.
+Scene sceneOf(uint32_t agents, float speed = 1, uint64_t seed = 1);
+Heightfield rollingGround();
+Heightfield flatGround();
+// A plateau that ends in a wall far beyond any reach, across the lanes' way.
+Heightfield cliffGround();
+
+// Submits `ticks` ticks and waits.
+void simulate(Device& device, Crowd& crowd, int ticks, float dt = kTick);
+
+// Runs `ticks` ticks in lock step with the reference, from the crowd's present state on.
+std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
+                                            int ticks, uint64_t seed = 1);
+void expectAllPass(const std::vector<validation::StageResult>& results);
+
+// Of agent i: the world position and, per leg, whether it is planted.
+glm::dvec3 positionOf(const HerdState& state, size_t agent);
+bool plantedOf(const HerdState& state, size_t leg);
+
+}  // namespace skitter::test

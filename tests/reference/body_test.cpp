@@ -1,0 +1,141 @@
+#include "cpu_reference/body.h"
+
+#include <gtest/gtest.h>
+
+#include "spider.h"
+#include "validation/convert.h"
+
+namespace skitter::test {
+namespace {
+
+class Body : public testing::Test {
+ protected:
+  // Ticks with the feet carried along under the body, on the ground.
+  void walk(const glm::dvec2& desired, int ticks, const std::function<double(double, double)>& ground) {
+    for (int i = 0; i < ticks; ++i) {
+      steps.clear();
+      const glm::dvec2 place = body.world();
+      for (const reference::Limb& limb : creature.limbs) {
+        glm::dvec3 home =
+            glm::angleAxis(std::atan2(body.heading.x, body.heading.y), glm::dvec3(0, 1, 0)) * limb.home;
+        home.y = ground(place.x + home.x, place.y + home.z) - body.y;
+        steps.push_back(plantedAt(body, home));
+      }
+      body = reference::body(tuning, heights, creature, body, desired, steps, errors, ++tick).body;
+    }
+  }
+
+  Heightfield terrain = flatField();
+  reference::Tuning tuning = validation::tuningOf(parametersFor(terrain));
+  reference::Heights heights = validation::heightsOf(terrain, parametersFor(terrain));
+  reference::Creature creature = spiderCreature();
+  reference::AgentBody body = bodyAt(0.5, 0.5);
+  std::vector<reference::Step> steps;
+  std::vector<double> errors = std::vector<double>(8);
+  double tick = 0;
+};
+
+double flat(double, double) { return 0; }
+
+TEST_F(Body, straightWalkCoversItsSpeed) {
+  walk({0, 1}, 60, flat);
+  EXPECT_NEAR(body.speed, 1, 1e-9);
+  const double before = body.world().y;
+  walk({0, 1}, 120, flat);
+  EXPECT_NEAR(body.world().y - before, 120 * tuning.dt, 1e-6);
+  EXPECT_NEAR(body.world().x, 0.5, 1e-9);
+  EXPECT_NEAR(body.y, 0, 1e-9);
+  EXPECT_NEAR(body.v3, 1, 1e-9);
+}
+
+TEST_F(Body, accelerationIsBounded) {
+  double speed = 0;
+  for (int i = 0; i < 90; ++i) {
+    walk(i < 45 ? glm::dvec2(0, 2) : glm::dvec2(0), 1, flat);
+    EXPECT_LE(body.speed - speed, tuning.acceleration * tuning.dt + 1e-12);
+    EXPECT_GE(body.speed - speed, -tuning.braking * tuning.dt - 1e-12);
+    speed = body.speed;
+  }
+  EXPECT_EQ(speed, 0);
+}
+
+TEST_F(Body, turnsTowardItsWayEitherSide) {
+  for (const double side : {1.0, -1.0}) {
+    body = bodyAt(0.5, 0.5);
+    walk({side, 0}, 5, flat);
+    EXPECT_GT(body.heading.x * side, 0);
+    EXPECT_GT(body.turnRate * side, 0);
+    walk({side, 0}, 180, flat);
+    EXPECT_NEAR(body.heading.x, side, 1e-3);
+    EXPECT_NEAR(glm::length(body.heading), 1, 1e-12);
+    EXPECT_LT(std::abs(body.turnRate), 0.05);
+    const glm::dvec3 forward = body.orientation * glm::dvec3(0, 0, 1);
+    EXPECT_NEAR(forward.x, side, 1e-2);
+  }
+}
+
+TEST_F(Body, turnsRoundWhenItsWayIsBehind) {
+  walk({0, -1}, 300, flat);
+  EXPECT_NEAR(body.heading.y, -1, 1e-3);
+  EXPECT_NEAR(body.speed, 1, 1e-3);
+}
+
+TEST_F(Body, tiltConvergesToThePlane) {
+  const auto slope = [](double x, double z) { return 0.3 * x - 0.2 * z; };
+  terrain = field(129, 0.5f, slope);
+  heights = validation::heightsOf(terrain, parametersFor(terrain));
+  walk({0, 0}, 240, slope);
+  const glm::dvec3 up = body.orientation * glm::dvec3(0, 1, 0);
+  EXPECT_NEAR(glm::length(up - glm::normalize(glm::dvec3(-0.3, 1, 0.2))), 0, 1e-3);
+  const glm::dvec3 forward = body.orientation * glm::dvec3(0, 0, 1);
+  EXPECT_NEAR(forward.y / std::hypot(forward.x, forward.z), -0.2, 1e-3);
+  EXPECT_NEAR(forward.x, 0, 1e-9);
+  EXPECT_NEAR(body.y, slope(0.5, 0.5), 1e-2);
+}
+
+TEST_F(Body, bellyStaysAboveABump) {
+  const auto bump = [](double x, double z) { return std::max(0.0, 0.4 - std::hypot(x - 0.5, z - 0.5)); };
+  terrain = field(257, 0.125f, bump);
+  heights = validation::heightsOf(terrain, parametersFor(terrain));
+  walk({0, 0}, 120, flat);
+  EXPECT_NEAR(body.y + tuning.bodyHeight, 0.4 + tuning.bellyClearance, 1e-3);
+}
+
+TEST_F(Body, stretchedLegBehindHoldsTheBodyAndOneAheadDoesNot) {
+  steps = stepsAtHome(creature, body);
+  steps[0] = plantedAt(body, creature.limbs[0].root + glm::dvec3(0, -0.26, -0.98));
+  const auto held = reference::body(tuning, heights, creature, body, {0, 1}, steps, errors, 1);
+  EXPECT_LT(held.body.kappa, 0.5);
+  const auto free = reference::body(tuning, heights, creature, body, {0, -1}, steps, errors, 1);
+  EXPECT_EQ(free.body.kappa, 1);
+}
+
+TEST_F(Body, footThatCannotFollowHoldsTheBody) {
+  steps = stepsAtHome(creature, body);
+  errors[3] = tuning.errorStop / 2;
+  EXPECT_NEAR(reference::body(tuning, heights, creature, body, {0, 1}, steps, errors, 1).body.kappa, 0.5,
+              1e-6);
+  steps[3].firstTick = 0;
+  steps[3].duration = 20;
+  EXPECT_EQ(reference::body(tuning, heights, creature, body, {0, 1}, steps, errors, 1).body.kappa, 1);
+}
+
+TEST_F(Body, tileFollowsTheBody) {
+  body = bodyAt(15.99, 0.5);
+  body.heading = {1, 0};
+  body.orientation = glm::angleAxis(std::acos(0.0), glm::dvec3(0, 1, 0));
+  walk({1, 0}, 60, flat);
+  EXPECT_EQ(body.tileX, 1);
+  EXPECT_LT(body.localX, 1);
+  EXPECT_GE(body.localX, 0);
+}
+
+TEST_F(Body, standsStillOnlyAtRest) {
+  walk({0, 0}, 30, flat);
+  EXPECT_NEAR(body.still, 30 * tuning.dt, 1e-9);
+  walk({0, 1}, 1, flat);
+  EXPECT_EQ(body.still, 0);
+}
+
+}  // namespace
+}  // namespace skitter::test

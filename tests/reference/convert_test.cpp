@@ -1,0 +1,62 @@
+#include "validation/convert.h"
+
+#include <gtest/gtest.h>
+
+#include "reference_herd.h"
+
+namespace skitter::test {
+namespace {
+
+using namespace validation;
+
+// Whatever a stage reads must be what another one wrote: reading and writing back changes no bit.
+TEST(Convert, recordsSurviveReadingAndWriting) {
+  ReferenceHerd herd(roughField(), 3, 1);
+  for (int i = 0; i < 40; ++i) herd.tick();
+  const HerdState& state = herd.state();
+  HerdState copy = state;
+  for (auto* buffer : {&copy.goal, &copy.steer, &copy.body, &copy.gait, &copy.step, &copy.foot, &copy.chain,
+                       &copy.pose, &copy.metric}) {
+    std::fill(buffer->begin(), buffer->end(), 0.0f);
+  }
+  const size_t bones = static_cast<size_t>(herd.bones());
+  for (size_t agent = 0; agent < 3; ++agent) {
+    putGoal(copy, agent, goalOf(state, agent));
+    putDesired(copy, agent, desiredOf(state, agent));
+    putBody(copy, agent, bodyOf(state, agent));
+    putGait(copy, agent, gaitOf(state, agent));
+    for (size_t leg = 8 * agent; leg < 8 * agent + 8; ++leg) {
+      putStep(copy, leg, stepOf(state, leg));
+      putFoot(copy, leg, footOf(state, leg));
+      putChain(copy, leg, herd.bones(), chainOf(state, leg, herd.bones()));
+      putMetric(copy, leg, metricOf(state, leg));
+    }
+    for (size_t i = 0; i < 1 + 8 * bones; ++i) {
+      putBone(copy, agent * (1 + 8 * bones) + i, boneOf(state, agent * (1 + 8 * bones) + i));
+    }
+  }
+  EXPECT_EQ(copy.goal, state.goal);
+  EXPECT_EQ(copy.steer, state.steer);
+  EXPECT_EQ(copy.body, state.body);
+  EXPECT_EQ(copy.gait, state.gait);
+  EXPECT_EQ(copy.step, state.step);
+  EXPECT_EQ(copy.foot, state.foot);
+  EXPECT_EQ(copy.chain, state.chain);
+  EXPECT_EQ(copy.pose, state.pose);
+  EXPECT_EQ(copy.metric, state.metric);
+}
+
+TEST(Convert, boneFramesAreRightHandedAndOrthonormal) {
+  for (const reference::Limb& limb : spiderCreature().limbs) {
+    double length = 0;
+    for (const reference::BoneRest& bone : limb.bones) {
+      EXPECT_NEAR(glm::determinant(bone.frame), 1, 1e-6);
+      EXPECT_NEAR(glm::dot(bone.frame[0], bone.frame[2]), 0, 1e-6);
+      length += bone.length;
+    }
+    EXPECT_NEAR(length, 1, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace skitter::test

@@ -1,0 +1,137 @@
+#include "reference_herd.h"
+
+#include <cmath>
+
+#include "cpu_reference/body.h"
+#include "cpu_reference/foothold.h"
+#include "cpu_reference/gait.h"
+#include "cpu_reference/heightfield.h"
+#include "cpu_reference/ik.h"
+#include "cpu_reference/measure.h"
+#include "cpu_reference/navigate.h"
+#include "cpu_reference/pose.h"
+#include "cpu_reference/swing.h"
+#include "shared/records.h"
+#include "validation/convert.h"
+
+namespace skitter::test {
+
+using namespace validation;
+
+ReferenceHerd::ReferenceHerd(const Heightfield& terrain, uint32_t agents, int padding)
+    : rig_(spider()),
+      terrain_(terrain),
+      parameters_(parametersFor(terrain)),
+      rigRecords_(rigRecordsOf(rig_, padding)),
+      bones_(4 + padding) {
+  // A rig whose longest leg has the padded length, so that the others are padded.
+  for (int i = 0; i < padding; ++i) rig_.legs[0].bones.push_back(Bone{});
+  spawn(agents);
+}
+
+Replay ReferenceHerd::replay() const {
+  return {rig_, terrain_, parameters_, rigRecords_, fabrikIterations, polishIterations, 1};
+}
+
+void ReferenceHerd::spawn(uint32_t agents) {
+  const size_t count = agents, legCount = static_cast<size_t>(legs());
+  const size_t chain = static_cast<size_t>(shared::chainStride(bones_));
+  state_.agents = agents;
+  state_.goal.resize(4 * count * shared::GOAL_STRIDE);
+  state_.steer.resize(4 * count * shared::STEER_STRIDE);
+  state_.body.resize(4 * count * shared::BODY_STRIDE);
+  state_.gait.resize(4 * count * shared::GAIT_STRIDE);
+  state_.step.resize(4 * count * legCount * shared::STEP_STRIDE);
+  state_.foot.resize(4 * count * legCount * shared::FOOT_STRIDE);
+  state_.chain.resize(4 * count * legCount * chain);
+  state_.pose.resize(4 * count * (1 + legCount * static_cast<size_t>(bones_)) * shared::POSE_STRIDE);
+  state_.metric.resize(4 * count * legCount * shared::METRIC_STRIDE);
+
+  const reference::Heights heights = heightsOf(terrain_, parameters_);
+  const reference::Creature creature = creatureOf(rigRecords_, legs(), bones_, rig_.groupCount());
+  for (size_t agent = 0; agent < count; ++agent) {
+    // A sunflower: places and ways in all directions, crossing the field's middle.
+    const double turned = 2.399963 * static_cast<double>(agent);
+    const double away = 2 + 1.1 * std::sqrt(static_cast<double>(agent));
+    const double x = away * std::cos(turned), z = away * std::sin(turned);
+    reference::AgentBody body = bodyAt(x, z, reference::heightAt(heights, x, z));
+    const double facing = 1.7 * static_cast<double>(agent);
+    body.heading = {std::sin(facing), std::cos(facing)};
+    body.orientation = glm::angleAxis(std::remainder(facing, 6.283185307179586), glm::dvec3(0, 1, 0));
+    putBody(state_, agent, body);
+    body = bodyOf(state_, agent);
+    reference::Goal goal{
+        {-x, -z}, {x, z}, 0.3 + 0.2 * static_cast<double>(agent % 8), 0.3, reference::GoalKind::cross};
+    if (agent % 7 == 3) goal.kind = reference::GoalKind::point;
+    if (agent % 7 == 5) goal.kind = reference::GoalKind::none;
+    putGoal(state_, agent, goal);
+    reference::Gait gait;
+    gait.phase = std::fmod(0.37 * static_cast<double>(agent), 1);
+    putGait(state_, agent, gait);
+    for (size_t l = 0; l < legCount; ++l) {
+      glm::dvec3 home = body.orientation * creature.limbs[l].home;
+      const glm::dvec2 world = body.world();
+      home.y = reference::heightAt(heights, world.x + home.x, world.y + home.z) - body.y;
+      putStep(state_, agent * legCount + l, plantedAt(body, home));
+      reference::Chain rest;
+      rest.directions.resize(static_cast<size_t>(bones_));
+      putChain(state_, agent * legCount + l, bones_, rest);
+      putMetric(state_, agent * legCount + l, {});
+    }
+  }
+}
+
+void ReferenceHerd::tick() {
+  ++n_;
+  for (size_t agent = 0; agent < state_.agents; ++agent) tickAgent(agent);
+}
+
+void ReferenceHerd::tickAgent(size_t agent) {
+  const reference::Tuning tuning = tuningOf(parameters_);
+  const reference::Heights heights = heightsOf(terrain_, parameters_);
+  const reference::Creature creature = creatureOf(rigRecords_, legs(), bones_, rig_.groupCount());
+  const double n = static_cast<double>(n_);
+  const size_t legCount = static_cast<size_t>(legs()), first = agent * legCount;
+
+  const auto way = reference::navigate(tuning, bodyOf(state_, agent), goalOf(state_, agent));
+  putGoal(state_, agent, way.goal);
+  putDesired(state_, agent, way.desired);
+
+  std::vector<reference::Step> steps;
+  std::vector<double> errors;
+  for (size_t l = 0; l < legCount; ++l) {
+    steps.push_back(stepOf(state_, first + l));
+    errors.push_back(chainOf(state_, first + l, bones_).reachError);
+  }
+  putBody(state_, agent,
+          reference::body(tuning, heights, creature, bodyOf(state_, agent), desiredOf(state_, agent), steps,
+                          errors, n)
+              .body);
+  const reference::AgentBody body = bodyOf(state_, agent);
+  putGait(state_, agent,
+          reference::gait(tuning, creature, body, gaitOf(state_, agent).phase, steps, errors, n).gait);
+  const reference::Gait gait = gaitOf(state_, agent);
+
+  const size_t bones = static_cast<size_t>(bones_), entry = agent * (1 + legCount * bones);
+  putBone(state_, entry, reference::bodyPose(body));
+  for (size_t l = 0; l < legCount; ++l) {
+    const reference::Limb& limb = creature.limbs[l];
+    const size_t leg = first + l;
+    const bool lifts = (gait.lift >> l & 1u) != 0;
+    if (lifts || (gait.reaim >> l & 1u) != 0) {
+      putStep(state_, leg, reference::foothold(tuning, heights, limb, body, gait, steps[l], lifts, n).step);
+    }
+    putFoot(state_, leg, reference::swing(stepOf(state_, leg), body, n));
+    putChain(state_, leg, bones_,
+             reference::ik(tuning, limb, body, footOf(state_, leg), chainOf(state_, leg, bones_),
+                           fabrikIterations, polishIterations));
+    const reference::Chain chain = chainOf(state_, leg, bones_);
+    const auto posed = reference::pose(limb, body, chain.directions);
+    for (size_t b = 0; b < bones; ++b) putBone(state_, entry + 1 + l * bones + b, posed[b]);
+    putMetric(state_, leg,
+              reference::measure(heights, limb, body, stepOf(state_, leg), footOf(state_, leg), chain,
+                                 metricOf(state_, leg)));
+  }
+}
+
+}  // namespace skitter::test

@@ -1,0 +1,214 @@
+#include "validation/replay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "reference_herd.h"
+#include "shared/records.h"
+#include "skitter/error.h"
+
+namespace skitter::test {
+namespace {
+
+using validation::Replay;
+using validation::ReplayRange;
+using validation::StageResult;
+
+TEST(Replay, referenceAgreesWithItself) {
+  ReferenceHerd herd(roughField(), 24, 1);
+  Replay replay = herd.replay();
+  for (int i = 0; i < 240; ++i) {
+    const HerdState before = herd.state();
+    herd.tick();
+    replay.tick(herd.ticks(), before, herd.state());
+  }
+  const auto results = replay.results();
+  EXPECT_TRUE(replay.pass()) << validation::table(results);
+  ASSERT_EQ(results.size(), 8u);
+  const char* names[] = {"navigate", "body", "gait", "foothold", "swing", "ik", "pose", "measure"};
+  for (size_t s = 0; s < 8; ++s) {
+    EXPECT_EQ(results[s].name, names[s]);
+    EXPECT_EQ(results[s].ties, 0u) << names[s];
+  }
+  EXPECT_EQ(results[0].samples, 24u * 240);
+  EXPECT_EQ(results[4].samples, 8u * 24 * 240);
+  EXPECT_GT(results[3].samples, 1000u);
+  EXPECT_LT(results[3].samples, 8u * 24 * 240);
+}
+
+TEST(Replay, strideSamplesEveryAgentInTurn) {
+  ReferenceHerd herd(roughField(), 8);
+  Replay replay = herd.replay();
+  for (int i = 0; i < 20; ++i) {
+    const HerdState before = herd.state();
+    herd.tick();
+    replay.tick(herd.ticks(), before, herd.state(), ReplayRange{0, 8, 4});
+  }
+  EXPECT_EQ(replay.results()[0].samples, 40u);
+  EXPECT_TRUE(replay.pass());
+}
+
+TEST(Replay, wrongSizesAreErrors) {
+  ReferenceHerd herd(roughField(), 2);
+  Replay replay = herd.replay();
+  HerdState cut = herd.state();
+  cut.chain.pop_back();
+  EXPECT_THROW(replay.tick(1, cut, herd.state()), Error);
+  EXPECT_THROW(replay.tick(1, herd.state(), cut), Error);
+}
+
+TEST(Replay, metricsMayBeAbsent) {
+  ReferenceHerd herd(roughField(), 2);
+  Replay replay = herd.replay();
+  HerdState before = herd.state();
+  herd.tick();
+  HerdState after = herd.state();
+  before.metric.clear();
+  after.metric.clear();
+  replay.tick(1, before, after);
+  EXPECT_EQ(replay.results()[7].samples, 0u);
+  EXPECT_TRUE(replay.pass());
+}
+
+// Each case spoils one value that one stage wrote. That stage must fail. Stages before it must not; stages
+// after it read the spoilt value as their input and so did not compute what now follows from it.
+struct Fault {
+  const char* name;
+  size_t stage;
+  void (*spoil)(HerdState& after);
+};
+
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+
+class ReplayFault : public testing::TestWithParam<Fault> {
+ protected:
+  std::vector<StageResult> replay(const std::function<void(HerdState&)>& spoil) {
+    // Long enough for the legs to be in mid step, up to a tick in which leg 0 of agent 0 lifts.
+    ReferenceHerd herd(roughField(), 1);
+    HerdState before;
+    do {
+      before = herd.state();
+      herd.tick();
+    } while (herd.ticks() < 60 || (static_cast<uint32_t>(herd.state().gait[1]) & 1u) == 0);
+    HerdState after = herd.state();
+    spoil(after);
+    Replay checker = herd.replay();
+    checker.tick(herd.ticks(), before, after);
+    return checker.results();
+  }
+};
+
+TEST_P(ReplayFault, isFound) {
+  const auto clean = replay([](HerdState&) {});
+  for (const StageResult& result : clean) ASSERT_TRUE(result.pass) << validation::table(clean);
+  const auto results = replay(GetParam().spoil);
+  for (size_t s = 0; s < GetParam().stage; ++s) EXPECT_TRUE(results[s].pass) << results[s].name;
+  EXPECT_FALSE(results[GetParam().stage].pass) << validation::table(results);
+  EXPECT_FALSE(results[GetParam().stage].worst.empty());
+}
+
+constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    everyQuantity, ReplayFault,
+    testing::Values(Fault{"goalTarget", 0, [](HerdState& s) { s.goal[0] += 0.01f; }},
+                    Fault{"goalKind", 0, [](HerdState& s) { s.goal[6] = 1; }},
+                    Fault{"desiredVelocity", 0, [](HerdState& s) { s.steer[0] += 1e-3f; }},
+                    Fault{"desiredVelocityNan", 0, [](HerdState& s) { s.steer[1] = notANumber; }},
+                    Fault{"localX", 1, [](HerdState& s) { s.body[0] += 1e-3f; }},
+                    Fault{"height", 1, [](HerdState& s) { s.body[1] += 1e-3f; }},
+                    Fault{"heading", 1, [](HerdState& s) { s.body[3] += 1e-3f; }},
+                    Fault{"tile", 1, [](HerdState& s) { s.body[4] += 1; }},
+                    Fault{"speed", 1, [](HerdState& s) { s.body[7] += 1e-3f; }},
+                    Fault{"orientation", 1, [](HerdState& s) { s.body[8] += 1e-3f; }},
+                    Fault{"orientationSign", 1,
+                          [](HerdState& s) {
+                            for (size_t i = 8; i < 12; ++i) s.body[i] = -s.body[i];
+                          }},
+                    Fault{"turnRate", 1, [](HerdState& s) { s.body[12] += 1e-2f; }},
+                    Fault{"stillTime", 1, [](HerdState& s) { s.body[13] += 1e-3f; }},
+                    Fault{"followFactor", 1, [](HerdState& s) { s.body[14] -= 1e-3f; }},
+                    Fault{"surfaceSpeed", 1, [](HerdState& s) { s.body[15] += 1e-3f; }},
+                    Fault{"bodyInfinite", 1, [](HerdState& s) { s.body[15] = INFINITY; }},
+                    Fault{"phase", 2, [](HerdState& s) { s.gait[0] += 1e-4f; }},
+                    Fault{"liftMask", 2, [](HerdState& s) { s.gait[1] -= 1; }},
+                    Fault{"reaimMask", 2, [](HerdState& s) { s.gait[2] += 2; }},
+                    Fault{"duration", 2, [](HerdState& s) { s.gait[3] += 1; }},
+                    Fault{"halfStride", 2, [](HerdState& s) { s.gait[4] += 1e-4f; }},
+                    Fault{"cycle", 2, [](HerdState& s) { s.gait[5] += 1e-4f; }},
+                    Fault{"airMask", 2, [](HerdState& s) { s.gait[6] += 2; }},
+                    Fault{"gaitNan", 2, [](HerdState& s) { s.gait[5] = notANumber; }},
+                    Fault{"landing", 3, [](HerdState& s) { s.step[2] += 1e-3f; }},
+                    Fault{"landingHeight", 3, [](HerdState& s) { s.step[1] += 1e-3f; }},
+                    Fault{"landingTile", 3, [](HerdState& s) { s.step[3] += 1; }},
+                    Fault{"liftOff", 3, [](HerdState& s) { s.step[4] += 1e-3f; }},
+                    Fault{"liftVector", 3, [](HerdState& s) { s.step[9] += 1e-3f; }},
+                    Fault{"firstTick", 3, [](HerdState& s) { s.step[11] += 1; }},
+                    Fault{"startTangent", 3, [](HerdState& s) { s.step[13] += 1e-3f; }},
+                    Fault{"stepDuration", 3, [](HerdState& s) { s.step[15] += 1; }},
+                    Fault{"stepOfAPlantedLeg", 3, [](HerdState& s) { s.step[16 + 1] += 1e-6f; }},
+                    Fault{"stepNan", 3, [](HerdState& s) { s.step[8] = notANumber; }},
+                    Fault{"footTarget", 4, [](HerdState& s) { s.foot[5] += 1e-3f; }},
+                    Fault{"progress", 4, [](HerdState& s) { s.foot[3] += 1e-3f; }},
+                    Fault{"footNan", 4, [](HerdState& s) { s.foot[0] = notANumber; }},
+                    Fault{"directions", 5, [](HerdState& s) { s.chain[0] += 1e-2f; }},
+                    Fault{"tip", 5, [](HerdState& s) { s.chain[8] += 1e-3f; }},
+                    Fault{"reachError", 5, [](HerdState& s) { s.chain[11] += 1e-3f; }},
+                    Fault{"damping", 5, [](HerdState& s) { s.chain[12] = 0.5f; }},
+                    Fault{"errorBefore", 5, [](HerdState& s) { s.chain[13] += 1e-3f; }},
+                    Fault{"chainNan", 5, [](HerdState& s) { s.chain[3] = notANumber; }},
+                    Fault{"bodyRotation", 6, [](HerdState& s) { s.pose[0] += 1e-3f; }},
+                    Fault{"bodyOffset", 6, [](HerdState& s) { s.pose[4] += 1e-3f; }},
+                    Fault{"boneRotation", 6, [](HerdState& s) { s.pose[8 * 7 + 2] += 1e-3f; }},
+                    Fault{"bonePosition", 6, [](HerdState& s) { s.pose[8 * 32 + 5] += 1e-3f; }},
+                    Fault{"poseNan", 6, [](HerdState& s) { s.pose[8 * 5 + 6] = notANumber; }},
+                    Fault{"previousTip", 7, [](HerdState& s) { s.metric[0] += 1e-3f; }},
+                    Fault{"slip", 7, [](HerdState& s) { s.metric[3 + 12] += 1e-3f; }},
+                    Fault{"finishedSlip", 7, [](HerdState& s) { s.metric[4] += 1e-3f; }},
+                    Fault{"finishedStances", 7, [](HerdState& s) { s.metric[5] += 1; }},
+                    Fault{"penetration", 7, [](HerdState& s) { s.metric[6] += 1e-3f; }},
+                    Fault{"floating", 7, [](HerdState& s) { s.metric[7] += 1e-3f; }},
+                    Fault{"ticks", 7, [](HerdState& s) { s.metric[8] += 1; }},
+                    Fault{"stanceTicks", 7, [](HerdState& s) { s.metric[9] += 1; }},
+                    Fault{"largestError", 7, [](HerdState& s) { s.metric[10] += 1e-3f; }},
+                    Fault{"largestViolation", 7, [](HerdState& s) { s.metric[11] += 1e-3f; }},
+                    Fault{"metricNan", 7, [](HerdState& s) { s.metric[4] = notANumber; }}),
+    [](const auto& fault) { return std::string(fault.param.name); });
+
+// A spoilt limit or a lost bone cannot hide behind a tie.
+TEST_F(ReplayFault, brokenLimitIsNamed) {
+  const auto results = replay([](HerdState& s) { s.chain[1] = 0.9f; });
+  EXPECT_FALSE(results[5].pass);
+  EXPECT_NE(results[5].worst.find("limit violation"), std::string::npos) << results[5].worst;
+}
+
+// One foothold may be tied; a herd that always takes another one is wrong.
+TEST(Replay, tiesMustBeRare) {
+  validation::Judge judge("stage");
+  validation::Sample good;
+  good.compare("quantity", 0.5, 1);
+  for (int i = 0; i < 1000; ++i) judge.add(1, 0, 0, good, i == 0);
+  EXPECT_TRUE(judge.result().pass);
+  judge.add(1, 0, 0, good, true);
+  judge.add(1, 0, 0, good, true);
+  EXPECT_FALSE(judge.result().pass);
+}
+
+TEST(Replay, worstIsRelativeToItsOwnTolerance) {
+  validation::Judge judge("stage");
+  validation::Sample a, b;
+  a.compare("coarse", 0.5, 1);
+  b.compare("fine", 0.01, 0.005);
+  judge.add(3, 7, 2, a);
+  judge.add(4, 8, 3, b);
+  const StageResult result = judge.result();
+  EXPECT_FALSE(result.pass);
+  EXPECT_EQ(result.maxError, 0.01);
+  EXPECT_EQ(result.tolerance, 0.005);
+  EXPECT_NE(result.worst.find("fine: tick 4, agent 8, leg 3"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace skitter::test

@@ -1,0 +1,107 @@
+#include "cpu_reference/body.h"
+#include "cpu_reference/tolerances.h"
+#include "shared/records.h"
+#include "validation/checks.h"
+#include "validation/convert.h"
+
+namespace skitter::validation {
+namespace {
+
+namespace tolerance = reference::tolerance;
+
+// Components of q and -q are the same rotation; the sign rule makes them the same numbers too, but for a dot
+// product near 0 it may fall either way.
+double difference(const glm::dquat& a, const glm::dquat& b) {
+  const glm::dvec4 u{a.x, a.y, a.z, a.w}, v{b.x, b.y, b.z, b.w};
+  return std::min(glm::length(u - v), glm::length(u + v));
+}
+
+Sample compare(const Setting& setting, const Moment& moment, const reference::AgentBody& previous,
+               const reference::BodyResult& result) {
+  const reference::AgentBody got = bodyOf(moment.after, moment.agent);
+  const reference::AgentBody& expected = result.body;
+  const auto bound =
+      tolerance::body(setting.tuning, setting.heights, setting.extent, setting.creature, previous, result);
+  const double unit = setting.tuning.legLength;
+  Sample sample;
+  sample.finite("body", records(moment.after.body, moment.agent, shared::BODY_STRIDE));
+  const auto scalar = [&](const char* quantity, double want, double found, double bounded) {
+    sample.compare(quantity, std::abs(want - found), bounded, {want, 0, 0, 0}, {found, 0, 0, 0});
+  };
+  scalar("follow factor", expected.kappa, got.kappa, bound.kappa);
+  scalar("turn rate, rad/s", expected.turnRate, got.turnRate, bound.turnRate);
+  sample.compare("heading", glm::length(expected.heading - got.heading), bound.heading,
+                 {expected.heading, 0, 0}, {got.heading, 0, 0});
+  scalar("speed, m/s", expected.speed, got.speed, bound.speed);
+  // Just below a tile's edge one side may have crossed it: the place is what must agree.
+  const glm::dvec2 apart{(expected.tileX - got.tileX) * reference::tileSize + expected.localX - got.localX,
+                         (expected.tileZ - got.tileZ) * reference::tileSize + expected.localZ - got.localZ};
+  sample.compare("position / leg length", glm::length(apart) / unit, bound.position / unit,
+                 {expected.tileX, expected.localX, expected.tileZ, expected.localZ},
+                 {got.tileX, got.localX, got.tileZ, got.localZ});
+  const auto outside = [](double local) { return std::max({0.0, -local, local - reference::tileSize}); };
+  scalar("local x outside its tile", 0, outside(got.localX), 0);
+  scalar("local z outside its tile", 0, outside(got.localZ), 0);
+  sample.same("tile x is an integer", std::round(got.tileX), got.tileX);
+  sample.same("tile z is an integer", std::round(got.tileZ), got.tileZ);
+  const glm::dquat &q = expected.orientation, &r = got.orientation;
+  sample.compare("orientation", difference(q, r), bound.orientation, {q.x, q.y, q.z, q.w},
+                 {r.x, r.y, r.z, r.w});
+  sample.compare("orientation's sign", std::max(0.0, -glm::dot(r, previous.orientation)), bound.orientation);
+  sample.compare("height / leg length", std::abs(expected.y - got.y) / unit, bound.height / unit,
+                 {expected.y, 0, 0, 0}, {got.y, 0, 0, 0});
+  scalar("surface speed, m/s", expected.v3, got.v3, bound.v3);
+  double still = std::abs(expected.still - got.still);
+  if (result.stillMargin < 1e-4) {
+    still = std::min({still, std::abs(got.still), std::abs(got.still - previous.still - setting.tuning.dt)});
+  }
+  sample.compare("still time, s", still, 4 * tolerance::roundoff * (1 + previous.still),
+                 {expected.still, 0, 0, 0}, {got.still, 0, 0, 0});
+  return sample;
+}
+
+}  // namespace
+
+void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
+  const reference::AgentBody previous = bodyOf(moment.before, moment.agent);
+  const glm::dvec2 desired = desiredOf(moment.after, moment.agent);
+  std::vector<reference::Step> steps;
+  const size_t legs = static_cast<size_t>(setting.legs);
+  std::vector<double> errors;
+  for (size_t l = 0; l < legs; ++l) {
+    steps.push_back(stepOf(moment.before, moment.agent * legs + l));
+    errors.push_back(chainOf(moment.before, moment.agent * legs + l, setting.bones).reachError);
+  }
+  const auto run = [&](const reference::BodyChoices& choices) {
+    return reference::body(setting.tuning, setting.heights, setting.creature, previous, desired, steps,
+                           errors, static_cast<double>(moment.n), choices);
+  };
+  const reference::BodyResult result = run({});
+  const Sample sample = compare(setting, moment, previous, result);
+  if (sample.passes()) return judge.add(moment.n, moment.agent, -1, sample);
+
+  // A leg square to the way counts or not; a desired velocity straight backward is turned to either way
+  // round.
+  double without = 1, with = 1;
+  const double square = 4 * tolerance::footDistance(2 * setting.tuning.legLength) / setting.tuning.legLength;
+  for (const reference::LegFollow& leg : result.follow) {
+    with = std::min(with, leg.errorFactor);
+    without = std::min(without, leg.errorFactor);
+    if (!leg.planted) continue;
+    if (leg.behind > -square) with = std::min(with, leg.factor);
+    if (leg.behind > square) without = std::min(without, leg.factor);
+  }
+  for (const double kappa : {with, without}) {
+    for (const int sign : {-1, 1}) {
+      if (with == without && !(result.turnMargin < 16 * tolerance::roundoff)) continue;
+      reference::BodyChoices choices;
+      if (with != without) choices.kappa = kappa;
+      if (result.turnMargin < 16 * tolerance::roundoff) choices.turnSign = sign;
+      const Sample other = compare(setting, moment, previous, run(choices));
+      if (other.passes()) return judge.add(moment.n, moment.agent, -1, other, true);
+    }
+  }
+  judge.add(moment.n, moment.agent, -1, sample);
+}
+
+}  // namespace skitter::validation

@@ -1,0 +1,212 @@
+#include <algorithm>
+#include <limits>
+
+#include "cpu_reference/foothold.h"
+#include "cpu_reference/heightfield.h"
+#include "cpu_reference/tolerances.h"
+#include "shared/records.h"
+#include "validation/checks.h"
+#include "validation/convert.h"
+
+namespace skitter::validation {
+namespace {
+
+namespace tolerance = reference::tolerance;
+
+// Everything that the recomputation of one leg's step needs.
+struct Case {
+  const Setting& setting;
+  const Moment& moment;
+  const reference::Limb& limb;
+  size_t leg;
+  reference::AgentBody body;
+  reference::Gait gait;
+  reference::Step before, got;
+  bool lifts;
+
+  reference::FootholdResult run(const reference::FootholdChoices& choices) const {
+    return reference::foothold(setting.tuning, setting.heights, limb, body, gait, before, lifts,
+                               static_cast<double>(moment.n), choices);
+  }
+};
+
+// How far a candidate's numbers may be off.
+struct CandidateBounds {
+  double horizontal, vertical, distance, facing, score;
+};
+
+CandidateBounds boundsOf(const Case& c, const reference::FootholdResult& result,
+                         const reference::Candidate& candidate) {
+  const reference::Tuning& t = c.setting.tuning;
+  const glm::dvec2 position = c.body.world();
+  const double x = position.x + candidate.point.x, z = position.y + candidate.point.z;
+  CandidateBounds bound{};
+  bound.horizontal = tolerance::foothold(t, result).candidate;
+  const reference::Relief relief = reference::reliefNear(c.setting.heights, x, z);
+  bound.vertical = tolerance::candidateHeight(relief, c.setting.extent, bound.horizontal, c.body.y);
+  bound.distance = tolerance::candidateDistance(c.limb, bound.horizontal, bound.vertical);
+  // Normals jump at the edges between cells: look to either side within the error of the position.
+  const double shift = bound.horizontal + 6 * tolerance::roundoff * c.setting.extent;
+  const glm::dvec3 up = c.body.orientation * glm::dvec3(0, 1, 0);
+  for (const double sx : {-shift, shift}) {
+    for (const double sz : {-shift, shift}) {
+      const double facing = glm::dot(reference::normalAt(c.setting.heights, x + sx, z + sz), up);
+      bound.facing = std::max(bound.facing, std::abs(facing - candidate.facing));
+    }
+  }
+  bound.facing += 24 * tolerance::roundoff;
+  const glm::dvec3 miss = candidate.point - c.body.orientation * result.target;
+  bound.score = 2 * glm::length(miss) * (bound.horizontal + bound.vertical) / (t.legLength * t.legLength) +
+                8 * tolerance::roundoff * candidate.score;
+  if (!t.nearestOnly) {
+    const double strain = std::max(0.0, candidate.distance / c.limb.reach - t.reachComfort);
+    bound.score += t.slopeWeight * bound.facing +
+                   2 * t.reachWeight * (strain + bound.distance) * bound.distance / c.limb.reach;
+  }
+  return bound;
+}
+
+// The candidates that may rightly win once every number is only known to within its bound.
+std::vector<reference::FootholdChoices> alternatives(const Case& c, const reference::FootholdResult& result) {
+  const auto& all = result.candidates;
+  std::vector<bool> mayFit;
+  std::vector<double> lowest;
+  double surelyBest = std::numeric_limits<double>::infinity();
+  double leastMisfit = std::numeric_limits<double>::infinity();
+  std::vector<CandidateBounds> bounds;
+  for (const reference::Candidate& candidate : all) {
+    const CandidateBounds b = boundsOf(c, result, candidate);
+    bounds.push_back(b);
+    const double margin = std::min({candidate.leastMargin / b.distance, candidate.mostMargin / b.distance,
+                                    candidate.facingMargin / b.facing});
+    mayFit.push_back(margin >= -1);
+    lowest.push_back(candidate.score - b.score);
+    if (margin > 1) surelyBest = std::min(surelyBest, candidate.score + b.score);
+    leastMisfit = std::min(leastMisfit, candidate.misfit + b.distance);
+  }
+  std::vector<reference::FootholdChoices> choices;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (mayFit[i] && lowest[i] <= surelyBest + tolerance::footholdScore) {
+      choices.push_back({static_cast<int>(i), false, 0});
+    }
+    const bool noneSurelyFits = !std::isfinite(surelyBest);
+    if (noneSurelyFits && all[i].misfit - bounds[i].distance <= leastMisfit) {
+      choices.push_back({static_cast<int>(i), true, 0});
+    }
+  }
+  return choices;
+}
+
+struct StepBounds {
+  double landing, landingHeight, liftOff, liftOffHeight, lift, tangent;
+};
+
+StepBounds stepBounds(const Case& c, const reference::FootholdResult& result) {
+  const auto& candidate = result.candidates[static_cast<size_t>(result.chosen)];
+  const CandidateBounds b = boundsOf(c, result, candidate);
+  const double world = std::max({std::abs(c.body.y), std::abs(c.before.landing.y), 1.0});
+  StepBounds bound{};
+  bound.landing = b.horizontal + 2 * tolerance::local;
+  bound.landingHeight = b.vertical + 2 * tolerance::roundoff * world;
+  if (result.lastResort) {
+    // Moved along its ray: the ray's direction and length err like the distance.
+    bound.landing += 2 * b.distance;
+    bound.landingHeight += 2 * b.distance;
+  }
+  bound.liftOff = tolerance::relative + (c.lifts ? 0 : tolerance::spline);
+  bound.liftOffHeight = (c.lifts ? 6 : 20) * tolerance::roundoff * world;
+  const double horizontal = std::max(bound.landing, bound.liftOff);
+  const double vertical = std::max(bound.landingHeight, bound.liftOffHeight);
+  double gap = 0;
+  const glm::dvec2 position = c.body.world();
+  for (const double s : {3.0 / 16, 1.0 / 2, 13.0 / 16}) {
+    const glm::dvec3 local = glm::mix(result.step.liftOff, result.step.landing, s);
+    const reference::Relief relief = reference::reliefNear(
+        c.setting.heights, position.x + local.x - c.body.localX, position.y + local.z - c.body.localZ);
+    gap = std::max(gap, tolerance::height(relief, c.setting.extent, horizontal) + vertical);
+  }
+  bound.lift = gap * 8 / 5 + 24 * tolerance::roundoff * (1 + c.setting.tuning.stepHeightMax);
+  // dP/ds has coefficients up to 6 in the control points.
+  bound.tangent = c.lifts ? bound.lift : 6 * tolerance::local + 24 * tolerance::roundoff * world;
+  return bound;
+}
+
+Sample compare(const Case& c, const reference::FootholdResult& result) {
+  const reference::Step &expected = result.step, &got = c.got;
+  const StepBounds bound = stepBounds(c, result);
+  const double unit = c.setting.tuning.legLength;
+  Sample sample;
+  sample.finite("step", records(c.moment.after.step, c.leg, shared::STEP_STRIDE));
+  sample.same("tile x", expected.tileX, got.tileX);
+  sample.same("tile z", expected.tileZ, got.tileZ);
+  sample.same("first tick", expected.firstTick, got.firstTick);
+  sample.same("duration, ticks", expected.duration, got.duration);
+  const auto point = [&](const char* across, const char* height, const glm::dvec3& e, const glm::dvec3& g,
+                         double horizontal, double vertical) {
+    const glm::dvec3 apart = g - e;
+    sample.compare(across, std::hypot(apart.x, apart.z) / unit, horizontal / unit, {e, 0}, {g, 0});
+    sample.compare(height, std::abs(apart.y) / unit, vertical / unit, {e, 0}, {g, 0});
+  };
+  point("landing, horizontally / leg length", "landing's height / leg length", expected.landing, got.landing,
+        bound.landing, bound.landingHeight);
+  point("lift-off, horizontally / leg length", "lift-off's height / leg length", expected.liftOff,
+        got.liftOff, bound.liftOff, bound.liftOffHeight);
+  sample.compare("lift vector / leg length", glm::length(expected.lift - got.lift) / unit, bound.lift / unit,
+                 {expected.lift, 0}, {got.lift, 0});
+  sample.compare("start tangent / leg length", glm::length(expected.startTangent - got.startTangent) / unit,
+                 bound.tangent / unit, {expected.startTangent, 0}, {got.startTangent, 0});
+  return sample;
+}
+
+// A gap within its bound of -stepClearance counts or not.
+bool passesEitherWay(const Case& c, const reference::FootholdChoices& choices, Sample& passed) {
+  for (const double way : {0.0, -1.0, 1.0}) {
+    reference::FootholdChoices shifted = choices;
+    const reference::FootholdResult result = c.run(shifted);
+    shifted.gapShift = way * stepBounds(c, result).lift;
+    passed = compare(c, way == 0 ? result : c.run(shifted));
+    if (passed.passes()) return true;
+  }
+  return false;
+}
+
+void checkLeg(const Case& c, size_t l, Judge& judge) {
+  const reference::FootholdResult result = c.run({});
+  const Sample sample = compare(c, result);
+  const int leg = static_cast<int>(l);
+  if (sample.passes()) return judge.add(c.moment.n, c.moment.agent, leg, sample);
+  Sample other;
+  if (passesEitherWay(c, {}, other)) return judge.add(c.moment.n, c.moment.agent, leg, other, true);
+  for (const reference::FootholdChoices& choices : alternatives(c, result)) {
+    if (passesEitherWay(c, choices, other)) return judge.add(c.moment.n, c.moment.agent, leg, other, true);
+  }
+  judge.add(c.moment.n, c.moment.agent, leg, sample);
+}
+
+}  // namespace
+
+void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge) {
+  const reference::Gait gait = gaitOf(moment.after, moment.agent);
+  const reference::AgentBody body = bodyOf(moment.after, moment.agent);
+  const size_t legs = static_cast<size_t>(setting.legs);
+  for (size_t l = 0; l < legs; ++l) {
+    const size_t leg = moment.agent * legs + l;
+    const bool lifts = (gait.lift >> l & 1u) != 0, reaims = (gait.reaim >> l & 1u) != 0;
+    if (lifts || reaims) {
+      checkLeg({setting, moment, setting.creature.limbs[l], leg, body, gait, stepOf(moment.before, leg),
+                stepOf(moment.after, leg), lifts},
+               l, judge);
+      continue;
+    }
+    const auto before = records(moment.before.step, leg, shared::STEP_STRIDE);
+    const auto after = records(moment.after.step, leg, shared::STEP_STRIDE);
+    if (std::equal(before.begin(), before.end(), after.begin())) continue;
+    Sample sample;
+    for (size_t i = 0; i < before.size(); ++i) {
+      sample.same("step of a leg that neither lifts nor is aimed anew", before[i], after[i]);
+    }
+    judge.add(moment.n, moment.agent, static_cast<int>(l), sample);
+  }
+}
+
+}  // namespace skitter::validation

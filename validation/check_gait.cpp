@@ -1,0 +1,116 @@
+#include <bit>
+
+#include "cpu_reference/gait.h"
+#include "cpu_reference/tolerances.h"
+#include "shared/records.h"
+#include "validation/checks.h"
+#include "validation/convert.h"
+
+namespace skitter::validation {
+namespace {
+
+namespace tolerance = reference::tolerance;
+
+double phaseDifference(double a, double b) {
+  const double d = std::abs(a - b);
+  return std::min(d, std::abs(1 - d));
+}
+
+// How near to falling the other way the decisions behind leg `l`'s bit were, relative to their tolerance.
+double liftTie(const reference::GaitResult& result, const tolerance::GaitBounds& bound, size_t l,
+               double settleBound) {
+  return std::min({result.legs[l].wantsMargin / bound.length, result.emergencyMargin / bound.length,
+                   result.phaseMargin / bound.window, result.settleMargin / settleBound});
+}
+
+double reaimTie(const reference::GaitResult& result, const tolerance::GaitBounds& bound, size_t l) {
+  return std::min(result.legs[l].reaimMargin / bound.length,
+                  result.legs[l].reaimProgressMargin / (6 * tolerance::roundoff));
+}
+
+struct Verdict {
+  Sample sample;
+  bool tie = false;
+};
+
+Verdict compare(const Setting& setting, const Moment& moment, const reference::GaitResult& result) {
+  const reference::Gait got = gaitOf(moment.after, moment.agent);
+  const reference::Gait& expected = result.gait;
+  const reference::AgentBody body = bodyOf(moment.after, moment.agent);
+  const double forecast = setting.tuning.legLength + (body.v3 + 1) * expected.cycle;
+  const auto bound = tolerance::gait(setting.tuning, result, setting.creature.groups, forecast);
+  const double settleBound = 4 * tolerance::roundoff * (1 + setting.tuning.settleTime);
+
+  Verdict verdict;
+  Sample& sample = verdict.sample;
+  sample.finite("gait", records(moment.after.gait, moment.agent, shared::GAIT_STRIDE));
+  double phase = phaseDifference(expected.phase, got.phase);
+  if (phase > bound.phase &&
+      std::min(result.emergencyMargin / bound.length, result.phaseMargin / bound.window) <= 1) {
+    phase = phaseDifference(result.unmovedPhase, got.phase);
+    for (int group = 0; group < setting.creature.groups; ++group) {
+      phase =
+          std::min(phase, phaseDifference(static_cast<double>(group) / setting.creature.groups, got.phase));
+    }
+    verdict.tie = true;
+  }
+  sample.compare("phase", phase, bound.phase, {expected.phase, 0, 0, 0}, {got.phase, 0, 0, 0});
+  sample.compare("phase outside [0, 1)", got.phase >= 0 && got.phase < 1 ? 0 : 1, 0);
+  sample.same("duration, ticks", expected.duration, got.duration);
+  sample.compare(
+      "half stride / leg length", std::abs(expected.halfStride - got.halfStride) / setting.tuning.legLength,
+      bound.halfStride / setting.tuning.legLength, {expected.halfStride, 0, 0, 0}, {got.halfStride, 0, 0, 0});
+  sample.compare("cycle, s", std::abs(expected.cycle - got.cycle), bound.cycle, {expected.cycle, 0, 0, 0},
+                 {got.cycle, 0, 0, 0});
+  sample.same("mask of legs in the air", expected.air, got.air);
+
+  const uint32_t lift = expected.lift ^ got.lift, reaim = expected.reaim ^ got.reaim;
+  const uint32_t legs = setting.legs >= 32 ? ~0u : (1u << setting.legs) - 1;
+  sample.same("mask bits beyond the legs", 0, (got.lift | got.reaim) & ~legs);
+  sample.same("legs that lift while in the air", 0, got.lift & expected.air);
+  sample.same("legs aimed anew while planted", 0, got.reaim & ~expected.air);
+  for (size_t l = 0; l < result.legs.size(); ++l) {
+    if ((lift >> l & 1u) != 0) {
+      sample.compare("lift mask, decision margin / its bound", liftTie(result, bound, l, settleBound), 1,
+                     {expected.lift, static_cast<double>(l), 0, 0}, {got.lift, static_cast<double>(l), 0, 0});
+    }
+    if ((reaim >> l & 1u) != 0) {
+      sample.compare("re-aim mask, decision margin / its bound", reaimTie(result, bound, l), 1,
+                     {expected.reaim, static_cast<double>(l), 0, 0},
+                     {got.reaim, static_cast<double>(l), 0, 0});
+    }
+  }
+  verdict.tie = verdict.tie || lift != 0 || reaim != 0;
+  return verdict;
+}
+
+}  // namespace
+
+void checkGait(const Setting& setting, const Moment& moment, Judge& judge) {
+  const reference::AgentBody body = bodyOf(moment.after, moment.agent);
+  const double phase = gaitOf(moment.before, moment.agent).phase;
+  std::vector<reference::Step> steps;
+  const size_t legs = static_cast<size_t>(setting.legs);
+  std::vector<double> errors;
+  for (size_t l = 0; l < legs; ++l) {
+    steps.push_back(stepOf(moment.before, moment.agent * legs + l));
+    errors.push_back(chainOf(moment.before, moment.agent * legs + l, setting.bones).reachError);
+  }
+  const auto run = [&](const reference::GaitChoices& choices) {
+    return reference::gait(setting.tuning, setting.creature, body, phase, steps, errors,
+                           static_cast<double>(moment.n), choices);
+  };
+  const reference::GaitResult result = run({});
+  const Verdict verdict = compare(setting, moment, result);
+  if (!verdict.sample.passes()) {
+    const auto bound = tolerance::gait(setting.tuning, result, setting.creature.groups, 0);
+    const double duration = gaitOf(moment.after, moment.agent).duration;
+    if (result.durationMargin < bound.duration && std::abs(duration - result.gait.duration) == 1) {
+      const Verdict other = compare(setting, moment, run({duration}));
+      if (other.sample.passes()) return judge.add(moment.n, moment.agent, -1, other.sample, true);
+    }
+  }
+  judge.add(moment.n, moment.agent, -1, verdict.sample, verdict.tie);
+}
+
+}  // namespace skitter::validation

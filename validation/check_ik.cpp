@@ -1,0 +1,83 @@
+#include "cpu_reference/ik.h"
+#include "cpu_reference/kinematics.h"
+#include "cpu_reference/tolerances.h"
+#include "shared/records.h"
+#include "validation/checks.h"
+#include "validation/convert.h"
+
+namespace skitter::validation {
+namespace {
+
+namespace tolerance = reference::tolerance;
+
+// What must hold of any result, whichever way the solver went.
+void checkGoals(const Setting& setting, const Moment& moment, const reference::Limb& limb,
+                const reference::AgentBody& body, const glm::dvec3& target, const reference::Chain& got,
+                const reference::Posture& posture, Sample& sample) {
+  for (size_t i = 0; i < limb.bones.size(); ++i) {
+    const double t = limb.bones[i].tanHalfCone;
+    const double violation = 2 * (glm::length(got.directions[i]) - t) / (1 + t * t);
+    sample.compare("limit violation, rad", std::max(0.0, violation), tolerance::limit,
+                   {t, static_cast<double>(i), 0, 0}, {got.directions[i], 0, 0});
+  }
+  const double kinematics = tolerance::forwardKinematics(setting.bones);
+  const glm::dvec3 tip = body.orientation * (limb.root + limb.reach * posture.tip());
+  sample.compare("tip against its directions / reach", glm::length(tip - got.tip) / limb.reach, kinematics,
+                 {tip, 0}, {got.tip, 0});
+  const bool finite = std::isfinite(target.x + target.y + target.z);
+  const double error = finite ? glm::length(target - posture.tip()) : 0;
+  sample.compare("reported error / reach", std::abs(error - got.reachError / limb.reach), kinematics,
+                 {error * limb.reach, 0, 0, 0}, {got.reachError, 0, 0, 0});
+  if (!finite) {
+    const size_t floats = 2 * static_cast<size_t>(setting.bones);
+    const size_t leg = static_cast<size_t>(&limb - setting.creature.limbs.data()) +
+                       moment.agent * static_cast<size_t>(setting.legs);
+    const auto before = records(moment.before.chain, leg, shared::chainStride(setting.bones));
+    const auto after = records(moment.after.chain, leg, shared::chainStride(setting.bones));
+    for (size_t i = 0; i < floats; ++i) sample.same("pose kept", before[i], after[i]);
+  }
+}
+
+}  // namespace
+
+void checkIk(const Setting& setting, const Moment& moment, Judge& judge) {
+  const reference::AgentBody body = bodyOf(moment.after, moment.agent);
+  const size_t legs = static_cast<size_t>(setting.legs);
+  for (size_t l = 0; l < legs; ++l) {
+    const size_t leg = moment.agent * legs + l;
+    const reference::Limb& limb = setting.creature.limbs[l];
+    const reference::Foot foot = footOf(moment.after, leg);
+    const reference::Chain previous = chainOf(moment.before, leg, setting.bones);
+    const reference::Chain got = chainOf(moment.after, leg, setting.bones);
+    const reference::Chain expected = reference::ik(setting.tuning, limb, body, foot, previous,
+                                                    setting.fabrikIterations, setting.polishIterations);
+    const reference::Posture posture(limb, got.directions), wanted(limb, expected.directions);
+
+    Sample sample;
+    sample.finite("chain", records(moment.after.chain, leg, shared::chainStride(setting.bones)));
+    checkGoals(setting, moment, limb, body, reference::ikTarget(limb, body, foot.target), got, posture,
+               sample);
+    sample.compare("error before solving / reach",
+                   std::abs(expected.errorBefore - got.errorBefore) / limb.reach,
+                   tolerance::forwardKinematics(setting.bones), {expected.errorBefore, 0, 0, 0},
+                   {got.errorBefore, 0, 0, 0});
+
+    double apart = 0;
+    for (size_t i = 1; i <= posture.bones(); ++i) {
+      apart = std::max(apart, glm::length(posture.joint(i) - wanted.joint(i)));
+    }
+    const bool sameDamping = std::abs(got.damping - expected.damping) <= 1e-5 * expected.damping;
+    const bool tie = apart > tolerance::jointPosition || !sameDamping;
+    if (tie) {
+      sample.compare("error beyond the reference's / reach",
+                     std::max(0.0, got.reachError - expected.reachError) / limb.reach, tolerance::ikTie,
+                     {expected.reachError, expected.damping, apart, 0}, {got.reachError, got.damping, 0, 0});
+      sample.compare("damping outside [1, 4096]", got.damping >= 1 && got.damping <= 4096 ? 0 : 1, 0);
+    } else {
+      sample.compare("joint positions / reach", apart, tolerance::jointPosition);
+    }
+    judge.add(moment.n, moment.agent, static_cast<int>(l), sample, tie);
+  }
+}
+
+}  // namespace skitter::validation

@@ -1,0 +1,57 @@
+#include "cpu_reference/navigate.h"
+#include "cpu_reference/tolerances.h"
+#include "shared/records.h"
+#include "validation/checks.h"
+#include "validation/convert.h"
+
+namespace skitter::validation {
+namespace {
+
+namespace tolerance = reference::tolerance;
+
+Sample compare(const Setting& setting, const Moment& moment, const reference::AgentBody& body,
+               const reference::NavigateResult& expected) {
+  const reference::Goal got = goalOf(moment.after, moment.agent);
+  const glm::dvec2 desired = desiredOf(moment.after, moment.agent);
+  Sample sample;
+  sample.finite("goal", records(moment.after.goal, moment.agent, shared::GOAL_STRIDE));
+  sample.finite("steer", records(moment.after.steer, moment.agent, shared::STEER_STRIDE));
+  sample.same("goal target x", expected.goal.target.x, got.target.x);
+  sample.same("goal target z", expected.goal.target.y, got.target.y);
+  sample.same("goal other end x", expected.goal.otherEnd.x, got.otherEnd.x);
+  sample.same("goal other end z", expected.goal.otherEnd.y, got.otherEnd.y);
+  sample.same("goal speed", expected.goal.speed, got.speed);
+  sample.same("goal arrival radius", expected.goal.arrivalRadius, got.arrivalRadius);
+  sample.same("goal kind", static_cast<double>(expected.goal.kind), static_cast<double>(got.kind));
+  const double speed = std::max(expected.goal.speed, 1e-6);
+  const double distance = glm::length(expected.goal.target - body.world());
+  sample.compare("desired velocity / speed", glm::length(desired - expected.desired) / speed,
+                 tolerance::desiredVelocity(setting.extent, distance, setting.tuning.slowRadius),
+                 {expected.desired, 0, 0}, {desired, 0, 0});
+  return sample;
+}
+
+}  // namespace
+
+void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
+  const reference::AgentBody body = bodyOf(moment.before, moment.agent);
+  const reference::Goal goal = goalOf(moment.before, moment.agent);
+  const auto result = reference::navigate(setting.tuning, body, goal);
+  const Sample sample = compare(setting, moment, body, result);
+  if (sample.passes()) return judge.add(moment.n, moment.agent, -1, sample);
+
+  const double near = tolerance::goalDistance(setting.extent);
+  for (int choice = 0; choice < 8; ++choice) {
+    reference::NavigateChoices choices;
+    if (result.arrivalMargin < near) choices.arrived = choice & 1;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (result.edgeMargin[axis] < near) choices.turnedBack[axis] = choice >> (axis + 1) & 1;
+    }
+    const Sample other =
+        compare(setting, moment, body, reference::navigate(setting.tuning, body, goal, choices));
+    if (other.passes()) return judge.add(moment.n, moment.agent, -1, other, true);
+  }
+  judge.add(moment.n, moment.agent, -1, sample);
+}
+
+}  // namespace skitter::validation

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "validation/replay.h"
+
+// One check a stage; each adds a sample an agent or a leg to its judge.
+namespace skitter::validation {
+
+// The two states around tick n, and the agent to look at.
+struct Moment {
+  uint64_t n;
+  const HerdState& before;
+  const HerdState& after;
+  size_t agent;
+};
+
+void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge);
+void checkBody(const Setting& setting, const Moment& moment, Judge& judge);
+void checkGait(const Setting& setting, const Moment& moment, Judge& judge);
+void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge);
+void checkSwing(const Setting& setting, const Moment& moment, Judge& judge);
+void checkIk(const Setting& setting, const Moment& moment, Judge& judge);
+void checkPose(const Setting& setting, const Moment& moment, Judge& judge);
+void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge);
+
+// `count` records of `stride` vec4 beginning with record `index`.
+inline std::span<const float> records(const std::vector<float>& buffer, size_t index, int stride,
+                                      size_t count = 1) {
+  const size_t floats = 4 * static_cast<size_t>(stride);
+  return {buffer.data() + index * floats, count * floats};
+}
+
+}  // namespace skitter::validation

@@ -1,0 +1,278 @@
+#include "validation/convert.h"
+
+#include "shared/records.h"
+
+namespace skitter::validation {
+namespace {
+
+glm::dvec4 load(const std::vector<float>& records, size_t index) {
+  const float* r = records.data() + 4 * index;
+  return {r[0], r[1], r[2], r[3]};
+}
+
+void store(std::vector<float>& records, size_t index, const glm::dvec4& value) {
+  for (int i = 0; i < 4; ++i) records[4 * index + static_cast<size_t>(i)] = static_cast<float>(value[i]);
+}
+
+size_t at(size_t record, int stride) { return record * static_cast<size_t>(stride); }
+
+// A mask of legs; nonsense, which cannot be converted, reads as none.
+uint32_t mask(double value) { return value >= 0 && value < 0x1p32 ? static_cast<uint32_t>(value) : 0; }
+
+glm::dquat quaternion(const glm::dvec4& v) { return {v.w, v.x, v.y, v.z}; }
+glm::dvec4 components(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
+
+}  // namespace
+
+reference::Tuning tuningOf(const shared::Parameters& p) {
+  reference::Tuning t;
+  t.dt = p.dt;
+  t.legLength = p.legLength;
+  t.homeRadius = p.homeRadius;
+  t.bodyHeight = p.bodyHeight;
+  t.bodyRadius = p.bodyRadius;
+  t.halfExtentX = p.halfExtentX;
+  t.halfExtentZ = p.halfExtentZ;
+  t.edgeMargin = p.edgeMargin;
+  t.slowRadius = p.slowRadius;
+  t.acceleration = p.acceleration;
+  t.braking = p.braking;
+  t.turnRate = p.turnRate;
+  t.turnAcceleration = p.turnAcceleration;
+  t.turnGain = p.turnGain;
+  t.stretchSlow = p.stretchSlow;
+  t.stretchStop = p.stretchStop;
+  t.errorStop = p.errorStop;
+  t.followLeast = p.followLeast;
+  t.heightBlend = p.heightBlend;
+  t.tiltBlend = p.tiltBlend;
+  t.maxSlope = p.maxSlope;
+  t.bellyClearance = p.bellyClearance;
+  t.ridge = p.ridge;
+  t.halfStrideStill = p.halfStrideStill;
+  t.halfStrideGain = p.halfStrideGain;
+  t.halfStrideMax = p.halfStrideMax;
+  t.swingStill = p.swingStill;
+  t.swingSpeed = p.swingSpeed;
+  t.cycleMax = p.cycleMax;
+  t.windowSlack = p.windowSlack;
+  t.windowOpen = p.windowOpen;
+  t.liftShare = p.liftShare;
+  t.stretchLift = p.stretchLift;
+  t.strayShare = p.strayShare;
+  t.errorLift = p.errorLift;
+  t.rootShare = p.rootShare;
+  t.settleTime = p.settleTime;
+  t.reaimDistance = p.reaimDistance;
+  t.reaimLatest = p.reaimLatest;
+  t.reachMost = p.reachMost;
+  t.reachLeast = p.reachLeast;
+  t.reachComfort = p.reachComfort;
+  t.slopeLeast = p.slopeLeast;
+  t.slopeWeight = p.slopeWeight;
+  t.reachWeight = p.reachWeight;
+  t.nearestOnly = p.nearestOnly != 0;
+  t.stepHeight = p.stepHeight;
+  t.stepClearance = p.stepClearance;
+  t.stepHeightMax = p.stepHeightMax;
+  t.fabrikError = p.fabrikError;
+  t.restPull = p.restPull;
+  t.pullError = p.pullError;
+  t.ikTolerance = p.ikTolerance;
+  return t;
+}
+
+reference::Heights heightsOf(const Heightfield& field, const shared::Parameters& p) {
+  return {field.heights.data(),
+          static_cast<int>(field.columns),
+          static_cast<int>(field.rows),
+          p.originX,
+          p.originZ,
+          p.inverseSpacingX,
+          p.inverseSpacingZ};
+}
+
+reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, int bones, int groups) {
+  reference::Creature creature;
+  creature.groups = groups;
+  for (int l = 0; l < legs; ++l) {
+    const size_t base = static_cast<size_t>(l) * static_cast<size_t>(shared::rigStride(bones));
+    reference::Limb limb;
+    const glm::dvec4 root = load(rigRecords, base), home = load(rigRecords, base + 1);
+    limb.root = root;
+    limb.reach = root.w;
+    limb.home = home;
+    limb.group = static_cast<int>(home.w);
+    for (int b = 0; b < bones; ++b) {
+      const size_t record =
+          base + shared::RIG_LEG_STRIDE + at(static_cast<size_t>(b), shared::RIG_BONE_STRIDE);
+      const glm::dvec4 x = load(rigRecords, record), z = load(rigRecords, record + 1);
+      const glm::dvec4 start = load(rigRecords, record + 2);
+      reference::BoneRest bone;
+      bone.frame = glm::dmat3(glm::dvec3(x), glm::cross(glm::dvec3(z), glm::dvec3(x)), glm::dvec3(z));
+      bone.length = x.w;
+      bone.tanHalfCone = z.w;
+      bone.start = start;
+      bone.stiffness = start.w;
+      limb.bones.push_back(bone);
+    }
+    creature.limbs.push_back(limb);
+  }
+  return creature;
+}
+
+reference::Goal goalOf(const HerdState& state, size_t agent) {
+  const size_t base = at(agent, shared::GOAL_STRIDE);
+  const glm::dvec4 ends = load(state.goal, base), how = load(state.goal, base + 1);
+  const auto kind = how.z == shared::GOAL_CROSS   ? reference::GoalKind::cross
+                    : how.z == shared::GOAL_POINT ? reference::GoalKind::point
+                                                  : reference::GoalKind::none;
+  return {{ends.x, ends.y}, {ends.z, ends.w}, how.x, how.y, kind};
+}
+
+void putGoal(HerdState& state, size_t agent, const reference::Goal& goal) {
+  const size_t base = at(agent, shared::GOAL_STRIDE);
+  const float kind = goal.kind == reference::GoalKind::cross   ? shared::GOAL_CROSS
+                     : goal.kind == reference::GoalKind::point ? shared::GOAL_POINT
+                                                               : shared::GOAL_NONE;
+  store(state.goal, base, {goal.target, goal.otherEnd});
+  store(state.goal, base + 1, {goal.speed, goal.arrivalRadius, kind, 0});
+}
+
+glm::dvec2 desiredOf(const HerdState& state, size_t agent) {
+  return load(state.steer, at(agent, shared::STEER_STRIDE));
+}
+
+void putDesired(HerdState& state, size_t agent, const glm::dvec2& desired) {
+  store(state.steer, at(agent, shared::STEER_STRIDE), {desired, 0, 0});
+}
+
+reference::AgentBody bodyOf(const HerdState& state, size_t agent) {
+  const size_t base = at(agent, shared::BODY_STRIDE);
+  const glm::dvec4 local = load(state.body, base), tile = load(state.body, base + 1);
+  const glm::dvec4 rates = load(state.body, base + 3);
+  reference::AgentBody body;
+  body.localX = local.x;
+  body.y = local.y;
+  body.localZ = local.z;
+  body.heading = {local.w, tile.z};
+  body.tileX = tile.x;
+  body.tileZ = tile.y;
+  body.speed = tile.w;
+  body.orientation = quaternion(load(state.body, base + 2));
+  body.turnRate = rates.x;
+  body.still = rates.y;
+  body.kappa = rates.z;
+  body.v3 = rates.w;
+  return body;
+}
+
+void putBody(HerdState& state, size_t agent, const reference::AgentBody& body) {
+  const size_t base = at(agent, shared::BODY_STRIDE);
+  store(state.body, base, {body.localX, body.y, body.localZ, body.heading.x});
+  store(state.body, base + 1, {body.tileX, body.tileZ, body.heading.y, body.speed});
+  store(state.body, base + 2, components(body.orientation));
+  store(state.body, base + 3, {body.turnRate, body.still, body.kappa, body.v3});
+}
+
+reference::Gait gaitOf(const HerdState& state, size_t agent) {
+  const size_t base = at(agent, shared::GAIT_STRIDE);
+  const glm::dvec4 a = load(state.gait, base), b = load(state.gait, base + 1);
+  return {a.x, mask(a.y), mask(a.z), a.w, b.x, b.y, mask(b.z)};
+}
+
+void putGait(HerdState& state, size_t agent, const reference::Gait& gait) {
+  const size_t base = at(agent, shared::GAIT_STRIDE);
+  store(state.gait, base, {gait.phase, gait.lift, gait.reaim, gait.duration});
+  store(state.gait, base + 1, {gait.halfStride, gait.cycle, gait.air, 0});
+}
+
+reference::Step stepOf(const HerdState& state, size_t leg) {
+  const size_t base = at(leg, shared::STEP_STRIDE);
+  const glm::dvec4 landing = load(state.step, base), liftOff = load(state.step, base + 1);
+  const glm::dvec4 lift = load(state.step, base + 2), start = load(state.step, base + 3);
+  reference::Step step;
+  step.landing = landing;
+  step.tileX = landing.w;
+  step.liftOff = liftOff;
+  step.tileZ = liftOff.w;
+  step.lift = lift;
+  step.firstTick = lift.w;
+  step.startTangent = start;
+  step.duration = start.w;
+  return step;
+}
+
+void putStep(HerdState& state, size_t leg, const reference::Step& step) {
+  const size_t base = at(leg, shared::STEP_STRIDE);
+  store(state.step, base, {step.landing, step.tileX});
+  store(state.step, base + 1, {step.liftOff, step.tileZ});
+  store(state.step, base + 2, {step.lift, step.firstTick});
+  store(state.step, base + 3, {step.startTangent, step.duration});
+}
+
+reference::Foot footOf(const HerdState& state, size_t leg) {
+  const glm::dvec4 foot = load(state.foot, at(leg, shared::FOOT_STRIDE));
+  return {foot, foot.w};
+}
+
+void putFoot(HerdState& state, size_t leg, const reference::Foot& foot) {
+  store(state.foot, at(leg, shared::FOOT_STRIDE), {foot.target, foot.progress});
+}
+
+reference::Chain chainOf(const HerdState& state, size_t leg, int bones) {
+  const size_t base = at(leg, shared::chainStride(bones));
+  reference::Chain chain;
+  for (int b = 0; b < bones; ++b) {
+    const glm::dvec4 pair = load(state.chain, base + static_cast<size_t>(b) / 2);
+    chain.directions.push_back(b % 2 == 0 ? glm::dvec2(pair.x, pair.y) : glm::dvec2(pair.z, pair.w));
+  }
+  const size_t end = base + static_cast<size_t>(shared::chainDirections(bones));
+  const glm::dvec4 tip = load(state.chain, end), solve = load(state.chain, end + 1);
+  chain.tip = tip;
+  chain.reachError = tip.w;
+  chain.damping = solve.x;
+  chain.errorBefore = solve.y;
+  return chain;
+}
+
+void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& chain) {
+  const size_t base = at(leg, shared::chainStride(bones));
+  for (int b = 0; b < bones; b += 2) {
+    const size_t first = static_cast<size_t>(b);
+    const glm::dvec2 second = b + 1 < bones ? chain.directions[first + 1] : glm::dvec2(0);
+    store(state.chain, base + first / 2, {chain.directions[first], second});
+  }
+  const size_t end = base + static_cast<size_t>(shared::chainDirections(bones));
+  store(state.chain, end, {chain.tip, chain.reachError});
+  store(state.chain, end + 1, {chain.damping, chain.errorBefore, 0, 0});
+}
+
+reference::BonePose boneOf(const HerdState& state, size_t entry) {
+  const size_t base = at(entry, shared::POSE_STRIDE);
+  return {quaternion(load(state.pose, base)), load(state.pose, base + 1)};
+}
+
+void putBone(HerdState& state, size_t entry, const reference::BonePose& bone) {
+  const size_t base = at(entry, shared::POSE_STRIDE);
+  store(state.pose, base, components(bone.rotation));
+  store(state.pose, base + 1, {bone.position, 0});
+}
+
+reference::Metric metricOf(const HerdState& state, size_t leg) {
+  const size_t base = at(leg, shared::METRIC_STRIDE);
+  const glm::dvec4 a = load(state.metric, base), b = load(state.metric, base + 1);
+  const glm::dvec4 c = load(state.metric, base + 2);
+  return {a, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w};
+}
+
+void putMetric(HerdState& state, size_t leg, const reference::Metric& metric) {
+  const size_t base = at(leg, shared::METRIC_STRIDE);
+  store(state.metric, base, {metric.previousTip, metric.slip});
+  store(state.metric, base + 1,
+        {metric.finishedSlip, metric.finishedStances, metric.penetration, metric.floating});
+  store(state.metric, base + 2,
+        {metric.ticks, metric.stanceTicks, metric.largestError, metric.largestViolation});
+}
+
+}  // namespace skitter::validation

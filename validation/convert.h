@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "cpu_reference/types.h"
+#include "shared/parameters.h"
+#include "skitter/crowd.h"
+
+// Between the float records of shaders/shared/records.h and the reference's structs. An `agent` or `leg`
+// index counts within the herd; a leg is agent * legs + leg of the agent.
+namespace skitter::validation {
+
+reference::Tuning tuningOf(const shared::Parameters& parameters);
+// Heights stay owned by the field.
+reference::Heights heightsOf(const Heightfield& field, const shared::Parameters& parameters);
+reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, int bones, int groups);
+
+reference::Goal goalOf(const HerdState& state, size_t agent);
+glm::dvec2 desiredOf(const HerdState& state, size_t agent);
+reference::AgentBody bodyOf(const HerdState& state, size_t agent);
+reference::Gait gaitOf(const HerdState& state, size_t agent);
+reference::Step stepOf(const HerdState& state, size_t leg);
+reference::Foot footOf(const HerdState& state, size_t leg);
+reference::Chain chainOf(const HerdState& state, size_t leg, int bones);
+reference::BonePose boneOf(const HerdState& state, size_t entry);
+reference::Metric metricOf(const HerdState& state, size_t leg);
+
+// Rounded to float into records that are already of full size.
+void putGoal(HerdState& state, size_t agent, const reference::Goal& goal);
+void putDesired(HerdState& state, size_t agent, const glm::dvec2& desired);
+void putBody(HerdState& state, size_t agent, const reference::AgentBody& body);
+void putGait(HerdState& state, size_t agent, const reference::Gait& gait);
+void putStep(HerdState& state, size_t leg, const reference::Step& step);
+void putFoot(HerdState& state, size_t leg, const reference::Foot& foot);
+void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& chain);
+void putBone(HerdState& state, size_t entry, const reference::BonePose& bone);
+void putMetric(HerdState& state, size_t leg, const reference::Metric& metric);
+
+}  // namespace skitter::validation

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+
+namespace skitter::validation {
+
+// What one stage came to over all its samples.
+struct StageResult {
+  std::string name;
+  uint64_t samples = 0;
+  double maxError = 0;   // of the quantity that is worst relative to its own tolerance
+  double tolerance = 0;  // of that quantity, in that sample
+  uint64_t ties = 0;     // samples in which a discrete choice fell the other way within its margin
+  bool pass = true;
+  std::string worst;  // that quantity, agent, leg, expected, got
+};
+
+// The comparisons of one sample; the one worst relative to its tolerance is kept.
+class Sample {
+ public:
+  void compare(const char* quantity, double error, double tolerance, const glm::dvec4& expected = {},
+               const glm::dvec4& got = {});
+  // A quantity that must be the same exactly.
+  void same(const char* quantity, double expected, double got);
+  // Every float of a record.
+  void finite(const char* record, std::span<const float> values);
+
+  bool passes() const { return !(ratio_ > 1); }
+
+ private:
+  friend class Judge;
+  const char* quantity_ = "";
+  double error_ = 0, tolerance_ = 0, ratio_ = -1;
+  glm::dvec4 expected_{0}, got_{0};
+};
+
+// Gathers the samples of one stage.
+class Judge {
+ public:
+  explicit Judge(std::string name) { result_.name = std::move(name); }
+  // leg < 0: the sample is a whole agent.
+  void add(uint64_t tick, uint64_t agent, int leg, const Sample& sample, bool tie = false);
+  // Passes if every sample did and ties are rare.
+  StageResult result() const;
+
+ private:
+  StageResult result_;
+  double ratio_ = -1;
+};
+
+}  // namespace skitter::validation

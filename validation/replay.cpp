@@ -1,0 +1,119 @@
+#include "validation/replay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "shared/records.h"
+#include "skitter/error.h"
+#include "validation/checks.h"
+#include "validation/convert.h"
+
+namespace skitter::validation {
+namespace {
+
+struct Stage {
+  const char* name;
+  void (*check)(const Setting&, const Moment&, Judge&);
+};
+constexpr Stage stages[] = {{"navigate", checkNavigate}, {"body", checkBody},      {"gait", checkGait},
+                            {"foothold", checkFoothold}, {"swing", checkSwing},    {"ik", checkIk},
+                            {"pose", checkPose},         {"measure", checkMeasure}};
+
+void expectSize(const char* what, size_t found, size_t expected) {
+  if (found == expected) return;
+  throw inputError(std::string(what) + ": found " + std::to_string(found) + " floats, expected " +
+                   std::to_string(expected));
+}
+
+void expectSizes(const Setting& setting, const HerdState& state, size_t agents) {
+  const auto expect = [&](const char* what, const std::vector<float>& buffer, size_t count, int stride) {
+    expectSize(what, buffer.size(), 4 * agents * count * static_cast<size_t>(stride));
+  };
+  const size_t legs = static_cast<size_t>(setting.legs);
+  expect("goal records", state.goal, 1, shared::GOAL_STRIDE);
+  expect("steer records", state.steer, 1, shared::STEER_STRIDE);
+  expect("body records", state.body, 1, shared::BODY_STRIDE);
+  expect("gait records", state.gait, 1, shared::GAIT_STRIDE);
+  expect("step records", state.step, legs, shared::STEP_STRIDE);
+  expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
+  expect("chain records", state.chain, legs, shared::chainStride(setting.bones));
+  expect("pose records", state.pose, 1 + legs * static_cast<size_t>(setting.bones), shared::POSE_STRIDE);
+  if (!state.metric.empty()) expect("metric records", state.metric, legs, shared::METRIC_STRIDE);
+}
+
+// splitmix64: Steele, Lea & Flood 2014.
+uint64_t scrambled(uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+  return x ^ x >> 31;
+}
+
+}  // namespace
+
+Replay::Replay(const Rig& rig, const Heightfield& terrain, const shared::Parameters& parameters,
+               const std::vector<float>& rigRecords, int fabrikIterations, int polishIterations,
+               uint64_t seed)
+    : terrain_(terrain), seed_(seed) {
+  size_t bones = 0;
+  for (const Leg& leg : rig.legs) bones = std::max(bones, leg.bones.size());
+  setting_.legs = rig.legCount();
+  setting_.bones = static_cast<int>(bones);
+  expectSize("rig records", rigRecords.size(),
+             4 * rig.legs.size() * static_cast<size_t>(shared::rigStride(setting_.bones)));
+  setting_.tuning = tuningOf(parameters);
+  setting_.heights = heightsOf(terrain_, parameters);
+  setting_.creature = creatureOf(rigRecords, setting_.legs, setting_.bones, rig.groupCount());
+  setting_.extent = std::max({std::abs(setting_.heights.originX), std::abs(setting_.heights.originZ),
+                              setting_.tuning.halfExtentX, setting_.tuning.halfExtentZ});
+  setting_.fabrikIterations = fabrikIterations;
+  setting_.polishIterations = polishIterations;
+  for (const Stage& stage : stages) judges_.emplace_back(stage.name);
+}
+
+void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, const ReplayRange& range) {
+  if (before.agents != after.agents) {
+    throw inputError("replay: found " + std::to_string(after.agents) + " agents after the tick, expected " +
+                     std::to_string(before.agents));
+  }
+  const size_t agents = before.agents;
+  expectSizes(setting_, before, agents);
+  expectSizes(setting_, after, agents);
+  const bool measured = !before.metric.empty() && !after.metric.empty();
+  const size_t last = std::min(agents, static_cast<size_t>(range.first) + range.count);
+  const size_t stride = std::max(1u, range.stride);
+  const size_t offset = static_cast<size_t>(scrambled(seed_ ^ scrambled(n)) % stride);
+  for (size_t agent = range.first + offset; agent < last; agent += stride) {
+    const Moment moment{n, before, after, agent};
+    for (size_t s = 0; s < std::size(stages); ++s) {
+      if (stages[s].check == checkMeasure && !measured) continue;
+      stages[s].check(setting_, moment, judges_[s]);
+    }
+  }
+}
+
+std::vector<StageResult> Replay::results() const {
+  std::vector<StageResult> results;
+  for (const Judge& judge : judges_) results.push_back(judge.result());
+  return results;
+}
+
+bool Replay::pass() const {
+  return std::all_of(judges_.begin(), judges_.end(), [](const Judge& judge) { return judge.result().pass; });
+}
+
+std::string table(const std::vector<StageResult>& results) {
+  std::string text = "stage        samples   max error   tolerance    ties  result\n";
+  for (const StageResult& result : results) {
+    char line[160];
+    std::snprintf(line, sizeof line, "%-10s %9llu  %10.3g  %10.3g  %6llu  %s\n", result.name.c_str(),
+                  static_cast<unsigned long long>(result.samples), result.maxError, result.tolerance,
+                  static_cast<unsigned long long>(result.ties), result.pass ? "pass" : "FAIL");
+    text += line;
+    if (!result.pass) text += "           " + result.worst + "\n";
+  }
+  return text;
+}
+
+}  // namespace skitter::validation

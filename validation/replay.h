@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cpu_reference/types.h"
+#include "shared/parameters.h"
+#include "skitter/crowd.h"
+#include "validation/judge.h"
+
+namespace skitter::validation {
+
+// What every check needs to know about the herd.
+struct Setting {
+  reference::Tuning tuning;
+  reference::Heights heights;
+  reference::Creature creature;
+  int legs = 0, bones = 0;  // bones of the longest chain: shorter ones are padded
+  double extent = 0;        // metres, how far the terrain reaches from the world's origin
+  int fabrikIterations = 0, polishIterations = 0;
+};
+
+// Which agents a tick compares.
+struct ReplayRange {
+  uint32_t first = 0;
+  uint32_t count = UINT32_MAX;
+  uint32_t stride = 1;  // one of this many, another one each tick
+};
+
+// Lock-step replay: of two consecutive states of a herd, every stage of the reference starts from exactly
+// what that stage of the engine started from and its result is held against what the engine wrote. Records
+// that a stage itself or a later one writes come from `before`, those of earlier stages from `after`.
+class Replay {
+ public:
+  // `rigRecords` as in shaders/shared/records.h. Throws Error(input) when its size does not fit the rig.
+  // `seed` decides which agents a strided range begins with. `terrain` is copied.
+  Replay(const Rig& rig, const Heightfield& terrain, const shared::Parameters& parameters,
+         const std::vector<float>& rigRecords, int fabrikIterations, int polishIterations, uint64_t seed);
+  Replay(const Replay&) = delete;
+  Replay& operator=(const Replay&) = delete;
+
+  // `n` is the tick that led from `before` to `after`. A state without metrics leaves the last stage out.
+  // Throws Error(input) when a record buffer's size does not fit the number of agents.
+  void tick(uint64_t n, const HerdState& before, const HerdState& after, const ReplayRange& range = {});
+
+  // navigate, body, gait, foothold, swing, ik, pose, measure. A stage without samples passes.
+  std::vector<StageResult> results() const;
+  bool pass() const;
+
+ private:
+  Heightfield terrain_;
+  Setting setting_;
+  uint64_t seed_;
+  std::vector<Judge> judges_;
+};
+
+// One line a stage, and what was worst where a stage failed.
+std::string table(const std::vector<StageResult>& results);
+
+}  // namespace skitter::validation
