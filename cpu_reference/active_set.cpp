@@ -38,10 +38,47 @@ Joint jointAt(const Posture& posture, const BoneRest& bone, size_t i) {
   return joint;
 }
 
+// Holds what meets its limit, at most twice; leaves the free joints' steps and the matrix' inverse.
+glm::dmat3 solveWithLimits(std::vector<Joint>& joints, double mu, glm::dvec3 e) {
+  glm::dmat3 inverse(1);
+  for (int pass = 0; pass < 3; ++pass) {
+    glm::dmat3 m(mu);
+    for (const Joint& joint : joints) {
+      if (!joint.held) m += glm::outerProduct(joint.radial, joint.radial);
+      m += glm::outerProduct(joint.tangential, joint.tangential);
+    }
+    inverse = glm::inverse(m);
+    const glm::dvec3 lambda = inverse * e;
+    bool anyHeld = false;
+    for (Joint& joint : joints) {
+      joint.tangentialStep = glm::dot(joint.tangential, lambda);
+      if (joint.held) continue;
+      joint.radialStep = joint.pull + glm::dot(joint.radial, lambda);
+      if (joint.radialStep > joint.room && pass < 2) {
+        joint.held = anyHeld = true;
+        joint.radialStep = joint.room;
+        e -= (joint.room - joint.pull) * joint.radial;
+      }
+    }
+    if (!anyHeld) break;
+  }
+  return inverse;
+}
+
+void moveTo(const std::vector<Joint>& joints, const Limb& limb, Posture& posture) {
+  for (size_t i = 0; i < joints.size(); ++i) {
+    const Joint& joint = joints[i];
+    const glm::dvec3 d = normalized(
+        joint.d + joint.radialStep * glm::dvec3(joint.h.x * joint.d.z, joint.h.y * joint.d.z, -joint.s) +
+        joint.tangentialStep * glm::dvec3(-joint.h.y, joint.h.x, 0));
+    posture.place(i, clampCone(stereographic(d), limb.bones[i].tanHalfCone));
+  }
+}
+
 }  // namespace
 
-void activeSetStep(const Tuning& tuning, const Limb& limb, const glm::dvec3& target, bool pulls,
-                   Posture& posture, double& damping) {
+void activeSet(const Tuning& tuning, const Limb& limb, const glm::dvec3& target, int chords, Posture& posture,
+               double& damping) {
   glm::dvec3 e = target - posture.tip();
   const double before = glm::length(e);
   const double mu = (0.25 * std::min(before * before, 0.25) + 1e-5) * damping;
@@ -51,39 +88,21 @@ void activeSetStep(const Tuning& tuning, const Limb& limb, const glm::dvec3& tar
   for (size_t i = 0; i < posture.bones(); ++i) {
     joints.push_back(jointAt(posture, limb.bones[i], i));
     Joint& joint = joints.back();
-    if (pulls && before < tuning.pullError) {
+    if (chords > 0 && before < tuning.pullError) {
       joint.pull = -tuning.restPull * limb.bones[i].stiffness * joint.s;
       e -= joint.pull * joint.radial;
     }
   }
-  for (int pass = 0; pass < 3; ++pass) {
-    glm::dmat3 m(mu);
-    for (const Joint& joint : joints) {
-      if (!joint.held) m += glm::outerProduct(joint.radial, joint.radial);
-      m += glm::outerProduct(joint.tangential, joint.tangential);
-    }
-    const glm::dvec3 lambda = glm::inverse(m) * e;
-    bool anyHeld = false;
-    for (Joint& joint : joints) {
-      joint.tangentialStep = glm::dot(joint.tangential, lambda);
-      if (joint.held) continue;
-      joint.radialStep = joint.pull + glm::dot(joint.radial, lambda);
-      if (joint.radialStep > joint.room) {
-        joint.held = anyHeld = true;
-        joint.radialStep = joint.room;
-        e -= (joint.room - joint.pull) * joint.radial;
-      }
-    }
-    if (!anyHeld) break;
-  }
-
+  const glm::dmat3 inverse = solveWithLimits(joints, mu, e);
   const std::vector<glm::dvec2> old = posture.directions();
-  for (size_t i = 0; i < joints.size(); ++i) {
-    const Joint& joint = joints[i];
-    const glm::dvec3 d = normalized(
-        joint.d + joint.radialStep * glm::dvec3(joint.h.x * joint.d.z, joint.h.y * joint.d.z, -joint.s) +
-        joint.tangentialStep * glm::dvec3(-joint.h.y, joint.h.x, 0));
-    posture.place(i, clampCone(stereographic(d), limb.bones[i].tanHalfCone));
+  moveTo(joints, limb, posture);
+  for (int chord = 0; chord < chords; ++chord) {
+    const glm::dvec3 lambda = inverse * (target - posture.tip());
+    for (Joint& joint : joints) {
+      if (!joint.held) joint.radialStep += glm::dot(joint.radial, lambda);
+      joint.tangentialStep += glm::dot(joint.tangential, lambda);
+    }
+    moveTo(joints, limb, posture);
   }
   const double after = glm::length(target - posture.tip());
   if (after > before && after > tuning.ikTolerance) {

@@ -45,10 +45,7 @@ Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Fo
   if (finite) {
     breakDeadlock(limb, target, posture);
     fabrik(limb, target, fabrikIterations, tuning.fabrikError, posture);
-    for (int step = 0; step < polishIterations; ++step) {
-      // The last step is the target's alone.
-      activeSetStep(tuning, limb, target, step + 1 < polishIterations, posture, chain.damping);
-    }
+    if (polishIterations > 0) activeSet(tuning, limb, target, polishIterations - 1, posture, chain.damping);
   }
   chain.directions = posture.directions();
   chain.tip = body.orientation * (limb.root + limb.reach * posture.tip());

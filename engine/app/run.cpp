@@ -122,6 +122,7 @@ int run(const RunOptions& options) {
   checkMemory(scene, device);
   CrowdOptions crowdOptions;
   crowdOptions.timestamps = options.timings;
+  crowdOptions.pose = windowed || target.kind != OutTarget::Kind::none || !options.trace.empty();
   Crowd crowd(device, terrain, scene, crowdOptions);
 
   const uint64_t ticks = windowed && !options.frames

@@ -92,6 +92,8 @@ SKITTER_CONST int COUNTER_NOT_FINITE = 5;
 SKITTER_CONST int COUNTERS = 8;
 // reach errors, per page: counts per bucket of a leg length; bucket k holds errors of 2^(k/4 - 20) and more.
 SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
+// Ticks from one count to the next: an atomic a leg is the dearest thing in measure.
+SKITTER_CONST float HISTOGRAM_EVERY = 4.0;
 
 #ifdef __cplusplus
 }  // namespace skitter::shared

@@ -53,15 +53,9 @@ void main() {
     keepIf(better, pose, trial);
     error = better ? e : error;
   }
-  for (int i = 0; i < POLISH_ITERATIONS; ++i) {
-    float pull = i + 1 < POLISH_ITERATIONS && error < parameters.pullError ? parameters.restPull : 0.0;
-    keepIf(true, trial, pose);
-    activeSetStep(limb, target, trial, damping, pull);
-    float e = distance(target, trial.tip);
-    bool kept = !lost && !(e > error && e > parameters.ikTolerance);
-    keepIf(kept, pose, trial);
-    error = kept ? e : error;
-    damping = lost ? damping : (kept ? max(damping / 10.0, 1.0) : min(16.0 * damping, 4096.0));
+  if (POLISH_ITERATIONS > 0) {
+    float pull = POLISH_ITERATIONS > 1 && error < parameters.pullError ? parameters.restPull : 0.0;
+    activeSet(limb, target, lost, POLISH_ITERATIONS - 1, pull, parameters.ikTolerance, pose, error, damping);
   }
 
   STORE_DIRECTIONS(chainsOut, at, pose.d);

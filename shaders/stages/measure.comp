@@ -55,6 +55,9 @@ void main() {
   STORE4(metricsOut, at, vec4(here, slip));
   STORE4(metricsOut, at + 1, m1);
   STORE4(metricsOut, at + 2, m2);
-  float bucket = 4.0 * (log2(max(tip.w / parameters.legLength, 1e-30)) + 20.0);
-  atomicAdd(histogram[int(clamp(floor(bucket), 0.0, float(HISTOGRAM_BUCKETS - 1)))], 1u);
+  // A loop, because an `if` would not skip the atomic on a device that masks lanes.
+  for (bool due = mod(constants.tick, HISTOGRAM_EVERY) == 1.0; due; due = false) {
+    float bucket = 4.0 * (log2(max(tip.w / parameters.legLength, 1e-30)) + 20.0);
+    atomicAdd(histogram[int(clamp(floor(bucket), 0.0, float(HISTOGRAM_BUCKETS - 1)))], 1u);
+  }
 }

@@ -119,7 +119,9 @@ TEST_F(Ik, coldStartReachesLegalTargets) {
     constexpr int trials = 1000;
     for (int trial = 0; trial < trials; ++trial) {
       const glm::dvec3 target = Posture(limb, legalPose(limb)).tip();
-      const Chain chain = solve(limb, target, rest(limb), 2, 8);
+      // As a crowd brings its chains to their feet before the first tick: by ticks that change nothing else.
+      Chain chain = rest(limb);
+      for (int tick = 0; tick < 8; ++tick) chain = solve(limb, target, chain, 2, 2);
       if (chain.reachError < 1e-3) ++solved;
       ASSERT_LE(violation(limb, chain), 1e-12);
     }
