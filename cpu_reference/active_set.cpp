@@ -105,7 +105,7 @@ void activeSet(const Tuning& tuning, const Limb& limb, const glm::dvec3& target,
     moveTo(joints, limb, posture);
   }
   const double after = glm::length(target - posture.tip());
-  if (after > before && after > tuning.ikTolerance) {
+  if (after > 1.0001 * before && after > tuning.ikTolerance) {
     posture.setDirections(old);
     damping = std::min(16 * damping, 4096.0);
   } else {

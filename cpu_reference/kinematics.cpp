@@ -24,7 +24,9 @@ glm::dvec3 direction(const glm::dvec2& xy) {
 
 glm::dvec2 clampCone(const glm::dvec2& xy, double tanHalfCone) {
   const double length = glm::length(xy);
-  return length > tanHalfCone ? xy * (tanHalfCone / length) : xy;
+  if (length <= tanHalfCone) return xy;
+  const double sine = 2 * length / (1 + length * length);
+  return sine < 1e-3 ? glm::dvec2(tanHalfCone, 0) : xy * (tanHalfCone / length);
 }
 
 Posture::Posture(const Limb& limb, std::vector<glm::dvec2> directions)

@@ -151,11 +151,15 @@ inline double boneRotation(int bones) { return (12.0 * bones + 8) * roundoff; }
 // length, and the root is rotated once.
 inline double bonePosition(int bones) { return (16.0 * bones + 16) * roundoff; }
 
-// A direction just clamped: scaling by tan / |(X, Y)| errs by 8 roundoff of tan; dtheta = 2 d tan / (1 +
-// tan^2), which is at most 8 roundoff.
-inline constexpr double limit = 10 * roundoff;
-// Forward kinematics of `bones` bones in float32, as a share of the reach; 24 operations a bone.
-inline double forwardKinematics(int bones) { return (24.0 * bones + 32) * roundoff; }
+// A direction just clamped: its sine is a product of a normalised pair (5 roundoff) and a quotient (4), its
+// stereographic form divides once more (3 + 3 of the denominator): 15 roundoff of t = tan(angle / 2), and
+// dtheta = 2 dt / (1 + t^2) is at most that.
+inline constexpr double limit = 16 * roundoff;
+// Forward kinematics of `bones` bones in float32, as a share of the reach; 24 operations a bone. A bone's
+// rotation divides by 1 + d.z, which at the edge of a cone with t = tan(half-angle / 2) is 2 / (1 + t^2).
+inline double forwardKinematics(int bones, double t) {
+  return (24.0 * bones + 32) * roundoff * std::max(1.0, (1 + t * t) / 2);
+}
 
 // Joints of a solved chain, as a share of the reach. A damped step solves with a matrix of least eigenvalue
 // mu >= 1e-5; rounding of its entries (2^-22) moves a step of x radians by up to 2^-22 x / sqrt(mu) = 8e-5 x

@@ -10,6 +10,12 @@ namespace {
 
 namespace tolerance = reference::tolerance;
 
+double kinematicsOf(const Setting& setting, const reference::Limb& limb) {
+  double widest = 0;
+  for (const reference::BoneRest& bone : limb.bones) widest = std::max(widest, bone.tanHalfCone);
+  return tolerance::forwardKinematics(setting.bones, widest);
+}
+
 // What must hold of any result, whichever way the solver went.
 void checkGoals(const Setting& setting, const Moment& moment, const reference::Limb& limb,
                 const reference::AgentBody& body, const glm::dvec3& target, const reference::Chain& got,
@@ -20,7 +26,7 @@ void checkGoals(const Setting& setting, const Moment& moment, const reference::L
     sample.compare("limit violation, rad", std::max(0.0, violation), tolerance::limit,
                    {t, static_cast<double>(i), 0, 0}, {got.directions[i], 0, 0});
   }
-  const double kinematics = tolerance::forwardKinematics(setting.bones);
+  const double kinematics = kinematicsOf(setting, limb);
   const glm::dvec3 tip = body.orientation * (limb.root + limb.reach * posture.tip());
   sample.compare("tip against its directions / reach", glm::length(tip - got.tip) / limb.reach, kinematics,
                  {tip, 0}, {got.tip, 0});
@@ -58,9 +64,8 @@ void checkIk(const Setting& setting, const Moment& moment, Judge& judge) {
     checkGoals(setting, moment, limb, body, reference::ikTarget(limb, body, foot.target), got, posture,
                sample);
     sample.compare("error before solving / reach",
-                   std::abs(expected.errorBefore - got.errorBefore) / limb.reach,
-                   tolerance::forwardKinematics(setting.bones), {expected.errorBefore, 0, 0, 0},
-                   {got.errorBefore, 0, 0, 0});
+                   std::abs(expected.errorBefore - got.errorBefore) / limb.reach, kinematicsOf(setting, limb),
+                   {expected.errorBefore, 0, 0, 0}, {got.errorBefore, 0, 0, 0});
 
     double apart = 0;
     for (size_t i = 1; i <= posture.bones(); ++i) {

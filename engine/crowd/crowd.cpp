@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -73,10 +74,10 @@ uint32_t agentsPerPage(const gpu::Context& context, const CrowdOptions& options,
   return static_cast<uint32_t>(agents);
 }
 
-Rig loadHerdRig(const Herd& herd) {
-  if (herd.controller != "adaptive")
-    throw inputError("controller '" + herd.controller + "' is unknown; there is: adaptive");
-  return herd.rig == "spider" ? spiderRig() : loadRig(herd.rig);
+std::vector<Rig> loadRigs(const Scene& scene) {
+  std::vector<Rig> rigs;
+  for (const Herd& herd : scene.herds) rigs.push_back(herd.rig == "spider" ? spiderRig() : loadRig(herd.rig));
+  return rigs;
 }
 
 gpu::Binding bindingOf(const Impl& crowd, const crowd::Herd& herd, const Page& page, uint32_t binding) {
@@ -253,7 +254,12 @@ void appendRecords(const gpu::Context& context, const gpu::Buffer& buffer, std::
 }  // namespace
 
 Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options)
+    : Crowd(device, terrain, scene, loadRigs(scene), options) {}
+
+Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,
+             const CrowdOptions& options)
     : impl_(std::make_unique<Impl>()) {
+  assert(rigs.size() == scene.herds.size());
   Impl& crowd = *impl_;
   const gpu::Context& context = device.context();
   crowd.context = &context;
@@ -272,7 +278,9 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, con
 
   for (const Herd& from : scene.herds) {
     crowd::Herd& herd = crowd.herds.emplace_back();
-    herd.rig = loadHerdRig(from);
+    if (from.controller != "adaptive")
+      throw inputError("controller '" + from.controller + "' is unknown; there is: adaptive");
+    herd.rig = std::move(rigs[crowd.herds.size() - 1]);
     herd.legs = herd.rig.legCount();
     herd.bones = herd.rig.maxBones();
     herd.groups = herd.rig.groupCount();

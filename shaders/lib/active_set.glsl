@@ -53,7 +53,7 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, float restPull, fl
     vec3 r = pose.tip - pose.joint[i];
     float present = limb.bone[i] == 0.0 ? 0.0 : 1.0;
     radial[i] = present * cross(u, r);
-    tangential[i] = present * cross(cross(w, u) * (s[i] / (1.0 + b.z)) - w, r);
+    tangential[i] = present * cross(cross(w, u) * (s[i] / max(1.0 + b.z, 1e-6)) - w, r);
     float below = limb.cosLimit[i] * b.z + limb.sinLimit[i] * s[i];
     room[i] = below < 0.1 ? UNLIMITED : (limb.sinLimit[i] * b.z - limb.cosLimit[i] * s[i]) / below;
     x0[i] = -restPull * limb.stiffness[i] * s[i];
@@ -98,7 +98,8 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, float restPull, fl
     }
   }
   float after = distance(target, tip);
-  bool kept = !lost && !(after > error && after > tolerance);
+  // At rest out of reach, rounding alone must not decide.
+  bool kept = !lost && !(after > 1.0001 * error && after > tolerance);
   for (int i = 0; i < BONES; ++i) pose.d[i] = kept ? d[i] : pose.d[i];
   pose.tip = kept ? tip : pose.tip;
   error = kept ? after : error;

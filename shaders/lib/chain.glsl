@@ -25,8 +25,9 @@ vec3 fromStereographic(vec2 s) {
 vec2 toStereographic(vec3 d) { return d.xy / (1.0 + max(d.z, -0.999999)); }
 
 vec3 clampCone(vec3 d, float cosLimit, float sinLimit) {
+  // Straight against the rest direction every way around is as good: one of them, not what rounding says.
   float s2 = dot(d.xy, d.xy);
-  vec2 h = s2 < 1e-12 ? vec2(1.0, 0.0) : d.xy * inversesqrt(max(s2, 1e-12));
+  vec2 h = s2 < 1e-6 ? vec2(1.0, 0.0) : d.xy * inversesqrt(max(s2, 1e-6));
   return d.z < cosLimit ? vec3(h * sinLimit, cosLimit) : d;
 }
 

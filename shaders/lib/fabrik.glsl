@@ -36,8 +36,9 @@ void fabrikIteration(Limb limb, vec3 target, inout Pose pose) {
   for (int i = 0; i < BONES; ++i) {
     vec3 v = q[i] - p;
     float distance = length(v);
-    vec3 u = rotateBack(r, v) / max(distance, 1e-6);
-    vec3 d = vec3(dot(limb.x[i], u), dot(limb.y[i], u), dot(limb.z[i], u));
+    vec3 w = rotateBack(r, v);
+    // Unit again at each bone: R grows from d, and what d lacks of length would double along the chain.
+    vec3 d = unit(vec3(dot(limb.x[i], w), dot(limb.y[i], w), dot(limb.z[i], w)));
     d = clampCone(d, limb.cosLimit[i], limb.sinLimit[i]);
     pose.d[i] = distance < 1e-6 || limb.bone[i] == 0.0 ? pose.d[i] : d;
     pose.joint[i] = p;

@@ -61,6 +61,9 @@ class Crowd {
   // cannot be (an unknown rig or controller, a terrain that reaches beyond 4 km from the origin) and
   // Error(device) when memory does not suffice.
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
+  // With rigs that the caller made, one a herd, in place of those that the scene names.
+  Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,
+        const CrowdOptions& options = {});
   ~Crowd();
   Crowd(Crowd&&) noexcept;
   Crowd& operator=(Crowd&&) noexcept;
