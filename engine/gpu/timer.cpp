@@ -34,7 +34,7 @@ void StageTimer::begin(vk::CommandBuffer cmd, const char* stage) {
   cmd.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *pool_, query);
 }
 
-void StageTimer::end(vk::CommandBuffer cmd, const char* stage) {
+void StageTimer::end(vk::CommandBuffer cmd, [[maybe_unused]] const char* stage) {
   if (!context_) return;
   if (measures()) {
     const auto open =
