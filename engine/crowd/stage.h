@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "gpu/kernel.h"
+#include "skitter/crowd.h"
 
 namespace skitter::crowd {
 
@@ -16,7 +17,14 @@ struct Stage {
   Over over;
 };
 
-// Each in a file of its own name, in the frame's order.
+// The frame: every stage in the order in which it is recorded.
+const std::vector<Stage>& stages();
+
+struct Herd;
+// A pipeline a stage, specialised by the herd's legs, bones and groups.
+void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd);
+
+// Each in a file of its own name.
 Stage navigateStage();
 Stage bodyStage();
 Stage gaitStage();

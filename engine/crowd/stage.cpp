@@ -1,0 +1,34 @@
+#include "crowd/stage.h"
+
+#include <cstring>
+
+#include "crowd/herd.h"
+#include "crowd/tuning.h"
+#include "shared/bindings.h"
+
+namespace skitter::crowd {
+
+const std::vector<Stage>& stages() {
+  static const std::vector<Stage> list = {
+      navigateStage(), bodyStage(), gaitStage(), footholdStage(),
+      swingStage(),    ikStage(),   poseStage(), measureStage(),
+  };
+  return list;
+}
+void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd) {
+  using namespace shared;
+  for (const Stage& stage : stages()) {
+    gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
+    for (const StageShader& other : options.shaders)
+      if (other.stage == stage.name) info.code = {other.texel, other.storage};
+    info.constants = {
+        {CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
+    if (std::strcmp(stage.name, "ik") == 0) {
+      info.constants.emplace_back(CONSTANT_FABRIK_ITERATIONS, kFabrikIterations);
+      info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, kPolishIterations);
+    }
+    herd.kernels.emplace_back(context, info);
+  }
+}
+
+}  // namespace skitter::crowd
