@@ -54,6 +54,7 @@ void printDevice(const DeviceReport& report) {
   row("indirect draws",
       fmt::format("multi {}, count {}", yes(features.multiDrawIndirect), yes(features.drawIndirectCount)));
   row("window", yes(features.presentation));
+  row("lacks", report.lacks.empty() ? "nothing" : fmt::format("{}", fmt::join(report.lacks, ", ")));
   if (report.chosen) row("chosen", "yes");
   if (!report.chosen) row("not chosen", report.whyNot);
   for (const std::string& refusal : report.refusals) row("unsuitable", refusal);
@@ -94,6 +95,7 @@ nlohmann::ordered_json describe(const DeviceReport& report) {
             {"fillModeNonSolid", features.fillModeNonSolid},
             {"samplerAnisotropy", features.samplerAnisotropy},
             {"presentation", features.presentation}}},
+          {"lacks", report.lacks},
           {"suitable", report.suitable},
           {"refusals", report.refusals},
           {"chosen", report.chosen},

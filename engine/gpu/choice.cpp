@@ -15,6 +15,7 @@ namespace {
 
 // Under this, a page of records may not fit one texel view.
 constexpr uint64_t kEnoughTexels = 1ull << 24;
+constexpr uint32_t kLargestHeightfield = 16384;  // samples a side that files may have
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -149,6 +150,28 @@ void chooseLoads(std::optional<LoadPath> wanted, DeviceReport& report) {
   }
 }
 
+// Of an adopted device the features are not known.
+void listLacks(bool adopted, DeviceReport& report) {
+  const DeviceLimits& limits = report.limits;
+  const DeviceFeatures& features = report.features;
+  const auto lack = [&](bool has, std::string what) {
+    if (!has) report.lacks.push_back(std::move(what));
+  };
+  lack(adopted || features.drawIndirectCount, "drawIndirectCount");
+  lack(adopted || features.multiDrawIndirect, "multiDrawIndirect");
+  lack(adopted || features.drawIndirectFirstInstance, "drawIndirectFirstInstance");
+  lack(adopted || features.shaderDrawParameters, "shaderDrawParameters");
+  lack(adopted || features.fillModeNonSolid, "fillModeNonSolid");
+  lack(adopted || features.samplerAnisotropy, "samplerAnisotropy");
+  lack(adopted || features.presentation, "windows (VK_KHR_swapchain)");
+  lack(limits.timestampBits > 0, "timestamps");
+  lack(limits.texelRgba32f, "RGBA32F texel buffers");
+  lack(!limits.texelRgba32f || limits.maxTexelBufferElements >= kEnoughTexels,
+       fmt::format("texel buffers beyond {} vec4", limits.maxTexelBufferElements));
+  lack(limits.maxImageDimension2D >= kLargestHeightfield,
+       fmt::format("heightfields beyond {} samples a side", limits.maxImageDimension2D));
+}
+
 std::string describe(const DeviceReport& report) {
   return fmt::format("{} \"{}\" ({})", report.index, report.name, report.typeName());
 }
@@ -217,6 +240,7 @@ Candidate inspect(vk::raii::PhysicalDevice physical, uint32_t index, const Devic
     inspectLimits(device, report);
     inspectFeatures(device, queueFamily.has_value(), report);
     inspectQueue(device, queueFamily, candidate);
+    listLacks(queueFamily.has_value(), report);
     chooseLoads(request.loads, report);
     if (request.presentation && !report.features.presentation) {
       report.refusals.push_back("has no VK_KHR_swapchain, which showing a window needs");

@@ -12,11 +12,15 @@ TEST_F(Info, TableAndJsonNameTheChosenDevice) {
   EXPECT_EQ(files(), std::vector<std::string>{"info.json"});
 
   const nlohmann::json info = json("info.json");
+  EXPECT_NE(result.out.find("lacks "), std::string::npos);
   int chosen = 0;
   for (const nlohmann::json& device : info.at("devices")) {
     EXPECT_NE(result.out.find(device.at("name").get<std::string>()), std::string::npos);
     EXPECT_TRUE(device.at("limits").at("maxStorageBufferRange").is_number_unsigned());
     EXPECT_TRUE(device.at("features").at("presentation").is_boolean());
+    for (const nlohmann::json& lack : device.at("lacks")) {
+      EXPECT_NE(result.out.find(lack.get<std::string>()), std::string::npos) << lack;
+    }
     if (device.at("chosen")) {
       ++chosen;
       EXPECT_EQ(device.at("index"), info.at("chosen"));

@@ -95,6 +95,21 @@ TEST(DeviceChoice, OthersSayWhyNot) {
   }
 }
 
+TEST(DeviceChoice, WhatADeviceLacksIsNamed) {
+  for (const DeviceReport& device : listDevices()) {
+    const auto lacks = [&](const std::string& what) {
+      return std::any_of(device.lacks.begin(), device.lacks.end(),
+                         [&](const std::string& lack) { return lack.find(what) == 0; });
+    };
+    EXPECT_EQ(lacks("drawIndirectCount"), !device.features.drawIndirectCount);
+    EXPECT_EQ(lacks("shaderDrawParameters"), !device.features.shaderDrawParameters);
+    EXPECT_EQ(lacks("windows"), !device.features.presentation);
+    EXPECT_EQ(lacks("timestamps"), device.limits.timestampBits == 0);
+    EXPECT_EQ(lacks("texel buffers beyond " + std::to_string(device.limits.maxTexelBufferElements)),
+              device.limits.texelRgba32f && device.limits.maxTexelBufferElements < 1u << 24);
+  }
+}
+
 TEST(DeviceChoice, NoDriverSaysWhatToInstall) {
   const Environment drivers("VK_DRIVER_FILES", "/nowhere/no_icd.json");
   const Environment older("VK_ICD_FILENAMES", "/nowhere/no_icd.json");
