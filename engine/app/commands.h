@@ -13,6 +13,8 @@ using Command = std::function<int()>;
 
 // Each adds its subcommand, which on being named sets `chosen`.
 void addInfo(CLI::App&, Command& chosen);
+void addInspect(CLI::App&, Command& chosen);
+void addRig(CLI::App&, Command& chosen);
 void addRun(CLI::App&, Command& chosen);
 void addValidate(CLI::App&, Command& chosen);
 

@@ -19,6 +19,7 @@ constexpr const char* footer =
     "Examples:\n"
     "  skitter info\n"
     "  skitter run\n"
+    "  skitter rig crab.glb && skitter run --rig crab.glb\n"
     "  skitter run --agents 200 --frames 240 --out walk.mp4\n"
     "  skitter validate --device llvmpipe";
 
@@ -36,6 +37,8 @@ int runCommand(int argc, char** argv) {
   app.require_subcommand(0, 1);
   skitter::app::Command command;
   skitter::app::addInfo(app, command);
+  skitter::app::addInspect(app, command);
+  skitter::app::addRig(app, command);
   skitter::app::addRun(app, command);
   skitter::app::addValidate(app, command);
   try {
@@ -45,7 +48,8 @@ int runCommand(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return fail(2, fmt::format("{} (skitter --help lists what there is)", error.what()));
   }
-  if (!command) return fail(2, "no subcommand, expected info, run or validate (skitter --help)");
+  if (!command)
+    return fail(2, "no subcommand, expected info, inspect, rig, run or validate (skitter --help)");
   return command();
 }
 

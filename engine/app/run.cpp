@@ -137,6 +137,9 @@ int run(const RunOptions& options) {
 
   Summary summary;
   summary.device = device.report().name;
+  summary.terrain = fmt::format("{}, {} x {} samples, {:.6g} x {:.6g} m", terrain.name, terrain.columns,
+                                terrain.rows, terrain.extentX(), terrain.extentZ());
+  summary.filledVoids = terrain.filledVoids;
   summary.agents = crowd.agentCount();
   summary.seed = scene.seed;
   summary.cpuTold = !windowed && !target.isEveryFrame();

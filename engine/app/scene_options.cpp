@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "noise_option.h"
 #include "skitter/error.h"
-#include "values.h"
 
 namespace skitter::app {
 namespace {
@@ -15,7 +17,8 @@ constexpr uint64_t maxAgents = 16777216;  // as in a scene file: beyond it a flo
 constexpr double maxMetres = 1e5;         // a sample, as in a scene file
 constexpr double minMetres = 1e-4;
 constexpr double maxHeight = 1e6;  // metres
-constexpr double minScale = 1e-6, maxScale = 1e6;
+constexpr double minScale = 1e-6, maxScale = 1e6, maxExaggeration = 1000;
+constexpr double maxVoidValue = std::numeric_limits<double>::max();
 // Steps are timed in whole ticks of at least three a swing, so ticks far from a display's rate animate
 // nothing.
 constexpr double minTick = 1e-3, maxTick = 0.1;
@@ -52,34 +55,12 @@ void SceneOptions::addTo(CLI::App& command, const char* agentsHelp) {
           [this](const std::string& text) { agents = parseWhole("--agents", text, 0, maxAgents); },
           fmt::format("agents of the first herd; other herds keep their proportion to it [{}]", agentsHelp))
       ->type_name("N");
-  command.add_option("--terrain", terrain, "a grey PNG of heights instead of the scene's terrain")
+  command
+      .add_option(
+          "--rig", rig,
+          "the first herd's rig: spider, a model with its sidecar beside it, or a sidecar (docs/rig.md)")
       ->type_name("FILE");
-  command
-      .add_option_function<std::string>(
-          "--spacing",
-          [this](const std::string& text) {
-            spacing = parsePair("--spacing", text, minMetres, maxMetres, true);
-          },
-          "metres a sample of the terrain file [its NAME.json, else 0.5]")
-      ->type_name("X[,Z]");
-  command
-      .add_option_function<std::string>(
-          "--heights",
-          [this](const std::string& text) {
-            heights = parsePair("--heights", text, -maxHeight, maxHeight, false);
-            if (heights->first > heights->second) {
-              throw inputError(
-                  fmt::format("--heights is {}, expected MIN,MAX with MIN no higher than MAX", text));
-            }
-          },
-          "metres of the terrain file's black and white [its NAME.json, else 0,10]")
-      ->type_name("MIN,MAX");
-  command
-      .add_option_function<std::string>(
-          "--scale",
-          [this](const std::string& text) { scale = parseNumber("--scale", text, minScale, maxScale); },
-          "multiplies the terrain file's spacing and heights alike [1]")
-      ->type_name("S");
+  addTerrainTo(command);
   command
       .add_option_function<std::string>(
           "--dt", [this](const std::string& text) { dt = parseNumber("--dt", text, minTick, maxTick); },
@@ -97,27 +78,111 @@ void SceneOptions::addTo(CLI::App& command, const char* agentsHelp) {
       ->type_name("NAME|INDEX");
 }
 
-Scene SceneOptions::load() const {
-  Scene result = scene.empty() ? builtinScene() : loadScene(scene);
-  if (agents) scaleHerds(result, *agents);
-  if (seed) result.seed = *seed;
-  if (!terrain.empty()) result.terrain = TerrainFile{terrain, {}};
-  if (!spacing && !heights && !scale) return result;
+void SceneOptions::addTerrainTo(CLI::App& command) {
+  command
+      .add_option("--terrain", terrain,
+                  "heights instead of the scene's terrain: .png, .r16, .r32f, .hgt, .npy (docs/terrain.md), "
+                  "or noise:amplitude=A,wavelength=W,seed=N,... to generate them")
+      ->type_name("FILE|noise[:KEY=VALUE,...]");
+  command
+      .add_option_function<std::string>(
+          "--terrain-size",
+          [this](const std::string& text) { terrainSize = parseSize("--terrain-size", text, 2); },
+          "samples of a raw terrain file [its NAME.json, its name NAME_WxH, else a square]")
+      ->type_name("WxH");
+  command
+      .add_option_function<std::string>(
+          "--spacing",
+          [this](const std::string& text) {
+            spacing = parsePair("--spacing", text, minMetres, maxMetres, true);
+          },
+          "metres a sample of the terrain file [its NAME.json, a .hgt its latitude, else 0.5]")
+      ->type_name("X[,Z]");
+  command
+      .add_option_function<std::string>(
+          "--heights",
+          [this](const std::string& text) {
+            heights = parsePair("--heights", text, -maxHeight, maxHeight, false);
+            if (heights->first > heights->second) {
+              throw inputError(
+                  fmt::format("--heights is {}, expected MIN,MAX with MIN no higher than MAX", text));
+            }
+          },
+          "metres of the terrain file's lowest and highest code [its NAME.json, else 0,10]; a file of "
+          "metres is rescaled to them")
+      ->type_name("MIN,MAX");
+  command
+      .add_option_function<std::string>(
+          "--scale",
+          [this](const std::string& text) { scale = parseNumber("--scale", text, minScale, maxScale); },
+          "multiplies the terrain file's spacing and heights alike [1]")
+      ->type_name("S");
+  command
+      .add_option_function<std::string>(
+          "--exaggeration",
+          [this](const std::string& text) {
+            exaggeration = parseNumber("--exaggeration", text, 0, maxExaggeration);
+          },
+          "multiplies the terrain file's heights alone [1]")
+      ->type_name("E");
+  command
+      .add_option_function<std::string>(
+          "--void-value",
+          [this](const std::string& text) {
+            voidValue = parseNumber("--void-value", text, -maxVoidValue, maxVoidValue);
+          },
+          "a sample of this value, as stored, has no height and is filled in from around")
+      ->type_name("V");
+}
+
+void SceneOptions::applyTerrain(Scene& result) const {
+  if (!terrain.empty()) {
+    if (isNoise(terrain)) {
+      result.terrain = parseNoise("--terrain", terrain);
+    } else {
+      result.terrain = TerrainFile{terrain, {}};
+    }
+  }
+  const std::pair<const char*, bool> given[] = {
+      {"--terrain-size", terrainSize.has_value()},  {"--spacing", spacing.has_value()},
+      {"--heights", heights.has_value()},           {"--scale", scale.has_value()},
+      {"--exaggeration", exaggeration.has_value()}, {"--void-value", voidValue.has_value()}};
+  const auto first =
+      std::find_if(std::begin(given), std::end(given), [](const auto& flag) { return flag.second; });
+  if (first == std::end(given)) return;
 
   auto* file = std::get_if<TerrainFile>(&result.terrain);
   if (!file) {
-    throw inputError(fmt::format("{}: {} generates its terrain, so this needs --terrain FILE",
-                                 spacing ? "--spacing" : (heights ? "--heights" : "--scale"), result.name));
+    throw inputError(fmt::format("{}: {} generates its terrain, so this needs --terrain FILE", first->first,
+                                 terrain.empty() ? result.name : terrain));
+  }
+  HeightfieldUnits& units = file->units;
+  if (terrainSize) {
+    units.columns = terrainSize->width;
+    units.rows = terrainSize->height;
   }
   if (spacing) {
-    file->units.spacingX = static_cast<float>(spacing->first);
-    file->units.spacingZ = static_cast<float>(spacing->second);
+    units.spacingX = static_cast<float>(spacing->first);
+    units.spacingZ = static_cast<float>(spacing->second);
   }
   if (heights) {
-    file->units.minHeight = static_cast<float>(heights->first);
-    file->units.maxHeight = static_cast<float>(heights->second);
+    units.minHeight = static_cast<float>(heights->first);
+    units.maxHeight = static_cast<float>(heights->second);
   }
-  if (scale) file->units.scale = static_cast<float>(*scale);
+  if (scale) units.scale = static_cast<float>(*scale);
+  if (exaggeration) units.exaggeration = static_cast<float>(*exaggeration);
+  if (voidValue) units.voidValue = *voidValue;
+}
+
+Scene SceneOptions::load() const {
+  Scene result = scene.empty() ? builtinScene() : loadScene(scene);
+  if (agents) scaleHerds(result, *agents);
+  if (!rig.empty()) {
+    if (result.herds.empty()) throw inputError(fmt::format("--rig: {} has no herds", result.name));
+    result.herds.front().rig = rig;
+  }
+  if (seed) result.seed = *seed;
+  applyTerrain(result);
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "skitter/device.h"
 #include "skitter/scene.h"
+#include "values.h"
 
 namespace CLI {
 class App;
@@ -18,9 +19,11 @@ namespace skitter::app {
 struct SceneOptions {
   std::string scene;  // empty: the built-in scene
   std::optional<uint64_t> agents, seed;
+  std::string rig;      // empty: the scene's own
   std::string terrain;  // empty: the scene's own
+  std::optional<Size> terrainSize;
   std::optional<std::pair<double, double>> spacing, heights;
-  std::optional<double> scale;
+  std::optional<double> scale, exaggeration, voidValue;
   double dt = 1.0 / 60;
   std::optional<std::string> device;
 
@@ -28,6 +31,10 @@ struct SceneOptions {
   void addTo(CLI::App& command, const char* agentsHelp);
   // The scene as the flags leave it. Throws Error(input).
   Scene load() const;
+
+ private:
+  void addTerrainTo(CLI::App& command);
+  void applyTerrain(Scene& scene) const;
 };
 
 // Refuses a scene whose records cannot fit the device's free memory, before anything is allocated.

@@ -31,6 +31,7 @@ void printRow(const char* name, const std::string& value) { fmt::print("{:<12}{}
 
 void Summary::print() const {
   printRow("device", device);
+  printRow("terrain", filledVoids > 0 ? fmt::format("{}, voids filled: {}", terrain, filledVoids) : terrain);
   printRow("agents", fmt::format("{}", agents));
   printRow("ticks", ticks < wantedTicks ? fmt::format("{} of {}, interrupted", ticks, wantedTicks)
                                         : fmt::format("{}", ticks));

@@ -14,6 +14,8 @@ namespace skitter::app {
 // What a run came to: printed for people and written for programs.
 struct Summary {
   std::string device;
+  std::string terrain;  // name, samples and metres
+  uint64_t filledVoids = 0;
   uint64_t agents = 0, ticks = 0, frames = 0, seed = 0;
   uint64_t wantedTicks = 0;  // more than `ticks` where the run was interrupted
   TickTimes times;

@@ -10,7 +10,7 @@
 namespace skitter::app {
 namespace {
 
-constexpr uint64_t maxSide = 16384;  // pixels: the largest 2D image that Vulkan devices offer
+constexpr uint64_t maxSide = 16384;  // the largest 2D image that Vulkan devices offer
 
 template <class T>
 std::optional<T> parse(std::string_view text) {
@@ -54,13 +54,13 @@ std::pair<double, double> parsePair(const std::string& option, const std::string
           parseNumber(option, text.substr(comma + 1), least, most)};
 }
 
-Size parseSize(const std::string& option, const std::string& text) {
+Size parseSize(const std::string& option, const std::string& text, uint32_t least) {
   const size_t cross = text.find('x');
   const auto width = parse<uint64_t>(std::string_view(text).substr(0, cross));
   const auto height =
       cross == std::string::npos ? std::nullopt : parse<uint64_t>(std::string_view(text).substr(cross + 1));
-  if (!width || !height || *width < 1 || *height < 1 || *width > maxSide || *height > maxSide) {
-    throw unexpected(option, text, fmt::format("WIDTHxHEIGHT in pixels, each from 1 to {}", maxSide));
+  if (!width || !height || *width < least || *height < least || *width > maxSide || *height > maxSide) {
+    throw unexpected(option, text, fmt::format("WIDTHxHEIGHT, each from {} to {}", least, maxSide));
   }
   return {static_cast<uint32_t>(*width), static_cast<uint32_t>(*height)};
 }

@@ -17,6 +17,7 @@ std::pair<double, double> parsePair(const std::string& option, const std::string
 struct Size {
   uint32_t width, height;
 };
-Size parseSize(const std::string& option, const std::string& text);  // "WIDTHxHEIGHT"
+// "WIDTHxHEIGHT" of pictures and of grids, each side from `least` to 16384.
+Size parseSize(const std::string& option, const std::string& text, uint32_t least = 1);
 
 }  // namespace skitter::app

@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <system_error>
 
 #include "skitter/error.h"
 
 namespace skitter {
 
-std::vector<uint8_t> readFile(const std::filesystem::path& file) {
-  constexpr uintmax_t limit = uintmax_t{1} << 31;
+FileStream::FileStream(const std::filesystem::path& file) : file_(file) {
   const std::string name = file.string();
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
@@ -21,17 +19,30 @@ std::vector<uint8_t> readFile(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(status)) {
     throw inputError(fmt::format("{}: is not a regular file", name));
   }
-  const uintmax_t size = std::filesystem::file_size(file, error);
+  size_ = std::filesystem::file_size(file, error);
   if (error) throw inputError(fmt::format("{}: cannot be read: {}", name, error.message()));
-  if (size == 0) throw inputError(fmt::format("{}: is empty", name));
-  if (size > limit) throw inputError(fmt::format("{}: has {} bytes, expected at most {}", name, size, limit));
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw inputError(fmt::format("{}: cannot be opened for reading", name));
-  std::vector<uint8_t> bytes(size);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (static_cast<uintmax_t>(stream.gcount()) != size) {
-    throw inputError(fmt::format("{}: reading stopped after {} of {} bytes", name, stream.gcount(), size));
+  if (size_ == 0) throw inputError(fmt::format("{}: is empty", name));
+  stream_.open(file, std::ios::binary);
+  if (!stream_) throw inputError(fmt::format("{}: cannot be opened for reading", name));
+}
+
+void FileStream::read(void* to, size_t bytes) {
+  stream_.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes));
+  if (static_cast<size_t>(stream_.gcount()) != bytes) {
+    throw inputError(
+        fmt::format("{}: reading stopped after {} of {} bytes", file_.string(), stream_.gcount(), bytes));
   }
+}
+
+std::vector<uint8_t> readFile(const std::filesystem::path& file) {
+  constexpr uintmax_t limit = uintmax_t{1} << 31;
+  FileStream stream(file);
+  if (stream.size() > limit) {
+    throw inputError(
+        fmt::format("{}: has {} bytes, expected at most {}", file.string(), stream.size(), limit));
+  }
+  std::vector<uint8_t> bytes(stream.size());
+  stream.read(bytes.data(), bytes.size());
   return bytes;
 }
 

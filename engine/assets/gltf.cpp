@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <new>
 
+#include "gltf_file.h"
 #include "json.h"
 #include "skitter/error.h"
 
@@ -24,113 +25,47 @@ namespace skitter::gltf {
 namespace {
 
 constexpr size_t maxElements = size_t{1} << 24;  // of an accessor
-
-uint32_t readWord(std::span<const uint8_t> bytes, size_t offset) {
-  return static_cast<uint32_t>(bytes[offset]) | static_cast<uint32_t>(bytes[offset + 1]) << 8 |
-         static_cast<uint32_t>(bytes[offset + 2]) << 16 | static_cast<uint32_t>(bytes[offset + 3]) << 24;
-}
-
-// The chunks of a binary file (glTF 2.0 specification, section 4.4).
-struct Chunks {
-  std::string_view json;
-  std::span<const uint8_t> binary;
-};
-
-Chunks splitChunks(std::span<const uint8_t> glb, const std::string& name) {
-  constexpr uint32_t jsonType = 0x4e4f534a, binaryType = 0x004e4942;
-  if (glb.size() < 4 || std::memcmp(glb.data(), "glTF", 4) != 0) {
-    throw inputError(fmt::format("{}: is not a glTF binary (.glb): wrong signature", name));
-  }
-  if (glb.size() < 20)
-    throw inputError(fmt::format("{}: ends after {} bytes, within its header", name, glb.size()));
-  if (readWord(glb, 4) != 2) {
-    throw inputError(fmt::format("{}: is glTF binary version {}, expected 2", name, readWord(glb, 4)));
-  }
-  const size_t length = readWord(glb, 8);
-  if (length < 20 || length > glb.size()) {
-    throw inputError(fmt::format("{}: its header says {} bytes, the file has {}", name, length, glb.size()));
-  }
-  Chunks chunks;
-  for (size_t offset = 12; offset < length;) {
-    if (length - offset < 8) throw inputError(fmt::format("{}: ends within a chunk header", name));
-    const size_t size = readWord(glb, offset);
-    const uint32_t type = readWord(glb, offset + 4);
-    const bool first = offset == 12;
-    offset += 8;
-    if (size > length - offset) {
-      throw inputError(fmt::format("{}: a chunk of {} bytes has only {} left", name, size, length - offset));
-    }
-    if (first != (type == jsonType)) {
-      throw inputError(fmt::format("{}: its first chunk, and only that, must be JSON", name));
-    }
-    if (first) chunks.json = {reinterpret_cast<const char*>(glb.data()) + offset, size};
-    if (type == binaryType && chunks.binary.empty()) chunks.binary = glb.subspan(offset, size);
-    offset += size;
-  }
-  return chunks;
-}
+constexpr size_t maxZeros = size_t{1} << 20;     // elements of an accessor without data
+constexpr size_t maxNumbers = size_t{1} << 26;   // of all accessors, each as often as it is used
+constexpr size_t maxObjects = size_t{1} << 16;   // nodes, meshes, primitives of a mesh, skins, clips
 
 void refuseUnsupported(const nlohmann::json& json, const std::string& name) {
-  if (!json.is_object()) throw inputError(fmt::format("{}: its JSON is not an object", name));
-  if (const auto required = json.find("extensionsRequired"); required != json.end()) {
-    for (const auto& entry : *required) {
-      const std::string extension = entry.is_string() ? entry.get<std::string>() : describeJson(entry);
-      // These change how a surface looks or how numbers are packed, both of which are taken as they come.
-      if (extension.rfind("KHR_materials_", 0) != 0 && extension.rfind("KHR_texture_", 0) != 0 &&
-          extension != "KHR_mesh_quantization") {
-        throw inputError(fmt::format("{}: requires extension {}, which is not supported", name, extension));
-      }
-    }
+  const auto asset = json.find("asset");
+  const auto version = asset != json.end() && asset->is_object() ? asset->find("version") : json.end();
+  if (asset == json.end() || !asset->is_object() || version == asset->end() || !version->is_string() ||
+      version->get_ref<const std::string&>().rfind("2.", 0) != 0) {
+    throw inputError(fmt::format("{}: its asset.version is not 2.x, expected glTF 2.0", name));
   }
-  const auto buffers = json.find("buffers");
-  if (buffers == json.end() || !buffers->is_array()) return;
-  for (size_t i = 0; i < buffers->size(); ++i) {
-    const auto& buffer = (*buffers)[i];
-    const auto uri = buffer.is_object() ? buffer.find("uri") : buffer.end();
-    if (!buffer.is_object() || uri == buffer.end()) {
-      if (i > 0) throw inputError(fmt::format("{}: buffers[{}] has no data", name, i));
-    } else if (!uri->is_string() || uri->get_ref<const std::string&>().rfind("data:", 0) != 0) {
-      throw inputError(fmt::format("{}: buffers[{}] refers to {}, expected everything in one file", name, i,
-                                   describeJson(*uri)));
+  const auto required = json.find("extensionsRequired");
+  if (required == json.end()) return;
+  for (const auto& entry : *required) {
+    const std::string extension = entry.is_string() ? entry.get<std::string>() : describeJson(entry);
+    // These change how a surface looks or how numbers are packed, both of which are taken as they come.
+    if (extension.rfind("KHR_materials_", 0) != 0 && extension.rfind("KHR_texture_", 0) != 0 &&
+        extension != "KHR_mesh_quantization") {
+      throw inputError(fmt::format("{}: requires extension {}, which is not supported", name, extension));
     }
   }
 }
 
-void appendWord(std::vector<uint8_t>& bytes, size_t word) {
-  for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<uint8_t>(word >> shift));
-}
-
-tinygltf::Model loadModel(nlohmann::json json, std::span<const uint8_t> binary, const std::string& name) {
-  // Without pictures and motion, which a rig does not hold: there is then nothing to decode and nothing to
-  // miss.
-  for (const char* key : {"images", "textures", "samplers", "animations", "cameras", "extensions"})
+// What tinygltf reads of the file: nodes, meshes, skins, materials and accessors. Buffers are the caller's,
+// clips are read apart, and pictures are not read at all, so that there is nothing to decode and to miss.
+tinygltf::Model loadModel(nlohmann::json json, const std::string& name) {
+  for (const char* key :
+       {"buffers", "images", "textures", "samplers", "animations", "cameras", "extensions"}) {
     json.erase(key);
-  std::string text = json.dump();
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  std::vector<uint8_t> glb{'g', 'l', 'T', 'F'};
-  const size_t binarySize = (binary.size() + 3) / 4 * 4;
-  const size_t total = 20 + text.size() + (binarySize ? 8 + binarySize : 0);
-  glb.reserve(total);
-  appendWord(glb, 2);
-  appendWord(glb, total);
-  appendWord(glb, text.size());
-  appendWord(glb, 0x4e4f534a);
-  glb.insert(glb.end(), text.begin(), text.end());
-  if (binarySize) {
-    appendWord(glb, binarySize);
-    appendWord(glb, 0x004e4942);
-    glb.insert(glb.end(), binary.begin(), binary.end());
-    glb.resize(total, 0);
   }
-
+  const std::string text = json.dump();
   tinygltf::TinyGLTF loader;
   tinygltf::Model model;
   std::string error, warning;
   // The error string is filled on success too, so the return value decides.
-  if (!loader.LoadBinaryFromMemory(&model, &error, &warning, glb.data(), static_cast<unsigned>(glb.size()))) {
+  if (!loader.LoadASCIIFromString(&model, &error, &warning, text.data(), static_cast<unsigned>(text.size()),
+                                  "")) {
     for (char& c : error) c = c == '\n' || c == '\r' ? ' ' : c;
     while (!error.empty() && error.back() == ' ') error.pop_back();
-    throw inputError(fmt::format("{}: is not valid glTF: {}", name, error));
+    throw inputError(fmt::format("{}: is not valid glTF: {}", name,
+                                 error.empty() ? "a property is missing or has the wrong type" : error));
   }
   return model;
 }
@@ -139,14 +74,18 @@ tinygltf::Model loadModel(nlohmann::json json, std::span<const uint8_t> binary, 
 // number.
 class Reader {
  public:
-  Reader(const tinygltf::Model& model, const std::string& name) : model_(model), name_(name) {}
+  Reader(const tinygltf::Model& model, const File& file, const std::string& name)
+      : model_(model), file_(file), name_(name) {}
 
-  Document document() const {
+  Document document() {
     Document document;
     readNodes(document);
     for (size_t i = 0; i < model_.meshes.size(); ++i) document.meshes.push_back(mesh(i));
     for (size_t i = 0; i < model_.skins.size(); ++i) document.skins.push_back(skin(i));
     for (const Node& node : document.nodes) checkSkinning(document, node);
+    readClips(document);
+    notePictures();
+    document.notes = std::move(notes_);
     return document;
   }
 
@@ -255,8 +194,9 @@ class Reader {
     checkIndex(index, model_.bufferViews.size(), what + ".bufferView");
     const tinygltf::BufferView& from = model_.bufferViews[static_cast<size_t>(index)];
     const std::string viewName = fmt::format("bufferViews[{}]", index);
-    checkIndex(from.buffer, model_.buffers.size(), viewName + ".buffer");
-    const auto& data = model_.buffers[static_cast<size_t>(from.buffer)].data;
+    checkIndex(from.buffer, file_.buffers.size(), viewName + ".buffer");
+    const auto& data = file_.buffers[static_cast<size_t>(from.buffer)];
+    if (data.empty()) fail("{} is of buffers[{}], which has no data", viewName, from.buffer);
     if (from.byteOffset > data.size() || from.byteLength > data.size() - from.byteOffset) {
       fail("{} reaches past the {} bytes of its buffer", viewName, data.size());
     }
@@ -293,7 +233,7 @@ class Reader {
   };
 
   // All numbers of an accessor whose type has one of the given component counts.
-  Values accessor(int index, std::initializer_list<int> types, bool integers, const std::string& use) const {
+  Values accessor(int index, std::initializer_list<int> types, bool integers, const std::string& use) {
     checkIndex(index, model_.accessors.size(), use);
     const tinygltf::Accessor& from = model_.accessors[static_cast<size_t>(index)];
     const std::string what = fmt::format("accessors[{}] ({})", index, use);
@@ -314,8 +254,23 @@ class Reader {
     values.count = from.count;
     values.components =
         static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(from.type)));
-    values.numbers.resize(values.count * values.components);
     const size_t size = values.components * static_cast<size_t>(width);
+    const uint8_t* data = nullptr;
+    size_t stride = size;
+    if (from.bufferView != -1) {
+      checkIndex(from.bufferView, model_.bufferViews.size(), what + ".bufferView");
+      const size_t given = model_.bufferViews[static_cast<size_t>(from.bufferView)].byteStride;
+      if (given != 0) stride = given;
+      if (stride < size || stride > 252 + size)
+        fail("{} has a stride of {}, its elements {} bytes", what, stride, size);
+      data = view(from.bufferView, from.byteOffset, stride * (values.count - 1) + size, what);
+    } else if (values.count > maxZeros) {
+      // Nothing in the file stands behind these elements, so their number is limited apart.
+      fail("{} has {} elements without data, expected at most {}", what, values.count, maxZeros);
+    }
+    numbersRead_ += values.count * values.components;
+    if (numbersRead_ > maxNumbers) fail("its accessors are read as over {} numbers in all", maxNumbers);
+    values.numbers.resize(values.count * values.components);
     const auto decode = [&](const uint8_t* at, size_t element) {
       for (size_t k = 0; k < values.components; ++k) {
         const double number =
@@ -324,15 +279,7 @@ class Reader {
         values.numbers[element * values.components + k] = number;
       }
     };
-    if (from.bufferView != -1) {
-      checkIndex(from.bufferView, model_.bufferViews.size(), what + ".bufferView");
-      size_t stride = model_.bufferViews[static_cast<size_t>(from.bufferView)].byteStride;
-      if (stride == 0) stride = size;
-      if (stride < size || stride > 252 + size)
-        fail("{} has a stride of {}, its elements {} bytes", what, stride, size);
-      const uint8_t* data = view(from.bufferView, from.byteOffset, stride * (values.count - 1) + size, what);
-      for (size_t i = 0; i < values.count; ++i) decode(data + i * stride, i);
-    }
+    for (size_t i = 0; data && i < values.count; ++i) decode(data + i * stride, i);
     if (from.sparse.isSparse) readSparse(from, what, size, decode, values.count);
     return values;
   }
@@ -378,16 +325,29 @@ class Reader {
     return factor.empty() ? glm::dvec3(1) : glm::dvec3(factor[0], factor[1], factor[2]);
   }
 
-  Mesh mesh(size_t index) const {
+  Mesh mesh(size_t index) {
     Mesh mesh;
     for (size_t k = 0; k < model_.meshes[index].primitives.size(); ++k) {
-      mesh.primitives.push_back(
-          primitive(model_.meshes[index].primitives[k], fmt::format("meshes[{}].primitives[{}]", index, k)));
+      const tinygltf::Primitive& from = model_.meshes[index].primitives[k];
+      const std::string what = fmt::format("meshes[{}].primitives[{}]", index, k);
+      const int mode = from.mode == -1 ? TINYGLTF_MODE_TRIANGLES : from.mode;
+      if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+        fail("{} has mode {}, expected 0 to 6", what, mode);
+      }
+      if (mode < TINYGLTF_MODE_TRIANGLES) {
+        notes_.push_back(fmt::format("{} is points or lines (mode {}): left out", what, mode));
+        continue;
+      }
+      if (!from.targets.empty()) notes_.push_back(what + " has morph targets: not applied");
+      mesh.primitives.push_back(primitive(from, what));
+      for (const Influence& influence : mesh.primitives.back().influences) {
+        mesh.highestJoint = std::max(mesh.highestJoint, influence.joint);
+      }
     }
     return mesh;
   }
 
-  Primitive primitive(const tinygltf::Primitive& from, const std::string& what) const {
+  Primitive primitive(const tinygltf::Primitive& from, const std::string& what) {
     Primitive primitive;
     const auto attribute = [&](const std::string& key, std::initializer_list<int> types, bool integers) {
       Values values;
@@ -430,7 +390,7 @@ class Reader {
   }
 
   std::vector<uint32_t> triangles(const tinygltf::Primitive& from, size_t vertexCount,
-                                  const std::string& what) const {
+                                  const std::string& what) {
     std::vector<uint32_t> indices;
     if (from.indices == -1) {
       indices.resize(vertexCount);
@@ -449,9 +409,6 @@ class Reader {
       if (indices.size() % 3 != 0) fail("{} has {} indices, no multiple of 3", what, indices.size());
       return indices;
     }
-    if (mode != TINYGLTF_MODE_TRIANGLE_STRIP && mode != TINYGLTF_MODE_TRIANGLE_FAN) {
-      fail("{} has mode {}, expected triangles (4, 5 or 6)", what, mode);
-    }
     std::vector<uint32_t> list;
     for (size_t i = 0; i + 2 < indices.size(); ++i) {
       if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
@@ -463,7 +420,7 @@ class Reader {
     return list;
   }
 
-  Skin skin(size_t index) const {
+  Skin skin(size_t index) {
     const tinygltf::Skin& from = model_.skins[index];
     const std::string what = fmt::format("skins[{}]", index);
     if (from.joints.empty()) fail("{} has no joints", what);
@@ -488,18 +445,81 @@ class Reader {
   void checkSkinning(const Document& document, const Node& node) const {
     if (node.mesh == -1 || node.skin == -1) return;
     const size_t joints = document.skins[static_cast<size_t>(node.skin)].joints.size();
-    for (const Primitive& part : document.meshes[static_cast<size_t>(node.mesh)].primitives) {
-      for (const Influence& influence : part.influences) {
-        if (influence.joint >= joints) {
-          fail("meshes[{}] uses joint {}, but skins[{}] has {}", node.mesh, influence.joint, node.skin,
-               joints);
-        }
+    const uint32_t highest = document.meshes[static_cast<size_t>(node.mesh)].highestJoint;
+    if (highest >= joints) {
+      fail("meshes[{}] uses joint {}, but skins[{}] has {}", node.mesh, highest, node.skin, joints);
+    }
+  }
+
+  // Names and lengths. A fault in a clip costs the clip, not the file: nothing else depends on it.
+  void readClips(Document& document) {
+    const auto animations = file_.json.find("animations");
+    if (animations == file_.json.end()) return;
+    if (!animations->is_array() || animations->size() > maxObjects) {
+      fail("animations is {}, expected an array of up to {}", describeJson(*animations), maxObjects);
+    }
+    for (size_t i = 0; i < animations->size(); ++i) {
+      const std::string what = fmt::format("animations[{}]", i);
+      try {
+        document.clips.push_back(clip((*animations)[i], what));
+      } catch (const Error& error) {
+        notes_.push_back(std::string(error.what()).substr(name_.size() + 2) + ": clip left out");
+      } catch (const nlohmann::json::exception&) {
+        notes_.push_back(what + " is malformed: clip left out");
       }
     }
   }
 
+  Clip clip(const nlohmann::json& json, const std::string& what) {
+    Clip clip;
+    clip.name = json.value("name", std::string());
+    const nlohmann::json& samplers = json.at("samplers");
+    clip.channels = json.at("channels").size();
+    for (const nlohmann::json& channel : json.at("channels")) {
+      const size_t sampler = channel.at("sampler").get<size_t>();
+      if (sampler >= samplers.size()) {
+        fail("{} has a channel of sampler {}, but there are {} of these", what, sampler, samplers.size());
+      }
+      const nlohmann::json& target = channel.at("target");
+      const auto node = target.find("node");
+      if (node != target.end())
+        checkIndex(node->get<int>(), model_.nodes.size(), what + " targets a node that");
+      const nlohmann::json& from = samplers[sampler];
+      const std::string part = fmt::format("{}.samplers[{}]", what, sampler);
+      const Values times =
+          accessor(from.at("input").get<int>(), {TINYGLTF_TYPE_SCALAR}, false, part + ".input");
+      for (size_t k = 0; k < times.count; ++k) {
+        if (times.numbers[k] < 0 || (k > 0 && times.numbers[k] <= times.numbers[k - 1])) {
+          fail("{} has the time {} at key {}, expected times that rise from 0", part, times.numbers[k], k);
+        }
+      }
+      clip.seconds = std::max(clip.seconds, times.numbers.back());
+      const bool weights = target.at("path").get<std::string>() == "weights";
+      const Values output =
+          accessor(from.at("output").get<int>(),
+                   {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, false, part + ".output");
+      const size_t each = from.value("interpolation", std::string("LINEAR")) == "CUBICSPLINE" ? 3 : 1;
+      if (!weights && output.count != each * times.count) {
+        fail("{} has {} outputs for {} keys, expected {}", part, output.count, times.count,
+             each * times.count);
+      }
+    }
+    return clip;
+  }
+
+  void notePictures() {
+    const auto images = file_.json.find("images");
+    if (images != file_.json.end() && images->is_array() && !images->empty()) {
+      notes_.push_back(fmt::format(
+          "{} pictures are not read: colour is COLOR_0 times the material's base colour", images->size()));
+    }
+  }
+
   const tinygltf::Model& model_;
+  const File& file_;
   const std::string& name_;
+  std::vector<std::string> notes_;
+  size_t numbersRead_ = 0;
 };
 
 nlohmann::json findExtras(const nlohmann::json& json) {
@@ -530,14 +550,20 @@ nlohmann::json findExtras(const nlohmann::json& json) {
 
 }  // namespace
 
-Document parse(std::span<const uint8_t> glb, const std::string& name) {
+Document parse(std::span<const uint8_t> bytes, const std::string& name, const std::filesystem::path& folder) {
   try {
-    const Chunks chunks = splitChunks(glb, name);
-    const nlohmann::json json = parseJson(chunks.json, name);
-    refuseUnsupported(json, name);
-    const tinygltf::Model model = loadModel(json, chunks.binary, name);
-    Document document = Reader(model, name).document();
-    document.extras = findExtras(json);
+    const File file = openFile(bytes, name, folder);
+    refuseUnsupported(file.json, name);
+    for (const char* key : {"nodes", "meshes", "skins", "accessors", "bufferViews", "scenes"}) {
+      const auto list = file.json.find(key);
+      if (list != file.json.end() && list->size() > maxObjects) {
+        throw inputError(
+            fmt::format("{}: has {} {}, expected at most {}", name, list->size(), key, maxObjects));
+      }
+    }
+    const tinygltf::Model model = loadModel(file.json, name);
+    Document document = Reader(model, file, name).document();
+    document.extras = findExtras(file.json);
     return document;
   } catch (const Error&) {
     throw;

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
-// What a rig needs of a glTF 2.0 binary, as plain data in which every index is in range and every number
+// What a rig needs of a glTF 2.0 file, as plain data in which every index is in range and every number
 // finite.
 namespace skitter::gltf {
 
@@ -35,6 +36,7 @@ struct Primitive {
 
 struct Mesh {
   std::vector<Primitive> primitives;
+  uint32_t highestJoint = 0;  // of all influences
 };
 
 struct Skin {
@@ -42,15 +44,25 @@ struct Skin {
   std::vector<glm::dmat4> nodeFromBind;
 };
 
+struct Clip {
+  std::string name;
+  double seconds = 0;
+  size_t channels = 0;
+};
+
 struct Document {
   std::vector<Node> nodes;
   std::vector<int> parentsFirst;  // every node, after its parent
   std::vector<Mesh> meshes;
   std::vector<Skin> skins;
+  std::vector<Clip> clips;
+  std::vector<std::string> notes;  // what was left out, a line each
   nlohmann::json extras;  // `skitter` of the default scene's extras or of the first node that has it, or null
 };
 
-// Throws Error(input) that begins with `name`.
-Document parse(std::span<const uint8_t> glb, const std::string& name);
+// A .glb or .gltf; buffers in other files are relative to `folder`, and refused without one. Throws
+// Error(input) that begins with `name`.
+Document parse(std::span<const uint8_t> bytes, const std::string& name,
+               const std::filesystem::path& folder = {});
 
 }  // namespace skitter::gltf

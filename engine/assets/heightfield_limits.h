@@ -11,6 +11,7 @@ constexpr uint32_t minSamples = 2, maxSamples = 16384;  // a side
 constexpr float minSpacing = 1e-4f, maxSpacing = 1e5f;  // metres a sample
 constexpr float maxHeightMagnitude = 1e6f;              // metres
 constexpr float minScale = 1e-6f, maxScale = 1e6f;
+constexpr float maxExaggeration = 1000;
 
 // False for NaN.
 inline bool isWithin(double value, double least, double most) { return value >= least && value <= most; }

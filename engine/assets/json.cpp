@@ -9,23 +9,61 @@
 
 namespace skitter {
 
-nlohmann::json parseJson(std::string_view text, const std::string& name) {
-  // Deep nesting would overflow the stack of recursive visitors; of a repeated key all but the last would be
-  // ignored without a word.
-  constexpr int maxDepth = 64;
-  using Event = nlohmann::json::parse_event_t;
-  std::vector<std::set<std::string>> keys;
-  const auto visit = [&](int depth, Event event, nlohmann::json& value) {
-    if (depth > maxDepth) throw inputError(fmt::format("{}: JSON is nested over {} levels", name, maxDepth));
-    if (event == Event::object_start) keys.emplace_back();
-    if (event == Event::object_end) keys.pop_back();
-    if (event == Event::key && !keys.back().insert(value.get<std::string>()).second) {
-      throw inputError(fmt::format("{}: key {} appears twice in one object", name, describeJson(value)));
+namespace {
+
+constexpr size_t maxDepth = 64;
+
+// Deep nesting would overflow the stack of recursive visitors; of a repeated key all but the last would be
+// ignored without a word. A pass of its own, because a callback makes the library's parser visit all of an
+// array's elements at the end of each.
+class Checker : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  explicit Checker(const std::string& name) : name_(name) {}
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(size_t) override { return enter(); }
+  bool end_object() override { return leave(); }
+  bool start_array(size_t) override { return enter(); }
+  bool end_array() override { return leave(); }
+  bool key(string_t& key) override {
+    if (!keys_.back().insert(key).second) {
+      throw inputError(fmt::format("{}: key {} appears twice in one object", name_, describeJson(key)));
     }
     return true;
-  };
+  }
+  // The parser that follows says it better.
+  bool parse_error(size_t, const std::string&, const nlohmann::json::exception&) override { return false; }
+
+ private:
+  bool enter() {
+    keys_.emplace_back();
+    if (keys_.size() > maxDepth) {
+      throw inputError(fmt::format("{}: JSON is nested over {} levels", name_, maxDepth));
+    }
+    return true;
+  }
+  bool leave() {
+    keys_.pop_back();
+    return true;
+  }
+
+  const std::string& name_;
+  std::vector<std::set<std::string>> keys_;  // of each level
+};
+
+}  // namespace
+
+nlohmann::json parseJson(std::string_view text, const std::string& name) {
+  Checker checker(name);
+  nlohmann::json::sax_parse(text.begin(), text.end(), &checker);
   try {
-    return nlohmann::json::parse(text.begin(), text.end(), visit);
+    return nlohmann::json::parse(text.begin(), text.end());
   } catch (const nlohmann::json::exception& exception) {
     std::string what = exception.what();
     // The library prefixes an identifier such as "[json.exception.parse_error.101] ".

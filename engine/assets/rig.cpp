@@ -3,315 +3,239 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <new>
+#include <system_error>
 
+#include "bend.h"
 #include "embedded/spider_glb.h"
 #include "file.h"
 #include "gltf.h"
-#include "json.h"
+#include "model.h"
+#include "rig_setup.h"
 #include "skitter/error.h"
 
 namespace skitter {
 namespace {
 
-constexpr size_t maxLegs = 24, maxBonesOfLeg = 15;
 constexpr double minBoneLength = 1e-6;  // metres
 constexpr double maxCoordinate = 1e4;   // metres
 
-// The chains, groups and limits: reads the extras against the file's nodes.
-class LegReader {
+// A model and its setup become a rig: legs and skin in metres, +Y up, facing +Z, the origin below the body.
+class RigBuilder {
  public:
-  LegReader(const gltf::Document& document, const std::string& name) : document_(document), name_(name) {}
+  RigBuilder(const Model& model, const RigSetup& setup, const std::string& name, const std::string& path)
+      : model_(model), setup_(setup), name_(name), path_(path.empty() ? "" : path + ".") {}
 
-  // The nodes of each leg's joints, foot included, are appended to `chains`.
-  void read(Rig& rig, std::vector<std::vector<int>>& chains) {
-    const nlohmann::json& extras = document_.extras;
-    if (extras.is_null()) {
-      throw inputError(fmt::format(
-          "{}: has no legs: a rig needs `skitter` in the extras of its scene or of a node (docs/rig.md)",
-          name_));
+  Rig build() {
+    for (size_t i = 0; i < setup_.legs.size(); ++i) findChain(i);
+    place();
+    Rig rig;
+    rig.name = std::filesystem::path(model_.name).stem().string();
+    rig.groups = setup_.groups;
+    for (size_t i = 0; i < setup_.legs.size(); ++i) addLeg(i, rig);
+    rig.legLength = 0;
+    for (const Leg& leg : rig.legs) rig.legLength = std::max(rig.legLength, leg.reach);
+    setBody(rig);
+    addSkin(rig);
+    for (size_t i = 0; i < setup_.legs.size(); ++i) {
+      const RigSetup::Leg& from = setup_.legs[i];
+      if (from.bend) bendLeg(rig, i, rotation_ * *from.bend, from.bendDegrees);
     }
-    checkKeys(extras, "skitter", {"groups", "legs", "bodyHeight", "bodyRadius"});
-    for (const auto& group : array(extras, "groups", "skitter", 1, maxLegs)) {
-      rig.groups.push_back(text(group, fmt::format("skitter.groups[{}]", rig.groups.size())));
-      if (std::count(rig.groups.begin(), rig.groups.end(), rig.groups.back()) > 1) {
-        throw inputError(fmt::format("{}: skitter.groups names \"{}\" twice", name_, rig.groups.back()));
-      }
-    }
-    rig.bodyHeight =
-        static_cast<float>(number(member(extras, "bodyHeight", "skitter"), "skitter.bodyHeight"));
-    rig.bodyRadius =
-        static_cast<float>(number(member(extras, "bodyRadius", "skitter"), "skitter.bodyRadius"));
-    for (const auto& leg : array(extras, "legs", "skitter", 1, maxLegs)) {
-      readLeg(leg, fmt::format("skitter.legs[{}]", rig.legs.size()), rig, chains);
-    }
-    for (size_t group = 0; group < rig.groups.size(); ++group) {
-      const auto inGroup = [group](const Leg& leg) { return leg.group == static_cast<int>(group); };
-      if (std::none_of(rig.legs.begin(), rig.legs.end(), inGroup)) {
-        throw inputError(fmt::format("{}: no leg is in group \"{}\"", name_, rig.groups[group]));
-      }
-    }
+    return rig;
   }
 
  private:
-  [[noreturn]] void fail(const std::string& path, const nlohmann::json& found,
-                         const std::string& expected) const {
-    throw inputError(fmt::format("{}: {} is {}, expected {}", name_, path, describeJson(found), expected));
+  template <typename... Arguments>
+  [[noreturn]] void fail(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
+    throw inputError(name_ + ": " + fmt::format(format, std::forward<Arguments>(arguments)...));
   }
 
-  void checkKeys(const nlohmann::json& json, const std::string& path,
-                 std::initializer_list<const char*> keys) const {
-    if (!json.is_object()) fail(path, json, "an object");
-    for (const auto& [key, value] : json.items()) {
-      const auto same = [&k = key](const char* known) { return k == known; };
-      if (std::none_of(keys.begin(), keys.end(), same)) {
-        throw inputError(fmt::format("{}: {} has the unknown key {}, expected one of {}", name_, path,
-                                     describeJson(key), fmt::join(keys, ", ")));
-      }
-    }
-  }
-
-  const nlohmann::json& member(const nlohmann::json& json, const char* key, const std::string& path) const {
-    const auto found = json.find(key);
-    if (found == json.end()) throw inputError(fmt::format("{}: {}.{} is missing", name_, path, key));
-    return *found;
-  }
-
-  const nlohmann::json& array(const nlohmann::json& json, const char* key, const std::string& path,
-                              size_t least, size_t most) const {
-    const nlohmann::json& list = member(json, key, path);
-    if (!list.is_array() || list.size() < least || list.size() > most) {
-      fail(path + "." + key, list, fmt::format("an array of {} to {}", least, most));
-    }
-    return list;
-  }
-
-  double number(const nlohmann::json& json, const std::string& path) const {
-    if (!json.is_number() || !(json.get<double>() > 0) || json.get<double>() > maxCoordinate) {
-      fail(path, json, fmt::format("a number over 0 and up to {}", maxCoordinate));
-    }
-    return json.get<double>();
-  }
-
-  const std::string& text(const nlohmann::json& json, const std::string& path) const {
-    if (!json.is_string() || json.get_ref<const std::string&>().empty())
-      fail(path, json, "a string that is not empty");
-    return json.get_ref<const std::string&>();
-  }
+  std::string pathOf(size_t leg) const { return fmt::format("{}legs[{}]", path_, leg); }
 
   int findNode(const std::string& joint, const std::string& path) const {
-    int found = -1;
-    for (size_t i = 0; i < document_.nodes.size(); ++i) {
-      if (document_.nodes[i].name != joint) continue;
-      if (found != -1)
-        throw inputError(fmt::format("{}: {}: two nodes are named \"{}\"", name_, path, joint));
-      found = static_cast<int>(i);
+    std::vector<size_t> found;
+    for (size_t i = 0; i < model_.nodes.size(); ++i) {
+      if (model_.nodes[i].name == joint) found.push_back(i);
     }
-    if (found == -1) throw inputError(fmt::format("{}: {}: no node is named \"{}\"", name_, path, joint));
-    return found;
+    if (found.size() > 1) {
+      fail("{}: two nodes are named \"{}\": #{} and #{}", path, joint, found[0], found[1]);
+    }
+    if (found.size() == 1) return static_cast<int>(found[0]);
+    size_t index = 0;
+    const char* end = joint.data() + joint.size();
+    if (joint.front() == '#' && std::from_chars(joint.data() + 1, end, index).ptr == end &&
+        joint.size() > 1) {
+      if (index < model_.nodes.size()) return static_cast<int>(index);
+      fail("{} is \"{}\", but there are {} nodes", path, joint, model_.nodes.size());
+    }
+    fail("{}: no node is named \"{}\"", path, joint);
   }
 
-  bool isAncestor(int ancestor, int node) const {
-    while (node != -1) {
-      node = document_.nodes[static_cast<size_t>(node)].parent;
-      if (node == ancestor) return true;
+  void findChain(size_t legIndex) {
+    const RigSetup::Leg& from = setup_.legs[legIndex];
+    std::vector<int> chain;
+    std::vector<glm::dvec3> points;
+    for (size_t j = 0; j < from.joints.size(); ++j) {
+      const std::string path = fmt::format("{}.joints[{}]", pathOf(legIndex), j);
+      const int node = findNode(from.joints[j], path);
+      for (size_t other = 0; other < chains_.size(); ++other) {
+        if (std::find(chains_[other].begin(), chains_[other].end(), node) != chains_[other].end()) {
+          fail("{}: \"{}\" is a joint of leg {} already", path, from.joints[j], setup_.legs[other].name);
+        }
+      }
+      if (j > 0 && !model_.isAncestor(chain.back(), node)) {
+        fail("{}: \"{}\" is no descendant of \"{}\"; joints run from root to foot", path, from.joints[j],
+             from.joints[j - 1]);
+      }
+      chain.push_back(node);
+      points.push_back(model_.nodes[static_cast<size_t>(node)].position());
     }
-    return false;
+    if (from.tipOffset) points.push_back(points.back() + *from.tipOffset);
+    chains_.push_back(std::move(chain));
+    points_.push_back(std::move(points));
   }
 
-  glm::dvec3 position(int node, const std::string& path) const {
-    const glm::dvec3 p(document_.nodes[static_cast<size_t>(node)].modelFromNode[3]);
+  // How the model becomes the creature: turned, moved and scaled.
+  void place() {
+    const glm::dvec3 up = glm::normalize(setup_.up);
+    const glm::dvec3 forward = glm::normalize(setup_.forward - up * glm::dot(setup_.forward, up));
+    rotation_ = glm::transpose(glm::dmat3(glm::cross(up, forward), up, forward));
+    double longest = 0;
+    glm::dvec3 feet(0);
+    for (const auto& points : points_) {
+      double reach = 0;
+      for (size_t i = 0; i + 1 < points.size(); ++i) reach += glm::length(points[i + 1] - points[i]);
+      longest = std::max(longest, reach);
+      feet += points.back() / static_cast<double>(points_.size());
+    }
+    origin_ = setup_.origin.value_or(feet);
+    scale_ = setup_.scale.value_or(1.0);
+    if (!setup_.legLength) return;
+    if (!(longest > 0)) fail("{}legLength: the legs have length 0", path_);
+    scale_ = *setup_.legLength / longest;
+  }
+
+  // `describe` says what is there, should it lie too far away.
+  template <typename Describe>
+  glm::dvec3 toCreature(const glm::dvec3& position, const Describe& describe) const {
+    const glm::dvec3 p = rotation_ * ((position - origin_) * scale_);
     for (int k = 0; k < 3; ++k) {
       if (!(std::fabs(p[k]) <= maxCoordinate)) {
-        throw inputError(
-            fmt::format("{}: {} rests at {} m, expected within {} m", name_, path, p[k], maxCoordinate));
+        fail("{} rests at {} m, expected within {} m", describe(), p[k], maxCoordinate);
       }
     }
     return p;
   }
 
-  void readLeg(const nlohmann::json& json, const std::string& path, Rig& rig,
-               std::vector<std::vector<int>>& chains) {
-    checkKeys(json, path, {"name", "group", "joints", "coneHalfAngleDegrees"});
+  void addLeg(size_t index, Rig& rig) const {
+    const RigSetup::Leg& from = setup_.legs[index];
+    const std::string path = pathOf(index);
     Leg leg;
-    leg.name = text(member(json, "name", path), path + ".name");
-    for (const Leg& other : rig.legs) {
-      if (other.name == leg.name)
-        throw inputError(fmt::format("{}: two legs are named \"{}\"", name_, leg.name));
-    }
-    const nlohmann::json& groupJson = member(json, "group", path);
-    const std::string& group = text(groupJson, path + ".group");
-    const auto found = std::find(rig.groups.begin(), rig.groups.end(), group);
-    if (found == rig.groups.end()) {
-      fail(path + ".group", groupJson, fmt::format("one of \"{}\"", fmt::join(rig.groups, "\", \"")));
-    }
-    leg.group = static_cast<int>(found - rig.groups.begin());
-
-    std::vector<int> chain;
-    const nlohmann::json& joints = array(json, "joints", path, 2, maxBonesOfLeg + 1);
-    for (size_t j = 0; j < joints.size(); ++j) {
-      const std::string jointPath = fmt::format("{}.joints[{}]", path, j);
-      const std::string& joint = text(joints[j], jointPath);
-      const int node = findNode(joint, jointPath);
-      for (size_t other = 0; other < chains.size(); ++other) {
-        if (std::find(chains[other].begin(), chains[other].end(), node) != chains[other].end()) {
-          throw inputError(fmt::format("{}: {}: \"{}\" is a joint of leg {} already", name_, jointPath, joint,
-                                       rig.legs[other].name));
-        }
-      }
-      if (j > 0 && !isAncestor(chain.back(), node)) {
-        throw inputError(
-            fmt::format("{}: {}: \"{}\" is no descendant of \"{}\"; joints run from root to foot", name_,
-                        jointPath, joint, leg.bones.back().joint));
-      }
-      chain.push_back(node);
-      if (j + 1 < joints.size()) {
-        leg.bones.emplace_back();
-        leg.bones.back().joint = joint;
-      }
-    }
-
+    leg.name = from.name;
+    leg.group =
+        static_cast<int>(std::find(rig.groups.begin(), rig.groups.end(), from.group) - rig.groups.begin());
+    std::vector<glm::dvec3> points;
+    for (const glm::dvec3& point : points_[index]) points.push_back(toCreature(point, [&] { return path; }));
     double reach = 0;
-    for (size_t i = 0; i < leg.bones.size(); ++i) {
-      Bone& bone = leg.bones[i];
-      const glm::dvec3 start = position(chain[i], path), end = position(chain[i + 1], path);
-      const double length = glm::length(end - start);
+    for (size_t i = 0; i + 1 < points.size(); ++i) {
+      const double length = glm::length(points[i + 1] - points[i]);
       if (!(length >= minBoneLength)) {
-        throw inputError(fmt::format("{}: {}: the bone at \"{}\" has length {}, expected at least {}", name_,
-                                     path, bone.joint, length, minBoneLength));
+        fail("{}: the bone at \"{}\" has length {}, expected at least {}", path, from.joints[i], length,
+             minBoneLength);
       }
-      bone.start = glm::vec3(start);
-      bone.direction = glm::vec3((end - start) / length);
+      Bone bone;
+      bone.joint = from.joints[i];
+      bone.start = glm::vec3(points[i]);
+      bone.direction = glm::vec3((points[i + 1] - points[i]) / length);
       bone.length = static_cast<float>(length);
+      // 180 keeps the exact value that means unlimited.
+      const double degrees = from.coneHalfAngleDegrees.empty() ? 180 : from.coneHalfAngleDegrees[i];
+      if (degrees < 180) bone.coneHalfAngle = static_cast<float>(degrees * 3.14159265358979323846 / 180);
       reach += length;
+      leg.bones.push_back(std::move(bone));
     }
     leg.reach = static_cast<float>(reach);
-    leg.home = glm::vec3(position(chain.back(), path));
-    if (json.contains("coneHalfAngleDegrees")) {
-      readCones(array(json, "coneHalfAngleDegrees", path, 0, SIZE_MAX), path + ".coneHalfAngleDegrees", leg);
+    glm::dvec3 home = points.back();
+    home.y = 0;
+    if (from.home) home = toCreature(*from.home, [&] { return path + ".home"; });
+    leg.home = glm::vec3(home);
+    const double distance = glm::length(home - points.front());
+    if (distance > 1.001 * reach) {
+      fail("{}{} is {:.3g} m from the leg's root, its bones reach {:.3g} m", path,
+           from.home ? ".home" : "'s foot on the ground", distance, reach);
     }
     rig.legs.push_back(std::move(leg));
-    chains.push_back(std::move(chain));
   }
 
-  void readCones(const nlohmann::json& cones, const std::string& path, Leg& leg) const {
-    if (cones.size() != leg.bones.size()) {
-      throw inputError(
-          fmt::format("{}: {} has {} angles, the leg {} bones", name_, path, cones.size(), leg.bones.size()));
+  void setBody(Rig& rig) const {
+    double height = 0, radius = 0.1 * static_cast<double>(rig.legLength);
+    for (const Leg& leg : rig.legs) {
+      height += static_cast<double>(leg.root().y) / static_cast<double>(rig.legs.size());
+      radius = std::max(radius, std::fabs(static_cast<double>(leg.root().z)));
     }
-    for (size_t i = 0; i < cones.size(); ++i) {
-      const double degrees = cones[i].is_number() ? cones[i].get<double>() : -1;
-      if (!(degrees > 0 && degrees <= 180)) {
-        fail(fmt::format("{}[{}]", path, i), cones[i], "a number over 0 and up to 180");
-      }
-      // 180 keeps the exact value that means unlimited.
-      if (degrees < 180)
-        leg.bones[i].coneHalfAngle = static_cast<float>(degrees * 3.14159265358979323846 / 180);
+    if (setup_.bodyHeight) height = *setup_.bodyHeight * scale_;
+    if (setup_.bodyRadius) radius = *setup_.bodyRadius * scale_;
+    if (!(height > 0)) {
+      fail("{}bodyHeight is missing and the legs' roots lie {:.3g} m above the ground, expected over 0",
+           path_, height);
     }
+    if (!(height <= maxCoordinate && radius <= maxCoordinate)) {
+      fail("the body is {:.3g} m high and {:.3g} m long to each end, expected up to {} m", height, radius,
+           maxCoordinate);
+    }
+    rig.bodyHeight = static_cast<float>(height);
+    rig.bodyRadius = static_cast<float>(radius);
   }
 
-  const gltf::Document& document_;
-  const std::string& name_;
-};
-
-// Brings every mesh of the scene into model space at rest, weighted onto the pose palette.
-class SkinBuilder {
- public:
-  SkinBuilder(const gltf::Document& document, const std::vector<uint16_t>& paletteOfNode,
-              const std::string& name, Rig& rig)
-      : document_(document), paletteOfNode_(paletteOfNode), name_(name), rig_(rig) {}
-
-  void build() {
-    for (size_t i = 0; i < document_.nodes.size(); ++i) {
-      const gltf::Node& node = document_.nodes[i];
-      if (!node.inScene || node.mesh == -1) continue;
-      for (const gltf::Primitive& part : document_.meshes[static_cast<size_t>(node.mesh)].primitives)
-        add(i, part);
-    }
-    if (rig_.indices.empty()) throw inputError(fmt::format("{}: has no mesh with triangles", name_));
-  }
-
- private:
-  void add(size_t nodeIndex, const gltf::Primitive& part) {
-    const gltf::Node& node = document_.nodes[nodeIndex];
-    const gltf::Skin* skin = node.skin == -1 ? nullptr : &document_.skins[static_cast<size_t>(node.skin)];
-    if (skin && part.influencesPerVertex == 0) {
-      throw inputError(
-          fmt::format("{}: meshes[{}] is skinned but has no JOINTS_0 and WEIGHTS_0", name_, node.mesh));
-    }
-    std::vector<glm::dmat4> modelFromBind;
-    if (skin) {
-      for (size_t k = 0; k < skin->joints.size(); ++k) {
-        modelFromBind.push_back(document_.nodes[static_cast<size_t>(skin->joints[k])].modelFromNode *
-                                skin->nodeFromBind[k]);
+  // A node that is no joint of a leg moves with its nearest ancestor that is one, else with the body.
+  std::vector<uint16_t> mapPalette(const Rig& rig) const {
+    std::vector<int> own(model_.nodes.size(), -1);
+    for (size_t leg = 0; leg < chains_.size(); ++leg) {
+      const size_t bones = rig.legs[leg].bones.size();
+      for (size_t j = 0; j < chains_[leg].size(); ++j) {
+        own[static_cast<size_t>(chains_[leg][j])] =
+            1 + static_cast<int>(leg) * rig.maxBones() + static_cast<int>(std::min(j, bones - 1));
       }
     }
+    std::vector<uint16_t> palette(model_.nodes.size(), 0);
+    for (int i : model_.parentsFirst) {
+      const auto node = static_cast<size_t>(i);
+      const int parent = model_.nodes[node].parent;
+      palette[node] = own[node] != -1 ? static_cast<uint16_t>(own[node])
+                      : parent == -1  ? uint16_t{0}
+                                      : palette[static_cast<size_t>(parent)];
+    }
+    return palette;
+  }
 
-    const size_t first = rig_.vertices.size();
-    std::vector<bool> mirrored(part.positions.size());
-    std::vector<glm::dvec3> normals(part.positions.size(), glm::dvec3(0));
-    for (size_t v = 0; v < part.positions.size(); ++v) {
+  void addSkin(Rig& rig) const {
+    const std::vector<uint16_t> palette = mapPalette(rig);
+    rig.vertices.reserve(model_.vertices.size());
+    for (size_t v = 0; v < model_.vertices.size(); ++v) {
+      const Model::Vertex& from = model_.vertices[v];
       SkinVertex vertex;
-      glm::dmat4 modelFromVertex = node.modelFromNode;
-      if (skin) {
-        modelFromVertex = blend(part, v, *skin, modelFromBind, vertex);
-      } else {
-        vertex.bones[0] = paletteOfNode_[nodeIndex];
-      }
-      const glm::dvec3 position(modelFromVertex * glm::dvec4(part.positions[v], 1));
-      for (int k = 0; k < 3; ++k) {
-        if (!(std::fabs(position[k]) <= maxCoordinate)) {
-          throw inputError(fmt::format("{}: vertex {} of meshes[{}] rests at {} m, expected within {} m",
-                                       name_, v, node.mesh, position[k], maxCoordinate));
-        }
-      }
-      vertex.position = glm::vec3(position);
-      vertex.colour = glm::vec3(part.colours[v]);
-      const glm::dmat3 linear(modelFromVertex);
-      const double determinant = glm::determinant(linear);
-      mirrored[v] = determinant < 0;
-      if (!part.normals.empty() && determinant != 0) {
-        normals[v] = glm::transpose(glm::inverse(linear)) * part.normals[v];
-      }
-      rig_.vertices.push_back(vertex);
+      vertex.position = glm::vec3(toCreature(from.position, [v] { return fmt::format("vertex {}", v); }));
+      vertex.normal = glm::vec3(rotation_ * glm::dvec3(from.normal));
+      vertex.colour = from.colour * glm::vec3(setup_.colour);
+      weigh(from, palette, vertex);
+      rig.vertices.push_back(vertex);
     }
-
-    std::vector<glm::dvec3> faceSums(part.positions.size(), glm::dvec3(0));
-    for (size_t t = 0; t + 2 < part.indices.size(); t += 3) {
-      uint32_t a = part.indices[t], b = part.indices[t + 1], c = part.indices[t + 2];
-      if (mirrored[a]) std::swap(b, c);
-      for (uint32_t index : {a, b, c}) rig_.indices.push_back(static_cast<uint32_t>(first + index));
-      const auto at = [&](uint32_t index) { return glm::dvec3(rig_.vertices[first + index].position); };
-      const glm::dvec3 face = glm::cross(at(b) - at(a), at(c) - at(a));  // its length weighs by area
-      for (uint32_t index : {a, b, c}) faceSums[index] += face;
-    }
-    for (size_t v = 0; v < normals.size(); ++v) {
-      for (const glm::dvec3& normal : {normals[v], faceSums[v]}) {
-        const double length = glm::length(normal);
-        if (!(length > 1e-30) || !std::isfinite(length)) continue;
-        rig_.vertices[first + v].normal = glm::vec3(normal / length);
-        break;
-      }
-    }
+    rig.indices = model_.indices;
+    if (rig.indices.empty()) fail("has no mesh with triangles");
   }
 
-  // The blended matrix of all influences; the vertex keeps the four heaviest palette entries.
-  glm::dmat4 blend(const gltf::Primitive& part, size_t v, const gltf::Skin& skin,
-                   const std::vector<glm::dmat4>& modelFromBind, SkinVertex& vertex) const {
+  // The vertex keeps the four heaviest palette entries.
+  void weigh(const Model::Vertex& from, const std::vector<uint16_t>& palette, SkinVertex& vertex) const {
     struct Entry {
       uint16_t bone;
       double weight;
     };
     std::vector<Entry> entries;
-    glm::dmat4 blended(0);
-    double total = 0;
-    for (size_t k = 0; k < part.influencesPerVertex; ++k) {
-      const gltf::Influence& influence = part.influences[v * part.influencesPerVertex + k];
-      if (influence.weight == 0) continue;
-      total += influence.weight;
-      blended += modelFromBind[influence.joint] * influence.weight;
-      const uint16_t bone = paletteOfNode_[static_cast<size_t>(skin.joints[influence.joint])];
+    for (uint32_t k = 0; k < from.influences; ++k) {
+      const Model::Influence& influence = model_.influences[from.firstInfluence + k];
+      const uint16_t bone = palette[influence.node];
       const auto same =
           std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.bone == bone; });
       if (same == entries.end()) {
@@ -320,7 +244,6 @@ class SkinBuilder {
         same->weight += influence.weight;
       }
     }
-    if (!(total > 0)) throw inputError(fmt::format("{}: vertex {} has no weight on any joint", name_, v));
     std::stable_sort(entries.begin(), entries.end(),
                      [](const Entry& a, const Entry& b) { return a.weight > b.weight; });
     if (entries.size() > 4) entries.resize(4);
@@ -330,35 +253,34 @@ class SkinBuilder {
       vertex.bones[k] = entries[k].bone;
       vertex.weights[k] = static_cast<float>(entries[k].weight / kept);
     }
-    return blended / total;
   }
 
-  const gltf::Document& document_;
-  const std::vector<uint16_t>& paletteOfNode_;
+  const Model& model_;
+  const RigSetup& setup_;
   const std::string& name_;
-  Rig& rig_;
+  const std::string path_;
+  std::vector<std::vector<int>> chains_;         // a leg's joints
+  std::vector<std::vector<glm::dvec3>> points_;  // a leg's joints and tip, in the model's units and axes
+  glm::dmat3 rotation_{1};
+  glm::dvec3 origin_{0};
+  double scale_ = 1;
 };
 
-// A node that is no joint of a leg moves with its nearest ancestor that is one, else with the body.
-std::vector<uint16_t> mapPalette(const gltf::Document& document, const std::vector<std::vector<int>>& chains,
-                                 const Rig& rig) {
-  std::vector<int> own(document.nodes.size(), -1);
-  for (size_t leg = 0; leg < chains.size(); ++leg) {
-    const size_t bones = rig.legs[leg].bones.size();
-    for (size_t j = 0; j < chains[leg].size(); ++j) {
-      own[static_cast<size_t>(chains[leg][j])] =
-          1 + static_cast<int>(leg) * rig.maxBones() + static_cast<int>(std::min(j, bones - 1));
-    }
+Rig rigOfExtras(const gltf::Document& document, const Model& model, const std::string& name) {
+  RigSetup setup = readRigSetup(document.extras, name, "skitter", false);
+  setup.origin = glm::dvec3(0);
+  return buildRig(model, setup, name, "skitter");
+}
+
+Rig rigOfSidecar(const std::filesystem::path& sidecar) {
+  const RigSetup setup = loadRigSetup(sidecar);
+  const std::filesystem::path file = sidecar.parent_path() / setup.model;
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    throw inputError(fmt::format("{}: model is \"{}\", but there is no file {}", sidecar.string(),
+                                 setup.model, file.string()));
   }
-  std::vector<uint16_t> palette(document.nodes.size(), 0);
-  for (int i : document.parentsFirst) {
-    const auto node = static_cast<size_t>(i);
-    const int parent = document.nodes[node].parent;
-    palette[node] = own[node] != -1 ? static_cast<uint16_t>(own[node])
-                    : parent == -1  ? uint16_t{0}
-                                    : palette[static_cast<size_t>(parent)];
-  }
-  return palette;
+  return buildRig(loadModel(file), setup, sidecar.string(), "");
 }
 
 }  // namespace
@@ -369,23 +291,49 @@ int Rig::maxBones() const {
   return static_cast<int>(most);
 }
 
-Rig parseRig(std::span<const uint8_t> glb, const std::string& name) {
-  const gltf::Document document = gltf::parse(glb, name);
+Rig buildRig(const Model& model, const RigSetup& setup, const std::string& name, const std::string& path) {
   try {
-    Rig rig;
-    rig.name = std::filesystem::path(name).stem().string();
-    std::vector<std::vector<int>> chains;
-    LegReader(document, name).read(rig, chains);
-    rig.legLength = 0;
-    for (const Leg& leg : rig.legs) rig.legLength = std::max(rig.legLength, leg.reach);
-    SkinBuilder(document, mapPalette(document, chains, rig), name, rig).build();
-    return rig;
+    return RigBuilder(model, setup, name, path).build();
   } catch (const std::bad_alloc&) {
     throw inputError(fmt::format("{}: does not fit into memory", name));
   }
 }
 
-Rig loadRig(const std::filesystem::path& file) { return parseRig(readFile(file), file.string()); }
+Rig buildRig(const Model& model, const RigSetup& setup, const std::string& name) {
+  return buildRig(model, setup, name, "");
+}
+
+Rig parseRig(std::span<const uint8_t> gltf, const std::string& name) {
+  const gltf::Document document = gltf::parse(gltf, name);
+  if (document.extras.is_null()) {
+    throw inputError(fmt::format(
+        "{}: has no legs: a rig needs `skitter` in the extras of its scene or of a node (docs/rig.md)",
+        name));
+  }
+  return rigOfExtras(document, makeModel(document, name), name);
+}
+
+Rig loadRig(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  if (file.extension() == ".json") return rigOfSidecar(file);
+  std::error_code ignored;
+  const std::filesystem::path sidecar = sidecarOf(file);
+  if (std::filesystem::exists(sidecar, ignored) && std::filesystem::exists(file, ignored)) {
+    const RigSetup setup = loadRigSetup(sidecar);
+    if (std::filesystem::path(setup.model).filename() != file.filename()) {
+      throw inputError(fmt::format("{}: model is \"{}\", but the file beside it is {}", sidecar.string(),
+                                   setup.model, file.filename().string()));
+    }
+    return buildRig(loadModel(file), setup, sidecar.string(), "");
+  }
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const gltf::Document document = gltf::parse(readFile(file), name, folder);
+  if (document.extras.is_null()) {
+    throw inputError(fmt::format("{}: has no legs: run `skitter rig {}` to propose {} (docs/rig.md)", name,
+                                 name, sidecar.filename().string()));
+  }
+  return rigOfExtras(document, makeModel(document, name), name);
+}
 
 Rig spiderRig() { return parseRig(embedded::spider_glb(), "spider.glb"); }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "embedded/crossing_json.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr uint64_t maxAgents = 16777216;  // of a scene; above it an agent's index is no exact float
 constexpr double worldLimit = 4000;       // metres from the origin
 constexpr double cameraLimit = 1e5;       // metres
+constexpr double maxVoidValue = std::numeric_limits<double>::max();
 
 // One JSON object: reads its known keys, leaves defaults where a key is missing, and knows which key no one
 // asked for.
@@ -33,8 +35,9 @@ class Fields {
   void read(const char* key, float& value, double least, double most) {
     if (const auto* json = find(key)) value = static_cast<float>(number(*json, pathOf(key), least, most));
   }
-  void read(const char* key, std::optional<float>& value, double least, double most) {
-    if (const auto* json = find(key)) value = static_cast<float>(number(*json, pathOf(key), least, most));
+  template <typename Number>
+  void read(const char* key, std::optional<Number>& value, double least, double most) {
+    if (const auto* json = find(key)) value = static_cast<Number>(number(*json, pathOf(key), least, most));
   }
   template <typename Integer>
   void readInteger(const char* key, Integer& value, uint64_t least, uint64_t most) {
@@ -175,9 +178,18 @@ class SceneReader {
       fields.read("minHeight", terrain.units.minHeight, -maxHeightMagnitude, maxHeightMagnitude);
       fields.read("maxHeight", terrain.units.maxHeight, -maxHeightMagnitude, maxHeightMagnitude);
       fields.read("scale", terrain.units.scale, minScale, maxScale);
+      fields.read("exaggeration", terrain.units.exaggeration, 0, maxExaggeration);
+      fields.read("voidValue", terrain.units.voidValue, -maxVoidValue, maxVoidValue);
+      readSide(fields, "columns", terrain.units.columns);
+      readSide(fields, "rows", terrain.units.rows);
       scene.terrain = terrain;
     }
     fields.finish();
+  }
+
+  static void readSide(Fields& fields, const char* key, std::optional<uint32_t>& side) {
+    if (!fields.find(key)) return;
+    fields.readInteger(key, side.emplace(), minSamples, maxSamples);
   }
 
   Herd readHerd(const nlohmann::json& json, const std::string& path) const {

@@ -27,6 +27,8 @@ TEST_F(Usage, HelpAndVersionAreNoErrors) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"--version"},
                                                     {"info", "--help"},
+                                                    {"inspect", "--help"},
+                                                    {"rig", "--help"},
                                                     {"run", "--help"},
                                                     {"validate", "--help"}}) {
     const Result result = runProgram([&] {
@@ -39,9 +41,9 @@ TEST_F(Usage, HelpAndVersionAreNoErrors) {
     EXPECT_NE(result.out, "");
   }
   const std::string help = runProgram({SKITTER_BINARY, "run", "--help"}).out;
-  for (const char* flag :
-       {"--agents", "--terrain", "--spacing", "--heights", "--scale", "--frames", "--dt", "--size", "--seed",
-        "--device", "--headless", "--out", "--json", "--trace", "--force", "Examples"}) {
+  for (const char* flag : {"--agents", "--terrain", "--spacing", "--heights", "--scale", "--exaggeration",
+                           "--terrain-size", "--void-value", "--frames", "--dt", "--size", "--seed",
+                           "--device", "--headless", "--out", "--json", "--trace", "--force", "Examples"}) {
     EXPECT_NE(help.find(flag), std::string::npos) << flag;
   }
 }
@@ -66,6 +68,10 @@ TEST_F(Usage, Terrain) {
   expectInputError({"run", "--spacing", "2"}, {"--spacing", "--terrain"});
   expectInputError({"run", "--heights", "0,1"}, {"--heights", "--terrain"});
   expectInputError({"run", "--scale", "2"}, {"--scale", "--terrain"});
+  expectInputError({"run", "--exaggeration", "2"}, {"--exaggeration", "--terrain"});
+  expectInputError({"run", "--terrain-size", "3x4"}, {"--terrain-size", "--terrain FILE"});
+  expectInputError({"run", "--void-value", "0"}, {"--void-value", "--terrain"});
+  expectInputError({"run", "--terrain", "noise", "--scale", "2"}, {"--scale", "noise generates"});
 }
 
 TEST_F(Usage, Numbers) {
@@ -90,6 +96,11 @@ TEST_F(Usage, Numbers) {
   expectInputError({"run", "--heights", "5"}, {"--heights", "5"});
   expectInputError({"run", "--heights", "5,1"}, {"--heights", "5,1"});
   expectInputError({"run", "--scale", "-1"}, {"--scale", "-1"});
+  expectInputError({"run", "--exaggeration", "-1"}, {"--exaggeration", "-1"});
+  expectInputError({"run", "--exaggeration", "1001"}, {"--exaggeration", "1001"});
+  expectInputError({"run", "--terrain-size", "1x4"}, {"--terrain-size", "1x4"});
+  expectInputError({"run", "--terrain-size", "16385x4"}, {"--terrain-size", "16385x4"});
+  expectInputError({"run", "--void-value", "nan"}, {"--void-value", "nan"});
   expectInputError({"run", "--view", "sideways"}, {"--view", "sideways"});
   expectInputError({"validate", "--agents", "-5"}, {"--agents", "-5"});
 }

@@ -170,7 +170,7 @@ TEST(Rig, FaultsOfTheFile) {
       {[](Glb& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 12; }, "POSITION is 12"},
       {[](Glb& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = -2; }, "POSITION is -2"},
       {[](Glb& g) { g.json["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0"); }, "alone"},
-      {[](Glb& g) { g.json["meshes"][0]["primitives"][0]["mode"] = 1; }, "mode 1"},
+      {[](Glb& g) { g.json["meshes"][0]["primitives"][0]["mode"] = 1; }, "no mesh with triangles"},
       {[](Glb& g) { g.json["meshes"][0]["primitives"][0]["indices"] = 1; }, "indices"},
       {[](Glb& g) { g.json["nodes"][0]["mesh"] = 5; }, "nodes[0].mesh is 5"},
       {[](Glb& g) { g.json["nodes"][0]["skin"] = 5; }, "nodes[0].skin is 5"},
@@ -201,7 +201,7 @@ TEST(Rig, FaultsOfTheFile) {
        },
        "a joint of skins[0] is 40"},
       {[](Glb& g) { g.json["skins"][0]["inverseBindMatrices"] = 0; }, "wrong type"},
-      {[](Glb& g) { g.json["buffers"][0]["byteLength"] = 97000; }, "not valid glTF"},
+      {[](Glb& g) { g.json["buffers"][0]["byteLength"] = 97000; }, "byteLength says 97000"},
       {[](Glb& g) { g.json["buffers"][0]["uri"] = "other.bin"; }, "refers to \"other.bin\""},
       {[](Glb& g) { g.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
        "KHR_draco_mesh_compression"},
@@ -256,7 +256,7 @@ TEST(Rig, FilesAreRefusedByName) {
             std::string::npos);
   EXPECT_NE(inputFault([&] { loadRig(folder.path()); }).find("is a directory"), std::string::npos);
   test::writeText(folder / "text.glb", "{\"asset\": {\"version\": \"2.0\"}}");
-  EXPECT_NE(inputFault([&] { loadRig(folder / "text.glb"); }).find("not a glTF binary"), std::string::npos);
+  EXPECT_NE(inputFault([&] { loadRig(folder / "text.glb"); }).find("has no legs"), std::string::npos);
 }
 
 TEST(Rig, SharedFilesAreRefusedForTheirLegs) {
@@ -266,7 +266,7 @@ TEST(Rig, SharedFilesAreRefusedForTheirLegs) {
   for (const auto& entry : std::filesystem::directory_iterator(data / "gltf")) {
     if (entry.path().extension() != ".glb") continue;
     const std::string what = inputFault([&] { loadRig(entry.path()); });
-    EXPECT_NE(what.find("docs/rig.md"), std::string::npos) << what;
+    EXPECT_NE(what.find("skitter rig"), std::string::npos) << what;
     ++files;
   }
   EXPECT_GE(files, 5u);

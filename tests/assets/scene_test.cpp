@@ -37,7 +37,7 @@ TEST(Scene, EveryKey) {
   const Scene scene = parseScene(R"({
     "name": "all", "seed": 18446744073709551615,
     "terrain": {"kind": "file", "file": "hill.png", "spacingX": 1, "spacingZ": 2, "minHeight": -3, "maxHeight": 4.5,
-                "scale": 0.5},
+                "scale": 0.5, "exaggeration": 2, "columns": 3, "rows": 4, "voidValue": -9999},
     "herds": [{"rig": "crab.glb", "controller": "loop", "agents": 7,
                "spawn": {"kind": "grid", "spacing": 3, "centre": [1, -2], "heading": 1.5},
                "goal": {"kind": "point", "target": [5, 6], "speed": 0}},
@@ -53,6 +53,10 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(terrain.units.minHeight, -3.0f);
   EXPECT_EQ(terrain.units.maxHeight, 4.5f);
   EXPECT_EQ(terrain.units.scale, 0.5f);
+  EXPECT_EQ(terrain.units.exaggeration, 2.0f);
+  EXPECT_EQ(terrain.units.columns, 3u);
+  EXPECT_EQ(terrain.units.rows, 4u);
+  EXPECT_EQ(terrain.units.voidValue, -9999.0);
   ASSERT_EQ(scene.herds.size(), 2u);
   const Herd& herd = scene.herds[0];
   EXPECT_EQ(std::filesystem::path(herd.rig), std::filesystem::path("folder/crab.glb"));
@@ -99,6 +103,11 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"terrain": {"file": "a.png"}})", "terrain.file is no known key"},
       {R"({"terrain": {"kind": "file"}})", "terrain.file is missing"},
       {R"({"terrain": {"kind": "file", "file": "a.png", "scale": -1}})", "terrain.scale is -1"},
+      {R"({"terrain": {"kind": "file", "file": "a.png", "exaggeration": 1001}})",
+       "terrain.exaggeration is 1001"},
+      {R"({"terrain": {"kind": "file", "file": "a.r16", "columns": 1}})", "terrain.columns is 1"},
+      {R"({"terrain": {"kind": "file", "file": "a.r16", "rows": 2.5}})", "terrain.rows is 2.5"},
+      {R"({"terrain": {"kind": "file", "file": "a.r16", "voidValue": "0"}})", "terrain.voidValue is \"0\""},
       {R"({"camera": {"fieldOfView": 7}})", "camera.fieldOfView is 7"},
       {R"({"camera": {"kind": "fixed"}})", "camera.position equals camera.target"},
       {R"({"seed": 1, "seed": 2})", "\"seed\" appears twice"},

@@ -18,6 +18,7 @@ struct Heightfield {
   float spacingX = 1;          // metres a sample, > 0
   float spacingZ = 1;          // metres a sample, > 0
   std::vector<float> heights;  // rows * columns, row-major, metres, finite
+  uint64_t filledVoids = 0;    // samples of the file that had no height and were given one
 
   float originX() const { return -0.5f * spacingX * static_cast<float>(columns - 1); }  // x of column 0
   float originZ() const { return -0.5f * spacingZ * static_cast<float>(rows - 1); }     // z of row 0
@@ -27,15 +28,21 @@ struct Heightfield {
   float at(float x, float z) const;
 };
 
-// Units of a height file. An unset value is looked up in the sidecar (`NAME.json` beside the file, or
-// `NAME` without a trailing `_WIDTHxHEIGHT`), then defaults: spacing 0.5 m, heights 0 to 10 m, scale 1.
+// What is known of a height file beside its samples. An unset value is looked up in the sidecar (`NAME.json`
+// beside the file, or `NAME` without a trailing `_WIDTHxHEIGHT`), then in the file itself, then defaults:
+// spacing 0.5 m, codes from 0 to 10 m, scale and exaggeration 1. docs/terrain.md tells it in full.
 struct HeightfieldUnits {
-  std::optional<float> spacingX, spacingZ;    // metres a sample, before scale
-  std::optional<float> minHeight, maxHeight;  // metres at code 0 and code 65535 (or 255), before scale
-  std::optional<float> scale;                 // uniform: multiplies spacing and heights alike
+  std::optional<float> spacingX, spacingZ;  // metres a sample, before scale
+  // Metres at code 0 and at the highest code, before scale; a file of metres is rescaled to this range.
+  std::optional<float> minHeight, maxHeight;
+  std::optional<float> scale;             // uniform: multiplies spacing and heights alike
+  std::optional<float> exaggeration;      // multiplies heights alone
+  std::optional<uint32_t> columns, rows;  // of raw files; others must agree
+  std::optional<double> voidValue;        // a sample of this value, as stored, is a void
 };
 
-// Reads a 16-bit (or 8-bit) grey PNG. Throws Error(input) that names the file and the fault.
+// Reads .png (grey, 8 or 16 bits), .r16, .r32f, .hgt (SRTM) or .npy, by the name's extension. Voids are
+// filled and counted. Throws Error(input) that names the file and the fault.
 Heightfield loadHeightfield(const std::filesystem::path& file, const HeightfieldUnits& units = {});
 
 // Rolling ground made of value noise in octaves, with ridges; the same bits for the same arguments.

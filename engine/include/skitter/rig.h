@@ -57,10 +57,11 @@ struct Rig {
   int paletteSize() const { return 1 + legCount() * maxBones(); }
 };
 
-// Reads a glTF 2.0 binary whose extras hold the chains, groups and limits (docs/rig.md).
-// Throws Error(input) that names the file and the fault.
+// A sidecar (NAME.rig.json); or a model (.glb, .gltf) with its sidecar beside it or, failing that, with legs
+// in its extras (docs/rig.md). Throws Error(input) that names the file and the fault.
 Rig loadRig(const std::filesystem::path& file);
-Rig parseRig(std::span<const uint8_t> glb, const std::string& name);
+// A model whose extras hold the legs, everything in one file.
+Rig parseRig(std::span<const uint8_t> gltf, const std::string& name);
 // The built-in spider (assets/spider.glb, embedded): eight legs of four bones, leg length 1 m.
 Rig spiderRig();
 

@@ -37,7 +37,8 @@ struct Goal {
 };
 
 struct Herd {
-  std::string rig = "spider";  // "spider" or a .glb file, relative to the scene
+  std::string rig =
+      "spider";  // "spider", a model (.glb, .gltf) or a sidecar (.rig.json), relative to the scene
   std::string controller = "adaptive";
   uint32_t agents = 1000;
   Spawn spawn;

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "skitter/rig.h"
+
+namespace skitter {
+
+// Bends a leg at rest, skin and all, so that its middle goes the way of `direction` (model space) and a
+// straight leg of two bones has `degrees` at its middle. Its root stays, its foot comes nearer; its home is
+// left alone.
+void bendLeg(Rig& rig, size_t leg, const glm::dvec3& direction, double degrees);
+
+}  // namespace skitter

@@ -1,0 +1,93 @@
+#include <filesystem>
+
+#include "process.h"
+
+// inspect and rig on models of one's own, and a run with what they lead to.
+namespace skitter::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RigCommand : AppTest {
+  RigCommand() { fs::copy_file(SKITTER_ROOT "/assets/quadruped.glb", file("beast.glb")); }
+};
+
+TEST_F(RigCommand, InspectSaysWhatThereIs) {
+  const Result result = skitter({"inspect", file("beast.glb"), "--json", file("beast.json")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  for (const char* words :
+       {"1 skins, 21 joints", "legs    4 found", "left_shoulder to left_forefoot", "skitter rig"}) {
+    EXPECT_NE(result.out.find(words), std::string::npos) << words << "\n" << result.out;
+  }
+  const nlohmann::json report = json("beast.json");
+  EXPECT_EQ(report.at("joints"), 21);
+  EXPECT_EQ(report.at("legs").size(), 4u);
+  EXPECT_EQ(report.at("legs")[0].at("joints").size(), 4u);
+  EXPECT_EQ(report.at("isRig"), false);
+}
+
+TEST_F(RigCommand, InspectDrawsWithoutADevice) {
+  const Environment nowhere = {{"VK_DRIVER_FILES", "/nowhere.json"}, {"VK_ICD_FILENAMES", "/nowhere.json"}};
+  const Result result = runProgram(
+      {SKITTER_BINARY, "inspect", file("beast.glb"), "--out", file("beast.png"), "--size", "200x150"},
+      nowhere);
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_GT(fs::file_size(file("beast.png")), 2000u);
+}
+
+TEST_F(RigCommand, RigWritesASidecarThatWalks) {
+  const Result result = skitter({"rig", file("beast.glb"), "--leg-length", "0.66"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"beast.glb", "beast.rig.json"}));
+  EXPECT_EQ(json("beast.rig.json").at("legs").size(), 4u);
+  for (const char* rig : {"beast.glb", "beast.rig.json"}) {
+    SCOPED_TRACE(rig);
+    const Result run = skitter({"run", "--rig", file(rig), "--headless", "--agents", "5", "--frames", "60",
+                                "--json", file("run.json")});
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_LT(json("run.json").at("fidelity").at("reachErrorP99").get<double>(), 0.01);
+    EXPECT_LT(json("run.json").at("fidelity").at("slip").get<double>(), 0.01);
+  }
+  EXPECT_EQ(
+      skitter({"validate", "--rig", file("beast.glb"), "--agents", "8", "--frames", "20", "--quiet"}).code,
+      0);
+  write("scene.json", R"({"herds": [{"rig": "beast.rig.json", "agents": 2}]})");
+  EXPECT_EQ(skitter({"run", file("scene.json"), "--headless", "--frames", "2"}).code, 0);
+}
+
+TEST_F(RigCommand, ASidecarThatMayBeEditedIsNotOverwritten) {
+  write("beast.rig.json", "{}");
+  expectRefusal(skitter({"rig", file("beast.glb")}), 2, {"beast.rig.json", "--force"});
+  EXPECT_TRUE(json("beast.rig.json").empty());
+  // What is there is told for what it is.
+  const Result result = skitter({"inspect", file("beast.glb")});
+  EXPECT_NE(result.out.find("model is missing"), std::string::npos) << result.out;
+  EXPECT_EQ(skitter({"rig", file("beast.glb"), "--force"}).code, 0);
+  EXPECT_FALSE(json("beast.rig.json").empty());
+}
+
+TEST_F(RigCommand, SidecarElsewhereFindsItsModel) {
+  fs::create_directory(file("rigs"));
+  ASSERT_EQ(skitter({"rig", file("beast.glb"), "--out", file("rigs/b.rig.json")}).code, 0);
+  EXPECT_EQ(json("rigs/b.rig.json").at("model"), "../beast.glb");
+  EXPECT_EQ(
+      skitter({"run", "--rig", file("rigs/b.rig.json"), "--headless", "--agents", "1", "--frames", "1"}).code,
+      0);
+}
+
+TEST_F(RigCommand, Refusals) {
+  write("text.glb", "no model");
+  expectRefusal(skitter({"inspect", file("none.glb")}), 2, {"none.glb", "no such file"});
+  expectRefusal(skitter({"inspect", file("text.glb")}), 2, {"text.glb", "not glTF"});
+  expectRefusal(skitter({"rig", file("text.glb")}), 2, {"text.glb", "not glTF"});
+  expectRefusal(skitter({"rig", file("beast.glb"), "--out", file("b.glb")}), 2, {"--out", ".rig.json"});
+  expectRefusal(skitter({"rig", file("beast.glb"), "--leg-length", "0"}), 2, {"--leg-length"});
+  expectRefusal(skitter({"inspect", file("beast.glb"), "--out", file("beast.jpg")}), 2, {"--out", ".png"});
+  expectRefusal(skitter({"run", "--rig", file("beast.glb"), "--headless"}), 2, {"beast.glb", "skitter rig"});
+  expectRefusal(skitter({"validate", "--rig", file("none.glb")}), 2, {"none.glb"});
+  EXPECT_EQ(files(), (std::vector<std::string>{"beast.glb", "text.glb"}));
+}
+
+}  // namespace
+}  // namespace skitter::test
