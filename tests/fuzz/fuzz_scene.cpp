@@ -1,0 +1,12 @@
+#include <string>
+
+#include "skitter/error.h"
+#include "skitter/scene.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  try {
+    skitter::parseScene(std::string(data, data + size), "fuzz", ".");
+  } catch (const skitter::Error&) {
+  }
+  return 0;
+}
