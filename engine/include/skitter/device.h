@@ -62,7 +62,7 @@ struct DeviceReport {
   uint32_t apiVersion = 0;
   DeviceLimits limits;
   DeviceFeatures features;
-  std::vector<std::string> lacks;       // optional features and sizes that it is without, as `info` names them
+  std::vector<std::string> lacks;      // optional features and sizes that it is without, as `info` names them
   LoadPath loads = LoadPath::storage;  // the path taken unless a request names one
   bool suitable = false;
   std::vector<std::string> refusals;  // each reason why it is not suitable
