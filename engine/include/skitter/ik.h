@@ -1,0 +1,217 @@
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "skitter/device.h"
+
+// Inverse kinematics of many equal chains at once, on its own: N chains, N targets in, joints out. docs/ik.md
+// states the equations and their sources; angles are radians, lengths are in the caller's units.
+namespace skitter::ik {
+
+enum class Solver {
+  automatic,  // stretchAlign for free chains, activeSet for limited ones: what measures best
+  fabrik,
+  dissertationKeep,  // FABRIK as the dissertation has it: a joint outside its cone keeps its position,
+  dissertationEdge,  // or moves to the cone's closest edge
+  ccd,
+  transpose,
+  pseudoinverse,
+  dampedLeastSquares,
+  targetAttached,
+  twoBone,       // free chains of two bones
+  stretchAlign,  // free chains
+  activeSet,
+};
+inline constexpr std::array allSolvers = {Solver::automatic,
+                                          Solver::fabrik,
+                                          Solver::dissertationKeep,
+                                          Solver::dissertationEdge,
+                                          Solver::ccd,
+                                          Solver::transpose,
+                                          Solver::pseudoinverse,
+                                          Solver::dampedLeastSquares,
+                                          Solver::targetAttached,
+                                          Solver::twoBone,
+                                          Solver::stretchAlign,
+                                          Solver::activeSet};
+// "auto", "fabrik", "dissertation-keep", "dissertation-edge", "ccd", "transpose", "pseudoinverse", "dls",
+// "target-attached", "two-bone", "stretch-align", "active-set".
+const char* nameOf(Solver);
+std::optional<Solver> solverNamed(std::string_view);
+
+// How far a bone may turn from its rest direction, in the frame that the bones before it carry along.
+struct Free {};
+struct Cone {
+  float halfAngle;  // > 0; above 3.1: 3.1
+};
+// A quarter of an ellipse a quadrant (Aristidou et al. 2016): half-angles toward the frame's +x, +y, -x, -y,
+// each > 0 and at most 3.1.
+struct Ellipse {
+  float px, py, nx, ny;
+};
+// About an axis given in the chain's rest axes (any length but 0, not along the bone); from min to max, at
+// most 3.1 either way.
+struct Hinge {
+  glm::vec3 axis;
+  float min, max;
+};
+using Limit = std::variant<Free, Cone, Ellipse, Hinge>;
+
+struct Bone {
+  float length = 0;              // >= 0; one of 0 never turns
+  glm::vec3 direction{0, 1, 0};  // at rest, any length but 0
+  Limit limit = Free{};
+  float twistMin = 0, twistMax = 0;  // about the bone, beyond the shortest arc; balls only, at most 3.1
+  float stiffness = 1;               // of the rest pull
+};
+
+// The kind of chain that a batch solves: its base at 0, its axes the base's.
+struct Chain {
+  std::vector<Bone> bones;        // 1 to 15: 2 to 16 joints
+  std::optional<glm::vec3> pole;  // to which side it should fold, where it may fold two ways
+
+  bool isFree() const;                  // no bone is limited
+  float reach() const;                  // the sum of the lengths
+  std::vector<glm::vec3> rest() const;  // its joints at rest, base first
+};
+
+// Throws Error(input) naming the bone and the fault: a count, length, direction or limit that cannot be.
+void check(const Chain&);
+
+enum class Start {
+  rest,      // every solve starts at the rest pose
+  previous,  // from the result of the solve before it; the first from rest
+};
+
+// Why a solve ended.
+enum class Stop : uint32_t { tolerance, cap, stall, unreachable, skipped };
+inline constexpr std::array<const char*, 5> stopNames = {"tolerance", "cap", "stall", "unreachable",
+                                                         "skipped"};
+
+struct Options {
+  Solver solver = Solver::automatic;
+  Start start = Start::rest;
+  float tolerance = 9e-4f;  // share of the reach: what rounding leaves is then within 1e-3
+  uint32_t iterations = 0;  // at most; 0: defaultIterations
+  bool restarts = true;     // activeSet: from seed poses, when a limit holds an attempt up
+  float restPull = 0;       // activeSet: share of the angle from rest taken back an iteration once on target
+  bool bases = false;       // each chain has a base of its own that may move; otherwise all are at 0
+  bool rotations = false;   // write the bones' rotations too
+};
+// What the engine ships: 20 for free chains, 64 for limited ones, 4 where solves continue.
+uint32_t defaultIterations(const Chain&, const Options&);
+// The solver that `automatic` stands for.
+Solver solverFor(const Chain&, const Options&);
+
+struct Base {
+  glm::vec3 position{0};
+  glm::quat rotation{1, 0, 0, 0};
+};
+
+struct Report {
+  float error = 0;  // distance of the tip from its target, share of the reach; 0 where skipped
+  uint32_t iterations = 0;
+  Stop stop = Stop::tolerance;
+};
+
+// Device memory, in the caller's hands or the batch's: arrays of vec4 with usage STORAGE_BUFFER and
+// UNIFORM_TEXEL_BUFFER.
+struct Span {
+  VkBuffer buffer = VK_NULL_HANDLE;
+  uint64_t bytes = 0;
+};
+
+// N chains of one kind. Not thread-safe. Throws Error(input) for a chain or options that cannot be,
+// Error(device) when memory does not suffice. Chains are split over pages, so that any count fits the
+// device's bindings.
+class Batch {
+ public:
+  Batch(Device&, const Chain&, uint32_t chains, const Options& = {});
+  ~Batch();
+  Batch(Batch&&) noexcept;
+  Batch& operator=(Batch&&) noexcept;
+
+  uint32_t chains() const;
+  uint32_t joints() const;  // a chain
+  Solver solver() const;
+  uint32_t iterations() const;
+  uint64_t memoryBytes() const;
+
+  // From the host: one a chain. These and the reads below wait for the device.
+  void setTargets(std::span<const glm::vec3>);
+  void setBases(std::span<const Base>);  // with Options::bases
+  void reset();                          // every chain to its rest pose
+  // Start poses from joints, J a chain, base first: bones are aimed at the next joint within their limits,
+  // without twist. For Start::previous.
+  void setJoints(std::span<const glm::vec3>);
+  // Records a solve, submits it and waits.
+  void solve();
+  std::vector<glm::vec3> downloadJoints() const;  // J a chain
+  std::vector<glm::quat> downloadRotations()
+      const;  // J - 1 a chain, world from rest; with Options::rotations
+  std::vector<Report> downloadReports() const;
+
+  // In the caller's command buffer, outside a render pass: one solve of every chain. It begins and ends with
+  // barriers against compute and transfer work before and after it.
+  void record(VkCommandBuffer) const;
+  // The device's own view, page by page: chain c is entry c % pageChains() of page c / pageChains().
+  uint32_t pageChains() const;
+  uint32_t pages() const;
+  Span targets(uint32_t page) const;    // a vec4 a chain: x, y, z, unused
+  Span bases(uint32_t page) const;      // two: position; rotation xyzw
+  Span joints(uint32_t page) const;     // J - 1 a chain: p_1 .. p_n, w unused; the base is the caller's
+  Span rotations(uint32_t page) const;  // J - 1 a chain: xyzw
+  Span reports(uint32_t page) const;    // one: error, iterations, stop, damping
+  // The caller's buffers in place of the batch's, for a batch of one page: large enough, and bound until the
+  // batch goes or others are given. Those left empty stay the batch's own.
+  struct Buffers {
+    Span targets, bases, joints, rotations, reports;
+  };
+  void use(const Buffers&);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// A body with its legs as one solve: several ends on one tree (docs/ik.md). Free legs of equal bone counts.
+struct Tree {
+  struct Leg {
+    glm::vec3 root{0};  // from the body's position
+    std::vector<Bone> bones;
+  };
+  std::vector<Leg> legs;  // 1 to 8
+  float anchor = 0;       // 0: the body goes where its legs pull it; 1: it stays where it was
+};
+
+class TreeBatch {
+ public:
+  TreeBatch(Device&, const Tree&, uint32_t trees, uint32_t iterations = 20, float tolerance = 9e-4f);
+  ~TreeBatch();
+  TreeBatch(TreeBatch&&) noexcept;
+  TreeBatch& operator=(TreeBatch&&) noexcept;
+
+  // `bodies`: a position a tree, `targets`: one a leg. Solves start at rest about these bodies.
+  void solve(std::span<const glm::vec3> bodies, std::span<const glm::vec3> targets);
+  std::vector<glm::vec3> downloadBodies() const;
+  std::vector<glm::vec3> downloadJoints() const;  // per tree, leg and joint
+  std::vector<Report> downloadReports() const;    // one a tree; the error is the largest of its legs'
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skitter::ik
