@@ -42,6 +42,8 @@ std::vector<float> rigRecords(const Rig& rig) {
       append(records, bone.direction, present ? std::tan(half) : 0.0f);
       // The first joint turns the whole leg, so it yields to the target more readily than the others.
       append(records, present ? bone.start : leg.home, i == 0 ? 0.2f : 1.0f);
+      append(records, glm::vec3(0), 0);
+      append(records, glm::vec3(shared::LIMIT_CONE, 0, 0), 0);
     }
   }
   return records;

@@ -52,6 +52,15 @@ Buffer::Buffer(const Context& context, uint64_t bytes, std::string name, BufferU
   guarded(name_, [&] { buffer_.bindMemory(*memory_, 0); });
 }
 
+Buffer Buffer::borrowed(const Context& context, vk::Buffer handle, uint64_t bytes, std::string name) {
+  Buffer buffer;
+  buffer.context_ = &context;
+  buffer.bytes_ = buffer.allocated_ = bytes;
+  buffer.name_ = std::move(name);
+  buffer.borrowed_ = handle;
+  return buffer;
+}
+
 vk::BufferView Buffer::texelView() const {
   if (*view_) return *view_;
   const uint64_t texels = allocated_ / kTexelBytes;
@@ -64,7 +73,7 @@ vk::BufferView Buffer::texelView() const {
     return vk::raii::BufferView(
         context_->device(),
         vk::BufferViewCreateInfo{
-            .buffer = *buffer_, .format = vk::Format::eR32G32B32A32Sfloat, .range = allocated_});
+            .buffer = handle(), .format = vk::Format::eR32G32B32A32Sfloat, .range = allocated_});
   });
   context_->name(*view_, name_);
   return *view_;

@@ -22,11 +22,14 @@ class Buffer {
   Buffer() = default;
   // Throws Error(device) when there is not enough memory, saying how much `name` asked for.
   Buffer(const Context&, uint64_t bytes, std::string name, BufferUse = BufferUse::records);
+  // The first `bytes`, a multiple of 16, of a buffer that the caller keeps, with usage STORAGE_BUFFER and,
+  // where texel buffers are loaded from, UNIFORM_TEXEL_BUFFER; TRANSFER_SRC and _DST to be copied.
+  static Buffer borrowed(const Context&, vk::Buffer, uint64_t bytes, std::string name);
 
   uint64_t size() const { return bytes_; }  // as asked for
   const std::string& name() const { return name_; }
-  vk::Buffer handle() const { return *buffer_; }
-  explicit operator bool() const { return !!*buffer_; }
+  vk::Buffer handle() const { return *buffer_ ? *buffer_ : borrowed_; }
+  explicit operator bool() const { return !!handle(); }
 
   // The whole buffer as RGBA32F texels, made at the first call, which is never in the frame loop (Bindings
   // asks for it). Throws Error(device) when the buffer has more texels than a view reaches.
@@ -39,6 +42,7 @@ class Buffer {
   std::string name_;
   vk::raii::DeviceMemory memory_ = nullptr;
   vk::raii::Buffer buffer_ = nullptr;
+  vk::Buffer borrowed_;
   mutable vk::raii::BufferView view_ = nullptr;
 };
 

@@ -79,8 +79,18 @@ SKITTER_CONST int METRIC_STRIDE = 3;
 //   bone [0] x axis of the bone frame B_i (model), length / reach
 //        [1] z axis of B_i, the rest direction r_i (model), tan(half-angle / 2)
 //        [2] rest start p_i x, y, z (model), stiffness
+//        [3] ellipse: half-angles toward +x, +y, -x, -y; hinge: tan(lo/2), tan(hi/2), c_i, sqrt(1 - c_i^2)
+//        [4] kind of limit (LIMIT_), twist: tan(lo/2), tan(hi/2), unused
 SKITTER_CONST int RIG_LEG_STRIDE = 2;
-SKITTER_CONST int RIG_BONE_STRIDE = 3;
+SKITTER_CONST int RIG_BONE_STRIDE = 5;
+// Kinds of limit. A kernel is specialised by those that may occur at each bone: four bits a bone, eight bones
+// a word, LIMIT_TWIST beside the others.
+SKITTER_CONST int LIMIT_CONE = 1;
+SKITTER_CONST int LIMIT_ELLIPSE = 2;
+SKITTER_CONST int LIMIT_HINGE = 4;
+SKITTER_CONST int LIMIT_TWIST = 8;
+SKITTER_CONST int LIMIT_WORDS = 2;
+SKITTER_CONST int LIMIT_BONES_A_WORD = 8;
 SKITTER_FUNCTION int rigStride(int bones) { return RIG_LEG_STRIDE + RIG_BONE_STRIDE * bones; }
 
 // counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] listed legs,

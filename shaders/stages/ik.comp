@@ -22,7 +22,7 @@ void main() {
   int at = record * chainStride(BONES), rigAt = leg * rigStride(BONES);
 
   Limb limb;
-  LOAD_LIMB(limb, rig, rigAt);
+  LOAD_LIMB(limb, rig, rigAt + RIG_LEG_STRIDE);
   vec4 root = LOAD4(rig, rigAt);
   float reach = root.w;
   Pose pose;

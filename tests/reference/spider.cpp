@@ -76,12 +76,16 @@ std::vector<float> rigRecordsOf(const Rig& rig, int padding) {
       push(x, bone.length / leg.reach);
       push(z, std::tan(static_cast<double>(bone.coneHalfAngle) / 2));
       push(bone.start, 1);
+      push(glm::dvec3(0), 0);
+      push(glm::dvec3(shared::LIMIT_CONE, 0, 0), 0);
       end = glm::dvec3(bone.start) + z * static_cast<double>(bone.length);
     }
     for (int i = 0; i < padding; ++i) {
       push(x, 0);
       push(z, 1);
       push(end, 0);
+      push(glm::dvec3(0), 0);
+      push(glm::dvec3(shared::LIMIT_CONE, 0, 0), 0);
     }
   }
   return records;

@@ -1,0 +1,82 @@
+#include "ik/records.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/records.h"
+
+namespace skitter::ik {
+namespace {
+
+void append(std::vector<float>& records, const glm::dvec3& v, double w) {
+  for (const double x : {v.x, v.y, v.z, w}) records.push_back(static_cast<float>(x));
+}
+
+int kindOf(const Limit& limit) {
+  if (std::holds_alternative<Ellipse>(limit)) return shared::LIMIT_ELLIPSE;
+  if (std::holds_alternative<Hinge>(limit)) return shared::LIMIT_HINGE;
+  return shared::LIMIT_CONE;  // a free ball is a cone as wide as can be
+}
+
+void padToVec4(std::vector<float>& records) {
+  while (records.size() % 4 != 0) records.push_back(0);
+}
+
+}  // namespace
+
+std::vector<float> boneRecords(const Skeleton& skeleton) {
+  std::vector<float> records;
+  glm::dvec3 start(0);
+  const std::vector<glm::dvec3> rest = skeleton.place(skeleton.rest());
+  for (size_t i = 0; i < skeleton.bones(); ++i) {
+    const Skeleton::Joint& joint = skeleton.joints()[i];
+    append(records, joint.frame[0], joint.length);
+    append(records, joint.frame[2], std::tan(std::min(greatestAngle(joint.limit, 0), kWidestAngle) / 2));
+    append(records, start, joint.stiffness);
+    if (const auto* ellipse = std::get_if<Ellipse>(&joint.limit)) {
+      append(records, {ellipse->px, ellipse->py, ellipse->nx}, ellipse->ny);
+    } else if (const auto* hinge = std::get_if<Hinge>(&joint.limit)) {
+      append(records, {std::tan(hinge->min / 2), std::tan(hinge->max / 2), joint.axis.x}, joint.axis.z);
+    } else {
+      append(records, glm::dvec3(0), 0);
+    }
+    append(records, {kindOf(joint.limit), std::tan(joint.twistMin / 2), std::tan(joint.twistMax / 2)}, 0);
+    start = rest[i];
+  }
+  return records;
+}
+
+std::pair<uint32_t, uint32_t> limitWords(const Skeleton& skeleton) {
+  uint32_t words[shared::LIMIT_WORDS] = {};
+  for (size_t i = 0; i < skeleton.bones(); ++i) {
+    const Skeleton::Joint& joint = skeleton.joints()[i];
+    int kinds = kindOf(joint.limit);
+    if (joint.twistMin != 0 || joint.twistMax != 0) kinds |= shared::LIMIT_TWIST;
+    words[i / shared::LIMIT_BONES_A_WORD] |= static_cast<uint32_t>(kinds)
+                                             << 4 * (i % shared::LIMIT_BONES_A_WORD);
+  }
+  return {words[0], words[1]};
+}
+
+void appendPose(const Skeleton& skeleton, const Skeleton::Pose& pose, std::vector<float>& records) {
+  for (const glm::dvec3& d : pose.directions) {
+    const double k = 1 / std::max(1 + d.z, 1e-6);
+    records.push_back(static_cast<float>(d.x * k));
+    records.push_back(static_cast<float>(d.y * k));
+  }
+  padToVec4(records);
+  if (!skeleton.hasTwists()) return;
+  for (const double twist : pose.twists) records.push_back(static_cast<float>(std::tan(twist / 2)));
+  padToVec4(records);
+}
+
+std::vector<float> seedRecords(const Skeleton& skeleton, const std::vector<Skeleton::Pose>& seeds) {
+  std::vector<float> records;
+  for (const Skeleton::Pose& pose : seeds) {
+    appendPose(skeleton, pose, records);
+    for (const glm::dvec3& p : skeleton.place(pose)) append(records, p, 0);
+  }
+  return records;
+}
+
+}  // namespace skitter::ik

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "ik/skeleton.h"
+
+// A chain as the shaders read it: shaders/shared/records.h (rig, bone) and shaders/shared/ik_batch.h.
+namespace skitter::ik {
+
+std::vector<float> boneRecords(const Skeleton&);
+// CONSTANT_LIMITS_LOW and CONSTANT_LIMITS_HIGH.
+std::pair<uint32_t, uint32_t> limitWords(const Skeleton&);
+// Directions and twists, whole vec4.
+void appendPose(const Skeleton&, const Skeleton::Pose&, std::vector<float>& records);
+std::vector<float> seedRecords(const Skeleton&, const std::vector<Skeleton::Pose>&);
+
+}  // namespace skitter::ik

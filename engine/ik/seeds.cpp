@@ -1,0 +1,80 @@
+#include "ik/seeds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace skitter::ik {
+namespace {
+
+using glm::dvec3;
+
+constexpr uint32_t kCandidates = 1024;
+constexpr double kPulled = 0.7;  // of the way out from rest is left
+
+// SplitMix64 (Steele et al. 2014).
+class Random {
+ public:
+  double operator()() {
+    uint64_t z = state_ += 0x9e3779b97f4a7c15;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+  double within(double low, double high) { return low + (high - low) * (*this)(); }
+
+ private:
+  uint64_t state_ = 1;
+};
+
+dvec3 randomDirection(const Limit& limit, Random& random) {
+  if (const auto* hinge = std::get_if<Hinge>(&limit)) {
+    const double middle = std::clamp<double>(0, hinge->min, hinge->max);
+    const double q = middle + kPulled * (random.within(hinge->min, hinge->max) - middle);
+    return {0, -std::sin(q), std::cos(q)};
+  }
+  const double phi = random.within(0, 2 * std::numbers::pi);
+  const double most = greatestAngle(limit, phi);
+  // Uniform on the cap.
+  const double theta = std::acos(random.within(std::cos(most), 1));
+  return leaning(kPulled * theta, phi);
+}
+
+double fold(const std::vector<dvec3>& places, const dvec3& pole) {
+  const dvec3 tip = places.back(), line = tip / std::max(glm::length(tip), 1e-12);
+  dvec3 sum(0);
+  for (const dvec3& p : places) sum += p - line * glm::dot(p, line);
+  return glm::dot(sum, pole);
+}
+
+}  // namespace
+
+std::vector<Skeleton::Pose> seedPoses(const Skeleton& skeleton, const std::optional<glm::vec3>& pole,
+                                      uint32_t most) {
+  Random random;
+  std::vector<Skeleton::Pose> candidates;
+  std::vector<dvec3> tips;
+  for (uint32_t c = 0; c < kCandidates; ++c) {
+    Skeleton::Pose pose;
+    for (const Skeleton::Joint& joint : skeleton.joints()) {
+      pose.directions.push_back(joint.length > 0 ? randomDirection(joint.limit, random) : dvec3(0, 0, 1));
+      pose.twists.push_back(kPulled * random.within(joint.twistMin, joint.twistMax));
+    }
+    const std::vector<dvec3> places = skeleton.place(pose);
+    if (pole && fold(places, dvec3(*pole)) < 0) continue;
+    candidates.push_back(pose);
+    tips.push_back(places.back());
+  }
+  std::vector<Skeleton::Pose> seeds;
+  std::vector<double> distance(candidates.size(), std::numeric_limits<double>::max());
+  for (size_t next = 0; seeds.size() < std::min<size_t>(most, candidates.size());) {
+    seeds.push_back(candidates[next]);
+    for (size_t c = 0; c < candidates.size(); ++c)
+      distance[c] = std::min(distance[c], glm::length(tips[c] - tips[next]));
+    next = static_cast<size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+  }
+  return seeds;
+}
+
+}  // namespace skitter::ik

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ik/skeleton.h"
+
+namespace skitter::ik {
+
+// Poses from which the active set starts anew (docs/ik.md, Restarts): at most `most`, the same for the same
+// chain. With a pole, those alone that fold to its side.
+std::vector<Skeleton::Pose> seedPoses(const Skeleton&, const std::optional<glm::vec3>& pole, uint32_t most);
+
+}  // namespace skitter::ik

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "skitter/ik.h"
+
+namespace skitter::ik {
+
+// A chain made ready: bone frames, lengths as shares of the reach, limits in radians within what the solvers
+// can hold. Double precision, for set-up on the host.
+class Skeleton {
+ public:
+  explicit Skeleton(const Chain&);
+
+  struct Joint {
+    glm::dmat3 frame{1};  // B_i
+    double length = 0;
+    glm::dvec3 axis{0, 0, 1};  // o_i, the bone in its frame
+    Limit limit = Free{};
+    double twistMin = 0, twistMax = 0;
+    double stiffness = 1;
+  };
+  // d_i and tau_i.
+  struct Pose {
+    std::vector<glm::dvec3> directions;
+    std::vector<double> twists;
+  };
+
+  const std::vector<Joint>& joints() const { return joints_; }
+  size_t bones() const { return joints_.size(); }
+  bool hasTwists() const;
+
+  glm::dvec3 clamp(size_t bone, const glm::dvec3& direction) const;
+  Pose rest() const;
+  // p_1 .. p_n, base at 0.
+  std::vector<glm::dvec3> place(const Pose&) const;
+  // The legal pose whose bones point, as far as they may, from one given joint (base first) to the next.
+  Pose aim(std::span<const glm::dvec3> joints) const;
+
+ private:
+  std::vector<Joint> joints_;
+};
+
+// The direction at polar angle `theta` from rest, leaning toward `phi`.
+glm::dvec3 leaning(double theta, double phi);
+// The greatest polar angle that a ball's limit allows toward `phi`.
+double greatestAngle(const Limit&, double phi);
+
+inline constexpr double kWidestAngle = 3.1;
+
+}  // namespace skitter::ik

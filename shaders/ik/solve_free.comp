@@ -1,0 +1,116 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Chains whose pose is their joints: free ones, and those of the dissertation (docs/ik.md).
+#include "ik/batch.glsl"
+#include "lib/dissertation.glsl"
+#include "lib/free_chain.glsl"
+
+void iterate(float bone[BONES], vec3 rest[BONES], float cosLimit[BONES], float sinLimit[BONES], vec3 target, vec3 pole,
+             int k, inout FreePose pose) {
+  if (SOLVER == SOLVER_CCD) {
+    freeCcd(bone, target, pose);
+  } else if (SOLVER == SOLVER_TWO_BONE) {
+    twoBone(bone, target, pole, pose);
+  } else if (SOLVER == SOLVER_DISSERTATION_KEEP || SOLVER == SOLVER_DISSERTATION_EDGE) {
+    dissertationIteration(bone, rest, cosLimit, sinLimit, target, SOLVER == SOLVER_DISSERTATION_EDGE, pose);
+  } else if (SOLVER >= SOLVER_TRANSPOSE && SOLVER <= SOLVER_TARGET_ATTACHED) {
+    freeJacobian(bone, target, SOLVER, rest, pose);
+  } else {
+    freeFabrik(bone, target, pose);
+  }
+}
+
+// Turned about the line base-tip, so that the bend points to the pole.
+void turnToPole(vec3 pole, inout FreePose pose) {
+  vec3 line = unit(pose.joint[BONES]), bend = vec3(0.0);
+  for (int i = 1; i < BONES; ++i) bend += pose.joint[i] - line * dot(pose.joint[i], line);
+  vec3 w = pole - line * dot(pole, line);
+  if (dot(bend, bend) > 1e-10 && dot(w, w) > 1e-10) {
+    vec4 turn = shortestArc(unit(bend), unit(w));
+    // A half turn is about the line, whatever perpendicular the shortest arc would take.
+    turn = dot(unit(bend), unit(w)) < -0.999 ? vec4(line, 0.0) : turn;
+    for (int i = 1; i < BONES; ++i) pose.joint[i] = rotate(turn, pose.joint[i]);
+  }
+}
+
+void main() {
+  int chain = int(gl_GlobalInvocationID.x);
+  if (chain >= int(constants.count)) return;
+  float bone[BONES], cosLimit[BONES], sinLimit[BONES];
+  vec3 rest[BONES];
+  for (int i = 0; i < BONES; ++i) {
+    vec4 b = LOAD4(rig, RIG_BONE_STRIDE * i + 1);
+    bone[i] = LOAD4(rig, RIG_BONE_STRIDE * i).w;
+    rest[i] = b.xyz;
+    float k = 1.0 / (1.0 + b.w * b.w);
+    cosLimit[i] = LOAD4(rig, RIG_BONE_STRIDE * i + 4).x == float(LIMIT_CONE) ? (1.0 - b.w * b.w) * k : -2.0;
+    sinLimit[i] = 2.0 * b.w * k;
+  }
+  FreePose pose;
+  pose.joint[0] = vec3(0.0);
+  for (int i = 0; i < BONES; ++i)
+    pose.joint[i + 1] = PREVIOUS ? LOAD4(states, chain * BONES + i).xyz / constants.reach : pose.joint[i] + bone[i] * rest[i];
+  vec3 base = BASES ? LOAD4(bases, chain * BASE_STRIDE).xyz : vec3(0.0);
+  vec4 orientation = BASES ? LOAD4(bases, chain * BASE_STRIDE + 1) : vec4(0.0, 0.0, 0.0, 1.0);
+  vec3 given = LOAD4(targets, chain).xyz, pole = vec3(constants.poleX, constants.poleY, constants.poleZ);
+  vec3 target = (BASES ? rotateBack(orientation, given - base) : given) / constants.reach;
+  bool lost = !finite(target);
+  target = lost ? pose.joint[BONES] : target;
+
+  float error = distance(target, pose.joint[BONES]), last = error;
+  float reason = lost ? STOP_SKIPPED : STOP_TOLERANCE;
+  int k = 0;
+  bool far = dot(target, target) >= 1.0, open = error > constants.tolerance && constants.iterations > 0u;
+  reason = error > constants.tolerance && !open ? STOP_CAP : reason;
+  // Rare work stands in loops, which are skipped where no chain of a subgroup needs it.
+  for (bool reachFor = open && far; reachFor; reachFor = false) {
+    layStraight(bone, unit(target), pose);
+    error = distance(target, pose.joint[BONES]);
+    reason = error > constants.tolerance ? STOP_UNREACHABLE : STOP_TOLERANCE;
+    k = 1;
+    open = false;
+  }
+  for (bool stuck = open && freeDeadlocked(target, pose); stuck; stuck = false) {
+    freeBend(bone, pole, pose);
+    error = last = distance(target, pose.joint[BONES]);
+  }
+  FreePose best;
+  best.joint[0] = vec3(0.0);
+  for (int i = 1; i <= BONES; ++i) best.joint[i] = pose.joint[i];
+  if (SOLVER == SOLVER_STRETCH_ALIGN && open) {
+    stretchAlign(bone, target, pole, constants.tolerance, pose);
+    last = distance(target, pose.joint[BONES]);
+    k = 1;
+    for (int i = 1; i <= BONES; ++i) best.joint[i] = last < error ? pose.joint[i] : best.joint[i];
+    error = min(error, last);
+    open = error > constants.tolerance;
+  }
+  for (; open && k < int(constants.iterations); ++k) {
+    iterate(bone, rest, cosLimit, sinLimit, target, pole, k, pose);
+    float now = distance(target, pose.joint[BONES]);
+    for (int i = 1; i <= BONES; ++i) best.joint[i] = now < error ? pose.joint[i] : best.joint[i];
+    error = min(error, now);
+    bool stalled = abs(last - now) < leastProgress();
+    last = now;
+    open = error > constants.tolerance && !stalled;
+    reason = error > constants.tolerance && stalled ? STOP_STALL : reason;
+  }
+  reason = open && error > constants.tolerance ? STOP_CAP : reason;
+
+  if (dot(pole, pole) > 0.0 && !lost && BONES > 1) turnToPole(pole, best);
+  for (int i = 1; i <= BONES; ++i) {
+    vec3 p = constants.reach * best.joint[i];
+    if (PREVIOUS && BASES) STORE4(statesOut, chain * BONES + i - 1, vec4(p, 0.0));
+    STORE4(jointsOut, chain * BONES + i - 1, vec4(BASES ? base + rotate(orientation, p) : p, 0.0));
+  }
+  if (ROTATIONS) {
+    vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
+    for (int i = 0; i < BONES; ++i) {
+      vec3 u = best.joint[i + 1] - best.joint[i], from = rotate(r, rest[i]);
+      vec4 turned = quaternionProduct(shortestArc(from, unit(u)), r);
+      r = bone[i] > 0.0 ? turned * inversesqrt(dot(turned, turned)) : r;
+      STORE4(rotationsOut, chain * BONES + i, BASES ? quaternionProduct(orientation, r) : r);
+    }
+  }
+  STORE4(reportsOut, chain, vec4(lost ? 0.0 : error, float(k), reason, 0.0));
+}

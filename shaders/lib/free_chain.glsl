@@ -1,0 +1,202 @@
+#ifndef FREE_CHAIN_GLSL
+#define FREE_CHAIN_GLSL
+#include "columns.glsl"
+// Chains without limits (docs/ik.md): a pose is its joints alone, and every solver makes one iteration of it.
+// Lengths in units of the reach, base at the origin, joint[0] = 0.
+
+struct FreePose {
+  vec3 joint[BONES + 1];
+};
+
+// The shortest rotation of unit a onto unit b.
+vec4 shortestArc(vec3 a, vec3 b) {
+  float c = dot(a, b);
+  vec3 axis = abs(a.y) > 0.9 ? vec3(0.0, -a.z, a.y) : vec3(a.z, 0.0, -a.x);  // X or Y cross a
+  return c < -0.999999 ? vec4(unit(axis), 0.0)
+                       : vec4(cross(a, b), 1.0 + c) * inversesqrt(max(2.0 * (1.0 + c), 1e-12));
+}
+
+// Some direction perpendicular to a unit `line`, toward `pole` where that can be.
+vec3 acrossLine(vec3 line, vec3 pole) {
+  vec3 w = pole - line * dot(pole, line);
+  vec3 other = abs(line.x) > 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
+  return unit(dot(w, w) > 1e-12 ? w : other - line * dot(other, line));
+}
+
+void layStraight(float bone[BONES], vec3 toward, inout FreePose pose) {
+  for (int i = 0; i < BONES; ++i) pose.joint[i + 1] = pose.joint[i] + bone[i] * toward;
+}
+
+bool freeDeadlocked(vec3 target, FreePose pose) {
+  vec3 line = unit(pose.joint[BONES]);
+  float off = 0.0;
+  for (int i = 1; i < BONES; ++i) {
+    vec3 away = cross(line, pose.joint[i]);
+    off = max(off, dot(away, away));
+  }
+  return off < 1e-6 && length(target) < 0.999 * length(pose.joint[BONES]);
+}
+
+// From each bone's direction to the joints. A bone without length keeps its place.
+void fromDirections(float bone[BONES], vec3 u[BONES], inout FreePose pose) {
+  for (int i = 0; i < BONES; ++i) pose.joint[i + 1] = pose.joint[i] + bone[i] * u[i];
+}
+
+void toDirections(float bone[BONES], FreePose pose, inout vec3 u[BONES]) {
+  for (int i = 0; i < BONES; ++i) u[i] = unit(pose.joint[i + 1] - pose.joint[i]);
+}
+
+float bow(int i) { return 0.1 * (1.0 - 2.0 * float(i) / float(max(BONES - 1, 1))); }
+
+void freeBend(float bone[BONES], vec3 pole, inout FreePose pose) {
+  vec3 u[BONES];
+  toDirections(bone, pose, u);
+  vec3 w = acrossLine(unit(pose.joint[BONES]), pole);
+  for (int i = 0; i < BONES; ++i) u[i] = BONES == 1 ? u[i] : unit(u[i] + bow(i) * w);
+  fromDirections(bone, u, pose);
+}
+
+void freeFabrik(float bone[BONES], vec3 target, inout FreePose pose) {
+  vec3 q = target;
+  for (int i = BONES - 1; i >= 1; --i) {
+    vec3 v = pose.joint[i] - q;
+    pose.joint[i + 1] = q;
+    q += bone[i] * unit(v);
+  }
+  pose.joint[1] = q;
+  vec3 p = vec3(0.0);
+  for (int i = 0; i < BONES; ++i) {
+    p += bone[i] * unit(pose.joint[i + 1] - p);
+    pose.joint[i + 1] = p;
+  }
+}
+
+// From the last joint to the first: what turns later turns everything beyond it too, so only the tip is moved on
+// the way and the turns are applied at the end.
+void freeCcd(float bone[BONES], vec3 target, inout FreePose pose) {
+  vec4 turn[BONES];
+  vec3 tip = pose.joint[BONES];
+  for (int i = BONES - 1; i >= 0; --i) {
+    vec3 arm = tip - pose.joint[i], to = target - pose.joint[i];
+    turn[i] = bone[i] > 0.0 ? shortestArc(unit(arm), unit(to)) : vec4(0.0, 0.0, 0.0, 1.0);
+    tip = pose.joint[i] + rotate(turn[i], arm);
+  }
+  vec3 u[BONES];
+  toDirections(bone, pose, u);
+  vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
+  for (int i = 0; i < BONES; ++i) {
+    r = quaternionProduct(r, turn[i]);
+    u[i] = rotate(r, u[i]);
+  }
+  fromDirections(bone, u, pose);
+}
+
+// Buss 2004. Joints have three axes each, so the columns need not be written down: r cross lambda is what a joint
+// turns by, and |r|^2 I - r r^T its part of J J^T. `rest`: rest directions, for the null-space part.
+void freeJacobian(float bone[BONES], vec3 target, int solver, vec3 rest[BONES], inout FreePose pose) {
+  vec3 e = target - pose.joint[BONES];
+  float e2 = dot(e, e);
+  e *= min(1.0, 0.5 * inversesqrt(max(e2, 1e-20)));
+  vec3 end = solver == SOLVER_TARGET_ATTACHED ? target : pose.joint[BONES];
+  vec3 u[BONES], own[BONES];
+  toDirections(bone, pose, u);
+  Symmetric m = Symmetric(vec3(0.0), vec3(0.0));
+  for (int i = 0; i < BONES; ++i) {
+    vec3 r = bone[i] > 0.0 ? end - pose.joint[i] : vec3(0.0);
+    m.diagonal += vec3(dot(r, r));
+    addOuter(m, r, -1.0);
+    own[i] = vec3(0.0);
+    if (solver == SOLVER_PSEUDOINVERSE) {
+      own[i] = bone[i] > 0.0 ? 0.05 * cross(u[i], rest[i]) : vec3(0.0);
+      e -= cross(own[i], r);
+    }
+  }
+  vec3 lambda;
+  if (solver == SOLVER_TRANSPOSE) {
+    vec3 me = times(m, e);
+    float below = dot(me, me);
+    lambda = below < 1e-20 ? vec3(0.0) : e * (dot(e, me) / max(below, 1e-20));
+  } else {
+    m.diagonal += vec3(solver == SOLVER_PSEUDOINVERSE ? 1e-6 * (m.diagonal.x + m.diagonal.y + m.diagonal.z) : 0.01);
+    lambda = times(inverseOf(m), e);
+  }
+  float largest = 0.0;
+  for (int i = 0; i < BONES; ++i) {
+    vec3 r = bone[i] > 0.0 ? end - pose.joint[i] : vec3(0.0);
+    own[i] += cross(r, lambda);
+    largest = max(largest, dot(own[i], own[i]));
+  }
+  float share = largest > 1.0 ? inversesqrt(largest) : 1.0;
+  vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
+  for (int i = 0; i < BONES; ++i) {
+    vec3 half_ = 0.5 * share * own[i];
+    r = quaternionProduct(r, vec4(half_, 1.0) * inversesqrt(1.0 + dot(half_, half_)));
+    u[i] = unit(rotate(r, u[i]));
+  }
+  fromDirections(bone, u, pose);
+}
+
+// Two bones, law of cosines.
+void twoBone(float bone[BONES], vec3 target, vec3 pole, inout FreePose pose) {
+  float l0 = bone[0], l1 = bone[BONES - 1], away = length(target);
+  vec3 tip = pose.joint[BONES];
+  vec3 line = away > 1e-6 ? target / max(away, 1e-6) : (dot(tip, tip) > 1e-12 ? unit(tip) : unit(pose.joint[1]));
+  float reach = clamp(away, abs(l0 - l1), l0 + l1);
+  vec3 w = acrossLine(line, dot(pole, pole) > 0.0 ? pole : pose.joint[1]);
+  float along = reach < 1e-6 ? 0.0 : (reach * reach + l0 * l0 - l1 * l1) / (2.0 * max(reach, 1e-6));
+  pose.joint[1] = along * line + sqrt(max(l0 * l0 - along * along, 0.0)) * w;
+  pose.joint[BONES] = pose.joint[1] + l1 * unit(reach * line - pose.joint[1]);
+}
+
+// The bends keep their directions; how far the chain must be stretched or folded along its own line for its tip
+// to be as far as the target is one number, found by Newton (docs/ik.md, Stretch-align).
+void stretchAlign(float bone[BONES], vec3 target, vec3 pole, float tolerance, inout FreePose pose) {
+  vec3 u[BONES], b[BONES];
+  float a[BONES];
+  toDirections(bone, pose, u);
+  vec3 tip = pose.joint[BONES], line = dot(tip, tip) > 1e-12 ? unit(tip) : u[0];
+  float wanted = min(length(target), 0.99999), spread = 0.0;
+  for (int i = 0; i < BONES; ++i) {
+    a[i] = dot(u[i], line);
+    b[i] = u[i] - line * a[i];
+    spread += dot(b[i], b[i]);
+  }
+  bool straight = BONES > 1 && spread < float(BONES) * 0.0004;
+  vec3 w = acrossLine(line, pole);
+  for (int i = 0; i < BONES; ++i) {
+    vec3 bowed = b[i] + bow(i) * w;
+    b[i] = straight ? bowed : b[i];
+    a[i] = straight ? (a[i] < 0.0 ? -1.0 : 1.0) * sqrt(max(1.0 - dot(b[i], b[i]), 0.0)) : a[i];
+  }
+  float lambda = 0.0, low = -1e9, high = 1e9, enough = 0.2 * tolerance, g = 0.0;
+  float goal = inversesqrt(1.0 - wanted);
+  vec3 h = vec3(0.0);
+  bool done = false;
+  for (int k = 0; k <= 8 && !done; ++k) {
+    g = 0.0;
+    h = vec3(0.0);
+    float dg = 0.0;
+    vec3 dh = vec3(0.0);
+    for (int i = 0; i < BONES; ++i) {
+      float v = a[i] + lambda, b2 = dot(b[i], b[i]), rho = inversesqrt(max(v * v + b2, 1e-12)), l = bone[i] * rho;
+      g += l * v;
+      h += l * b[i];
+      float l3 = l * rho * rho;
+      dg += l3 * b2;
+      dh -= l3 * v * b[i];
+    }
+    float s = sqrt(g * g + dot(h, h));
+    done = abs(s - wanted) < enough || k == 8;
+    float slope = (g * dg + dot(h, dh)) / max(s, 1e-6), f = inversesqrt(max(1.0 - s, 1e-9));
+    if (s < wanted) low = lambda; else high = lambda;
+    float next = lambda - (f - goal) / (0.5 * f * f * f * slope);
+    bool inside = next > low && next < high;
+    float middle = low < -1e8 ? high - 1.0 : (high > 1e8 ? low + 1.0 : 0.5 * (low + high));
+    lambda = done ? lambda : max(inside ? next : middle, -3.0);
+  }
+  vec4 align = shortestArc(unit(line * g + h), unit(target));
+  for (int i = 0; i < BONES; ++i) u[i] = rotate(align, unit(b[i] + line * (a[i] + lambda)));
+  fromDirections(bone, u, pose);
+}
+
+#endif
