@@ -1,112 +1,138 @@
 #include "cpu_reference/active_set.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "cpu_reference/columns.h"
 
 namespace skitter::reference {
 namespace {
 
-// A bone's two ways to turn: radially, toward or away from its rest direction, and tangentially.
-struct Joint {
-  glm::dvec3 d{0, 0, 1};
-  double s = 0;                                           // sine of the angle from rest
-  glm::dvec2 h{1, 0};                                     // the way it is turned from rest
-  glm::dvec3 radial{0}, tangential{0};                    // movement of the tip a radian
-  double room = std::numeric_limits<double>::infinity();  // radial, up to the limit
-  double pull = 0;                                        // z_i
-  bool held = false;
-  double radialStep = 0, tangentialStep = 0;
-};
+constexpr double leastDenominator = 0.1;  // of a room's tangent; below it, the limit is too far to matter
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-Joint jointAt(const Posture& posture, const BoneRest& bone, size_t i) {
-  Joint joint;
-  joint.d = direction(posture.directions()[i]);
-  joint.s = std::hypot(joint.d.x, joint.d.y);
-  if (joint.s >= 1e-6) joint.h = glm::dvec2(joint.d.x, joint.d.y) / joint.s;
-  if (bone.length > 0) {
-    const glm::dmat3& a = posture.frame(i);
-    const glm::dvec3 r = posture.tip() - posture.joint(i);
-    const glm::dvec3 radialAxis = joint.h.x * a[1] - joint.h.y * a[0];
-    const glm::dvec3 tangentialAxis =
-        a[2] * (joint.s / std::max(1 + joint.d.z, 1e-12)) - (joint.h.x * a[0] + joint.h.y * a[1]);
-    joint.radial = glm::cross(radialAxis, r);
-    joint.tangential = glm::cross(tangentialAxis, r);
-  }
-  const double t = bone.tanHalfCone, sine = 2 * t / (1 + t * t), cosine = (1 - t * t) / (1 + t * t);
+// Room is the tangent of the angle left, as a step of x radians along the tangent turns by atan(x).
+void coneRoom(const Limit& limit, JointColumns& joint) {
+  const double t = limit.tanHalfCone, sine = 2 * t / (1 + t * t), cosine = (1 - t * t) / (1 + t * t);
   const double denominator = cosine * joint.d.z + sine * joint.s;
-  if (denominator >= 0.1) joint.room = (sine * joint.d.z - cosine * joint.s) / denominator;
-  return joint;
+  if (denominator >= leastDenominator) {
+    joint.columns[0].high = (sine * joint.d.z - cosine * joint.s) / denominator;
+  }
 }
 
-// Holds what meets its limit, at most twice; leaves the free joints' steps and the matrix' inverse.
-glm::dmat3 solveWithLimits(std::vector<Joint>& joints, double mu, glm::dvec3 e) {
-  glm::dmat3 inverse(1);
-  for (int pass = 0; pass < 3; ++pass) {
-    glm::dmat3 m(mu);
-    for (const Joint& joint : joints) {
-      if (!joint.held) m += glm::outerProduct(joint.radial, joint.radial);
-      m += glm::outerProduct(joint.tangential, joint.tangential);
+// Turns the two columns across and along the level line of E = sqrt((v.x / a_x)^2 + (v.y / a_y)^2), v = theta
+// h, on which the joint is: only the way across it is limited, by E = 1.
+void ellipseRoom(const Limit& limit, JointColumns& joint) {
+  const double theta = 2 * std::atan(joint.s / std::max(1 + joint.d.z, 1e-12));
+  if (theta < 1e-3) return;
+  const glm::dvec2 axes = ellipseAxes(limit, joint.h), around{-joint.h.y, joint.h.x};
+  const glm::dvec2 v = theta * joint.h, n = v / (axes * axes);
+  const double level = std::sqrt(glm::dot(v, n));
+  // Gradient of E by (radial, tangential) steps, times E.
+  const glm::dvec2 gradient{glm::dot(n, joint.h), glm::dot(n, around) * theta / joint.s};
+  joint.way = normalized(gradient);
+  Column &across = joint.columns[0], &along = joint.columns[1];
+  const glm::dvec3 radial = across.movement, tangential = along.movement;
+  across.movement = joint.way.x * radial + joint.way.y * tangential;
+  along.movement = joint.way.x * tangential - joint.way.y * radial;
+  across.high = (1 - level) * level / glm::length(gradient);
+}
+
+// tan(end - q) from tan(end / 2) and the hinge's d = (0, -sin q, cos q).
+double hingeEnd(double tanHalf, const glm::dvec3& d, double otherwise) {
+  const double scale = 1 / (1 + tanHalf * tanHalf);
+  const double sine = 2 * tanHalf * scale, cosine = (1 - tanHalf * tanHalf) * scale;
+  const double denominator = cosine * d.z - sine * d.y;
+  return denominator < leastDenominator ? otherwise : (sine * d.z + cosine * d.y) / denominator;
+}
+
+// 2 tan((end - tau) / 2).
+double twistEnd(double tanHalf, double twist, double otherwise) {
+  const double denominator = 1 + tanHalf * twist;
+  return denominator < leastDenominator ? otherwise : 2 * (tanHalf - twist) / denominator;
+}
+
+void giveRoom(const Limit& limit, JointColumns& joint) {
+  if (joint.columns.empty()) return;
+  if (limit.kind == LimitKind::hinge) {
+    joint.columns[0].low = hingeEnd(limit.tanHalfLow, joint.d, -unlimited);
+    joint.columns[0].high = hingeEnd(limit.tanHalfHigh, joint.d, unlimited);
+    return;
+  }
+  limit.kind == LimitKind::ellipse ? ellipseRoom(limit, joint) : coneRoom(limit, joint);
+  if (joint.columns.size() == 3) {
+    joint.columns[2].low = twistEnd(limit.tanHalfTwistLow, joint.twist, -unlimited);
+    joint.columns[2].high = twistEnd(limit.tanHalfTwistHigh, joint.twist, unlimited);
+  }
+}
+
+// The steps of the free columns. Whether one of them meets its limit and is held from now on, which takes its
+// part out of e.
+bool stepOrHold(std::vector<JointColumns>& joints, const glm::dvec3& lambda, bool mayHold, glm::dvec3& e) {
+  bool anyHeld = false;
+  for (JointColumns& joint : joints) {
+    for (Column& column : joint.columns) {
+      if (column.held) continue;
+      column.step = column.pull + glm::dot(column.movement, lambda);
+      const double end = std::clamp(column.step, column.low, column.high);
+      if (!mayHold || end == column.step) continue;
+      column.held = anyHeld = true;
+      column.step = end;
+      e -= (end - column.pull) * column.movement;
     }
-    inverse = glm::inverse(m);
-    const glm::dvec3 lambda = inverse * e;
-    bool anyHeld = false;
-    for (Joint& joint : joints) {
-      joint.tangentialStep = glm::dot(joint.tangential, lambda);
-      if (joint.held) continue;
-      joint.radialStep = joint.pull + glm::dot(joint.radial, lambda);
-      if (joint.radialStep > joint.room && pass < 2) {
-        joint.held = anyHeld = true;
-        joint.radialStep = joint.room;
-        e -= (joint.room - joint.pull) * joint.radial;
+  }
+  return anyHeld;
+}
+
+// Holds what meets its limit, at most twice; leaves the steps, and the matrix' inverse for chord steps.
+glm::dmat3 solveWithLimits(std::vector<JointColumns>& joints, double mu, glm::dvec3 e) {
+  constexpr int passes = 3;
+  glm::dmat3 inverse(1);
+  for (int pass = 1; pass <= passes; ++pass) {
+    glm::dmat3 m(mu);
+    for (const JointColumns& joint : joints) {
+      for (const Column& column : joint.columns) {
+        if (!column.held) m += glm::outerProduct(column.movement, column.movement);
       }
     }
-    if (!anyHeld) break;
+    inverse = glm::inverse(m);
+    if (!stepOrHold(joints, inverse * e, pass < passes, e)) break;
   }
   return inverse;
 }
 
-void moveTo(const std::vector<Joint>& joints, const Limb& limb, Posture& posture) {
-  for (size_t i = 0; i < joints.size(); ++i) {
-    const Joint& joint = joints[i];
-    const glm::dvec3 d = normalized(
-        joint.d + joint.radialStep * glm::dvec3(joint.h.x * joint.d.z, joint.h.y * joint.d.z, -joint.s) +
-        joint.tangentialStep * glm::dvec3(-joint.h.y, joint.h.x, 0));
-    posture.place(i, clampCone(stereographic(d), limb.bones[i].tanHalfCone));
+void chordStep(std::vector<JointColumns>& joints, const glm::dvec3& lambda, Posture& posture) {
+  for (JointColumns& joint : joints) {
+    for (Column& column : joint.columns) {
+      if (!column.held) column.step += glm::dot(column.movement, lambda);
+    }
   }
+  applySteps(joints, posture);
 }
 
 }  // namespace
 
-void activeSet(const Tuning& tuning, const Limb& limb, const glm::dvec3& target, int chords, Posture& posture,
-               double& damping) {
+void activeSet(const ActiveSet& how, const glm::dvec3& target, Posture& posture, double& damping) {
   glm::dvec3 e = target - posture.tip();
   const double before = glm::length(e);
   const double mu = (0.25 * std::min(before * before, 0.25) + 1e-5) * damping;
   if (before > 0.5) e *= 0.5 / before;
 
-  std::vector<Joint> joints;
-  for (size_t i = 0; i < posture.bones(); ++i) {
-    joints.push_back(jointAt(posture, limb.bones[i], i));
-    Joint& joint = joints.back();
-    if (chords > 0 && before < tuning.pullError) {
-      joint.pull = -tuning.restPull * limb.bones[i].stiffness * joint.s;
-      e -= joint.pull * joint.radial;
-    }
+  std::vector<JointColumns> joints = columnsAt(posture, posture.tip());
+  for (size_t i = 0; i < joints.size(); ++i) {
+    giveRoom(posture.bone(i), joints[i]);
+    if (how.restPull == 0 || before >= how.pullError) continue;
+    pullToRest(posture.bone(i), how.restPull * posture.bone(i).stiffness, joints[i]);
+    for (const Column& column : joints[i].columns) e -= column.pull * column.movement;
   }
   const glm::dmat3 inverse = solveWithLimits(joints, mu, e);
-  const std::vector<glm::dvec2> old = posture.directions();
-  moveTo(joints, limb, posture);
-  for (int chord = 0; chord < chords; ++chord) {
-    const glm::dvec3 lambda = inverse * (target - posture.tip());
-    for (Joint& joint : joints) {
-      if (!joint.held) joint.radialStep += glm::dot(joint.radial, lambda);
-      joint.tangentialStep += glm::dot(joint.tangential, lambda);
-    }
-    moveTo(joints, limb, posture);
+  const Pose old = posture.pose();
+  applySteps(joints, posture);
+  for (int chord = 0; chord < how.chords; ++chord) {
+    chordStep(joints, inverse * (target - posture.tip()), posture);
   }
   const double after = glm::length(target - posture.tip());
-  if (after > 1.0001 * before && after > tuning.ikTolerance) {
-    posture.setDirections(old);
+  if (after > 1.0001 * before && after > how.tolerance) {
+    posture.setPose(old);
     damping = std::min(16 * damping, 4096.0);
   } else {
     damping = std::max(damping / 10, 1.0);

@@ -4,12 +4,17 @@
 
 namespace skitter::reference {
 
+struct ActiveSet {
+  double restPull = 0;      // share of the angle from rest that is taken back, times the bone's stiffness
+  double pullError = 2e-3;  // it is below this error, share of the reach
+  double tolerance = 9e-4;  // a step that ends within it is kept even if it ends further away
+  int chords = 0;           // chord steps after the step
+};
+
 // One step of damped least squares over the joint angles toward `target`, in which a joint that meets its
-// limit is held there and what it could not do is handed to the others, and then `chords` chord steps with
-// the same columns and matrix (simplified Newton method). What leaves the tip further away is undone;
-// `damping` is adapted either way, as Levenberg and Marquardt do. With `chords` and near the target, the
-// chain is also drawn toward its rest pose.
-void activeSet(const Tuning& tuning, const Limb& limb, const glm::dvec3& target, int chords, Posture& posture,
-               double& damping);
+// limit is held there and what it could not do is handed to the others (active set: Nocedal & Wright, 16.5),
+// and then `chords` chord steps with the same columns and matrix (simplified Newton method). What leaves the
+// tip further away is undone; `damping`, [1, 4096], is adapted either way, as Levenberg and Marquardt do.
+void activeSet(const ActiveSet& how, const glm::dvec3& target, Posture& posture, double& damping);
 
 }  // namespace skitter::reference

@@ -1,34 +1,47 @@
 #include "cpu_reference/fabrik.h"
 
 namespace skitter::reference {
+namespace {
 
-void fabrik(const Limb& limb, const glm::dvec3& target, int iterations, double enough, Posture& posture) {
-  const size_t n = posture.bones();
-  std::vector<glm::dvec2> best = posture.directions();
-  double bestError = glm::length(target - posture.tip());
-  double error = bestError;
-  std::vector<glm::dvec3> q(n + 1);
-  for (int iteration = 0; iteration < iterations && error > enough; ++iteration) {
-    q[n] = target;
-    for (size_t i = n; i-- > 0;) {
-      q[i] = q[i + 1] + limb.bones[i].length * normalized(posture.joint(i) - q[i + 1]);
-    }
-    for (size_t i = 0; i < n; ++i) {
-      glm::dvec2 xy = posture.directions()[i];
-      const glm::dvec3 aim = q[i + 1] - posture.joint(i);
-      if (limb.bones[i].length > 0 && glm::length(aim) >= 1e-6) {
-        const glm::dvec3 d = glm::transpose(posture.frame(i)) * normalized(aim);
-        xy = clampCone(stereographic(d), limb.bones[i].tanHalfCone);
-      }
-      posture.place(i, xy);
-    }
-    error = glm::length(target - posture.tip());
-    if (error < bestError) {
-      bestError = error;
-      best = posture.directions();
-    }
+// The nearest legal swing of bone i that aims it at `aim`, a vector from its joint.
+glm::dvec2 aimed(const Posture& posture, size_t i, const glm::dvec3& aim) {
+  const BoneRest& bone = posture.bone(i);
+  if (bone.length == 0 || glm::length(aim) < 1e-6) return posture.swing(i);
+  glm::dvec3 d = glm::transpose(posture.frame(i)) * normalized(aim);
+  if (bone.kind == LimitKind::hinge) {
+    d.x = 0;
+    if (glm::length(d) < 1e-6) return posture.swing(i);
+    d = normalized(d);
   }
-  posture.setDirections(best);
+  return clampSwing(bone, stereographic(d));
+}
+
+}  // namespace
+
+Joints tipToBase(const std::vector<BoneRest>& bones, const glm::dvec3& target, const Joints& joints) {
+  Joints q(joints.size());
+  q.back() = target;
+  for (size_t i = bones.size(); i-- > 0;) {
+    q[i] = q[i + 1] + bones[i].length * normalized(joints[i] - q[i + 1]);
+  }
+  return q;
+}
+
+void baseToTip(const std::vector<BoneRest>& bones, const Joints& proposed, Joints& joints) {
+  for (size_t i = 0; i < bones.size(); ++i) {
+    joints[i + 1] = joints[i] + bones[i].length * normalized(proposed[i + 1] - joints[i]);
+  }
+}
+
+void fabrik(const std::vector<BoneRest>& bones, const glm::dvec3& target, Joints& joints) {
+  baseToTip(bones, tipToBase(bones, target, joints), joints);
+}
+
+void fabrik(const glm::dvec3& target, Posture& posture) {
+  const Joints q = tipToBase(posture.rests(), target, posture.joints());
+  for (size_t i = 0; i < posture.bones(); ++i) {
+    posture.place(i, aimed(posture, i, q[i + 1] - posture.joint(i)));
+  }
 }
 
 }  // namespace skitter::reference

@@ -1,31 +1,30 @@
 #include "cpu_reference/ik.h"
 
-#include <algorithm>
-
 #include "cpu_reference/active_set.h"
+#include "cpu_reference/deadlock.h"
 #include "cpu_reference/fabrik.h"
 
 namespace skitter::reference {
 namespace {
 
-bool isStraight(const Posture& posture) {
-  const glm::dvec3 line = normalized(posture.tip());
-  for (size_t i = 1; i < posture.bones(); ++i) {
-    const glm::dvec3& joint = posture.joint(i);
-    if (glm::length(joint - line * glm::dot(joint, line)) >= 1e-3) return false;
+// At most `iterations` while the tip is further than `enough` from the target. The best pose seen is kept.
+void fabrikUntil(double enough, int iterations, const glm::dvec3& target, Posture& posture) {
+  Pose best = posture.pose();
+  double bestError = glm::length(target - posture.tip()), error = bestError;
+  for (int iteration = 0; iteration < iterations && error > enough; ++iteration) {
+    fabrik(target, posture);
+    error = glm::length(target - posture.tip());
+    if (error < bestError) {
+      bestError = error;
+      best = posture.pose();
+    }
   }
-  return true;
+  posture.setPose(best);
 }
 
-// A straight chain whose target lies nearer along it is a saddle that neither solver can leave.
-void breakDeadlock(const Limb& limb, const glm::dvec3& target, Posture& posture) {
-  if (!isStraight(posture) || glm::length(target) >= 0.999 * glm::length(posture.tip())) return;
-  for (size_t i = 0; i < posture.bones(); ++i) {
-    const glm::dvec2 xy =
-        posture.directions()[i] +
-        glm::dvec2(i == 0 ? -0.025 * static_cast<double>(posture.directions().size() - 1) : 0.05, 0);
-    posture.place(i, clampCone(xy, limb.bones[i].tanHalfCone));
-  }
+// The rest pull moves the tip, and a chord step makes good for that.
+ActiveSet polish(const Tuning& tuning, int chords) {
+  return {chords > 0 ? tuning.restPull : 0, tuning.pullError, tuning.ikTolerance, chords};
 }
 
 }  // namespace
@@ -43,9 +42,9 @@ Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Fo
   if (!finite) target = posture.tip();
   chain.errorBefore = glm::length(target - posture.tip()) * limb.reach;
   if (finite) {
-    breakDeadlock(limb, target, posture);
-    fabrik(limb, target, fabrikIterations, tuning.fabrikError, posture);
-    if (polishIterations > 0) activeSet(tuning, limb, target, polishIterations - 1, posture, chain.damping);
+    breakDeadlock(target, posture);
+    fabrikUntil(tuning.fabrikError, fabrikIterations, target, posture);
+    if (polishIterations > 0) activeSet(polish(tuning, polishIterations - 1), target, posture, chain.damping);
   }
   chain.directions = posture.directions();
   chain.tip = body.orientation * (limb.root + limb.reach * posture.tip());

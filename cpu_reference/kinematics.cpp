@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "cpu_reference/rotation.h"
+
 namespace skitter::reference {
 namespace {
 
-// S(d), the shortest rotation of z onto d.
-glm::dmat3 shortestFromZ(const glm::dvec3& d) {
-  const double k = 1 / std::max(1 + d.z, 1e-12);
-  return {glm::dvec3(1 - k * d.x * d.x, -k * d.x * d.y, -d.x),
-          glm::dvec3(-k * d.x * d.y, 1 - k * d.y * d.y, -d.y), d};
+// Z(tau) from tan(tau / 2).
+glm::dmat3 aboutZ(double tanHalf) {
+  const double scale = 1 / (1 + tanHalf * tanHalf);
+  const double cosine = (1 - tanHalf * tanHalf) * scale, sine = 2 * tanHalf * scale;
+  return {glm::dvec3(cosine, sine, 0), glm::dvec3(-sine, cosine, 0), glm::dvec3(0, 0, 1)};
 }
 
 }  // namespace
@@ -22,33 +24,29 @@ glm::dvec3 direction(const glm::dvec2& xy) {
   return glm::dvec3(2 * xy.x, 2 * xy.y, 1 - square) / (1 + square);
 }
 
-glm::dvec2 clampCone(const glm::dvec2& xy, double tanHalfCone) {
-  const double length = glm::length(xy);
-  if (length <= tanHalfCone) return xy;
-  const double sine = 2 * length / (1 + length * length);
-  return sine < 1e-3 ? glm::dvec2(tanHalfCone, 0) : xy * (tanHalfCone / length);
+Posture::Posture(const std::vector<BoneRest>& bones, Pose pose)
+    : bones_(&bones),
+      pose_(std::move(pose)),
+      frames_(bones.size() + 1),
+      turned_(bones.size()),
+      joints_(bones.size() + 1, glm::dvec3(0)) {
+  if (!bones.empty()) frames_[0] = bones[0].frame;
+  setPose(Pose(pose_));
 }
 
 Posture::Posture(const Limb& limb, std::vector<glm::dvec2> directions)
-    : limb_(&limb),
-      directions_(std::move(directions)),
-      frames_(limb.bones.size() + 1),
-      joints_(limb.bones.size() + 1, glm::dvec3(0)) {
-  frames_[0] = limb.bones[0].frame;
-  setDirections(std::vector<glm::dvec2>(directions_));
+    : Posture(limb.bones, {std::move(directions), std::vector(limb.bones.size(), 0.0)}) {}
+
+void Posture::place(size_t i, const glm::dvec2& swing, double twist) {
+  pose_.swing[i] = swing;
+  pose_.twist[i] = twist;
+  turned_[i] = frames_[i] * shortestFromZ(direction(swing)) * aboutZ(twist);
+  joints_[i + 1] = joints_[i] + bone(i).length * (turned_[i] * bone(i).along);
+  if (i + 1 < bones()) frames_[i + 1] = turned_[i] * glm::transpose(bone(i).frame) * bone(i + 1).frame;
 }
 
-void Posture::place(size_t i, const glm::dvec2& xy) {
-  directions_[i] = xy;
-  const glm::dmat3 placed = frames_[i] * shortestFromZ(direction(xy));  // F_i
-  joints_[i + 1] = joints_[i] + limb_->bones[i].length * placed[2];
-  if (i + 1 < bones()) {
-    frames_[i + 1] = placed * glm::transpose(limb_->bones[i].frame) * limb_->bones[i + 1].frame;
-  }
-}
-
-void Posture::setDirections(const std::vector<glm::dvec2>& directions) {
-  for (size_t i = 0; i < directions.size(); ++i) place(i, directions[i]);
+void Posture::setPose(const Pose& pose) {
+  for (size_t i = 0; i < bones(); ++i) place(i, pose.swing[i], pose.twist[i]);
 }
 
 }  // namespace skitter::reference

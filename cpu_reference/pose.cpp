@@ -14,7 +14,7 @@ std::vector<BonePose> pose(const Limb& limb, const AgentBody& body,
     const glm::dvec3 axis = bone.frame * glm::dvec3(-directions[i].y, directions[i].x, 0);
     rotation = rotation * glm::normalize(glm::dquat(1, axis.x, axis.y, axis.z));
     entries.push_back({rotation, position});
-    position += bone.length * limb.reach * (rotation * bone.frame[2]);
+    position += bone.length * limb.reach * (rotation * bone.direction());
   }
   return entries;
 }

@@ -7,6 +7,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
 
+#include "cpu_reference/limit.h"
+
 // What the stages of docs/stages.md pass to each other, in double precision. Metres, seconds, radians; +Y up,
 // a creature faces +Z. "Relative" means relative to the body's position along world axes.
 namespace skitter::reference {
@@ -41,12 +43,14 @@ struct Heights {
   double inverseSpacingX = 0, inverseSpacingZ = 0;  // samples a metre
 };
 
-struct BoneRest {
-  glm::dmat3 frame{1};     // B_i, its z axis the rest direction r_i, model space
-  double length = 0;       // share of the limb's reach; 0 pads a short limb
-  double tanHalfCone = 0;  // tan(alpha_i / 2)
-  glm::dvec3 start{0};     // p_i at rest, model space
-  double stiffness = 0;    // of the rest pull
+struct BoneRest : Limit {
+  glm::dmat3 frame{1};        // B_i, model space
+  glm::dvec3 along{0, 0, 1};  // o_i: the bone in its frame; other than z for a hinge that it is not square to
+  double length = 0;          // share of the limb's reach; 0 pads a short limb
+  glm::dvec3 start{0};        // p_i at rest, model space
+  double stiffness = 0;       // of the rest pull
+
+  glm::dvec3 direction() const { return frame * along; }  // r_i
 };
 
 struct Limb {

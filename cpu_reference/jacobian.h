@@ -1,0 +1,17 @@
+#pragma once
+
+#include "cpu_reference/ik_chain.h"
+
+namespace skitter::reference {
+
+// Buss 2004, "Introduction to inverse kinematics with Jacobian transpose, pseudoinverse and damped least
+// squares methods". `targetAttached` is dls with the target carried by the joints in place of the tip:
+// Aristidou & Lasenby 2011 describe it, and it fails for targets within the chain, where its columns shrink
+// and turn round.
+enum class Jacobian { transpose, pseudoinverse, dls, targetAttached };
+
+// One iteration toward `target`. The tip may end up further away than it was.
+void jacobian(Jacobian method, const std::vector<BoneRest>& bones, const glm::dvec3& target, Joints& joints);
+void jacobian(Jacobian method, const glm::dvec3& target, Posture& posture);
+
+}  // namespace skitter::reference
