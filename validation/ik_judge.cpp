@@ -1,0 +1,182 @@
+#include "validation/ik_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace skitter::validation {
+namespace {
+
+using glm::dmat3;
+using glm::dquat;
+using glm::dvec3;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double pi = 3.14159265358979323846;
+constexpr double largestAngle = 3.1;  // of any limit
+// Shorter than this, a bone has no direction that could be measured.
+constexpr double noLength = 1e-12;
+
+bool isFinite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+dmat3 turn(const dvec3& unitAxis, double angle) { return glm::mat3_cast(glm::angleAxis(angle, unitAxis)); }
+
+// Takes Z to the unit d by the shortest way; the opposite of Z by a half turn about X.
+dmat3 swingTo(const dvec3& d) {
+  const double sine = std::hypot(d.x, d.y);
+  const dvec3 axis = sine > 0 ? dvec3(-d.y, d.x, 0) / sine : dvec3(1, 0, 0);
+  return turn(axis, std::atan2(sine, d.z));
+}
+
+double angleBetween(const dvec3& a, const dvec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+dmat3 ballFrame(const dvec3& rest) {
+  const dvec3 x = rest.z < -0.999999 ? dvec3(1, 0, 0) : swingTo(rest)[0];
+  const dvec3 across = glm::normalize(x - rest * glm::dot(x, rest));
+  return {across, glm::cross(rest, across), rest};
+}
+
+dmat3 hingeFrame(const dvec3& rest, const dvec3& axis) {
+  const dvec3 z = glm::normalize(rest - axis * glm::dot(axis, rest));
+  return {axis, glm::cross(z, axis), z};
+}
+
+dmat3 frameOf(const IkJudge::Bone& bone) {
+  const dvec3 rest = glm::normalize(bone.rest);
+  const auto* hinge = std::get_if<IkJudge::Hinge>(&bone.limit);
+  return hinge ? hingeFrame(rest, glm::normalize(hinge->axis)) : ballFrame(rest);
+}
+
+// How far `angle` is from a range, on the circle: 190 degrees are 10 beyond 180, not 370 before it.
+double outside(double angle, double low, double high) {
+  if (angle >= low && angle <= high) return 0;
+  const auto around = [](double difference) { return std::abs(std::remainder(difference, 2 * pi)); };
+  return std::min(around(angle - low), around(angle - high));
+}
+
+// The polar angle of a swing and what the ellipse allows in that direction.
+double beyondEllipse(const IkJudge::Ellipse& ellipse, const dvec3& d) {
+  const double sine = std::hypot(d.x, d.y);
+  const double hx = sine > 0 ? d.x / sine : 1, hy = sine > 0 ? d.y / sine : 0;
+  const double ax = hx >= 0 ? ellipse.px : ellipse.nx, ay = hy >= 0 ? ellipse.py : ellipse.ny;
+  const double allowed = 1 / std::hypot(hx / std::min(ax, largestAngle), hy / std::min(ay, largestAngle));
+  return std::max(0.0, std::atan2(sine, d.z) - allowed);
+}
+
+struct SwingViolation {
+  const dvec3& d;  // the bone's direction in the frame that the bones before it carry
+  const dvec3& rest;
+
+  double operator()(const IkJudge::Free&) const { return 0; }
+  double operator()(const IkJudge::Cone& cone) const {
+    return std::max(0.0, std::atan2(std::hypot(d.x, d.y), d.z) - std::min(cone.halfAngle, largestAngle));
+  }
+  double operator()(const IkJudge::Ellipse& ellipse) const { return beyondEllipse(ellipse, d); }
+  // A hinged bone stays as steep to its axis as it is at rest, and its turn within the range.
+  double operator()(const IkJudge::Hinge& hinge) const {
+    const auto steepness = [](const dvec3& v) { return std::atan2(v.x, std::hypot(v.y, v.z)); };
+    return std::max(std::abs(steepness(d) - steepness(rest)),
+                    outside(std::atan2(-d.y, d.z), hinge.min, hinge.max));
+  }
+};
+
+bool isHinge(const auto& bone) { return std::holds_alternative<IkJudge::Hinge>(bone.limit); }
+
+// The bone's own turn from its frame at rest to where `d` shows it, without twist.
+dmat3 turnOf(const auto& bone, const dvec3& d) {
+  return isHinge(bone) ? turn({1, 0, 0}, std::atan2(-d.y, d.z)) : swingTo(d);
+}
+
+// A ball's turn beyond its swing.
+double twistOf(const dmat3& turned) {
+  const dmat3 twist = glm::transpose(swingTo(turned[2])) * turned;
+  return std::atan2(twist[0].y, twist[0].x);
+}
+
+bool hasTwist(const auto& bone) { return bone.twistMin != 0 || bone.twistMax != 0; }
+
+}  // namespace
+
+IkJudge::IkJudge(std::vector<Bone> bones) {
+  for (const Bone& bone : bones) {
+    bones_.push_back(
+        {bone.length, glm::normalize(bone.rest), frameOf(bone), bone.limit, bone.twistMin, bone.twistMax});
+    length_ += bone.length;
+    free_ = free_ && std::holds_alternative<Free>(bone.limit) && !hasTwist(bone);
+  }
+  if (!(length_ > 0)) throw std::invalid_argument("a chain to be judged has no length");
+}
+
+bool IkJudge::needsRotations() const {
+  return std::any_of(bones_.begin(), bones_.end(), [](const RestBone& bone) { return hasTwist(bone); });
+}
+
+double IkJudge::worstLimit(std::span<const dvec3> joints) const {
+  double worst = 0;
+  dmat3 carried(1);  // the rotation of the bone before, from rest
+  for (size_t i = 0; i < bones_.size(); ++i) {
+    const RestBone& bone = bones_[i];
+    const dvec3 along = joints[i + 1] - joints[i];
+    const double measured = glm::length(along);
+    if (bone.length <= 0 || measured < noLength * length_) continue;  // it does not turn
+    const dmat3 frame = carried * bone.frame;
+    const dvec3 d = glm::transpose(frame) * (along / measured);
+    const dvec3 rest = glm::transpose(bone.frame) * bone.direction;
+    worst = std::max(worst, std::visit(SwingViolation{d, rest}, bone.limit));
+    carried = frame * turnOf(bone, d) * glm::transpose(bone.frame);
+  }
+  return worst;
+}
+
+double IkJudge::worstLimit(std::span<const dvec3> joints, std::span<const dquat> rotations) const {
+  double worst = 0;
+  dmat3 carried(1);
+  for (size_t i = 0; i < bones_.size(); ++i) {
+    const RestBone& bone = bones_[i];
+    const dmat3 rotation = glm::mat3_cast(glm::normalize(rotations[i]));
+    const dmat3 frame = carried * bone.frame;
+    const dmat3 turned = glm::transpose(frame) * rotation * bone.frame;
+    carried = rotation;
+    const dvec3 along = joints[i + 1] - joints[i];
+    if (bone.length > 0 && glm::length(along) >= noLength * length_) {
+      worst = std::max(worst, angleBetween(rotation * bone.direction, along));
+    }
+    if (free_) continue;
+    const dvec3 rest = glm::transpose(bone.frame) * bone.direction;
+    worst = std::max(worst, std::visit(SwingViolation{turned * rest, rest}, bone.limit));
+    worst = std::max(worst, isHinge(bone) ? angleBetween(turned[0], {1, 0, 0})
+                                          : outside(twistOf(turned), bone.twistMin, bone.twistMax));
+  }
+  return worst;
+}
+
+IkJudge::Verdict IkJudge::judge(const dvec3& target, std::span<const dvec3> joints,
+                                std::span<const dquat> rotations) const {
+  if (joints.size() != bones_.size() + 1) throw std::invalid_argument("joints do not match the judged chain");
+  if (rotations.empty() && needsRotations()) {
+    throw std::invalid_argument("a twist range cannot be judged without rotations");
+  }
+  if (!rotations.empty() && rotations.size() != bones_.size()) {
+    throw std::invalid_argument("rotations do not match the judged chain");
+  }
+  const bool finite = std::all_of(joints.begin(), joints.end(), isFinite) &&
+                      std::all_of(rotations.begin(), rotations.end(), [](const dquat& q) {
+                        return std::isfinite(glm::dot(q, q)) && glm::dot(q, q) > 0;
+                      });
+  if (!finite) return {infinite, infinite, infinite};
+
+  Verdict verdict;
+  verdict.tipError = isFinite(target) ? glm::distance(target, joints.back()) / length_ : infinite;
+  verdict.boneLengthError = glm::length(joints[0]) / length_;
+  for (size_t i = 0; i < bones_.size(); ++i) {
+    const double error = std::abs(glm::distance(joints[i], joints[i + 1]) - bones_[i].length) / length_;
+    verdict.boneLengthError = std::max(verdict.boneLengthError, error);
+  }
+  verdict.limitViolation = rotations.empty() ? worstLimit(joints) : worstLimit(joints, rotations);
+  return verdict;
+}
+
+}  // namespace skitter::validation
