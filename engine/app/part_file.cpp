@@ -59,6 +59,11 @@ void checkFileTarget(const std::string& option, const fs::path& file) {
   if (file.filename().empty() || fs::is_directory(file, error)) {
     throw inputError(fmt::format("{} {}: is a directory, expected a file", option, file.string()));
   }
+  // The finished file takes the name over: a device of that name would be gone.
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
+    throw inputError(
+        fmt::format("{} {}: is no regular file, which is all that can be written", option, file.string()));
+  }
   const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
   if (!fs::is_directory(folder, error)) {
     throw inputError(fmt::format("{} {}: there is no directory {}", option, file.string(), folder.string()));

@@ -117,6 +117,8 @@ TEST_F(Usage, Outputs) {
   expectInputError({"run", "--agents", "1", "--frames", "1", "--out", "/proc/none"}, {"/proc/none"});
   expectInputError({"run", "--json", file("none/figures.json")}, {"--json", "none"});
   expectInputError({"run", "--json", file("")}, {"--json"});
+  ASSERT_EQ(mkfifo(file("pipe").c_str(), 0600), 0);
+  expectInputError({"run", "--json", file("pipe")}, {"--json", "pipe", "regular"});
   expectInputError({"run", "--trace", file("file")}, {"--trace", "file"});
   expectInputError({"info", "--json", file("none/info.json")}, {"--json", "none"});
   expectInputError({"validate", "--json", file("none/v.json")}, {"--json", "none"});
