@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "bench/cpu_baseline/rows.h"
+#include "bench/cpu_baseline/vector.h"
+
+namespace skitter::baseline {
+
+inline constexpr int kMaxBones = 15;
+
+enum class LimitKind { free, cone, ellipse, hinge };
+
+// Angles in radians, all as docs/ik.md has them.
+struct Limit {
+  LimitKind kind = LimitKind::free;
+  float cone = 3.1f;                                                 // half-angle
+  float positiveX = 1, negativeX = 1, positiveY = 1, negativeY = 1;  // half-angles of the ellipse
+  std::array<float, 3> axis{1, 0, 0};                                // of the hinge, unit
+  float low = -3.1f, high = 3.1f;                                    // of the hinge
+  float twistLow = 0, twistHigh = 0;                                 // of a ball
+};
+
+struct Bone {
+  float length = 1;
+  std::array<float, 3> rest{0, 0, 1};  // unit
+  Limit limit;
+};
+
+// What the caller says: any unit of length, the base at 0.
+struct Chain {
+  std::vector<Bone> bones;
+};
+
+// n equal bones of total length 1, bone i at 60 - 140 i / (n - 1) degrees from X in the XY plane (at 60 if it
+// is alone), all with the same limit. It is what the measurements are made with.
+Chain bentChain(int bones, const Limit& limit = {});
+
+// A bone as the solvers need it. Lengths are shares of the chain's.
+struct BoneModel {
+  float length = 0;
+  bool turns = false;  // it has a length
+  LimitKind kind = LimitKind::free;
+  bool twists = false;
+  Mat3<float> carry{};             // B_(i-1)^T B_i, of the first bone B_0: A_i = F_(i-1) carry
+  float offsetX = 0, offsetZ = 1;  // o_i = (offsetX, 0, offsetZ)
+  float coneSine = 0, coneCosine = 0, coneTanHalf = 0;
+  float inversePositiveX = 1, inverseNegativeX = 1, inversePositiveY = 1, inverseNegativeY = 1;
+  float lowSine = 0, lowCosine = 1, lowTanHalf = 0, highSine = 0, highCosine = 1, highTanHalf = 0;
+  float twistLowTanHalf = 0, twistHighTanHalf = 0;
+};
+
+// Where a chain of the model stands: swing (X, Y) and tan(twist / 2) of each bone.
+struct Pose {
+  std::array<float, kMaxBones> x{}, y{}, twist{};
+};
+
+// A chain made ready: what all chains of a batch share.
+struct Model {
+  int bones = 0;
+  bool limited = false;
+  std::array<BoneModel, kMaxBones> bone{};
+  std::array<Vec3<float>, kMaxBones> restJoints{};  // p_1 .. p_n
+  std::array<Vec3<double>, kMaxBones> restDirections{};
+
+  // Start poses of the active set's restarts, limited chains only. The rows are joints p_1 .. p_n, three a
+  // joint, and beyond them X, Y and tan(twist / 2), three a bone.
+  static constexpr int kSeeds = 64;
+  int seeds = 0;
+  Rows seedRows;
+
+  Model() = default;
+  // Throws std::invalid_argument for what docs/ik.md refuses.
+  explicit Model(const Chain& chain);
+};
+
+// A pose whose every angle is drawn evenly from what its limit lets; scaled by `share` toward rest.
+Pose randomPose(const Chain& chain, std::mt19937& random, double share = 1);
+
+// p_1 .. p_n of a pose, in double and written on its own, by the forward kinematics of docs/ik.md; for making
+// targets and for checking.
+std::vector<Vec3<double>> jointsOf(const Chain& chain, const Pose& pose);
+
+}  // namespace skitter::baseline

@@ -1,0 +1,173 @@
+#pragma once
+
+#include "bench/cpu_baseline/refill.h"
+
+namespace skitter::baseline {
+
+inline constexpr float kTiny = 1e-6f;
+
+// l normalize(to - from), added to `from`.
+template <class F>
+Vec3<F> placeToward(const Vec3<F>& from, const Vec3<F>& to, float l) {
+  const Vec3<F> gap = to - from;
+  return from + gap * (inverseLength(gap) * F(l));
+}
+
+// Some unit vector at right angles to the unit vector `line`.
+template <class F>
+Vec3<F> anyPerpendicular(const Vec3<F>& line) {
+  const auto alongX = F(0.9f) < absolute(line.x);
+  const Vec3<F> axis{select(alongX, F(0), F(1)), F(0), select(alongX, F(1), F(0))};
+  return normalized(axis - line * dot(axis, line));
+}
+
+// True where every joint is within 1e-3 of the line from base to tip.
+template <class F>
+Mask<F> isStraight(const Vec3<F>* joints, int bones) {
+  const Vec3<F> line = normalized(joints[bones - 1]);
+  F farthest(0);
+  for (int i = 0; i < bones - 1; ++i) {
+    const Vec3<F> aside = joints[i] - line * dot(joints[i], line);
+    farthest = larger(farthest, dot(aside, aside));
+  }
+  return farthest <= F(1e-6f);
+}
+
+// Free chains: their state is their joints (docs/ik.md, "A solve" and "FABRIK").
+template <class F, int N>
+class FreeChain {
+ public:
+  using Lane = F;
+  struct State {
+    using Lane = F;
+    Vec3<F> target;
+    Vec3<F> joint[kCapacity<N>];  // p_1 .. p_n
+    F error, iterations;
+  };
+
+  FreeChain(const Model& model, const Options& options, Batch& batch)
+      : model_(model), options_(options), batch_(batch) {}
+
+  [[gnu::flatten]] uint64_t start(State& state, size_t chain, size_t count) {
+    load(state, chain);
+    const F distance = length(state.target);
+    const Vec3<F> zero = state.target - state.target;  // of a target that is not finite neither is this
+    const auto finite = zero.x + zero.y + zero.z <= F(0);
+    const auto arrived = state.error <= F(options_.tolerance);
+    const auto beyond = finite & !arrived & (F(1) <= distance);
+    const auto open = finite & !arrived & (distance < F(1));
+    if (any(beyond)) layStraight(state, beyond);
+    const auto bent = open & isStraight(state.joint, bones()) & (distance < F(0.999f) * length(tip(state)));
+    if (any(bent)) bend(state, bent);
+    if (any(!open)) finishStarted(state, chain, finite);
+    return bits(open & firstLanes<F>(count));
+  }
+
+  // The error never rises: a joint's nearest place on its neighbour's sphere is no further away than that
+  // neighbour has moved, pass by pass. So the last pose is the best one.
+  [[gnu::flatten]] uint64_t step(State& state) const {
+    fabrik(state);
+    const F before = state.error;
+    state.error = length(state.target - tip(state));
+    state.iterations = state.iterations + F(1);
+    const F stalled = F(larger(1e-3f * options_.tolerance, 3e-7f));
+    return bits((state.error <= F(options_.tolerance)) | (absolute(before - state.error) < stalled) |
+                (F(float(options_.iterations)) <= state.iterations));
+  }
+
+  bool settle(const State& state, int i, size_t chain) {
+    for (int b = 0; b < bones(); ++b) {
+      batch_.joints.at(3 * b, chain) = lane(state.joint[b].x, i);
+      batch_.joints.at(3 * b + 1, chain) = lane(state.joint[b].y, i);
+      batch_.joints.at(3 * b + 2, chain) = lane(state.joint[b].z, i);
+    }
+    const float error = lane(state.error, i), iterations = lane(state.iterations, i);
+    const Stop stop = error <= options_.tolerance                ? Stop::tolerance
+                      : iterations >= float(options_.iterations) ? Stop::cap
+                                                                 : Stop::stall;
+    batch_.outcome.at(0, chain) = error;
+    batch_.outcome.at(1, chain) = iterations;
+    batch_.outcome.at(2, chain) = float(stop);
+    return true;
+  }
+
+ private:
+  int bones() const { return boneCount<N>(model_); }
+  Vec3<F>& tip(State& state) const { return state.joint[bones() - 1]; }
+
+  void load(State& state, size_t chain) const {
+    batch_.target.load(state.target.x, 0, chain);
+    batch_.target.load(state.target.y, 1, chain);
+    batch_.target.load(state.target.z, 2, chain);
+    for (int b = 0; b < bones(); ++b) {
+      if (options_.start == Start::rest) {
+        state.joint[b] = broadcast<F>(model_.restJoints[b]);
+        continue;
+      }
+      batch_.joints.load(state.joint[b].x, 3 * b, chain);
+      batch_.joints.load(state.joint[b].y, 3 * b + 1, chain);
+      batch_.joints.load(state.joint[b].z, 3 * b + 2, chain);
+    }
+    state.error = length(state.target - tip(state));
+    state.iterations = F(0);
+  }
+
+  void layStraight(State& state, const Mask<F>& mask) const {
+    const Vec3<F> direction = normalized(state.target);
+    float reach = 0;
+    for (int b = 0; b < bones(); ++b) {
+      reach += model_.bone[b].length;
+      state.joint[b] = select(mask, direction * F(reach), state.joint[b]);
+    }
+    state.error = select(mask, length(state.target - tip(state)), state.error);
+    state.iterations = select(mask, F(1), state.iterations);
+  }
+
+  // The way out of a deadlock: an arc instead of the line.
+  void bend(State& state, const Mask<F>& mask) const {
+    if (bones() < 2) return;
+    const Vec3<F> side = anyPerpendicular(normalized(tip(state)));
+    Vec3<F> old{F(0), F(0), F(0)}, place = old;
+    for (int b = 0; b < bones(); ++b) {
+      const Vec3<F> direction = normalized(state.joint[b] - old);
+      const F amount(0.1f * (1 - 2 * float(b) / float(bones() - 1)));
+      old = state.joint[b];
+      place = place + normalized(direction + side * amount) * F(model_.bone[b].length);
+      state.joint[b] = select(mask, place, state.joint[b]);
+    }
+    state.error = select(mask, length(state.target - tip(state)), state.error);
+  }
+
+  // Writes the whole block: chains that go on are written anew when they are done.
+  void finishStarted(const State& state, size_t chain, const Mask<F>& finite) {
+    const auto near = state.error <= F(options_.tolerance);
+    const F stop = select(near, F(float(Stop::tolerance)), F(float(Stop::unreachable)));
+    for (int b = 0; b < bones(); ++b) {
+      batch_.joints.store(state.joint[b].x, 3 * b, chain);
+      batch_.joints.store(state.joint[b].y, 3 * b + 1, chain);
+      batch_.joints.store(state.joint[b].z, 3 * b + 2, chain);
+    }
+    batch_.outcome.store(state.error, 0, chain);
+    batch_.outcome.store(state.iterations, 1, chain);
+    batch_.outcome.store(select(finite, stop, F(float(Stop::skipped))), 2, chain);
+  }
+
+  void fabrik(State& state) const {
+    const int n = bones();
+    Vec3<F> back[kCapacity<N>];  // q_1 .. q_n; q_0 would serve nothing
+    back[n - 1] = state.target;
+#pragma GCC unroll 4
+    for (int i = n - 1; i >= 1; --i)
+      back[i - 1] = placeToward(back[i], state.joint[i - 1], model_.bone[i].length);
+    Vec3<F> place = normalized(back[0]) * F(model_.bone[0].length);
+    state.joint[0] = place;
+#pragma GCC unroll 4
+    for (int i = 1; i < n; ++i) state.joint[i] = place = placeToward(place, back[i], model_.bone[i].length);
+  }
+
+  const Model& model_;
+  const Options& options_;
+  Batch& batch_;
+};
+
+}  // namespace skitter::baseline
