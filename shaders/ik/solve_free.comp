@@ -5,6 +5,10 @@
 #include "lib/dissertation.glsl"
 #include "lib/free_chain.glsl"
 
+// Each pass of FABRIK moves a joint no farther than the one before it, so that without limits the error never
+// grows, and the present pose is the best.
+const bool MONOTONE = SOLVER == SOLVER_FABRIK || SOLVER == SOLVER_STRETCH_ALIGN;
+
 void iterate(float bone[BONES], vec3 rest[BONES], float cosLimit[BONES], float sinLimit[BONES], vec3 target, vec3 pole,
              int k, inout FreePose pose) {
   if (SOLVER == SOLVER_CCD) {
@@ -46,14 +50,15 @@ void main() {
     cosLimit[i] = LOAD4(rig, RIG_BONE_STRIDE * i + 4).x == float(LIMIT_CONE) ? (1.0 - b.w * b.w) * k : -2.0;
     sinLimit[i] = 2.0 * b.w * k;
   }
+  float inverseReach = 1.0 / constants.reach;
   FreePose pose;
   pose.joint[0] = vec3(0.0);
   for (int i = 0; i < BONES; ++i)
-    pose.joint[i + 1] = PREVIOUS ? LOAD4(states, chain * BONES + i).xyz / constants.reach : pose.joint[i] + bone[i] * rest[i];
+    pose.joint[i + 1] = PREVIOUS ? LOAD4(states, chain * BONES + i).xyz * inverseReach : pose.joint[i] + bone[i] * rest[i];
   vec3 base = BASES ? LOAD4(bases, chain * BASE_STRIDE).xyz : vec3(0.0);
   vec4 orientation = BASES ? LOAD4(bases, chain * BASE_STRIDE + 1) : vec4(0.0, 0.0, 0.0, 1.0);
   vec3 given = LOAD4(targets, chain).xyz, pole = vec3(constants.poleX, constants.poleY, constants.poleZ);
-  vec3 target = (BASES ? rotateBack(orientation, given - base) : given) / constants.reach;
+  vec3 target = (BASES ? rotateBack(orientation, given - base) : given) * inverseReach;
   bool lost = !finite(target);
   target = lost ? pose.joint[BONES] : target;
 
@@ -70,7 +75,7 @@ void main() {
     k = 1;
     open = false;
   }
-  for (bool stuck = open && freeDeadlocked(target, pose); stuck; stuck = false) {
+  for (bool stuck = SOLVER != SOLVER_STRETCH_ALIGN && open && freeDeadlocked(target, pose); stuck; stuck = false) {
     freeBend(bone, pole, pose);
     error = last = distance(target, pose.joint[BONES]);
   }
@@ -81,20 +86,23 @@ void main() {
     stretchAlign(bone, target, pole, constants.tolerance, pose);
     last = distance(target, pose.joint[BONES]);
     k = 1;
-    for (int i = 1; i <= BONES; ++i) best.joint[i] = last < error ? pose.joint[i] : best.joint[i];
-    error = min(error, last);
+    for (int i = 1; i <= BONES; ++i) pose.joint[i] = last < error ? pose.joint[i] : best.joint[i];
+    error = last = min(error, last);
     open = error > constants.tolerance;
   }
   for (; open && k < int(constants.iterations); ++k) {
     iterate(bone, rest, cosLimit, sinLimit, target, pole, k, pose);
     float now = distance(target, pose.joint[BONES]);
-    for (int i = 1; i <= BONES; ++i) best.joint[i] = now < error ? pose.joint[i] : best.joint[i];
-    error = min(error, now);
+    if (!MONOTONE)
+      for (int i = 1; i <= BONES; ++i) best.joint[i] = now < error ? pose.joint[i] : best.joint[i];
+    error = MONOTONE ? now : min(error, now);
     bool stalled = abs(last - now) < leastProgress();
     last = now;
     open = error > constants.tolerance && !stalled;
     reason = error > constants.tolerance && stalled ? STOP_STALL : reason;
   }
+  if (MONOTONE)
+    for (int i = 1; i <= BONES; ++i) best.joint[i] = pose.joint[i];
   reason = open && error > constants.tolerance ? STOP_CAP : reason;
 
   if (dot(pole, pole) > 0.0 && !lost && BONES > 1) turnToPole(pole, best);

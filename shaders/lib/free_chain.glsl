@@ -168,7 +168,7 @@ void stretchAlign(float bone[BONES], vec3 target, vec3 pole, float tolerance, in
     b[i] = straight ? bowed : b[i];
     a[i] = straight ? (a[i] < 0.0 ? -1.0 : 1.0) * sqrt(max(1.0 - dot(b[i], b[i]), 0.0)) : a[i];
   }
-  float lambda = 0.0, low = -1e9, high = 1e9, enough = 0.2 * tolerance, g = 0.0;
+  float lambda = 0.0, low = -1e9, high = 1e9, enough = 0.9 * tolerance, g = 0.0;
   float goal = inversesqrt(1.0 - wanted);
   vec3 h = vec3(0.0);
   bool done = false;
