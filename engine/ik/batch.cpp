@@ -26,7 +26,6 @@ namespace skitter::ik {
 namespace {
 
 constexpr uint32_t kMostPageChains = 1u << 20;
-constexpr float kFirstPause = 1;  // ticks without restarts after the first one in vain
 
 // Whether a pose is joints: of free chains, and of the dissertation, which knows no frames.
 bool isPositional(const Chain& chain, Solver solver) {
@@ -57,9 +56,19 @@ void checkOptions(const Options& options) {
 
 struct Page {
   uint32_t chains = 0;
-  gpu::Buffer target, base, state, joint, rotation, report;
+  gpu::Buffer target, base, state, joint, rotation, report, list;
   gpu::Bindings bindings;
 };
+
+std::vector<glm::vec4> unpausedReports(uint32_t chains) {
+  return std::vector<glm::vec4>(chains, {0, 0, 0, shared::PAUSES * shared::FIRST_PAUSE});
+}
+
+// No chain listed: an empty dispatch.
+void clearList(const Page& page, vk::CommandBuffer cmd) {
+  const std::array<uint32_t, shared::LIST_FIRST> none = {0, 1, 1, 0};
+  cmd.updateBuffer(page.list.handle(), 0, sizeof none, none.data());
+}
 
 std::vector<glm::vec4> widened(std::span<const glm::vec3> values) {
   std::vector<glm::vec4> wide;
@@ -82,7 +91,8 @@ struct Batch::Impl {
   bool positional, twists, ownState;
   Skeleton skeleton;
   shared::BatchConstants constants = {};
-  gpu::Kernel kernel;
+  bool quick = false;          // two dispatches: most chains are done by the first
+  gpu::Kernel kernel, listed;  // the second one's, where there are two
   gpu::Buffer rig, seeds, unused;
   uint32_t pageChains = 1;
   std::vector<Page> pages;
@@ -92,11 +102,12 @@ struct Batch::Impl {
     return positional ? bones : static_cast<uint64_t>(shared::stateStride(static_cast<int>(bones), twists));
   }
   gpu::ShaderCode code() const;
-  void makeKernel();
+  gpu::Kernel makeKernel(int pass) const;
   void makePages();
   void bind(Page&);
   const gpu::Buffer& stateOf(const Page& page) const { return ownState ? page.state : jointOf(page); }
   const gpu::Buffer& jointOf(const Page& page) const { return given[2] ? given[2] : page.joint; }
+  const gpu::Buffer& reportOf(const Page& page) const { return given[4] ? given[4] : page.report; }
   void resetPage(Page&);
   // One record of `each` vec4 a chain, from all pages.
   std::vector<glm::vec4> download(const gpu::Buffer Page::*buffer, size_t use, uint32_t each) const;
@@ -140,7 +151,9 @@ Batch::Impl::Impl(Device& device, const Chain& of, uint32_t count, const Options
   seeds = gpu::Buffer(*context, seedRecord.size() * sizeof(float), "ik seeds");
   gpu::upload(*context, seeds, seedRecord);
   unused = gpu::Buffer(*context, 0, "ik unused");
-  makeKernel();
+  quick = solver == Solver::stretchAlign || constants.seeds > 0;
+  kernel = makeKernel(quick ? shared::PASS_QUICK : shared::PASS_WHOLE);
+  if (quick) listed = makeKernel(shared::PASS_LISTED);
   makePages();
 }
 
@@ -149,14 +162,17 @@ gpu::ShaderCode Batch::Impl::code() const {
   return {embedded::solve_limited_comp_texel(), embedded::solve_limited_comp_storage()};
 }
 
-void Batch::Impl::makeKernel() {
+gpu::Kernel Batch::Impl::makeKernel(int pass) const {
   using namespace shared;
   using enum gpu::BindingKind;
   gpu::KernelInfo info{.name = fmt::format("ik {}", nameOf(solver)), .code = code()};
-  info.bindings = {{BATCH_RIG, load4},          {BATCH_TARGET, load4},    {BATCH_BASE, load4},
-                   {BATCH_STATE, load4},        {BATCH_STATE_OUT, store}, {BATCH_JOINT_OUT, store},
-                   {BATCH_ROTATION_OUT, store}, {BATCH_REPORT_OUT, store}};
-  if (!positional) info.bindings.push_back({BATCH_SEED, load4});
+  info.bindings = {{BATCH_RIG, load4},          {BATCH_TARGET, load4},     {BATCH_BASE, load4},
+                   {BATCH_STATE, load4},        {BATCH_STATE_OUT, store},  {BATCH_JOINT_OUT, store},
+                   {BATCH_ROTATION_OUT, store}, {BATCH_REPORT_OUT, store}, {BATCH_LIST, store}};
+  if (!positional) {
+    info.bindings.push_back({BATCH_SEED, load4});
+    info.bindings.push_back({BATCH_REPORT, load4});
+  }
   info.pushBytes = sizeof(BatchConstants);
   const auto [low, high] = limitWords(skeleton);
   info.constants = {{CONSTANT_BONES, bones},
@@ -166,8 +182,14 @@ void Batch::Impl::makeKernel() {
                     {CONSTANT_PREVIOUS, options.start == Start::previous},
                     {CONSTANT_BASES, options.bases},
                     {CONSTANT_ROTATIONS, options.rotations},
-                    {CONSTANT_TWISTS, twists}};
-  kernel = gpu::Kernel(*context, info);
+                    {CONSTANT_TWISTS, twists},
+                    {CONSTANT_STRAIGHT,
+                     constants.seeds == 0 && (options.start == Start::previous || skeleton.restIsStraight())},
+                    {CONSTANT_POLE, chain.pole.has_value()},
+                    {CONSTANT_REST_LEGAL, skeleton.restIsLegal()},
+                    {CONSTANT_PULL, solver == Solver::activeSet && options.restPull > 0},
+                    {CONSTANT_PASS, pass}};
+  return {*context, info};
 }
 
 void Batch::Impl::makePages() {
@@ -197,6 +219,8 @@ void Batch::Impl::makePages() {
     page.joint = make(bones, "ik joints");
     page.rotation = make(options.rotations ? bones : 0, "ik rotations");
     page.report = make(1, "ik reports");
+    page.list = gpu::Buffer(*context, (shared::LIST_FIRST + (quick ? page.chains : 0)) * 4, "ik list",
+                            gpu::BufferUse::indirect);
     gpu::clear(*context, page.target);
     if (options.bases) {
       const std::vector<glm::vec4> still = {glm::vec4(0), glm::vec4(0, 0, 0, 1)};
@@ -220,9 +244,13 @@ void Batch::Impl::bind(Page& page) {
       {BATCH_STATE_OUT, ownState ? &page.state : &unused},
       {BATCH_JOINT_OUT, pick(2, page.joint)},
       {BATCH_ROTATION_OUT, options.rotations ? pick(3, page.rotation) : &unused},
-      {BATCH_REPORT_OUT, pick(4, page.report)},
+      {BATCH_REPORT_OUT, &reportOf(page)},
+      {BATCH_LIST, &page.list},
   };
-  if (!positional) list.push_back({BATCH_SEED, &seeds});
+  if (!positional) {
+    list.push_back({BATCH_SEED, &seeds});
+    list.push_back({BATCH_REPORT, &reportOf(page)});
+  }
   page.bindings = kernel.bind(*context, list);
 }
 
@@ -231,13 +259,13 @@ void Batch::Impl::resetPage(Page& page) {
   const std::vector<glm::dvec3> rest = skeleton.place(skeleton.rest());
   std::vector<float> pose;
   appendPose(skeleton, skeleton.rest(), pose);
-  pose.insert(pose.end(), {0, kFirstPause, 0, 0});
   std::vector<float> states;
   for (uint32_t c = 0; c < page.chains; ++c) {
     for (const glm::dvec3& p : rest) joints.emplace_back(glm::vec3(p) * constants.reach, 0.0f);
     if (ownState && !positional) states.insert(states.end(), pose.begin(), pose.end());
   }
   gpu::upload(*context, jointOf(page), joints);
+  gpu::upload(*context, reportOf(page), unpausedReports(page.chains));
   if (!ownState) return;
   if (positional)
     gpu::upload(*context, page.state, joints);
@@ -318,7 +346,6 @@ void Batch::setJoints(std::span<const glm::vec3> joints) {
     for (uint32_t i = 1; i <= n; ++i) records.emplace_back(own[i] - own[0], 0.0f);
     if (batch.positional) continue;
     appendPose(batch.skeleton, batch.skeleton.aim(wanted), states);
-    states.insert(states.end(), {0, kFirstPause, 0, 0});
   }
   if (!batch.positional) {
     records.resize(states.size() / 4);
@@ -333,12 +360,27 @@ void Batch::setJoints(std::span<const glm::vec3> joints) {
 
 void Batch::record(VkCommandBuffer commandBuffer) const {
   const vk::CommandBuffer cmd(commandBuffer);
+  const Impl& batch = *impl_;
+  gpu::computeToTransfer(cmd);
+  if (batch.quick)
+    for (const Page& page : batch.pages) clearList(page, cmd);
   gpu::transferToCompute(cmd);
   gpu::computeToCompute(cmd);
-  for (const Page& page : impl_->pages) {
-    shared::BatchConstants constants = impl_->constants;
-    constants.count = page.chains;
-    impl_->kernel.dispatch(cmd, page.bindings, gpu::bytesOf(constants), gpu::groupsFor(page.chains));
+  const auto forEachPage = [&](const auto& dispatch) {
+    for (const Page& page : batch.pages) {
+      shared::BatchConstants constants = batch.constants;
+      constants.count = page.chains;
+      dispatch(page, gpu::bytesOf(constants));
+    }
+  };
+  forEachPage([&](const Page& page, std::span<const std::byte> constants) {
+    batch.kernel.dispatch(cmd, page.bindings, constants, gpu::groupsFor(page.chains));
+  });
+  if (batch.quick) {
+    gpu::computeToIndirectAndCompute(cmd);
+    forEachPage([&](const Page& page, std::span<const std::byte> constants) {
+      batch.listed.dispatchIndirect(cmd, page.bindings, constants, page.list);
+    });
   }
   gpu::computeToCompute(cmd);
   gpu::computeToTransfer(cmd);

@@ -77,6 +77,20 @@ bool Skeleton::hasTwists() const {
                      [](const Joint& joint) { return joint.twistMin != 0 || joint.twistMax != 0; });
 }
 
+bool Skeleton::restIsLegal() const {
+  const Pose pose = rest();
+  return std::all_of(pose.directions.begin(), pose.directions.end(),
+                     [](const dvec3& d) { return d.z == 1; }) &&
+         std::all_of(pose.twists.begin(), pose.twists.end(), [](double twist) { return twist == 0; });
+}
+
+bool Skeleton::restIsStraight() const {
+  const std::vector<dvec3> places = place(rest());
+  const dvec3 line = places.back() / std::max(glm::length(places.back()), 1e-10);
+  return std::all_of(places.begin(), places.end(),
+                     [&](const dvec3& p) { return glm::length(glm::cross(line, p)) < 2e-3; });
+}
+
 dvec3 Skeleton::clamp(size_t bone, const dvec3& d) const {
   const Limit& limit = joints_[bone].limit;
   if (const auto* hinge = std::get_if<Hinge>(&limit)) {

@@ -30,6 +30,8 @@ class Skeleton {
   const std::vector<Joint>& joints() const { return joints_; }
   size_t bones() const { return joints_.size(); }
   bool hasTwists() const;
+  bool restIsLegal() const;     // no limit forbids it
+  bool restIsStraight() const;  // every joint within 2e-3 of the line base-tip
 
   glm::dvec3 clamp(size_t bone, const glm::dvec3& direction) const;
   Pose rest() const;

@@ -12,6 +12,11 @@ layout(constant_id = CONSTANT_PREVIOUS) const bool PREVIOUS = false;
 layout(constant_id = CONSTANT_BASES) const bool BASES = false;
 layout(constant_id = CONSTANT_ROTATIONS) const bool ROTATIONS = false;
 layout(constant_id = CONSTANT_TWISTS) const bool TWISTS = false;
+layout(constant_id = CONSTANT_STRAIGHT) const bool STRAIGHT = true;
+layout(constant_id = CONSTANT_POLE) const bool POLE = false;
+layout(constant_id = CONSTANT_REST_LEGAL) const bool REST_LEGAL = false;
+layout(constant_id = CONSTANT_PULL) const bool PULL = false;
+layout(constant_id = CONSTANT_PASS) const int PASS = PASS_WHOLE;
 
 LOAD4_BUFFER(BATCH_RIG, rig);
 LOAD4_BUFFER(BATCH_TARGET, targets);
@@ -21,7 +26,24 @@ STORE4_BUFFER(BATCH_STATE_OUT, statesOut);
 STORE4_BUFFER(BATCH_JOINT_OUT, jointsOut);
 STORE4_BUFFER(BATCH_ROTATION_OUT, rotationsOut);
 STORE4_BUFFER(BATCH_REPORT_OUT, reportsOut);
+layout(set = 0, binding = BATCH_LIST, std430) buffer ListBlock { uint list[]; };
 layout(push_constant) uniform BatchBlock { BatchConstants constants; };
 
 // The least change of the error that counts as progress.
 float leastProgress() { return max(1e-3 * constants.tolerance, 3e-7); }
+
+// The chain of this invocation, or one past the last.
+int chainHere() {
+  uint here = gl_GlobalInvocationID.x;
+  if (PASS != PASS_LISTED) return int(min(here, constants.count));
+  return int(here < list[LIST_COUNT] ? list[LIST_FIRST + here] : constants.count);
+}
+
+// In a loop, because an `if` would not skip the atomics on a device that masks lanes.
+void enlist(bool needsMore, int chain) {
+  for (bool rare = needsMore; rare; rare = false) {
+    uint place = atomicAdd(list[LIST_COUNT], 1u);
+    list[LIST_FIRST + place] = uint(chain);
+    atomicMax(list[0], place / uint(WORK_GROUP) + 1u);
+  }
+}

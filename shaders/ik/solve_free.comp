@@ -38,7 +38,7 @@ void turnToPole(vec3 pole, inout FreePose pose) {
 }
 
 void main() {
-  int chain = int(gl_GlobalInvocationID.x);
+  int chain = chainHere();
   if (chain >= int(constants.count)) return;
   float bone[BONES], cosLimit[BONES], sinLimit[BONES];
   vec3 rest[BONES];
@@ -67,15 +67,19 @@ void main() {
   int k = 0;
   bool far = dot(target, target) >= 1.0, open = error > constants.tolerance && constants.iterations > 0u;
   reason = error > constants.tolerance && !open ? STOP_CAP : reason;
-  // Rare work stands in loops, which are skipped where no chain of a subgroup needs it.
-  for (bool reachFor = open && far; reachFor; reachFor = false) {
-    layStraight(bone, unit(target), pose);
-    error = distance(target, pose.joint[BONES]);
-    reason = error > constants.tolerance ? STOP_UNREACHABLE : STOP_TOLERANCE;
-    k = 1;
-    open = false;
+  // A target out of reach: straight toward it.
+  vec3 toward = unit(target), p = vec3(0.0);
+  bool reachFor = open && far;
+  for (int i = 0; i < BONES; ++i) {
+    p += bone[i] * toward;
+    pose.joint[i + 1] = reachFor ? p : pose.joint[i + 1];
   }
-  for (bool stuck = SOLVER != SOLVER_STRETCH_ALIGN && open && freeDeadlocked(target, pose); stuck; stuck = false) {
+  error = reachFor ? distance(target, p) : error;
+  reason = reachFor && error > constants.tolerance ? STOP_UNREACHABLE : reason;
+  k = reachFor ? 1 : 0;
+  open = open && !far;
+  // Rare work stands in a loop, which is skipped where no chain of a subgroup needs it.
+  for (bool stuck = STRAIGHT && SOLVER != SOLVER_STRETCH_ALIGN && open && freeDeadlocked(target, pose); stuck; stuck = false) {
     freeBend(bone, pole, pose);
     error = last = distance(target, pose.joint[BONES]);
   }
@@ -90,7 +94,12 @@ void main() {
     error = last = min(error, last);
     open = error > constants.tolerance;
   }
-  for (; open && k < int(constants.iterations); ++k) {
+  if (PASS == PASS_QUICK) {
+    bool needsMore = open && k < int(constants.iterations);
+    enlist(needsMore, chain);
+    if (needsMore) return;
+  }
+  for (; PASS != PASS_QUICK && open && k < int(constants.iterations); ++k) {
     iterate(bone, rest, cosLimit, sinLimit, target, pole, k, pose);
     float now = distance(target, pose.joint[BONES]);
     if (!MONOTONE)
@@ -105,7 +114,7 @@ void main() {
     for (int i = 1; i <= BONES; ++i) best.joint[i] = pose.joint[i];
   reason = open && error > constants.tolerance ? STOP_CAP : reason;
 
-  if (dot(pole, pole) > 0.0 && !lost && BONES > 1) turnToPole(pole, best);
+  if (POLE && !lost && BONES > 1) turnToPole(pole, best);
   for (int i = 1; i <= BONES; ++i) {
     vec3 p = constants.reach * best.joint[i];
     if (PREVIOUS && BASES) STORE4(statesOut, chain * BONES + i - 1, vec4(p, 0.0));

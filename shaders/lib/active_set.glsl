@@ -96,8 +96,14 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, float restPull, fl
   }
   Symmetric inverse = inverseOf(m);
   vec3 lambda = times(inverse, e);
-  // Few chains meet a limit: where none of a subgroup does, the loop ends after one look.
-  bool again = true;
+  // Few chains meet a limit: where none of a subgroup does, the loop is skipped.
+  bool again = false;
+  for (int i = 0; i < BONES; ++i) {
+    float x = x0[i] + dot(c.radial[i], lambda);
+    again = again || x > room[i].y;
+    if (mayBe(i, LIMIT_HINGE)) again = again || x < room[i].x;
+    if (mayBe(i, LIMIT_TWIST)) again = again || abs(dot(c.twist[i], lambda)) > 0.0;
+  }
   for (int pass = 1; pass < 3 && again; ++pass) {
     again = false;
     for (int i = 0; i < BONES; ++i) {

@@ -81,6 +81,22 @@ void keepIf(bool keep, inout Pose best, Pose candidate) {
   best.tip = keep ? candidate.tip : best.tip;
 }
 
+// The rest pose, within the limits; where they do not forbid it nothing is turned.
+void restPose(Limb limb, bool legal, inout Pose pose) {
+  vec3 p = vec3(0.0);
+  for (int i = 0; i < BONES; ++i) {
+    pose.d[i] = vec3(0.0, 0.0, 1.0);
+    pose.twist[i] = 0.0;
+    pose.joint[i] = p;
+    pose.parent[i] = vec4(0.0, 0.0, 0.0, 1.0);
+    p += limb.bone[i] * boneAxis(limb, i);
+    if (!legal) pose.d[i] = clampLimit(limb, i, pose.d[i]);
+    if (!legal && mayBe(i, LIMIT_TWIST)) pose.twist[i] = clamp(0.0, limb.kind[i].y, limb.kind[i].z);
+  }
+  pose.tip = p;
+  if (!legal) forwardKinematics(limb, pose);
+}
+
 // A straight chain with its target nearer on the same line would never bend: bend it first.
 bool deadlocked(vec3 target, Pose pose) {
   vec3 line = unit(pose.tip);

@@ -23,10 +23,6 @@ vec3 acrossLine(vec3 line, vec3 pole) {
   return unit(dot(w, w) > 1e-12 ? w : other - line * dot(other, line));
 }
 
-void layStraight(float bone[BONES], vec3 toward, inout FreePose pose) {
-  for (int i = 0; i < BONES; ++i) pose.joint[i + 1] = pose.joint[i] + bone[i] * toward;
-}
-
 bool freeDeadlocked(vec3 target, FreePose pose) {
   vec3 line = unit(pose.joint[BONES]);
   float off = 0.0;

@@ -41,23 +41,40 @@ BATCH int BATCH_JOINT_OUT = 5;
 BATCH int BATCH_ROTATION_OUT = 6;
 BATCH int BATCH_REPORT_OUT = 7;
 BATCH int BATCH_SEED = 8;
+BATCH int BATCH_REPORT = 9;
+BATCH int BATCH_LIST = 10;  // uint: an indirect dispatch, then how many chains, then which
 
 // Beside CONSTANT_BONES, CONSTANT_LIMITS_LOW, CONSTANT_LIMITS_HIGH and CONSTANT_SOLVER.
 BATCH int CONSTANT_PREVIOUS = 8;   // solves continue
 BATCH int CONSTANT_BASES = 9;      // each chain has a base
 BATCH int CONSTANT_ROTATIONS = 10; // rotations are written
 BATCH int CONSTANT_TWISTS = 11;    // a bone has a twist range
+BATCH int CONSTANT_STRAIGHT = 12;  // a start pose may be straight
+BATCH int CONSTANT_POLE = 13;      // there is a pole
+BATCH int CONSTANT_REST_LEGAL = 14;  // no limit forbids the rest pose
+BATCH int CONSTANT_PULL = 15;  // the rest pull acts
+BATCH int CONSTANT_PASS = 16;
+
+// One dispatch solves all, or a quick one does what most chains need and lists those that need more, which a
+// second one then solves from the start: on devices that mask lanes, rare code is paid for by all.
+BATCH int PASS_WHOLE = 0;
+BATCH int PASS_QUICK = 1;
+BATCH int PASS_LISTED = 2;
+BATCH int LIST_COUNT = 3;
+BATCH int LIST_FIRST = 4;
 
 // state of a limited chain, in vec4: directions of two bones each (stereographic), twists of four bones each
-// (tan(tau/2), where there are any), then the ticks without restarts that are left and their next number.
-// Of a free one: p_1 .. p_n about a base at 0.
+// (tan(tau/2), where there are any). Of a free one: p_1 .. p_n about a base at 0.
 BATCH_FUNCTION int stateTwists(int bones) { return (bones + 1) / 2; }
-BATCH_FUNCTION int stateMemory(int bones, bool twists) {
+BATCH_FUNCTION int stateStride(int bones, bool twists) {
   return (bones + 1) / 2 + (twists ? (bones + 3) / 4 : 0);
 }
-BATCH_FUNCTION int stateStride(int bones, bool twists) { return stateMemory(bones, twists) + 1; }
 // seed: directions and twists as in the state, then p_1 .. p_n, lengths in units of the reach.
-BATCH_FUNCTION int seedStride(int bones, bool twists) { return stateMemory(bones, twists) + bones; }
+BATCH_FUNCTION int seedStride(int bones, bool twists) { return stateStride(bones, twists) + bones; }
+// report: error, iterations, stop, pause: solves to come without restarts + PAUSES * the next pause.
+BATCH float PAUSES = 64.0;
+BATCH float FIRST_PAUSE = 1.0;
+BATCH float LONGEST_PAUSE = 32.0;
 BATCH int BASE_STRIDE = 2;
 BATCH int SEEDS_MOST = 64;
 
