@@ -28,8 +28,10 @@ Joints tipToBase(const std::vector<BoneRest>& bones, const glm::dvec3& target, c
 }
 
 void baseToTip(const std::vector<BoneRest>& bones, const Joints& proposed, Joints& joints) {
+  const std::vector<glm::dvec3> kept = directionsOf(joints);
   for (size_t i = 0; i < bones.size(); ++i) {
-    joints[i + 1] = joints[i] + bones[i].length * normalized(proposed[i + 1] - joints[i]);
+    const glm::dvec3 aim = proposed[i + 1] - joints[i];
+    joints[i + 1] = joints[i] + bones[i].length * (glm::length(aim) < 1e-6 ? kept[i] : normalized(aim));
   }
 }
 

@@ -30,7 +30,7 @@ struct IkChain {
 struct IkState {
   Pose pose;
   Joints joints;
-  double damping = 1;  // of the active set, [1, 4096]
+  double damping = 1;  // of the active set, [1, 4096]; a solve that continues another takes it over
 
   double error(const glm::dvec3& target) const { return glm::length(target - joints.back()); }
 };

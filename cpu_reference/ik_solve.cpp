@@ -84,8 +84,10 @@ void iteratePose(const IkChain& chain, const IkSettings& settings, const glm::dv
   state.joints = posture.joints();
 }
 
-IkState begun(const IkChain& chain, const IkState& start) {
-  return chain.free ? IkState{{}, start.joints} : stateAt(chain, start.pose);
+IkState begun(const IkChain& chain, const IkSettings& settings, const IkState& start) {
+  IkState state = chain.free ? IkState{{}, start.joints} : stateAt(chain, start.pose);
+  if (settings.continues) state.damping = start.damping;
+  return state;
 }
 
 IkResult straightToward(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target) {
@@ -135,7 +137,7 @@ void iterate(const IkChain& chain, const IkSettings& settings, const glm::dvec3&
 IkResult solveIk(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
                  const IkState& start, IkMemory& memory) {
   if (!accepts(chain, settings.solver)) throw std::invalid_argument("the solver does not accept this chain");
-  const IkState state = begun(chain, start);
+  const IkState state = begun(chain, settings, start);
   if (!isFinite(target)) return {state, 0, 0, IkStop::skipped};
   if (settings.solver == IkSolver::activeSet)
     return solveWithRestarts(chain, settings, target, state, memory);

@@ -5,9 +5,8 @@
 namespace skitter::reference {
 
 // Buss 2004, "Introduction to inverse kinematics with Jacobian transpose, pseudoinverse and damped least
-// squares methods". `targetAttached` is dls with the target carried by the joints in place of the tip:
-// Aristidou & Lasenby 2011 describe it, and it fails for targets within the chain, where its columns shrink
-// and turn round.
+// squares methods". `targetAttached` is dls with the target carried by the joints in place of the tip. As (t
+// - p) x e = (tip - p) x e its gradient J^T e is the same; only the matrix that divides it is another one.
 enum class Jacobian { transpose, pseudoinverse, dls, targetAttached };
 
 // One iteration toward `target`. The tip may end up further away than it was.

@@ -15,9 +15,8 @@ constexpr int longestAttempt = 8;     // iterations
 constexpr double stillShare = 0.999;  // of the error before a step: the pose stands still
 constexpr int stillSteps = 4;         // in a row: of an attempt that nothing can follow
 constexpr double poseWeight = 0.1;    // of a seed's distance from the start pose against its tip's
-constexpr double replacingShare =
-    0.5;  // of the first attempt's error, for a pose to replace that of the last solve
-constexpr int longestPause = 32;  // solves
+constexpr double leapShare = 0.5;     // of the first attempt's error: worth leaving the last solve's pose for
+constexpr int longestPause = 32;      // solves
 constexpr double bendsAway = -1e-3;
 
 struct Seed {
@@ -89,7 +88,7 @@ class Search {
       const IkState* seed = nearestSeed();
       if (!seed) break;
       any = true;
-      const double bound = settings_.continues ? replacingShare * firstError : error_;
+      const double bound = settings_.continues ? leapShare * firstError : error_;
       replaced_ = attempt(*seed, Ends::whenSlow, std::min(bound, error_)) || replaced_;
     }
     if (error_ > settings_.tolerance) attempt(IkState(best_), Ends::whenStill, error_);
@@ -106,7 +105,6 @@ class Search {
   bool attempt(const IkState& start, Ends ends, double bound) {
     IkState best = start, state = start;
     if (iterations_ == 0) breakDeadlock(chain_, target_, state);
-    state.damping = 1;
     double least = best.error(target_), error = state.error(target_);
     int slow = 0;
     for (int k = 0; least > settings_.tolerance && iterations_ < most(ends); ++k) {
@@ -122,6 +120,7 @@ class Search {
     }
     if (least >= bound) return false;
     best_ = best;
+    best_.damping = state.damping;
     error_ = least;
     return true;
   }

@@ -95,9 +95,11 @@ void stretchAlign(const IkChain& chain, const glm::dvec3& target, double toleran
   const double lambda = stretchFor(chain, bends, std::min(glm::length(target), 0.99999), tolerance);
   const Stretched tip = stretched(chain, bends, lambda);
   const glm::dmat3 turn = shortest(normalized(bends.line * tip.g + tip.h), normalized(target));
-  std::vector<glm::dvec3> directions;
-  for (size_t i = 0; i < bends.along.size(); ++i) {
-    directions.push_back(turn * normalized(bends.across[i] + bends.line * (bends.along[i] + lambda)));
+  std::vector<glm::dvec3> directions = directionsOf(joints);
+  for (size_t i = 0; i < directions.size(); ++i) {
+    // A bone that neither bends nor stretches has no direction: it keeps its own.
+    const glm::dvec3 v = bends.across[i] + bends.line * (bends.along[i] + lambda);
+    if (glm::length(v) >= 1e-6) directions[i] = turn * glm::normalize(v);
   }
   joints = laidOut(chain.bones, directions);
 }
