@@ -101,19 +101,21 @@ class Search {
     return ends == Ends::whenStill ? settings_.iterations : settings_.iterations - settings_.iterations / 4;
   }
 
+  bool isPulled() const { return settings_.restPull > 0 && iterations_ < 2; }
+
   // Iterates from `start`. The best pose of it is the result if its error is below `bound`; whether it is.
   bool attempt(const IkState& start, Ends ends, double bound) {
     IkState best = start, state = start;
-    if (iterations_ == 0) breakDeadlock(chain_, target_, state);
+    if (iterations_ == 0 && (!settings_.restarts || seeds_.empty())) breakDeadlock(chain_, target_, state);
     double least = best.error(target_), error = state.error(target_);
     int slow = 0;
-    for (int k = 0; least > settings_.tolerance && iterations_ < most(ends); ++k) {
+    for (int k = 0; (least > settings_.tolerance || isPulled()) && iterations_ < most(ends); ++k) {
       if (ends == Ends::whenSlow ? slow >= 1 || k >= longestAttempt : slow >= stillSteps) break;
       iterate(chain_, settings_, target_, iterations_++, state);
       const double before = error;
       error = state.error(target_);
       slow = error > (ends == Ends::whenSlow ? slowShare : stillShare) * before ? slow + 1 : 0;
-      if (error < least) {
+      if (error < least || error <= settings_.tolerance) {
         least = error;
         best = state;
       }

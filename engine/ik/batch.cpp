@@ -61,7 +61,7 @@ struct Page {
 };
 
 std::vector<glm::vec4> unpausedReports(uint32_t chains) {
-  return std::vector<glm::vec4>(chains, {0, 0, 0, shared::PAUSES * shared::FIRST_PAUSE});
+  return std::vector<glm::vec4>(chains, {0, 0, shared::STOPS * shared::PAUSES * shared::FIRST_PAUSE, 1});
 }
 
 // No chain listed: an empty dispatch.
@@ -415,7 +415,8 @@ std::vector<glm::quat> Batch::downloadRotations() const {
 std::vector<Report> Batch::downloadReports() const {
   std::vector<Report> reports;
   for (const glm::vec4& r : impl_->download(&Page::report, 4, 1))
-    reports.push_back({r.x, static_cast<uint32_t>(r.y), static_cast<Stop>(r.z)});
+    reports.push_back({r.x, static_cast<uint32_t>(r.y),
+                       static_cast<Stop>(static_cast<uint32_t>(r.z) % static_cast<uint32_t>(shared::STOPS))});
   return reports;
 }
 

@@ -50,6 +50,7 @@ void main() {
     cosLimit[i] = LOAD4(rig, RIG_BONE_STRIDE * i + 4).x == float(LIMIT_CONE) ? (1.0 - b.w * b.w) * k : -2.0;
     sinLimit[i] = 2.0 * b.w * k;
   }
+  int iterations = SOLVER == SOLVER_TWO_BONE ? min(int(constants.iterations), 1) : int(constants.iterations);
   float inverseReach = 1.0 / constants.reach;
   FreePose pose;
   pose.joint[0] = vec3(0.0);
@@ -65,7 +66,7 @@ void main() {
   float error = distance(target, pose.joint[BONES]), last = error;
   float reason = lost ? STOP_SKIPPED : STOP_TOLERANCE;
   int k = 0;
-  bool far = dot(target, target) >= 1.0, open = error > constants.tolerance && constants.iterations > 0u;
+  bool far = dot(target, target) >= 1.0, open = error > constants.tolerance && iterations > 0;
   reason = error > constants.tolerance && !open ? STOP_CAP : reason;
   // A target out of reach: straight toward it.
   vec3 toward = unit(target), p = vec3(0.0);
@@ -95,11 +96,11 @@ void main() {
     open = error > constants.tolerance;
   }
   if (PASS == PASS_QUICK) {
-    bool needsMore = open && k < int(constants.iterations);
+    bool needsMore = open && k < iterations;
     enlist(needsMore, chain);
     if (needsMore) return;
   }
-  for (; PASS != PASS_QUICK && open && k < int(constants.iterations); ++k) {
+  for (; PASS != PASS_QUICK && open && k < iterations; ++k) {
     iterate(bone, rest, cosLimit, sinLimit, target, pole, k, pose);
     float now = distance(target, pose.joint[BONES]);
     if (!MONOTONE)
@@ -108,11 +109,12 @@ void main() {
     bool stalled = abs(last - now) < leastProgress();
     last = now;
     open = error > constants.tolerance && !stalled;
-    reason = error > constants.tolerance && stalled ? STOP_STALL : reason;
+    reason = error > constants.tolerance && stalled && k + 1 < iterations ? STOP_STALL : reason;
   }
   if (MONOTONE)
     for (int i = 1; i <= BONES; ++i) best.joint[i] = pose.joint[i];
-  reason = open && error > constants.tolerance ? STOP_CAP : reason;
+  // What a closed form does not reach lies nearer than two bones can fold.
+  reason = open && error > constants.tolerance ? (SOLVER == SOLVER_TWO_BONE ? STOP_UNREACHABLE : STOP_CAP) : reason;
 
   if (POLE && !lost && BONES > 1) turnToPole(pole, best);
   for (int i = 1; i <= BONES; ++i) {

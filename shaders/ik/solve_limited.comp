@@ -54,7 +54,8 @@ void main() {
   LOAD_LIMB(limb, rig, 0);
   int at = chain * stateStride(BONES, TWISTS);
   Pose pose;
-  float pauses = PREVIOUS ? LOAD4(reports, chain).w : PAUSES * FIRST_PAUSE;
+  vec2 memory = PREVIOUS ? LOAD4(reports, chain).zw : vec2(STOPS * PAUSES * FIRST_PAUSE, 1.0);
+  float pauses = floor(memory.x / STOPS);
   float nextPause = floor(pauses / PAUSES), pause = pauses - PAUSES * nextPause;
   if (PREVIOUS) {
     LOAD_DIRECTIONS(pose.d, states, at);
@@ -70,7 +71,7 @@ void main() {
   bool lost = !finite(target);
   target = lost ? pose.tip : target;
 
-  float error = distance(target, pose.tip), damping = 1.0;
+  float error = distance(target, pose.tip), damping = memory.y;
   int k = 0, budget = int(constants.iterations), spent = budget - budget / 4;
   bool pulls = PULL;
   bool folded = POLE && foldOf(pole, pose) < -1e-3;
@@ -90,7 +91,7 @@ void main() {
   copyIf(true, best, pose);
   float bestError = ATTEMPTS_ALONE_IMPROVE ? 1e30 : error;
   uvec2 untried = uvec2(0xffffffffu);
-  bool first = true, inVain = false, stalled = false;
+  bool first = true, inVain = false;
   // A chain folded to the wrong side begins at a seed.
   bool again = open && folded && follows;
   while (open) {
@@ -106,10 +107,10 @@ void main() {
       }
       bool arrived = error <= constants.tolerance;
       idle = error > IDLE * last ? idle + 1 : 0;
-      stalled = SOLVER == SOLVER_ACTIVE_SET ? !follows && idle >= IDLE_STEPS : abs(last - error) < leastProgress();
+      bool stalled = SOLVER == SOLVER_ACTIVE_SET ? !follows && idle >= IDLE_STEPS : abs(last - error) < leastProgress();
       bool ended = arrived ? !pulls || k > 1 : stalled || (follows && (error > SLOW * last || ++attempt >= ATTEMPT));
       last = error;
-      running = !ended && k < budget;
+      running = !ended && k < (follows ? spent : budget);
     }
     open = follows && k < budget && (again || error > constants.tolerance);
     needsMore = needsMore || open;
@@ -163,14 +164,14 @@ void main() {
     if (needsMore) return;
   }
   bool arrived = error <= constants.tolerance;
-  float reason = arrived ? STOP_TOLERANCE : (dot(target, target) > 1.0 ? STOP_UNREACHABLE : (stalled ? STOP_STALL : STOP_CAP));
+  float reason = arrived ? STOP_TOLERANCE : (dot(target, target) > 1.0 ? STOP_UNREACHABLE : (k < budget ? STOP_STALL : STOP_CAP));
   reason = lost ? STOP_SKIPPED : reason;
 
   if (PREVIOUS) {
     // After attempts in vain, a pause: longer each time, so that a target out of reach costs little.
     bool paused = inVain && !arrived && !jumped && worth < 1.0;
     pause = paused ? nextPause : max(pause - 1.0, 0.0);
-    nextPause = arrived ? FIRST_PAUSE : (paused ? min(2.0 * nextPause, LONGEST_PAUSE) : nextPause);
+    nextPause = arrived || jumped ? FIRST_PAUSE : (paused ? min(2.0 * nextPause, LONGEST_PAUSE) : nextPause);
     STORE_DIRECTIONS(statesOut, at, pose.d);
     STORE_TWISTS(statesOut, at + stateTwists(BONES), pose.twist);
   }
@@ -184,5 +185,5 @@ void main() {
       STORE4(rotationsOut, chain * BONES + i, BASES ? quaternionProduct(orientation, r) : r);
     }
   }
-  STORE4(reportsOut, chain, vec4(lost ? 0.0 : error, float(k), reason, pause + PAUSES * nextPause));
+  STORE4(reportsOut, chain, vec4(lost ? 0.0 : error, float(k), reason + STOPS * (pause + PAUSES * nextPause), damping));
 }

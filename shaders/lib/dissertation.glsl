@@ -22,8 +22,8 @@ void dissertationIteration(float bone[BONES], vec3 rest[BONES], float cosLimit[B
       int next = min(i + 1, BONES - 1);
       vec3 w = unit(pose.joint[min(i + 2, BONES)] - pose.joint[i + 1]);
       vec3 axis = rotate(shortestArc(rest[next], w), rest[i]);
-      outside = dot(u, axis) < cosLimit[i];
-      clamped = withinCone(u, axis, cosLimit[i], sinLimit[i]);
+      outside = dot(u, axis) < cosLimit[next];
+      clamped = withinCone(u, axis, cosLimit[next], sinLimit[next]);
     }
     vec3 moved = pose.joint[i + 1] - bone[i] * clamped;
     pose.joint[i] = outside && !edge ? before[i] : moved;

@@ -53,16 +53,19 @@ void freeBend(float bone[BONES], vec3 pole, inout FreePose pose) {
 }
 
 void freeFabrik(float bone[BONES], vec3 target, inout FreePose pose) {
-  vec3 q = target;
-  for (int i = BONES - 1; i >= 1; --i) {
-    vec3 v = pose.joint[i] - q;
-    pose.joint[i + 1] = q;
-    q += bone[i] * unit(v);
+  vec3 q[BONES];  // where bone i should end
+  vec3 end = target;
+  for (int i = BONES - 1; i >= 0; --i) {
+    q[i] = end;
+    end += bone[i] * unit(pose.joint[i] - end);
   }
-  pose.joint[1] = q;
-  vec3 p = vec3(0.0);
+  vec3 p = vec3(0.0), before = vec3(0.0);
   for (int i = 0; i < BONES; ++i) {
-    p += bone[i] * unit(pose.joint[i + 1] - p);
+    vec3 v = q[i] - p, kept = pose.joint[i + 1] - before;
+    before = pose.joint[i + 1];
+    // A bone that is sent to where it starts keeps its direction.
+    float v2 = dot(v, v);
+    p += v2 < 1e-12 ? kept : v * (bone[i] * inversesqrt(max(v2, 1e-20)));
     pose.joint[i + 1] = p;
   }
 }
@@ -91,7 +94,7 @@ void freeCcd(float bone[BONES], vec3 target, inout FreePose pose) {
 // turns by, and |r|^2 I - r r^T its part of J J^T. `rest`: rest directions, for the null-space part.
 void freeJacobian(float bone[BONES], vec3 target, int solver, vec3 rest[BONES], inout FreePose pose) {
   vec3 e = target - pose.joint[BONES];
-  float e2 = dot(e, e);
+  float e2 = dot(e, e), pull = min(0.05, sqrt(e2));
   e *= min(1.0, 0.5 * inversesqrt(max(e2, 1e-20)));
   vec3 end = solver == SOLVER_TARGET_ATTACHED ? target : pose.joint[BONES];
   vec3 u[BONES], own[BONES];
@@ -103,7 +106,7 @@ void freeJacobian(float bone[BONES], vec3 target, int solver, vec3 rest[BONES], 
     addOuter(m, r, -1.0);
     own[i] = vec3(0.0);
     if (solver == SOLVER_PSEUDOINVERSE) {
-      own[i] = bone[i] > 0.0 ? 0.05 * cross(u[i], rest[i]) : vec3(0.0);
+      own[i] = bone[i] > 0.0 ? pull * cross(u[i], rest[i]) : vec3(0.0);
       e -= cross(own[i], r);
     }
   }
@@ -191,7 +194,10 @@ void stretchAlign(float bone[BONES], vec3 target, vec3 pole, float tolerance, in
     lambda = done ? lambda : max(inside ? next : middle, -3.0);
   }
   vec4 align = shortestArc(unit(line * g + h), unit(target));
-  for (int i = 0; i < BONES; ++i) u[i] = rotate(align, unit(b[i] + line * (a[i] + lambda)));
+  for (int i = 0; i < BONES; ++i) {
+    vec3 v = b[i] + line * (a[i] + lambda);
+    u[i] = rotate(align, dot(v, v) < 1e-12 ? u[i] : unit(v));
+  }
   fromDirections(bone, u, pose);
 }
 

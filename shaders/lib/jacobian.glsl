@@ -7,7 +7,8 @@ void jacobianIteration(Limb limb, vec3 target, int solver, inout Pose pose) {
   Columns c;
   columnsOf(limb, pose, solver == SOLVER_TARGET_ATTACHED ? target : pose.tip, c);
   vec3 e = target - pose.tip;
-  e *= min(1.0, 0.5 * inversesqrt(max(dot(e, e), 1e-20)));
+  float e2 = dot(e, e), pull = min(0.05, sqrt(e2));
+  e *= min(1.0, 0.5 * inversesqrt(max(e2, 1e-20)));
   Symmetric m = Symmetric(vec3(0.0), vec3(0.0));
   float own[BONES];
   for (int i = 0; i < BONES; ++i) {
@@ -16,8 +17,8 @@ void jacobianIteration(Limb limb, vec3 target, int solver, inout Pose pose) {
     if (mayBe(i, LIMIT_TWIST)) addOuter(m, c.twist[i], 1.0);
     own[i] = 0.0;
     if (solver == SOLVER_PSEUDOINVERSE) {
-      own[i] = -0.05 * c.s[i];
-      if (mayBe(i, LIMIT_HINGE)) own[i] = isKind(limb, i, LIMIT_HINGE) ? 0.05 * pose.d[i].y : own[i];
+      own[i] = -pull * c.s[i];
+      if (mayBe(i, LIMIT_HINGE)) own[i] = isKind(limb, i, LIMIT_HINGE) ? pull * pose.d[i].y : own[i];
       e -= own[i] * c.radial[i];
     }
   }

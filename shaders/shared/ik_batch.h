@@ -71,7 +71,8 @@ BATCH_FUNCTION int stateStride(int bones, bool twists) {
 }
 // seed: directions and twists as in the state, then p_1 .. p_n, lengths in units of the reach.
 BATCH_FUNCTION int seedStride(int bones, bool twists) { return stateStride(bones, twists) + bones; }
-// report: error, iterations, stop, pause: solves to come without restarts + PAUSES * the next pause.
+// report: error, iterations, stop + STOPS * (solves to come without restarts + PAUSES * the next pause), damping.
+BATCH float STOPS = 8.0;
 BATCH float PAUSES = 64.0;
 BATCH float FIRST_PAUSE = 1.0;
 BATCH float LONGEST_PAUSE = 32.0;

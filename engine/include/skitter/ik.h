@@ -173,7 +173,7 @@ class Batch {
   Span bases(uint32_t page) const;      // two: position; rotation xyzw
   Span joints(uint32_t page) const;     // J - 1 a chain: p_1 .. p_n, w unused; the base is the caller's
   Span rotations(uint32_t page) const;  // J - 1 a chain: xyzw
-  Span reports(uint32_t page) const;    // one: error, iterations, stop, unused
+  Span reports(uint32_t page) const;    // one: error, iterations, stop + 8 * the solver's own, damping
   // The caller's buffers in place of the batch's, for a batch of one page: large enough, and bound until the
   // batch goes or others are given. Those left empty stay the batch's own.
   struct Buffers {
