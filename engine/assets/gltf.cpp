@@ -27,14 +27,16 @@ namespace {
 constexpr size_t maxElements = size_t{1} << 24;  // of an accessor
 constexpr size_t maxZeros = size_t{1} << 20;     // elements of an accessor without data
 constexpr size_t maxNumbers = size_t{1} << 26;   // of all accessors, each as often as it is used
-constexpr size_t maxObjects = size_t{1} << 16;   // nodes, meshes, primitives of a mesh, skins, clips
+constexpr size_t maxObjects = size_t{1} << 16;   // nodes, meshes, skins, clips and the like, of each
+constexpr size_t maxJoints = size_t{1} << 20;    // of all skins
 
 void refuseUnsupported(const nlohmann::json& json, const std::string& name) {
   const auto asset = json.find("asset");
   const auto version = asset != json.end() && asset->is_object() ? asset->find("version") : json.end();
-  if (asset == json.end() || !asset->is_object() || version == asset->end() || !version->is_string() ||
-      version->get_ref<const std::string&>().rfind("2.", 0) != 0) {
-    throw inputError(fmt::format("{}: its asset.version is not 2.x, expected glTF 2.0", name));
+  const bool has = asset != json.end() && asset->is_object() && version != asset->end();
+  if (!has || !version->is_string() || version->get_ref<const std::string&>().rfind("2.", 0) != 0) {
+    throw inputError(fmt::format("{}: its asset.version is {}, expected 2.x", name,
+                                 has ? describeJson(*version) : "missing"));
   }
   const auto required = json.find("extensionsRequired");
   if (required == json.end()) return;
@@ -43,8 +45,37 @@ void refuseUnsupported(const nlohmann::json& json, const std::string& name) {
     // These change how a surface looks or how numbers are packed, both of which are taken as they come.
     if (extension.rfind("KHR_materials_", 0) != 0 && extension.rfind("KHR_texture_", 0) != 0 &&
         extension != "KHR_mesh_quantization") {
-      throw inputError(fmt::format("{}: requires extension {}, which is not supported", name, extension));
+      throw inputError(
+          fmt::format("{}: requires extension {}, which is not supported", name, describeJson(entry)));
     }
+  }
+}
+
+// tinygltf ignores lists that are something else, and says nothing of what it misses in a skin.
+void checkLists(const nlohmann::json& json, const std::string& name) {
+  for (const char* key : {"nodes", "meshes", "skins", "accessors", "bufferViews", "scenes", "materials"}) {
+    const auto list = json.find(key);
+    if (list == json.end()) continue;
+    if (!list->is_array() || list->size() > maxObjects) {
+      throw inputError(fmt::format("{}: {} is {}, expected an array of up to {}", name, key,
+                                   describeJson(*list), maxObjects));
+    }
+  }
+  const auto skins = json.find("skins");
+  size_t total = 0;
+  for (size_t i = 0; skins != json.end() && i < skins->size(); ++i) {
+    const nlohmann::json& skin = (*skins)[i];
+    const auto joints = skin.is_object() ? skin.find("joints") : skin.end();
+    const auto isIndex = [](const nlohmann::json& joint) { return joint.is_number_integer(); };
+    if (!skin.is_object() || joints == skin.end() || !joints->is_array() ||
+        !std::all_of(joints->begin(), joints->end(), isIndex)) {
+      throw inputError(
+          fmt::format("{}: skins[{}].joints is {}, expected an array of indices", name, i,
+                      skin.is_object() && joints != skin.end() ? describeJson(*joints) : "missing"));
+    }
+    total += joints->size();
+    if (total > maxJoints)
+      throw inputError(fmt::format("{}: its skins have over {} joints", name, maxJoints));
   }
 }
 
@@ -62,8 +93,9 @@ tinygltf::Model loadModel(nlohmann::json json, const std::string& name) {
   // The error string is filled on success too, so the return value decides.
   if (!loader.LoadASCIIFromString(&model, &error, &warning, text.data(), static_cast<unsigned>(text.size()),
                                   "")) {
-    for (char& c : error) c = c == '\n' || c == '\r' ? ' ' : c;
-    while (!error.empty() && error.back() == ' ') error.pop_back();
+    // Before the fault come lines on what is legal, such as missing inverse bind matrices.
+    while (!error.empty() && error.back() == '\n') error.pop_back();
+    error.erase(0, error.rfind('\n') + 1);
     throw inputError(fmt::format("{}: is not valid glTF: {}", name,
                                  error.empty() ? "a property is missing or has the wrong type" : error));
   }
@@ -366,7 +398,8 @@ class Reader {
     primitive.colours = toVectors(attribute("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, false));
     primitive.colours.resize(count, glm::dvec3(1));
     const glm::dvec3 base = baseColour(from.material, what);
-    for (glm::dvec3& colour : primitive.colours) colour = glm::max(colour * base, 0.0);
+    // Both are within 0 to 1 (glTF 2.0 specification, sections 3.7.2.1 and 3.9.2).
+    for (glm::dvec3& colour : primitive.colours) colour = glm::clamp(colour * base, 0.0, 1.0);
 
     std::vector<Values> joints, weights;
     for (int set = 0;; ++set) {
@@ -470,24 +503,33 @@ class Reader {
     }
   }
 
+  int indexAt(const nlohmann::json& json, const char* key, size_t count, const std::string& what) const {
+    const nlohmann::json& index = json.at(key);
+    if (!index.is_number_unsigned() || index.get<uint64_t>() >= count) {
+      fail("{} is {}, but there are {} of these", what, describeJson(index), count);
+    }
+    return index.get<int>();
+  }
+
+  int accessorAt(const nlohmann::json& sampler, const char* key, const std::string& part) const {
+    return indexAt(sampler, key, model_.accessors.size(), part + "." + key);
+  }
+
   Clip clip(const nlohmann::json& json, const std::string& what) {
     Clip clip;
     clip.name = json.value("name", std::string());
     const nlohmann::json& samplers = json.at("samplers");
     clip.channels = json.at("channels").size();
     for (const nlohmann::json& channel : json.at("channels")) {
-      const size_t sampler = channel.at("sampler").get<size_t>();
-      if (sampler >= samplers.size()) {
-        fail("{} has a channel of sampler {}, but there are {} of these", what, sampler, samplers.size());
-      }
+      const int sampler = indexAt(channel, "sampler", samplers.size(), what + " has a channel whose sampler");
       const nlohmann::json& target = channel.at("target");
-      const auto node = target.find("node");
-      if (node != target.end())
-        checkIndex(node->get<int>(), model_.nodes.size(), what + " targets a node that");
-      const nlohmann::json& from = samplers[sampler];
+      if (target.contains("node")) {
+        indexAt(target, "node", model_.nodes.size(), what + " targets a node that");
+      }
+      const nlohmann::json& from = samplers.at(static_cast<size_t>(sampler));
       const std::string part = fmt::format("{}.samplers[{}]", what, sampler);
       const Values times =
-          accessor(from.at("input").get<int>(), {TINYGLTF_TYPE_SCALAR}, false, part + ".input");
+          accessor(accessorAt(from, "input", part), {TINYGLTF_TYPE_SCALAR}, false, part + ".input");
       for (size_t k = 0; k < times.count; ++k) {
         if (times.numbers[k] < 0 || (k > 0 && times.numbers[k] <= times.numbers[k - 1])) {
           fail("{} has the time {} at key {}, expected times that rise from 0", part, times.numbers[k], k);
@@ -496,7 +538,7 @@ class Reader {
       clip.seconds = std::max(clip.seconds, times.numbers.back());
       const bool weights = target.at("path").get<std::string>() == "weights";
       const Values output =
-          accessor(from.at("output").get<int>(),
+          accessor(accessorAt(from, "output", part),
                    {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, false, part + ".output");
       const size_t each = from.value("interpolation", std::string("LINEAR")) == "CUBICSPLINE" ? 3 : 1;
       if (!weights && output.count != each * times.count) {
@@ -554,13 +596,7 @@ Document parse(std::span<const uint8_t> bytes, const std::string& name, const st
   try {
     const File file = openFile(bytes, name, folder);
     refuseUnsupported(file.json, name);
-    for (const char* key : {"nodes", "meshes", "skins", "accessors", "bufferViews", "scenes"}) {
-      const auto list = file.json.find(key);
-      if (list != file.json.end() && list->size() > maxObjects) {
-        throw inputError(
-            fmt::format("{}: has {} {}, expected at most {}", name, list->size(), key, maxObjects));
-      }
-    }
+    checkLists(file.json, name);
     const tinygltf::Model model = loadModel(file.json, name);
     Document document = Reader(model, file, name).document();
     document.extras = findExtras(file.json);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "file.h"
 #include "json.h"
@@ -12,10 +15,27 @@ namespace skitter::gltf {
 namespace {
 
 constexpr size_t maxBuffers = 1024;
+constexpr uint64_t maxBufferBytes = uint64_t{1} << 31;  // of all buffers
 
 uint32_t readWord(std::span<const uint8_t> bytes, size_t offset) {
   return static_cast<uint32_t>(bytes[offset]) | static_cast<uint32_t>(bytes[offset + 1]) << 8 |
          static_cast<uint32_t>(bytes[offset + 2]) << 16 | static_cast<uint32_t>(bytes[offset + 3]) << 24;
+}
+
+// glTF lets a whole number be written 1.0 or 1e0, which JSON libraries take for something else.
+void makeWholeNumbersIntegers(nlohmann::json& json) {
+  if (json.is_structured()) {
+    for (nlohmann::json& part : json) makeWholeNumbersIntegers(part);
+  } else if (json.is_number_float()) {
+    const double number = json.get<double>();
+    // Beyond 2^53 doubles skip integers.
+    if (number != std::trunc(number) || std::fabs(number) > 9007199254740992.0) return;
+    if (number < 0) {
+      json = static_cast<int64_t>(number);
+    } else {
+      json = static_cast<uint64_t>(number);
+    }
+  }
 }
 
 // The chunks of a binary file (glTF 2.0 specification, section 4.4).
@@ -29,8 +49,10 @@ Chunks splitChunks(std::span<const uint8_t> glb, const std::string& name) {
   if (glb.size() >= 8 && readWord(glb, 4) != 2) {
     throw inputError(fmt::format("{}: is glTF binary version {}, expected 2", name, readWord(glb, 4)));
   }
-  if (glb.size() < 20)
-    throw inputError(fmt::format("{}: ends after {} bytes, within its header", name, glb.size()));
+  if (glb.size() < 20) {
+    throw inputError(fmt::format("{}: ends after {} bytes, within the header of {}", name, glb.size(),
+                                 glb.size() < 12 ? "the file" : "its first chunk"));
+  }
   const size_t length = readWord(glb, 8);
   if (length < 20 || length > glb.size()) {
     throw inputError(fmt::format("{}: its header says {} bytes, the file has {}", name, length, glb.size()));
@@ -98,36 +120,37 @@ class BufferReader {
       throw inputError(fmt::format("{}.byteLength is {}, expected a whole number over 0", what,
                                    length == buffer.end() ? "missing" : describeJson(*length)));
     }
+    const auto wanted = length->get<uint64_t>();
     const auto uri = buffer.find("uri");
-    std::vector<uint8_t> bytes;
     if (uri == buffer.end()) {
       // A placeholder, which matters only to what is read of it.
       if (index > 0 || binary_.empty()) return {};
-      bytes.assign(binary_.begin(), binary_.end());
-    } else if (!uri->is_string()) {
+      expectThere(wanted, binary_.size(), what);
+      return {binary_.begin(), binary_.begin() + static_cast<std::ptrdiff_t>(wanted)};
+    }
+    if (!uri->is_string()) {
       throw inputError(fmt::format("{}.uri is {}, expected a string", what, describeJson(*uri)));
-    } else {
-      bytes = fetch(uri->get_ref<const std::string&>(), what);
     }
-    if (length->get<uint64_t>() > bytes.size()) {
-      throw inputError(fmt::format("{} has {} bytes, its byteLength says {}", what, bytes.size(),
-                                   length->get<uint64_t>()));
+    const std::string& address = uri->get_ref<const std::string&>();
+    if (address.rfind("data:", 0) != 0) return readBeside(address, wanted, what);
+    std::vector<uint8_t> bytes;
+    const size_t comma = address.find(',');
+    if (comma == std::string::npos || comma < 12 || address.compare(comma - 7, 7, ";base64") != 0 ||
+        !decodeBase64(std::string_view(address).substr(comma + 1), bytes)) {
+      throw inputError(fmt::format("{}: its data: URI is not base64", what));
     }
-    bytes.resize(length->get<size_t>());
+    expectThere(wanted, bytes.size(), what);
+    bytes.resize(wanted);
     return bytes;
   }
 
  private:
-  std::vector<uint8_t> fetch(const std::string& uri, const std::string& what) const {
-    if (uri.rfind("data:", 0) == 0) {
-      const size_t comma = uri.find(',');
-      std::vector<uint8_t> bytes;
-      if (comma == std::string::npos || comma < 12 || uri.compare(comma - 7, 7, ";base64") != 0 ||
-          !decodeBase64(std::string_view(uri).substr(comma + 1), bytes)) {
-        throw inputError(fmt::format("{}: its data: URI is not base64", what));
-      }
-      return bytes;
-    }
+  static void expectThere(uint64_t wanted, uint64_t there, const std::string& what) {
+    if (wanted <= there) return;
+    throw inputError(fmt::format("{} has {} bytes, its byteLength says {}", what, there, wanted));
+  }
+
+  std::vector<uint8_t> readBeside(const std::string& uri, uint64_t wanted, const std::string& what) const {
     const std::string refersTo = fmt::format("{} refers to {}", what, describeJson(uri));
     const std::filesystem::path file = decodeUri(uri);
     if (folder_.empty()) throw inputError(refersTo + ", expected everything in one file");
@@ -135,17 +158,35 @@ class BufferReader {
         file.native().find('\0') != std::string::npos) {
       throw inputError(refersTo + ", expected a file relative to its folder");
     }
+    std::optional<FileStream> stream;
     try {
-      return readFile(folder_ / file);
+      stream.emplace(folder_ / file);
     } catch (const Error& error) {
       throw inputError(fmt::format("{}: {}", refersTo, error.what()));
     }
+    expectThere(wanted, stream->size(), what);
+    std::vector<uint8_t> bytes(wanted);
+    stream->read(bytes.data(), bytes.size());
+    return bytes;
   }
 
   std::span<const uint8_t> binary_;
   const std::string& name_;
   const std::filesystem::path& folder_;
 };
+
+// One file may serve every buffer, so that little on disk asks for much memory.
+void checkTotal(const nlohmann::json& buffers, const std::string& name) {
+  uint64_t total = 0;
+  for (const nlohmann::json& buffer : buffers) {
+    const auto length = buffer.is_object() ? buffer.find("byteLength") : buffer.end();
+    if (!buffer.is_object() || length == buffer.end() || !length->is_number_unsigned()) continue;
+    total += std::min(length->get<uint64_t>(), maxBufferBytes + 1);
+  }
+  if (total > maxBufferBytes) {
+    throw inputError(fmt::format("{}: its buffers' byteLengths are over {} in all", name, maxBufferBytes));
+  }
+}
 
 }  // namespace
 
@@ -177,12 +218,14 @@ File openFile(std::span<const uint8_t> bytes, const std::string& name, const std
   File file;
   file.json = parseJson(chunks.json, name);
   if (!file.json.is_object()) throw inputError(fmt::format("{}: its JSON is not an object", name));
+  makeWholeNumbersIntegers(file.json);
   const auto buffers = file.json.find("buffers");
   if (buffers == file.json.end()) return file;
   if (!buffers->is_array() || buffers->size() > maxBuffers) {
     throw inputError(fmt::format("{}: buffers is {}, expected an array of up to {}", name,
                                  describeJson(*buffers), maxBuffers));
   }
+  checkTotal(*buffers, name);
   const BufferReader reader(chunks.binary, name, folder);
   for (size_t i = 0; i < buffers->size(); ++i) file.buffers.push_back(reader.read((*buffers)[i], i));
   return file;

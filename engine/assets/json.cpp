@@ -11,22 +11,23 @@ namespace skitter {
 
 namespace {
 
-constexpr size_t maxDepth = 64;
+constexpr size_t maxDepth = 64, maxParts = size_t{1} << 21;
+constexpr size_t maxFaultBytes = 200;
 
-// Deep nesting would overflow the stack of recursive visitors; of a repeated key all but the last would be
-// ignored without a word. A pass of its own, because a callback makes the library's parser visit all of an
-// array's elements at the end of each.
+// Deep nesting would overflow the stack of recursive visitors, and a value takes many times the memory of its
+// text; of a repeated key all but the last would be ignored without a word. A pass of its own, because a
+// callback makes the library's parser visit all of an array's elements at the end of each.
 class Checker : public nlohmann::json_sax<nlohmann::json> {
  public:
   explicit Checker(const std::string& name) : name_(name) {}
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(number_integer_t) override { return count(); }
+  bool number_unsigned(number_unsigned_t) override { return count(); }
+  bool number_float(number_float_t, const string_t&) override { return count(); }
+  bool string(string_t&) override { return count(); }
+  bool binary(binary_t&) override { return count(); }
   bool start_object(size_t) override { return enter(); }
   bool end_object() override { return leave(); }
   bool start_array(size_t) override { return enter(); }
@@ -35,18 +36,24 @@ class Checker : public nlohmann::json_sax<nlohmann::json> {
     if (!keys_.back().insert(key).second) {
       throw inputError(fmt::format("{}: key {} appears twice in one object", name_, describeJson(key)));
     }
-    return true;
+    return count();
   }
   // The parser that follows says it better.
   bool parse_error(size_t, const std::string&, const nlohmann::json::exception&) override { return false; }
 
  private:
+  bool count() {
+    if (++parts_ > maxParts) {
+      throw inputError(fmt::format("{}: JSON has over {} keys and values", name_, maxParts));
+    }
+    return true;
+  }
   bool enter() {
     keys_.emplace_back();
     if (keys_.size() > maxDepth) {
       throw inputError(fmt::format("{}: JSON is nested over {} levels", name_, maxDepth));
     }
-    return true;
+    return count();
   }
   bool leave() {
     keys_.pop_back();
@@ -55,6 +62,7 @@ class Checker : public nlohmann::json_sax<nlohmann::json> {
 
   const std::string& name_;
   std::vector<std::set<std::string>> keys_;  // of each level
+  size_t parts_ = 0;
 };
 
 }  // namespace
@@ -70,7 +78,11 @@ nlohmann::json parseJson(std::string_view text, const std::string& name) {
     if (const size_t end = what.find("] "); what.front() == '[' && end != std::string::npos) {
       what.erase(0, end + 2);
     }
-    throw inputError(fmt::format("{}: is not valid JSON: {}", name, what));
+    // It also quotes what it read last, however long.
+    if (what.size() > maxFaultBytes) what = what.substr(0, maxFaultBytes) + "...";
+    // A number beyond a double's range is valid JSON all the same.
+    const bool valid = dynamic_cast<const nlohmann::json::out_of_range*>(&exception) != nullptr;
+    throw inputError(fmt::format("{}: {}{}", name, valid ? "" : "is not valid JSON: ", what));
   }
 }
 

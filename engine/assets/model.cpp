@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t maxVertices = size_t{1} << 22, maxIndices = size_t{1} << 24;  // of all meshes as placed
 constexpr size_t maxInfluences = size_t{1} << 24;
-constexpr double maxCoordinate = 1e9;  // units of the file
+constexpr double maxCoordinate = 1e9;  // units of the file, of nodes and vertices at rest
 
 class ModelBuilder {
  public:
@@ -23,6 +23,8 @@ class ModelBuilder {
   void build() {
     for (const gltf::Node& node : document_.nodes) {
       model_.nodes.push_back({node.name, node.parent, false, node.modelFromNode});
+      checkCoordinates(model_.nodes.back().position(),
+                       [&] { return fmt::format("nodes[{}]", model_.nodes.size() - 1); });
     }
     for (const gltf::Skin& skin : document_.skins) {
       std::vector<glm::dmat4>& modelFromBind = modelFromBind_.emplace_back();
@@ -45,6 +47,15 @@ class ModelBuilder {
   template <typename... Arguments>
   [[noreturn]] void fail(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
     throw inputError(model_.name + ": " + fmt::format(format, std::forward<Arguments>(arguments)...));
+  }
+
+  template <typename Describe>
+  void checkCoordinates(const glm::dvec3& position, const Describe& describe) const {
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::fabs(position[k]) <= maxCoordinate)) {
+        fail("{} rests at {}, expected within {}", describe(), position[k], maxCoordinate);
+      }
+    }
   }
 
   void add(size_t nodeIndex, const gltf::Primitive& part) {
@@ -73,12 +84,7 @@ class ModelBuilder {
       }
       vertex.influences = static_cast<uint32_t>(model_.influences.size()) - vertex.firstInfluence;
       vertex.position = glm::dvec3(modelFromVertex * glm::dvec4(part.positions[v], 1));
-      for (int k = 0; k < 3; ++k) {
-        if (!(std::fabs(vertex.position[k]) <= maxCoordinate)) {
-          fail("vertex {} of meshes[{}] rests at {}, expected within {}", v, node.mesh, vertex.position[k],
-               maxCoordinate);
-        }
-      }
+      checkCoordinates(vertex.position, [&] { return fmt::format("vertex {} of meshes[{}]", v, node.mesh); });
       vertex.colour = glm::vec3(part.colours[v]);
       const glm::dmat3 linear(modelFromVertex);
       const double determinant = glm::determinant(linear);

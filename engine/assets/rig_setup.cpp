@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "file.h"
@@ -216,7 +217,9 @@ class SetupReader {
 
 // Six digits say more than a model's maker knows, and are what a person can edit.
 nlohmann::ordered_json number(double value) {
-  const double rounded = std::stod(fmt::format("{:.6g}", value));
+  const std::string text = fmt::format("{:.6g}", value);
+  double rounded = 0;
+  std::from_chars(text.data(), text.data() + text.size(), rounded);
   if (rounded == std::round(rounded) && std::fabs(rounded) < 1e9) return static_cast<int64_t>(rounded);
   return rounded;
 }

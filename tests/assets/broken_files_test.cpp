@@ -11,6 +11,7 @@
 #include "skitter/error.h"
 #include "skitter/heightfield.h"
 #include "skitter/model.h"
+#include "skitter/rig_setup.h"
 
 namespace skitter {
 namespace {
@@ -21,7 +22,7 @@ const fs::path kData = SKITTER_SHARED_DATA;
 
 struct Verdict {
   std::string word;   // loads, notes or refused
-  std::string fault;  // what the refusal says
+  std::string fault;  // what the refusal, or one of the notes, says
 };
 
 std::map<std::string, Verdict> verdicts() {
@@ -35,15 +36,32 @@ std::map<std::string, Verdict> verdicts() {
   return list;
 }
 
-// The verdict, and the message of a refusal.
-Verdict read(const fs::path& file) {
+// The verdict, and the message of a refusal or all notes.
+template <typename Read>
+Verdict verdictOf(const Read& read) {
   try {
-    if (file.extension() == ".png") return loadHeightfield(file), Verdict{"loads", ""};
-    return {loadModel(file).notes.empty() ? "loads" : "notes", ""};
+    return read();
   } catch (const Error& refusal) {
     EXPECT_EQ(refusal.kind(), Error::Kind::input);
     return {"refused", refusal.what()};
   }
+}
+
+Verdict readModel(const fs::path& file) {
+  return verdictOf([&]() -> Verdict {
+    const Model model = loadModel(file);
+    proposeRig(model);
+    std::string notes;
+    for (const std::string& note : model.notes) notes += (notes.empty() ? "" : "; ") + note;
+    return {notes.empty() ? "loads" : "notes", notes};
+  });
+}
+
+Verdict readHeights(const fs::path& file) {
+  return verdictOf([&] {
+    loadHeightfield(file);
+    return Verdict{"loads", ""};
+  });
 }
 
 TEST(BrokenFiles, EachGetsItsVerdict) {
@@ -51,13 +69,14 @@ TEST(BrokenFiles, EachGetsItsVerdict) {
   for (const auto& [path, expected] : verdicts()) {
     SCOPED_TRACE(path);
     const auto start = std::chrono::steady_clock::now();
-    const Verdict got = read(kData / path);
+    const fs::path file = kData / path;
+    const Verdict got = file.extension() == ".png" ? readHeights(file) : readModel(file);
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << "hangs";
     EXPECT_EQ(got.word, expected.word) << got.fault;
-    if (got.word != "refused") continue;
     EXPECT_NE(got.fault.find(expected.fault), std::string::npos) << got.fault;
-    EXPECT_NE(got.fault.find(fs::path(path).filename().string()), std::string::npos) << got.fault;
     EXPECT_EQ(got.fault.find('\n'), std::string::npos) << got.fault;
+    if (got.word != "refused") continue;
+    EXPECT_NE(got.fault.find(fs::path(path).filename().string()), std::string::npos) << got.fault;
   }
 }
 
@@ -70,6 +89,18 @@ TEST(BrokenFiles, NoneIsWithoutVerdict) {
       if (kinds.contains(entry.path().extension().string())) {
         EXPECT_TRUE(list.contains(fs::relative(entry.path(), kData).string())) << entry.path();
       }
+}
+
+TEST(BrokenFiles, WhatIsNoModelIsRefused) {
+  if (!fs::exists(kData / "bad_gltf")) GTEST_SKIP() << kData << " is absent";
+  const std::set<std::string> kinds = {".gltf", ".glb"};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kData / "bad_gltf")) {
+    if (!entry.is_regular_file() || kinds.contains(entry.path().extension().string())) continue;
+    SCOPED_TRACE(entry.path());
+    const Verdict got = readModel(entry.path());
+    EXPECT_EQ(got.word, "refused");
+    EXPECT_NE(got.fault.find(entry.path().filename().string()), std::string::npos) << got.fault;
+  }
 }
 
 }  // namespace

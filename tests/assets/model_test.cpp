@@ -248,6 +248,62 @@ TEST_F(Models, StrangeHierarchiesEndSoon) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
+TEST_F(Models, WholeNumbersMayBeWrittenAsFloats) {
+  Glb glb = smallestRig();
+  glb.json["nodes"][0]["mesh"] = 0.0;
+  glb.json["accessors"][0]["count"] = 3.0;
+  EXPECT_EQ(load(glb).vertices.size(), 3u);
+  glb.json["accessors"][0]["count"] = 2.5;
+  EXPECT_NE(inputFault([&] { load(glb); }).find("odd.glb: "), std::string::npos);
+}
+
+TEST_F(Models, ColoursAreWithinOne) {
+  Glb glb = smallestRig();
+  const float colours[] = {-1, 0.5f, 3e38f, 0, 0, 0, 1, 1, 1};
+  attributes(glb)["COLOR_0"] = append(glb, colours, 5126, "VEC3", 3);
+  EXPECT_EQ(load(glb).vertices[0].colour, glm::vec3(0, 0.5f, 1));
+}
+
+TEST_F(Models, ClipsWithIndicesThatNoneCanBe) {
+  for (const nlohmann::json& index :
+       {nlohmann::json(-1), nlohmann::json(1e300), nlohmann::json(1ull << 32)}) {
+    Glb glb = smallestRig();
+    glb.json["animations"] = {
+        {{"samplers", {{{"input", 0}, {"output", 0}}}},
+         {"channels", {{{"sampler", index}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
+    EXPECT_TRUE(hasNote(load(glb), "animations[0] has a channel whose sampler is " + index.dump())) << index;
+  }
+}
+
+TEST_F(Models, FaultsAreTrueAndInOneLine) {
+  const std::pair<std::function<void(Glb&)>, const char*> cases[] = {
+      {[](Glb& g) { g.json["asset"]["version"] = "1.0"; }, "asset.version is \"1.0\""},
+      {[](Glb& g) { g.json.erase("asset"); }, "asset.version is missing"},
+      {[](Glb& g) { g.json["nodes"] = nlohmann::json::object(); }, "nodes is an object"},
+      {[](Glb& g) {
+         g.json["skins"].push_back({{"joints", {1, "2"}}});
+       },
+       "skins[1].joints is an array of 2, expected an array of indices"},
+      {[](Glb& g) {
+         g.json["nodes"][2]["translation"] = {0, 2e9, 0};
+       },
+       "nodes[2] rests at 2000000001, expected within 1000000000"},
+      {[](Glb& g) { g.json["buffers"][0]["uri"] = "a%0Ab.bin"; }, "a b.bin: no such file"},
+      {[](Glb& g) { g.json["extensionsRequired"] = {"A\nB"}; }, "requires extension \"A\\nB\""},
+  };
+  for (const auto& [change, expected] : cases) {
+    Glb glb = smallestRig();
+    change(glb);
+    const std::string what = inputFault([&] { load(glb); });
+    EXPECT_NE(what.find("odd.glb: "), std::string::npos) << what;
+    EXPECT_NE(what.find(expected), std::string::npos) << what << "\nexpected: " << expected;
+  }
+  test::writeText(folder_ / "odd.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"extras\": 1e309}");
+  EXPECT_EQ(inputFault([&] { loadModel(folder_ / "odd.gltf"); }).find("valid"), std::string::npos);
+  test::writeText(folder_ / "odd.gltf", "{\"asset\": \"" + std::string(1000000, 'a'));
+  EXPECT_LT(inputFault([&] { loadModel(folder_ / "odd.gltf"); }).size(), 400u);
+}
+
 TEST_F(Models, AbsurdCountsAreRefusedBeforeMemoryIsTaken) {
   const std::pair<std::function<void(Glb&)>, const char*> cases[] = {
       {[](Glb& g) {
@@ -256,10 +312,19 @@ TEST_F(Models, AbsurdCountsAreRefusedBeforeMemoryIsTaken) {
        },
        "elements without data"},
       {[](Glb& g) { g.json["nodes"] = std::vector<nlohmann::json>(70000, nlohmann::json::object()); },
-       "70000 nodes"},
+       "nodes is an array of 70000"},
       {[](Glb& g) { g.json["buffers"] = std::vector<nlohmann::json>(2000, nlohmann::json::object()); },
        "buffers is an array of 2000"},
-      {[](Glb& g) { g.json["asset"]["version"] = "1.0"; }, "asset.version"},
+      {[](Glb& g) {
+         g.json["buffers"] = std::vector<nlohmann::json>(3, {{"byteLength", 1u << 30}, {"uri", "one.bin"}});
+       },
+       "byteLengths are over 2147483648 in all"},
+      {[](Glb& g) {
+         g.json["skins"] = std::vector<nlohmann::json>(20, {{"joints", std::vector<int>(60000, 1)}});
+       },
+       "its skins have over 1048576 joints"},
+      {[](Glb& g) { g.json["extras"] = std::vector<int>(2100000, 1); },
+       "JSON has over 2097152 keys and values"},
   };
   for (const auto& [change, expected] : cases) {
     Glb glb = smallestRig();

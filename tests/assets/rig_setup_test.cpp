@@ -155,6 +155,10 @@ TEST_F(Sidecar, FaultsNameTheKey) {
        },
        "colour is an array"},
       {[](auto& j) { j["groups"] = "A"; }, "groups is \"A\""},
+      {[](auto& j) {
+         j["groups"] = {"A\nA", "A\nA"};
+       },
+       "groups names \"A A\" twice"},
       {[](auto& j) { j["legs"] = nlohmann::json::object(); }, "legs is an object"},
       {[](auto& j) { j["legs"][0]["knee"] = 1; }, "legs[0] has the unknown key \"knee\""},
       {[](auto& j) { j["legs"][0].erase("name"); }, "legs[0].name is missing"},
@@ -196,6 +200,12 @@ TEST_F(Sidecar, FaultsNameTheKey) {
   test::writeText(folder_ / "small.rig.json", "{\"model\": ");
   EXPECT_NE(inputFault([&] { loadRig(folder_ / "small.rig.json"); }).find("not valid JSON"),
             std::string::npos);
+}
+
+TEST_F(Sidecar, NumbersTooSmallForSixDigitsAreWritten) {
+  leg()["tipOffset"] = {1e-320, -1, 0};
+  const std::string text = writeRigSetup(parseRigSetup(json_.dump(), "small"));
+  EXPECT_LT(std::fabs(nlohmann::json::parse(text)["legs"][0]["tipOffset"][0].get<double>()), 1e-300);
 }
 
 TEST_F(Sidecar, WhatIsWrittenReadsTheSame) {

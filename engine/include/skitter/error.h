@@ -16,10 +16,18 @@ class Error : public std::runtime_error {
     device = 3,  // no usable Vulkan device, or the device failed
   };
 
-  Error(Kind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  Error(Kind kind, const std::string& message) : std::runtime_error(inOneLine(message)), kind_(kind) {}
   Kind kind() const { return kind_; }
 
  private:
+  // A name out of a file may hold anything.
+  static std::string inOneLine(std::string message) {
+    for (char& c : message) {
+      if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    }
+    return message;
+  }
+
   Kind kind_;
 };
 
