@@ -1,14 +1,47 @@
-#include "scratch_file.h"
-#include "skitter/error.h"
+#include "check_rig.h"
 #include "skitter/model.h"
 #include "skitter/rig_setup.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  const auto file = skitter::fuzz::scratchFile(data, size, size > 0 && data[0] == 0x67 ? ".glb" : ".gltf");
-  try {
-    skitter::proposeRig(skitter::loadModel(file));
-  } catch (const skitter::Error&) {
+namespace {
+
+using namespace skitter;
+
+void checkModel(const Model& model) {
+  const auto finite = [](const auto& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  };
+  fuzz::expect(model.parentsFirst.size() == model.nodes.size(), "an order that misses nodes");
+  for (const Model::Node& node : model.nodes) {
+    fuzz::expect(node.parent >= -1 && node.parent < static_cast<int>(model.nodes.size()), "a parent of none");
+    fuzz::expect(finite(node.position()), "a node that is not finite");
   }
-  std::filesystem::remove(file);
+  for (const Model::Vertex& vertex : model.vertices) {
+    fuzz::expect(finite(vertex.position) && finite(vertex.normal) && finite(vertex.colour),
+                 "a vertex that is not finite");
+    fuzz::expect(
+        vertex.influences > 0 && vertex.firstInfluence <= model.influences.size() - vertex.influences,
+        "a vertex without influence");
+  }
+  for (const Model::Influence& influence : model.influences) {
+    fuzz::expect(influence.node < model.nodes.size(), "an influence of no node");
+    fuzz::expect(influence.weight >= 0 && influence.weight <= 1.001, "a weight out of range");
+  }
+  for (const uint32_t index : model.indices)
+    fuzz::expect(index < model.vertices.size(), "an index of no vertex");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  const fuzz::ScratchFile file(data, size, size > 0 && data[0] == 'g' ? ".glb" : ".gltf");
+  const std::string name = file.path();
+  fuzz::refuseOrRead(name, [&] {
+    const Model model = loadModel(name);
+    checkModel(model);
+    const RigProposal proposal = proposeRig(model);
+    if (proposal.setup.legs.empty()) return;
+    parseRigSetup(writeRigSetup(proposal.setup), "proposal");
+    fuzz::checkRig(buildRig(model, proposal.setup, name));
+  });
   return 0;
 }

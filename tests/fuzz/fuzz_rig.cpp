@@ -1,10 +1,7 @@
-#include "skitter/error.h"
-#include "skitter/rig.h"
+#include "check_rig.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  try {
-    skitter::parseRig({data, size}, "fuzz");
-  } catch (const skitter::Error&) {
-  }
+  using namespace skitter;
+  fuzz::refuseOrRead("fuzz", [&] { fuzz::checkRig(parseRig({data, size}, "fuzz")); });
   return 0;
 }

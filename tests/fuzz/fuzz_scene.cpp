@@ -1,12 +1,8 @@
-#include <string>
-
-#include "skitter/error.h"
+#include "fuzz.h"
 #include "skitter/scene.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  try {
-    skitter::parseScene(std::string(data, data + size), "fuzz", ".");
-  } catch (const skitter::Error&) {
-  }
+  skitter::fuzz::refuseOrRead("fuzz",
+                              [&] { skitter::parseScene(std::string(data, data + size), "fuzz", "."); });
   return 0;
 }
