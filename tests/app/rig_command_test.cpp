@@ -27,6 +27,35 @@ TEST_F(RigCommand, InspectSaysWhatThereIs) {
   EXPECT_EQ(report.at("isRig"), false);
 }
 
+// Models that nobody here made, the counts those of MANIFEST.md beside them.
+TEST_F(RigCommand, InspectCountsForeignModelsAndFindsLegs) {
+  const fs::path data = SKITTER_ROOT "/../shared/data/gltf";
+  if (!fs::exists(data)) GTEST_SKIP() << data << " is absent";
+  for (const auto& entry : fs::recursive_directory_iterator(data)) {
+    if (entry.path().extension() != ".glb" && entry.path().extension() != ".gltf") continue;
+    const Result result = skitter({"inspect", entry.path().string()});
+    EXPECT_EQ(result.code, 0) << entry.path() << result.err;
+  }
+  struct Arthropod {
+    const char* file;
+    size_t joints, clips, legs, jointsOfLeg;
+    bool footJoint;
+  };
+  for (const Arthropod& expected : {Arthropod{"mjolnir_hexapod.glb", 37, 0, 6, 6, true},
+                                    Arthropod{"luanti_spider_animated.gltf", 57, 1, 8, 5, false}}) {
+    SCOPED_TRACE(expected.file);
+    ASSERT_EQ(skitter({"inspect", (data / expected.file).string(), "--json", file("legs.json")}).code, 0);
+    const nlohmann::json report = json("legs.json");
+    EXPECT_EQ(report.at("joints"), expected.joints);
+    EXPECT_EQ(report.at("clips").size(), expected.clips);
+    ASSERT_EQ(report.at("legs").size(), expected.legs);
+    for (const nlohmann::json& leg : report.at("legs")) {
+      EXPECT_EQ(leg.at("joints").size(), expected.jointsOfLeg);
+      EXPECT_EQ(leg.at("footJoint"), expected.footJoint);
+    }
+  }
+}
+
 TEST_F(RigCommand, InspectDrawsWithoutADevice) {
   const Environment nowhere = {{"VK_DRIVER_FILES", "/nowhere.json"}, {"VK_ICD_FILENAMES", "/nowhere.json"}};
   const Result result = runProgram(
