@@ -1,5 +1,6 @@
 #include "bench/cpu_baseline/batch.h"
 
+#include <stdexcept>
 #include <thread>
 
 #include "bench/cpu_baseline/solve.h"
@@ -9,6 +10,15 @@ namespace {
 
 void skipAll(Batch& batch) {
   for (size_t chain = 0; chain < batch.chains; ++chain) batch.outcome.at(2, chain) = float(Stop::skipped);
+}
+
+SolveRange* chosen(const Model& model, const Options& options, bool simd) {
+  const bool activeSet = options.solver == Solver::activeSet;
+  if (!model.limited && !activeSet) return simd ? simdFree : scalarFree;
+  if (model.limited && activeSet) return simd ? simdActiveSet : scalarActiveSet;
+  if (model.limited && options.solver == Solver::fabrik)
+    return simd ? simdLimitedFabrik : scalarLimitedFabrik;
+  throw std::invalid_argument("stretch-align is for free chains, the active set for limited ones");
 }
 
 // The share of thread `i` of `threads`, in whole groups of chains.
@@ -30,16 +40,17 @@ Batch::Batch(const Model& model, size_t count)
 
 void solveScalar(const Model& model, const Options& options, Batch& batch) {
   if (model.bones == 0) return skipAll(batch);
-  solveScalarRange(model, options, batch, {0, batch.chains});
+  chosen(model, options, false)(model, options, batch, {0, batch.chains});
 }
 
 void solveSimd(const Model& model, const Options& options, Batch& batch, int threads) {
   if (model.bones == 0) return skipAll(batch);
+  SolveRange* const solve = chosen(model, options, true);
   std::vector<std::thread> others;
   for (int i = 1; i < threads; ++i) {
-    others.emplace_back([&, i] { solveSimdRange(model, options, batch, shareOf(batch.chains, i, threads)); });
+    others.emplace_back([&, i] { solve(model, options, batch, shareOf(batch.chains, i, threads)); });
   }
-  solveSimdRange(model, options, batch, shareOf(batch.chains, 0, threads));
+  solve(model, options, batch, shareOf(batch.chains, 0, threads));
   for (std::thread& other : others) other.join();
 }
 

@@ -65,6 +65,12 @@ double ellipseAngle(const Limit& limit, double hx, double hy) {
                         hy / (hy >= 0 ? limit.positiveY : limit.negativeY));
 }
 
+double widest(const Limit& limit) {
+  if (limit.kind == LimitKind::cone) return limit.cone;
+  if (limit.kind == LimitKind::free) return kFreeLimit;
+  return std::max({limit.positiveX, limit.negativeX, limit.positiveY, limit.negativeY});
+}
+
 void refuseUnless(bool fine, const char* what) {
   if (!fine) throw std::invalid_argument(what);
 }
@@ -85,6 +91,7 @@ BoneModel boneModel(const Bone& bone, const DMat& previous, double total) {
     model.offsetZ = float(std::sqrt(1 - rest.along * rest.along));
     model.lowSine = std::sin(limit.low), model.lowCosine = std::cos(limit.low);
     model.highSine = std::sin(limit.high), model.highCosine = std::cos(limit.high);
+    model.wide = limit.low < -1.5f || limit.high > 1.5f;
     model.lowTanHalf = std::tan(limit.low / 2), model.highTanHalf = std::tan(limit.high / 2);
     return model;
   }
@@ -92,6 +99,7 @@ BoneModel boneModel(const Bone& bone, const DMat& previous, double total) {
   const double cone = limit.kind == LimitKind::cone ? std::min(double(limit.cone), kFreeLimit) : kFreeLimit;
   model.coneSine = float(std::sin(cone)), model.coneCosine = float(std::cos(cone));
   model.coneTanHalf = float(std::tan(cone / 2));
+  model.wide = widest(limit) > 1.5;
   for (float angle : {limit.positiveX, limit.negativeX, limit.positiveY, limit.negativeY}) {
     refuseUnless(angle > 0 && angle <= 3.1f, "ellipse: the angles must be above 0, at most 3.1");
   }

@@ -45,6 +45,7 @@ struct BoneModel {
   bool turns = false;  // it has a length
   LimitKind kind = LimitKind::free;
   bool twists = false;
+  bool wide = true;                // may turn beyond a right angle
   Mat3<float> carry{};             // B_(i-1)^T B_i, of the first bone B_0: A_i = F_(i-1) carry
   float offsetX = 0, offsetZ = 1;  // o_i = (offsetX, 0, offsetZ)
   float coneSine = 0, coneCosine = 0, coneTanHalf = 0;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "bench/cpu_baseline/active_set.h"
 #include "bench/cpu_baseline/free_chain.h"
+#include "bench/cpu_baseline/limited_fabrik.h"
 
 namespace skitter::baseline {
 
@@ -32,6 +34,16 @@ void withBones(int bones, const Solve& solve) {
 template <class F>
 void solveFree(const Model& model, const Options& options, Batch& batch, Range range) {
   withBones(model.bones, [&]<int N>() { solveWith<FreeChain<F, N>>(model, options, batch, range); });
+}
+
+template <class F>
+void solveLimitedFabrik(const Model& model, const Options& options, Batch& batch, Range range) {
+  withBones(model.bones, [&]<int N>() { solveWith<LimitedFabrik<F, N>>(model, options, batch, range); });
+}
+
+template <class F>
+void solveActiveSet(const Model& model, const Options& options, Batch& batch, Range range) {
+  withBones(model.bones, [&]<int N>() { solveWith<ActiveSet<F, N>>(model, options, batch, range); });
 }
 
 }  // namespace skitter::baseline

@@ -1,39 +1,13 @@
 #pragma once
 
-#include "bench/cpu_baseline/refill.h"
+#include <algorithm>
+
+#include "bench/cpu_baseline/stretch_align.h"
 
 namespace skitter::baseline {
 
-inline constexpr float kTiny = 1e-6f;
-
-// l normalize(to - from), added to `from`.
-template <class F>
-Vec3<F> placeToward(const Vec3<F>& from, const Vec3<F>& to, float l) {
-  const Vec3<F> gap = to - from;
-  return from + gap * (inverseLength(gap) * F(l));
-}
-
-// Some unit vector at right angles to the unit vector `line`.
-template <class F>
-Vec3<F> anyPerpendicular(const Vec3<F>& line) {
-  const auto alongX = F(0.9f) < absolute(line.x);
-  const Vec3<F> axis{select(alongX, F(0), F(1)), F(0), select(alongX, F(1), F(0))};
-  return normalized(axis - line * dot(axis, line));
-}
-
-// True where every joint is within 1e-3 of the line from base to tip.
-template <class F>
-Mask<F> isStraight(const Vec3<F>* joints, int bones) {
-  const Vec3<F> line = normalized(joints[bones - 1]);
-  F farthest(0);
-  for (int i = 0; i < bones - 1; ++i) {
-    const Vec3<F> aside = joints[i] - line * dot(joints[i], line);
-    farthest = larger(farthest, dot(aside, aside));
-  }
-  return farthest <= F(1e-6f);
-}
-
-// Free chains: their state is their joints (docs/ik.md, "A solve" and "FABRIK").
+// Free chains: their state is their joints (docs/ik.md, "A solve", "FABRIK" and
+// "Stretch-align").
 template <class F, int N>
 class FreeChain {
  public:
@@ -55,11 +29,13 @@ class FreeChain {
     const auto finite = zero.x + zero.y + zero.z <= F(0);
     const auto arrived = state.error <= F(options_.tolerance);
     const auto beyond = finite & !arrived & (F(1) <= distance);
-    const auto open = finite & !arrived & (distance < F(1));
+    auto open = finite & !arrived & (distance < F(1));
     if (any(beyond)) layStraight(state, beyond);
     const auto bent = open & isStraight(state.joint, bones()) & (distance < F(0.999f) * length(tip(state)));
     if (any(bent)) bend(state, bent);
-    if (any(!open)) finishStarted(state, chain, finite);
+    if (options_.solver == Solver::stretchAlign && options_.iterations > 0) stretchAlign(state, open);
+    open = open & (F(options_.tolerance) < state.error) & (state.iterations < F(float(options_.iterations)));
+    if (any(!open)) finishStarted(state, chain, finite, beyond);
     return bits(open & firstLanes<F>(count));
   }
 
@@ -139,9 +115,10 @@ class FreeChain {
   }
 
   // Writes the whole block: chains that go on are written anew when they are done.
-  void finishStarted(const State& state, size_t chain, const Mask<F>& finite) {
+  void finishStarted(const State& state, size_t chain, const Mask<F>& finite, const Mask<F>& beyond) {
     const auto near = state.error <= F(options_.tolerance);
-    const F stop = select(near, F(float(Stop::tolerance)), F(float(Stop::unreachable)));
+    F stop = select(beyond, F(float(Stop::unreachable)), F(float(Stop::cap)));
+    stop = select(near, F(float(Stop::tolerance)), stop);
     for (int b = 0; b < bones(); ++b) {
       batch_.joints.store(state.joint[b].x, 3 * b, chain);
       batch_.joints.store(state.joint[b].y, 3 * b + 1, chain);
@@ -152,6 +129,15 @@ class FreeChain {
     batch_.outcome.store(select(finite, stop, F(float(Stop::skipped))), 2, chain);
   }
 
+  void stretchAlign(State& state, const Mask<F>& mask) const {
+    Vec3<F> joint[kCapacity<N>];
+    std::copy_n(state.joint, bones(), joint);
+    StretchAlign<F, N>(model_, options_.tolerance)(joint, state.target);
+    for (int b = 0; b < bones(); ++b) state.joint[b] = select(mask, joint[b], state.joint[b]);
+    state.error = select(mask, length(state.target - tip(state)), state.error);
+    state.iterations = select(mask, F(1), state.iterations);
+  }
+
   void fabrik(State& state) const {
     const int n = bones();
     Vec3<F> back[kCapacity<N>];  // q_1 .. q_n; q_0 would serve nothing
@@ -159,10 +145,9 @@ class FreeChain {
 #pragma GCC unroll 4
     for (int i = n - 1; i >= 1; --i)
       back[i - 1] = placeToward(back[i], state.joint[i - 1], model_.bone[i].length);
-    Vec3<F> place = normalized(back[0]) * F(model_.bone[0].length);
-    state.joint[0] = place;
+    Vec3<F> place{F(0), F(0), F(0)};
 #pragma GCC unroll 4
-    for (int i = 1; i < n; ++i) state.joint[i] = place = placeToward(place, back[i], model_.bone[i].length);
+    for (int i = 0; i < n; ++i) state.joint[i] = place = placeToward(place, back[i], model_.bone[i].length);
   }
 
   const Model& model_;

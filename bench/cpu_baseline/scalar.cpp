@@ -3,8 +3,16 @@
 
 namespace skitter::baseline {
 
-void solveScalarRange(const Model& model, const Options& options, Batch& batch, Range range) {
+void scalarFree(const Model& model, const Options& options, Batch& batch, Range range) {
   solveFree<float>(model, options, batch, range);
+}
+
+void scalarLimitedFabrik(const Model& model, const Options& options, Batch& batch, Range range) {
+  solveLimitedFabrik<float>(model, options, batch, range);
+}
+
+void scalarActiveSet(const Model& model, const Options& options, Batch& batch, Range range) {
+  solveActiveSet<float>(model, options, batch, range);
 }
 
 }  // namespace skitter::baseline

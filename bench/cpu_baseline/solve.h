@@ -4,7 +4,9 @@
 
 namespace skitter::baseline {
 
-void solveScalarRange(const Model& model, const Options& options, Batch& batch, Range range);
-void solveSimdRange(const Model& model, const Options& options, Batch& batch, Range range);
+// One kernel for one kind of lanes; a file each, for they are large.
+using SolveRange = void(const Model& model, const Options& options, Batch& batch, Range range);
+SolveRange scalarFree, scalarLimitedFabrik, scalarActiveSet;
+SolveRange simdFree, simdLimitedFabrik, simdActiveSet;
 
 }  // namespace skitter::baseline

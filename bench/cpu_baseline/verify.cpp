@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace skitter::baseline {
@@ -54,6 +55,13 @@ bool stopFits(Stop stop, double error, const Options& options) {
 }
 
 }  // namespace
+
+std::string describe(const Findings& findings) {
+  char text[256];
+  std::snprintf(text, sizeof text, "error %.2g, length %.2g, joints %.2g, limit %.2g rad, wrong stops %zu",
+                findings.error, findings.length, findings.joints, findings.limit, findings.wrongStops);
+  return text;
+}
 
 Findings verify(const Chain& chain, const Options& options, const Batch& batch) {
   Findings findings;

@@ -21,6 +21,8 @@ struct Findings {
   }
 };
 
+std::string describe(const Findings& findings);
+
 Findings verify(const Chain& chain, const Options& options, const Batch& batch);
 
 }  // namespace skitter::baseline

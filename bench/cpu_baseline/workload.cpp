@@ -56,20 +56,13 @@ class Drift {
       if (norm(tipOf(chain_, goal_) - old) > kStep) break;
       goal_ = randomPose(chain_, random_);
     }
-    // The first share of the way at which the tip is a step away.
-    float low = 0, high = 1;
-    for (float share = 1 / 64.0f; share < 1; share += 1 / 64.0f) {
-      if (norm(tipOf(chain_, between(pose_, goal_, share, bones)) - old) >= kStep) {
-        high = share;
-        break;
-      }
-      low = share;
+    // Small shares move the tip about evenly, so a few corrections find the one that moves it by a step.
+    float share = 0.02f;
+    for (int correction = 0; correction < 5; ++correction) {
+      const double moved = norm(tipOf(chain_, between(pose_, goal_, share, bones)) - old);
+      share = std::clamp(share * float(kStep / std::max(moved, 1e-9)), 1e-4f, 1.0f);
     }
-    for (int halving = 0; halving < 12; ++halving) {
-      const float middle = (low + high) / 2;
-      (norm(tipOf(chain_, between(pose_, goal_, middle, bones)) - old) < kStep ? low : high) = middle;
-    }
-    pose_ = between(pose_, goal_, high, bones);
+    pose_ = between(pose_, goal_, share, bones);
   }
 
  private:

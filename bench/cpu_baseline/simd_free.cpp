@@ -2,16 +2,11 @@
 #include "bench/cpu_baseline/solve.h"
 
 namespace skitter::baseline {
-namespace {
 
 // A pass of FABRIK is one long chain of dependent operations: four registers of chains side by side keep the
 // units busy (measured: one 19, two 35, four 50 million solves a core-second, 8 floats a register).
-using FreeLanes = Pair<Pair<Lanes>>;
-
-}  // namespace
-
-void solveSimdRange(const Model& model, const Options& options, Batch& batch, Range range) {
-  solveFree<FreeLanes>(model, options, batch, range);
+void simdFree(const Model& model, const Options& options, Batch& batch, Range range) {
+  solveFree<Pair<Pair<Lanes>>>(model, options, batch, range);
 }
 
 }  // namespace skitter::baseline
