@@ -84,8 +84,14 @@ void iteratePose(const IkChain& chain, const IkSettings& settings, const glm::dv
   state.joints = posture.joints();
 }
 
+// Whether the state is joints: of free chains, and of the dissertation, which knows no frames.
+bool movesJoints(const IkChain& chain, const IkSettings& settings) {
+  return chain.free || isDissertation(settings.solver);
+}
+
 IkState begun(const IkChain& chain, const IkSettings& settings, const IkState& start) {
-  IkState state = chain.free ? IkState{{}, start.joints} : stateAt(chain, start.pose);
+  IkState state =
+      movesJoints(chain, settings) ? IkState{start.pose, start.joints} : stateAt(chain, start.pose);
   if (settings.continues) state.damping = start.damping;
   return state;
 }
@@ -99,7 +105,11 @@ IkResult straightToward(const IkChain& chain, const IkSettings& settings, const 
 IkResult solveOnce(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
                    const IkState& start) {
   IkState state = start;
-  breakDeadlock(chain, target, state);
+  if (movesJoints(chain, settings)) {
+    breakDeadlock(chain, target, state.joints);
+  } else {
+    breakDeadlock(chain, target, state);
+  }
   const bool closed = settings.solver == IkSolver::twoBone;
   const auto loop = iterateUntilDone(
       settings.tolerance, closed ? std::min(settings.iterations, 1) : settings.iterations, start, state,
@@ -127,7 +137,7 @@ bool accepts(const IkChain& chain, IkSolver solver) {
 
 void iterate(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target, int k,
              IkState& state) {
-  if (chain.free || isDissertation(settings.solver)) {
+  if (movesJoints(chain, settings)) {
     iterateJoints(chain, settings, target, k, state.joints);
   } else {
     iteratePose(chain, settings, target, state);
