@@ -5,12 +5,25 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "skitter/error.h"
 
 namespace skitter::app {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// A path as far as it is there.
+fs::path existingPartOf(const fs::path& path) {
+  std::error_code error;
+  fs::path existing = fs::absolute(path);
+  while (!fs::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
+  return existing;
+}
+
+}  // namespace
 
 PartFile::PartFile(fs::path file) : file_(std::move(file)), part_(file_) {
   part_ += ".part";
@@ -74,11 +87,20 @@ void checkFileTarget(const std::string& option, const fs::path& file) {
   }
 }
 
+void checkRoom(const std::string& option, const fs::path& target, double bytes) {
+  const fs::path existing = existingPartOf(target);
+  std::error_code error;
+  const fs::space_info space = fs::space(existing, error);
+  // Some file systems tell nothing.
+  if (error || space.capacity == 0 || bytes <= static_cast<double>(space.available)) return;
+  throw inputError(fmt::format("{} {}: would take {:.0f} MiB, the disk has {} MiB free", option,
+                               target.string(), bytes / (1 << 20), space.available >> 20));
+}
+
 void checkFolderTarget(const std::string& option, const fs::path& folder) {
   if (folder.empty()) throw inputError(fmt::format("{} is empty, expected a directory", option));
+  const fs::path existing = existingPartOf(folder);
   std::error_code error;
-  fs::path existing = fs::absolute(folder);
-  while (!fs::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
   if (!fs::is_directory(existing, error)) {
     throw inputError(
         fmt::format("{} {}: {} is a file, expected a directory", option, folder.string(), existing.string()));

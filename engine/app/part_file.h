@@ -35,5 +35,7 @@ void writeText(const std::filesystem::path& file, const std::string& text);
 // used. `option` begins the message.
 void checkFileTarget(const std::string& option, const std::filesystem::path& file);
 void checkFolderTarget(const std::string& option, const std::filesystem::path& folder);
+// And that the disk has room for what will be written to a file or folder.
+void checkRoom(const std::string& option, const std::filesystem::path& target, double bytes);
 
 }  // namespace skitter::app

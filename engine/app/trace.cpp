@@ -39,14 +39,7 @@ void checkSize(const fs::path& folder, const Crowd& crowd, const Scene& scene, u
     throw inputError(fmt::format("--trace {}: {} ticks would take {:.1f} GiB, more than 4 GiB need --force",
                                  folder.string(), ticks, bytes / (1ull << 30)));
   }
-  std::error_code error;
-  fs::path existing = fs::absolute(folder);
-  while (!fs::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
-  const fs::space_info space = fs::space(existing, error);
-  if (!error && bytes > static_cast<double>(space.available)) {
-    throw inputError(fmt::format("--trace {}: {} ticks would take {:.0f} MiB, the disk has {} MiB free",
-                                 folder.string(), ticks, bytes / (1 << 20), space.available >> 20));
-  }
+  checkRoom("--trace", folder, bytes);
 }
 
 // The record at vec4 index `at`.
