@@ -12,6 +12,7 @@ namespace skitter::app {
 using Command = std::function<int()>;
 
 // Each adds its subcommand, which on being named sets `chosen`.
+void addIk(CLI::App&, Command& chosen);
 void addInfo(CLI::App&, Command& chosen);
 void addInspect(CLI::App&, Command& chosen);
 void addRig(CLI::App&, Command& chosen);

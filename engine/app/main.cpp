@@ -21,6 +21,7 @@ constexpr const char* footer =
     "  skitter run\n"
     "  skitter rig crab.glb && skitter run --rig crab.glb\n"
     "  skitter run --agents 200 --frames 240 --out walk.mp4\n"
+    "  skitter ik --joints 5 --limits cone:60\n"
     "  skitter validate --device llvmpipe";
 
 int fail(int code, std::string message) {
@@ -36,6 +37,7 @@ int runCommand(int argc, char** argv) {
   app.footer(footer);
   app.require_subcommand(0, 1);
   skitter::app::Command command;
+  skitter::app::addIk(app, command);
   skitter::app::addInfo(app, command);
   skitter::app::addInspect(app, command);
   skitter::app::addRig(app, command);
@@ -49,7 +51,7 @@ int runCommand(int argc, char** argv) {
     return fail(2, fmt::format("{} (skitter --help lists what there is)", error.what()));
   }
   if (!command)
-    return fail(2, "no subcommand, expected info, inspect, rig, run or validate (skitter --help)");
+    return fail(2, "no subcommand, expected ik, info, inspect, rig, run or validate (skitter --help)");
   return command();
 }
 

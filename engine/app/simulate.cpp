@@ -1,16 +1,11 @@
 #include "simulate.h"
 
 #include <chrono>
-#include <ctime>
+
+#include "clock.h"
 
 namespace skitter::app {
 namespace {
-
-double processSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 void addStages(std::vector<StageTime>& sums, const std::vector<StageTime>& times) {
   if (sums.empty()) {

@@ -54,6 +54,17 @@ std::pair<double, double> parsePair(const std::string& option, const std::string
           parseNumber(option, text.substr(comma + 1), least, most)};
 }
 
+std::vector<double> parseNumbers(const std::string& option, const std::string& text, double least,
+                                 double most) {
+  std::vector<double> numbers;
+  for (size_t from = 0;;) {
+    const size_t comma = text.find(',', from);
+    numbers.push_back(parseNumber(option, text.substr(from, comma - from), least, most));
+    if (comma == std::string::npos) return numbers;
+    from = comma + 1;
+  }
+}
+
 Size parseSize(const std::string& option, const std::string& text, uint32_t least) {
   const size_t cross = text.find('x');
   const auto width = parse<uint64_t>(std::string_view(text).substr(0, cross));

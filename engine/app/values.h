@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace skitter::app {
 
@@ -13,6 +14,10 @@ uint64_t parseWhole(const std::string& option, const std::string& text, uint64_t
 // "A,B"; or "A" alone, which stands for both, where `bothFromOne`.
 std::pair<double, double> parsePair(const std::string& option, const std::string& text, double least,
                                     double most, bool bothFromOne);
+
+// "A,B,..", one or more.
+std::vector<double> parseNumbers(const std::string& option, const std::string& text, double least,
+                                 double most);
 
 struct Size {
   uint32_t width, height;

@@ -26,6 +26,7 @@ TEST_F(Usage, UnknownFlag) { expectInputError({"run", "--spiders", "3"}, {"--spi
 TEST_F(Usage, HelpAndVersionAreNoErrors) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"--version"},
+                                                    {"ik", "--help"},
                                                     {"info", "--help"},
                                                     {"inspect", "--help"},
                                                     {"rig", "--help"},

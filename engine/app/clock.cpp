@@ -1,0 +1,13 @@
+#include "clock.h"
+
+#include <ctime>
+
+namespace skitter::app {
+
+double processSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace skitter::app

@@ -1,0 +1,281 @@
+#include "skitter/ik.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "commands.h"
+#include "ik_chain.h"
+#include "ik_figures.h"
+#include "ik_machine.h"
+#include "ik_summary.h"
+#include "ik_targets.h"
+#include "part_file.h"
+#include "progress.h"
+#include "signals.h"
+#include "skitter/error.h"
+#include "values.h"
+
+namespace skitter::app {
+namespace {
+
+constexpr uint64_t mostIterations = 10000, defaultSeed = 1;
+constexpr double leastTolerance = 1e-9;
+// Independent solves are done this many at a time: enough to fill a device, few enough to see them go on.
+constexpr uint64_t solvesAtOnce = 262144, referenceSolvesAtOnce = 1024;
+
+struct IkOptions {
+  IkChainOptions chain;
+  ik::Options solve;
+  std::string targets;
+  std::optional<uint32_t> chains;
+  std::optional<uint64_t> rows, seed;
+  std::optional<std::string> device;
+  std::string out, rotations, json;
+  bool quiet = false;
+};
+
+void checkOptions(const IkOptions& options) {
+  const auto inVain = [](const char* flag, const char* why) {
+    throw inputError(fmt::format("{} {}", flag, why));
+  };
+  if (options.rows && !options.targets.empty()) inVain("--rows", "is told by the file of --targets");
+  if (options.rows && options.solve.start == ik::Start::rest) inVain("--rows", "needs --start previous");
+  if (options.seed && !options.targets.empty()) inVain("--seed", "is of no use with --targets");
+  const std::pair<const char*, const std::string&> files[] = {
+      {"--out", options.out}, {"--rotations", options.rotations}, {"--json", options.json}};
+  for (const auto& [flag, file] : files) {
+    if (file.empty()) continue;
+    checkFileTarget(flag, file);
+    for (const auto& [other, name] : files) {
+      if (other != flag && name == file) {
+        throw inputError(fmt::format("{} and {} both name {}", flag, other, file));
+      }
+    }
+  }
+}
+
+IkTargets targetsOf(const IkOptions& options, const ik::Chain& chain) {
+  const ik::Start start = options.solve.start;
+  if (!options.targets.empty()) return readIkTargets(options.targets, options.chains, start);
+  const uint64_t rows = start == ik::Start::rest ? 1 : options.rows.value_or(defaultIkRows);
+  return makeIkTargets(options.chains.value_or(defaultIkChains), rows, start, chain.reach(),
+                       options.seed.value_or(defaultSeed));
+}
+
+bool byReference(const IkOptions& options) { return options.device == "cpu"; }
+
+// How many targets the solver is given at a time: a row where solves continue, else all in equal parts.
+uint32_t lotSize(const IkOptions& options, const IkTargets& targets) {
+  if (options.solve.start == ik::Start::previous) return targets.chains;
+  const uint64_t atOnce = byReference(options) ? referenceSolvesAtOnce : solvesAtOnce;
+  const uint64_t lots = (targets.count() + atOnce - 1) / atOnce;
+  return static_cast<uint32_t>((targets.count() + lots - 1) / lots);
+}
+
+// A file of float32 values, where one is wanted.
+class FloatFile {
+ public:
+  FloatFile(const std::string& option, const std::string& file, double values) {
+    if (file.empty()) return;
+    checkRoom(option, file, values * sizeof(float));
+    file_.emplace(file);
+  }
+  template <class T>
+  void append(const std::vector<T>& values, size_t count) {
+    if (file_) file_->write(std::as_bytes(std::span(values).first(count)));
+  }
+  void finish() {
+    if (file_) file_->commit();
+  }
+
+ private:
+  std::optional<PartFile> file_;
+};
+
+// Solves what the targets hold, lot by lot, into figures and files.
+void solveAll(IkMachine& machine, const IkTargets& targets, uint32_t atOnce, size_t bones,
+              const IkOptions& options, IkFigures& figures) {
+  const auto solves = static_cast<double>(targets.count());
+  FloatFile joints("--out", options.out, solves * 3 * static_cast<double>(bones + 1));
+  FloatFile rotations("--rotations", options.rotations, solves * 4 * static_cast<double>(bones));
+  Progress progress("solves", targets.count(), options.quiet);
+  std::vector<glm::vec3> lot(atOnce);
+  while (figures.solves() < targets.count() && !stopRequested()) {
+    const auto wanted = static_cast<size_t>(std::min<uint64_t>(atOnce, targets.count() - figures.solves()));
+    targets.next(std::span(lot).first(wanted));
+    std::fill(lot.begin() + static_cast<std::ptrdiff_t>(wanted), lot.end(), lot[wanted - 1]);
+    if (figures.solves() == 0) machine.warmUp(lot);
+    const IkLot solved = machine.solve(lot);
+    figures.add(std::span(lot).first(wanted), solved);
+    joints.append(solved.joints, wanted * (bones + 1));
+    rotations.append(solved.rotations, wanted * bones);
+    progress.update(figures.solves());
+  }
+  if (figures.solves() == 0) throw Error(Error::Kind::check, "interrupted before anything was solved");
+  joints.finish();
+  rotations.finish();
+}
+
+// What the engine is asked to do: no automatic solver, no default of iterations.
+ik::Options resolved(const IkOptions& options, const ik::Chain& chain) {
+  ik::Options solve = options.solve;
+  solve.solver = ik::solverFor(chain, solve);
+  if (solve.iterations == 0) solve.iterations = ik::defaultIterations(chain, solve);
+  solve.rotations = !options.rotations.empty();
+  checkSolver(solve.solver, chain, options.chain);
+  return solve;
+}
+
+int solveIk(const IkOptions& options) {
+  checkOptions(options);
+  IkSummary summary;
+  summary.chain = options.chain.chain();
+  summary.rest = options.chain.rest;
+  summary.limits = options.chain.limits + (options.chain.freeBase ? ", the first bone free" : "");
+  summary.solve = resolved(options, summary.chain);
+  const IkTargets targets = targetsOf(options, summary.chain);
+  summary.targets = options.targets;
+  summary.seed = options.seed.value_or(defaultSeed);
+  summary.chains = targets.chains;
+  summary.rows = targets.rows;
+  for (const std::string& file : {options.out, options.rotations, options.json}) {
+    if (!file.empty()) summary.files.push_back(file);
+  }
+
+  const uint32_t atOnce = lotSize(options, targets);
+  const auto machine = byReference(options)
+                           ? makeReferenceMachine(summary.chain, atOnce, summary.solve)
+                           : makeDeviceMachine(options.device, summary.chain, atOnce, summary.solve);
+  summary.device = machine->name();
+  IkFigures figures(summary.chain);
+  solveAll(*machine, targets, atOnce, summary.chain.bones.size(), options, figures);
+  if (!options.json.empty()) writeText(options.json, summary.json(figures).dump(2) + "\n");
+  if (!options.quiet) summary.print(figures);
+  return 0;
+}
+
+void addSolverTo(CLI::App& command, IkOptions& options) {
+  std::string names;
+  for (const ik::Solver solver : ik::allSolvers)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", ik::nameOf(solver));
+  command
+      .add_option_function<std::string>(
+          "--solver",
+          [&options, names](const std::string& text) {
+            const auto solver = ik::solverNamed(text);
+            if (!solver) throw inputError(fmt::format("--solver is {}, expected one of {}", text, names));
+            options.solve.solver = *solver;
+          },
+          fmt::format("{} (docs/ik.md) [auto: stretch-align without limits, active-set within them]", names))
+      ->type_name("S");
+  command
+      .add_option_function<std::string>(
+          "--start",
+          [&options](const std::string& text) {
+            if (text != "rest" && text != "previous") {
+              throw inputError(fmt::format("--start is {}, expected rest or previous", text));
+            }
+            options.solve.start = text == "rest" ? ik::Start::rest : ik::Start::previous;
+          },
+          "where a solve starts: at the rest pose, or where the chain's solve of the row before ended [rest]")
+      ->type_name("rest|previous");
+  command
+      .add_option_function<std::string>(
+          "--tolerance",
+          [&options](const std::string& text) {
+            options.solve.tolerance = static_cast<float>(parseNumber("--tolerance", text, leastTolerance, 1));
+          },
+          "how near is near enough, as a share of the chain's length [0.0009]")
+      ->type_name("T");
+  command
+      .add_option_function<std::string>(
+          "--iterations",
+          [&options](const std::string& text) {
+            options.solve.iterations =
+                static_cast<uint32_t>(parseWhole("--iterations", text, 1, mostIterations));
+          },
+          "of a solve, at most [20 without limits, 64 within them; 4 from the previous pose]")
+      ->type_name("I");
+}
+
+void addTargetsTo(CLI::App& command, IkOptions& options) {
+  command
+      .add_option(
+          "--targets", options.targets,
+          "little-endian float32 x, y, z, with the base at 0 [seeded ones within reach: 0.2 to 0.95 of "
+          "the length from the base; with --start previous they move 0.02 of it a row]")
+      ->type_name("FILE.f32");
+  command
+      .add_option_function<std::string>(
+          "--chains",
+          [&options](const std::string& text) {
+            options.chains = static_cast<uint32_t>(parseWhole("--chains", text, 1, mostIkChains));
+          },
+          fmt::format("chains; a file's targets are rows of one for each [{}; of a file, as many as its "
+                      "targets, or with --start previous 1]",
+                      defaultIkChains))
+      ->type_name("N");
+  command
+      .add_option_function<std::string>(
+          "--rows",
+          [&options](const std::string& text) { options.rows = parseWhole("--rows", text, 1, mostIkRows); },
+          fmt::format("rows of targets, with --start previous and without a file [{}]", defaultIkRows))
+      ->type_name("R");
+  command
+      .add_option_function<std::string>(
+          "--seed",
+          [&options](const std::string& text) { options.seed = parseWhole("--seed", text, 0, UINT64_MAX); },
+          fmt::format("what targets are drawn from [{}]", defaultSeed))
+      ->type_name("N");
+}
+
+void addOutputsTo(CLI::App& command, IkOptions& options) {
+  command
+      .add_option("--out", options.out,
+                  "write the joints: float32 x, y, z, base first, chain by chain, row by row")
+      ->type_name("FILE.f32");
+  command
+      .add_option("--rotations", options.rotations,
+                  "write each bone's rotation from rest: float32 quaternions x, y, z, w")
+      ->type_name("FILE.f32");
+  command.add_option("--json", options.json, "write the figures to a file")->type_name("FILE");
+  command.add_flag("--quiet", options.quiet, "no table on stdout, no progress on stderr");
+}
+
+}  // namespace
+
+void addIk(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<IkOptions>();
+  CLI::App* command = app.add_subcommand(
+      "ik", "Solve inverse kinematics of many equal chains, and judge the poses that come out");
+  options->chain.addTo(*command);
+  addSolverTo(*command, *options);
+  addTargetsTo(*command, *options);
+  command
+      ->add_option_function<std::string>(
+          "--device", [options](const std::string& text) { options->device = text; },
+          "number or part of the name of the device (skitter info), or cpu: the reference in double "
+          "precision "
+          "[the best suitable]")
+      ->type_name("NAME|INDEX|cpu");
+  addOutputsTo(*command, *options);
+  command->footer(
+      "A target counts as solved within 0.001 of the chain's length. Errors, limits and lengths are judged "
+      "in\n"
+      "double precision from the joints that come out. The first Ctrl-C ends the run and completes its "
+      "files.\n"
+      "\n"
+      "Examples:\n"
+      "  skitter ik --joints 5\n"
+      "  skitter ik --joints 5 --limits cone:60 --free-base --json figures.json\n"
+      "  skitter ik --joints 4 --limits hinge:0,0,1,-90,30 --chains 1000 --start previous --rows 50\n"
+      "  skitter ik --bones 2,2,1 --limits ellipse:40,70,30,20 --targets targets.f32 --out joints.f32");
+  command->callback([options, &chosen] { chosen = [options] { return solveIk(*options); }; });
+}
+
+}  // namespace skitter::app
