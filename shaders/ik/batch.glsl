@@ -32,6 +32,12 @@ layout(push_constant) uniform BatchBlock { BatchConstants constants; };
 // The least change of the error that counts as progress.
 float leastProgress() { return max(1e-3 * constants.tolerance, 3e-7); }
 
+// Squares of longer targets would not be finite, and only their direction matters.
+vec3 nearEnough(vec3 target) {
+  float largest = max(abs(target.x), max(abs(target.y), abs(target.z)));
+  return target * (1e6 / max(largest, 1e6));
+}
+
 // The chain of this invocation, or one past the last.
 int chainHere() {
   uint here = gl_GlobalInvocationID.x;

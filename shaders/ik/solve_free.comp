@@ -61,6 +61,7 @@ void main() {
   vec3 given = LOAD4(targets, chain).xyz, pole = vec3(constants.poleX, constants.poleY, constants.poleZ);
   vec3 target = (BASES ? rotateBack(orientation, given - base) : given) * inverseReach;
   bool lost = !finite(target);
+  target = nearEnough(target);
   target = lost ? pose.joint[BONES] : target;
 
   float error = distance(target, pose.joint[BONES]), last = error;

@@ -69,6 +69,7 @@ void main() {
   vec3 given = LOAD4(targets, chain).xyz, pole = vec3(constants.poleX, constants.poleY, constants.poleZ);
   vec3 target = (BASES ? rotateBack(orientation, given - base) : given) * (1.0 / constants.reach);
   bool lost = !finite(target);
+  target = nearEnough(target);
   target = lost ? pose.tip : target;
 
   float error = distance(target, pose.tip), damping = memory.y;

@@ -50,7 +50,8 @@ vec3 boneAxis(Limb limb, int i) {
 // R_i from R_(i-1) and d_i: the shortest rotation of the rest direction onto the bone, then its twist.
 vec4 swung(Limb limb, int i, vec4 parent, vec3 d, float twist) {
   vec3 axis = limb.y[i] * d.x - limb.x[i] * d.y;
-  vec4 r = quaternionProduct(parent, vec4(axis, 1.0 + d.z) * inversesqrt(max(2.0 * (1.0 + d.z), 1e-12)));
+  vec4 q = vec4(axis, 1.0 + d.z);
+  vec4 r = quaternionProduct(parent, q * inversesqrt(max(dot(q, q), 1e-12)));
   if (mayBe(i, LIMIT_TWIST))
     r = quaternionProduct(r, vec4(twist * limb.z[i], 1.0) * inversesqrt(1.0 + twist * twist));
   return r;

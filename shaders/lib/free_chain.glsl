@@ -12,8 +12,8 @@ struct FreePose {
 vec4 shortestArc(vec3 a, vec3 b) {
   float c = dot(a, b);
   vec3 axis = abs(a.y) > 0.9 ? vec3(0.0, -a.z, a.y) : vec3(a.z, 0.0, -a.x);  // X or Y cross a
-  return c < -0.999999 ? vec4(unit(axis), 0.0)
-                       : vec4(cross(a, b), 1.0 + c) * inversesqrt(max(2.0 * (1.0 + c), 1e-12));
+  vec4 q = vec4(cross(a, b), 1.0 + c);
+  return c < -0.999999 ? vec4(unit(axis), 0.0) : q * inversesqrt(max(dot(q, q), 1e-12));
 }
 
 // Some direction perpendicular to a unit `line`, toward `pole` where that can be.

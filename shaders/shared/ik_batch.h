@@ -89,6 +89,17 @@ struct BatchConstants {
   float poleX, poleY, poleZ;  // 0: none
 };
 
+// Of a tree: a body with its legs.
+struct TreeConstants {
+#ifdef __cplusplus
+  uint32_t count, iterations;
+#else
+  uint count, iterations;
+#endif
+  float tolerance, reach;  // of the longest leg
+  float anchor;            // 0: the body floats, 1: it stays
+};
+
 #ifdef __cplusplus
 }  // namespace skitter::shared
 #endif
