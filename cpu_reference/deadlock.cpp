@@ -41,7 +41,7 @@ void breakDeadlock(const glm::dvec3& target, Posture& posture) {
 }
 
 void breakDeadlock(const IkChain& chain, const glm::dvec3& target, IkState& state) {
-  if (chain.free) return breakDeadlock(chain, target, state.joints);
+  if (state.pose.swing.empty()) return breakDeadlock(chain, target, state.joints);
   Posture posture(chain.bones, state.pose);
   breakDeadlock(target, posture);
   state.pose = posture.pose();

@@ -41,6 +41,13 @@ OutOfCone outOfCone(IkSolver solver) {
   return solver == IkSolver::dissertationKeep ? OutOfCone::keep : OutOfCone::edge;
 }
 
+void stretchOrKeep(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
+                   Joints& joints) {
+  Joints stretched = joints;
+  stretchAlign(chain, target, settings.tolerance, stretched);
+  if (glm::length(target - stretched.back()) < glm::length(target - joints.back())) joints = stretched;
+}
+
 void iterateJoints(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target, int k,
                    Joints& joints) {
   switch (settings.solver) {
@@ -57,7 +64,7 @@ void iterateJoints(const IkChain& chain, const IkSettings& settings, const glm::
     case IkSolver::twoBone:
       return twoBone(chain, target, joints);
     case IkSolver::stretchAlign:
-      if (k == 0) return stretchAlign(chain, target, settings.tolerance, joints);
+      if (k == 0) return stretchOrKeep(chain, settings, target, joints);
       [[fallthrough]];
     default:
       return fabrik(chain.bones, target, joints);
@@ -102,19 +109,26 @@ IkResult straightToward(const IkChain& chain, const IkSettings& settings, const 
   return {state, error, 1, error <= settings.tolerance ? IkStop::tolerance : IkStop::unreachable};
 }
 
-IkResult solveOnce(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
-                   const IkState& start) {
-  IkState state = start;
+void bendStraight(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
+                  IkState& state) {
   if (movesJoints(chain, settings)) {
     breakDeadlock(chain, target, state.joints);
   } else {
     breakDeadlock(chain, target, state);
   }
+}
+
+IkResult solveOnce(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
+                   const IkState& start) {
+  IkState state = start;
+  // Stretch-align gives a chain that hardly bends an arc itself.
+  if (settings.solver != IkSolver::stretchAlign) bendStraight(chain, settings, target, state);
   const bool closed = settings.solver == IkSolver::twoBone;
   const auto loop = iterateUntilDone(
       settings.tolerance, closed ? std::min(settings.iterations, 1) : settings.iterations, start, state,
       [&](const IkState& s) { return s.error(target); },
-      [&](int k, IkState& s) { iterate(chain, settings, target, k, s); });
+      [&](int k, IkState& s) { iterate(chain, settings, target, k, s); },
+      settings.solver == IkSolver::stretchAlign ? 1 : 0);
   IkResult result{loop.best, loop.error, loop.iterations, loop.stop};
   // What a closed form does not reach lies nearer than two bones can fold.
   const bool beyond = closed || (!chain.free && glm::length(target) > 1);
@@ -152,7 +166,7 @@ IkResult solveIk(const IkChain& chain, const IkSettings& settings, const glm::dv
   if (settings.solver == IkSolver::activeSet)
     return solveWithRestarts(chain, settings, target, state, memory);
   const bool arrived = state.error(target) <= settings.tolerance;
-  IkResult result = chain.free && glm::length(target) >= 1 && !arrived
+  IkResult result = movesJoints(chain, settings) && glm::length(target) >= 1 && !arrived
                         ? straightToward(chain, settings, target)
                         : solveOnce(chain, settings, target, state);
   if (chain.free && chain.pole) turnToPole(*chain.pole, result.state.joints);

@@ -9,7 +9,7 @@ namespace skitter::reference {
 namespace {
 
 constexpr double longestError = 0.5, longestStep = 1;  // shares of the length, radians
-constexpr double restShare = 0.05;                     // of the pseudoinverse's null-space part
+constexpr double restShare = 0.05;                     // of the pseudoinverse's null-space part, at most
 constexpr double dlsDamping = 0.01, pseudoinverseRidge = 1e-6;
 
 glm::dvec3 shortened(const glm::dvec3& e) {
@@ -40,13 +40,14 @@ void jacobian(Jacobian method, const std::vector<BoneRest>& bones, const glm::dv
   std::vector<glm::dvec3> directions = directionsOf(joints);
   std::vector<glm::dvec3> omega(bones.size(), glm::dvec3(0));
   glm::dvec3 e = shortened(target - joints.back());
+  const double pull = std::min(restShare, glm::length(target - joints.back()));
   glm::dmat3 m(0);
   for (size_t i = 0; i < bones.size(); ++i) {
     if (bones[i].length == 0) continue;
     const glm::dvec3 r = attached - joints[i];
     m += glm::dmat3(glm::dot(r, r)) - glm::outerProduct(r, r);
     if (method != Jacobian::pseudoinverse) continue;
-    omega[i] = restShare * glm::cross(directions[i], bones[i].direction());
+    omega[i] = pull * glm::cross(directions[i], bones[i].direction());
     e -= glm::cross(omega[i], r);
   }
   const glm::dvec3 lambda = solved(method, m, e);
@@ -67,9 +68,10 @@ void jacobian(Jacobian method, const glm::dvec3& target, Posture& posture) {
   std::vector<JointColumns> chain =
       columnsAt(posture, method == Jacobian::targetAttached ? target : posture.tip());
   glm::dvec3 e = shortened(target - posture.tip());
+  const double pull = std::min(restShare, glm::length(target - posture.tip()));
   glm::dmat3 m(0);
   for (size_t i = 0; i < chain.size(); ++i) {
-    if (method == Jacobian::pseudoinverse) pullToRest(posture.bone(i), restShare, chain[i]);
+    if (method == Jacobian::pseudoinverse) pullToRest(posture.bone(i), pull, chain[i]);
     for (const Column& column : chain[i].columns) {
       m += glm::outerProduct(column.movement, column.movement);
       e -= column.pull * column.movement;

@@ -107,6 +107,7 @@ class Search {
   bool attempt(const IkState& start, Ends ends, double bound) {
     IkState best = start, state = start;
     if (iterations_ == 0 && (!settings_.restarts || seeds_.empty())) breakDeadlock(chain_, target_, state);
+    if (iterations_ > 0) state.damping = 1;
     double least = best.error(target_), error = state.error(target_);
     int slow = 0;
     for (int k = 0; (least > settings_.tolerance || isPulled()) && iterations_ < most(ends); ++k) {

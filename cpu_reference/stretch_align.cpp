@@ -76,7 +76,7 @@ double stretchFor(const IkChain& chain, const Bends& bends, double wanted, doubl
   double lambda = 0, low = -infinity, high = infinity;
   for (int step = 0; step < 8; ++step) {
     const Stretched tip = stretched(chain, bends, lambda);
-    if (std::abs(tip.distance - wanted) < 0.2 * tolerance) break;
+    if (std::abs(tip.distance - wanted) < 0.9 * tolerance) break;
     (tip.distance < wanted ? low : high) = lambda;
     const double f = 1 / std::sqrt(std::max(1 - tip.distance, 1e-9));
     double next = lambda - (f - 1 / std::sqrt(1 - wanted)) / (f * f * f * tip.slope / 2);
