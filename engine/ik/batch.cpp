@@ -42,7 +42,8 @@ void checkSolver(const Chain& chain, Solver solver) {
   if (solver == Solver::activeSet && chain.isFree()) refuse("chains with limits");
   if (solver == Solver::dissertationKeep || solver == Solver::dissertationEdge) {
     for (const Bone& bone : chain.bones)
-      if (!std::holds_alternative<Free>(bone.limit) && !std::holds_alternative<Cone>(bone.limit))
+      if ((!std::holds_alternative<Free>(bone.limit) && !std::holds_alternative<Cone>(bone.limit)) ||
+          bone.twistMin != 0 || bone.twistMax != 0)
         refuse("no limits other than cones");
   }
 }
@@ -96,7 +97,7 @@ struct Batch::Impl {
   gpu::Buffer rig, seeds, unused;
   uint32_t pageChains = 1;
   std::vector<Page> pages;
-  gpu::Buffer given[5];  // the caller's, in the order of Buffers
+  gpu::Buffer given[6];  // the caller's, in the order of Buffers; the last, the state, never is
 
   uint64_t stateStride() const {
     return positional ? bones : static_cast<uint64_t>(shared::stateStride(static_cast<int>(bones), twists));
@@ -133,7 +134,8 @@ Batch::Impl::Impl(Device& device, const Chain& of, uint32_t count, const Options
   constants.tolerance = options.tolerance;
   constants.reach = chain.reach();
   constants.restPull = options.restPull;
-  if (chain.pole) {
+  // The dissertation's cones would not survive a turn about the line to the tip.
+  if (chain.pole && (!positional || chain.isFree())) {
     const glm::vec3 pole = glm::normalize(*chain.pole);
     constants.poleX = pole.x;
     constants.poleY = pole.y;
@@ -158,6 +160,8 @@ Batch::Impl::Impl(Device& device, const Chain& of, uint32_t count, const Options
 }
 
 gpu::ShaderCode Batch::Impl::code() const {
+  for (const Shader& other : options.shaders)
+    if (other.entry == (positional ? "solve_free" : "solve_limited")) return {other.texel, other.storage};
   if (positional) return {embedded::solve_free_comp_texel(), embedded::solve_free_comp_storage()};
   return {embedded::solve_limited_comp_texel(), embedded::solve_limited_comp_storage()};
 }
@@ -199,6 +203,7 @@ void Batch::Impl::makePages() {
   const uint64_t largest = 16 * std::max<uint64_t>({stateStride(), bones, shared::BASE_STRIDE});
   pageChains = static_cast<uint32_t>(std::min<uint64_t>(
       {kMostPageChains, reach / largest, uint64_t{limits.maxComputeWorkGroupCountX} * 64}));
+  if (options.pageChains > 0) pageChains = std::min(pageChains, options.pageChains);
   uint64_t stride = 2 + bones;
   if (options.bases) stride += shared::BASE_STRIDE;
   if (options.rotations) stride += bones;
@@ -351,11 +356,23 @@ void Batch::setJoints(std::span<const glm::vec3> joints) {
     records.resize(states.size() / 4);
     std::memcpy(records.data(), states.data(), states.size() * sizeof(float));
   }
-  const auto stride = static_cast<uint32_t>(batch.stateStride());
-  if (batch.ownState)
-    batch.upload(&Page::state, 5, stride, records);
-  else
-    batch.upload(&Page::joint, 2, n, records);
+  setStates(records);
+}
+
+std::vector<glm::vec4> Batch::downloadStates() const {
+  const auto stride = static_cast<uint32_t>(impl_->stateStride());
+  return impl_->ownState ? impl_->download(&Page::state, 5, stride)
+                         : impl_->download(&Page::joint, 2, stride);
+}
+
+void Batch::setStates(std::span<const glm::vec4> states) {
+  const auto stride = static_cast<uint32_t>(impl_->stateStride());
+  impl_->ownState ? impl_->upload(&Page::state, 5, stride, states)
+                  : impl_->upload(&Page::joint, 2, stride, states);
+}
+
+std::vector<glm::vec4> Batch::downloadSeeds() const {
+  return gpu::download<glm::vec4>(*impl_->context, impl_->seeds);
 }
 
 void Batch::record(VkCommandBuffer commandBuffer) const {

@@ -58,7 +58,7 @@ std::optional<Solver> solverNamed(std::string_view name) {
 
 bool Chain::isFree() const {
   for (const Bone& bone : bones)
-    if (!std::holds_alternative<Free>(bone.limit)) return false;
+    if (!std::holds_alternative<Free>(bone.limit) || bone.twistMin != 0 || bone.twistMax != 0) return false;
   return true;
 }
 

@@ -40,7 +40,9 @@ std::vector<float> boneRecords(const Skeleton& skeleton) {
     } else {
       append(records, glm::dvec3(0), 0);
     }
-    append(records, {kindOf(joint.limit), std::tan(joint.twistMin / 2), std::tan(joint.twistMax / 2)}, 0);
+    // The dissertation asks whether there is a cone at all.
+    const int kind = std::holds_alternative<Free>(joint.limit) ? 0 : kindOf(joint.limit);
+    append(records, {kind, std::tan(joint.twistMin / 2), std::tan(joint.twistMax / 2)}, 0);
     start = rest[i];
   }
   return records;

@@ -30,9 +30,10 @@ void turnToPole(vec3 pole, inout FreePose pose) {
   for (int i = 1; i < BONES; ++i) bend += pose.joint[i] - line * dot(pose.joint[i], line);
   vec3 w = pole - line * dot(pole, line);
   if (dot(bend, bend) > 1e-10 && dot(w, w) > 1e-10) {
-    vec4 turn = shortestArc(unit(bend), unit(w));
-    // A half turn is about the line, whatever perpendicular the shortest arc would take.
-    turn = dot(unit(bend), unit(w)) < -0.999 ? vec4(line, 0.0) : turn;
+    // Half a turn must be about the line too: of the two forms of the turn, the better conditioned one.
+    float c = dot(unit(bend), unit(w)), s = dot(cross(line, unit(bend)), unit(w));
+    vec4 turn = c < 0.0 ? vec4((1.0 - c) * line, s) : vec4(s * line, 1.0 + c);
+    turn *= inversesqrt(dot(turn, turn));
     for (int i = 1; i < BONES; ++i) pose.joint[i] = rotate(turn, pose.joint[i]);
   }
 }
@@ -107,10 +108,10 @@ void main() {
     if (!MONOTONE)
       for (int i = 1; i <= BONES; ++i) best.joint[i] = now < error ? pose.joint[i] : best.joint[i];
     error = MONOTONE ? now : min(error, now);
-    bool stalled = abs(last - now) < leastProgress();
+    bool stalled = abs(last - now) < leastProgress() && k + 1 < iterations;
     last = now;
     open = error > constants.tolerance && !stalled;
-    reason = error > constants.tolerance && stalled && k + 1 < iterations ? STOP_STALL : reason;
+    reason = error > constants.tolerance && stalled ? STOP_STALL : reason;
   }
   if (MONOTONE)
     for (int i = 1; i <= BONES; ++i) best.joint[i] = pose.joint[i];

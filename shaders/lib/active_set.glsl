@@ -140,8 +140,8 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, float restPull, fl
     trial.tip = p;
   }
   float after = distance(target, trial.tip);
-  // At rest out of reach, rounding alone must not decide.
-  bool kept = !lost && !(after > 1.0001 * error && after > tolerance);
+  // At rest out of reach, rounding alone must not decide; an error that is not a number is no better.
+  bool kept = !lost && (after <= 1.0001 * error || after <= tolerance);
   keepIf(kept, pose, trial);
   error = kept ? after : error;
   damping = lost ? damping : (kept ? max(damping / 10.0, 1.0) : min(16.0 * damping, 4096.0));

@@ -112,7 +112,7 @@ bool deadlocked(vec3 target, Pose pose) {
 void bend(Limb limb, inout Pose pose) {
   for (int i = 0; i < BONES; ++i) {
     vec2 s = toStereographic(pose.d[i]);
-    float by = i == 0 ? -0.025 * float(BONES - 1) : 0.05;
+    float by = limb.bone[i] == 0.0 ? 0.0 : i == 0 ? -0.025 * float(BONES - 1) : 0.05;
     s += isKind(limb, i, LIMIT_HINGE) ? vec2(0.0, by) : vec2(by, 0.0);
     pose.d[i] = clampLimit(limb, i, fromStereographic(s));
   }

@@ -8,12 +8,13 @@ struct FreePose {
   vec3 joint[BONES + 1];
 };
 
-// The shortest rotation of unit a onto unit b.
+// The shortest rotation of unit a onto unit b; none where either is 0.
 vec4 shortestArc(vec3 a, vec3 b) {
   float c = dot(a, b);
+  vec4 arc = vec4(cross(a, b), 1.0 + c);
   vec3 axis = abs(a.y) > 0.9 ? vec3(0.0, -a.z, a.y) : vec3(a.z, 0.0, -a.x);  // X or Y cross a
-  vec4 q = vec4(cross(a, b), 1.0 + c);
-  return c < -0.999999 ? vec4(unit(axis), 0.0) : q * inversesqrt(max(dot(q, q), 1e-12));
+  return c < -0.999999 ? vec4(unit(axis), 0.0)
+                       : arc * inversesqrt(max(dot(arc, arc), 1e-20));
 }
 
 // Some direction perpendicular to a unit `line`, toward `pole` where that can be.

@@ -82,7 +82,7 @@ struct Chain {
   std::vector<Bone> bones;        // 1 to 15: 2 to 16 joints
   std::optional<glm::vec3> pole;  // to which side it should fold, where it may fold two ways
 
-  bool isFree() const;                  // no bone is limited
+  bool isFree() const;                  // no bone is limited, nor may any twist
   float reach() const;                  // the sum of the lengths
   std::vector<glm::vec3> rest() const;  // its joints at rest, base first
 };
@@ -100,6 +100,12 @@ enum class Stop : uint32_t { tolerance, cap, stall, unreachable, skipped };
 inline constexpr std::array<const char*, 5> stopNames = {"tolerance", "cap", "stall", "unreachable",
                                                          "skipped"};
 
+// Another shader for an entry point: SPIR-V of shaders/ik/<entry>.comp changed, in both load paths.
+struct Shader {
+  std::string entry;  // "solve_free", "solve_limited"
+  std::span<const uint8_t> texel, storage;
+};
+
 struct Options {
   Solver solver = Solver::automatic;
   Start start = Start::rest;
@@ -109,6 +115,8 @@ struct Options {
   float restPull = 0;       // activeSet: share of the angle from rest taken back an iteration once on target
   bool bases = false;       // each chain has a base of its own that may move; otherwise all are at 0
   bool rotations = false;   // write the bones' rotations too
+  uint32_t pageChains = 0;  // most chains a page; 0: as many as the device's limits allow
+  std::vector<Shader> shaders = {};  // in place of the built-in ones, for experiments
 };
 // What the engine ships: 20 for free chains, 64 for limited ones, 4 where solves continue.
 uint32_t defaultIterations(const Chain&, const Options&);
@@ -156,6 +164,11 @@ class Batch {
   // Start poses from joints, J a chain, base first: bones are aimed at the next joint within their limits,
   // without twist. For Start::previous.
   void setJoints(std::span<const glm::vec3>);
+  // For tools and validation, as shaders/shared/ik_batch.h lays them out: what solves continue from, with
+  // Start::previous, and the poses from which the active set starts anew.
+  std::vector<glm::vec4> downloadStates() const;
+  void setStates(std::span<const glm::vec4>);
+  std::vector<glm::vec4> downloadSeeds() const;
   // Records a solve, submits it and waits.
   void solve();
   std::vector<glm::vec3> downloadJoints() const;  // J a chain
