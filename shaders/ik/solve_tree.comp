@@ -20,6 +20,11 @@ STORE4_BUFFER(BATCH_JOINT_OUT, jointsOut);
 STORE4_BUFFER(BATCH_REPORT_OUT, reportsOut);
 layout(push_constant) uniform TreeBlock { TreeConstants constants; };
 
+struct Rig {
+  vec3 root[LEGS], target[LEGS];
+  float bone[LEGS * BONES];
+};
+
 struct Tree {
   vec3 body;
   vec3 joint[LEGS * JOINTS];
@@ -30,31 +35,31 @@ void keepIf(bool keep, inout Tree best, Tree candidate) {
   for (int j = 0; j < LEGS * JOINTS; ++j) best.joint[j] = keep ? candidate.joint[j] : best.joint[j];
 }
 
-float errorOf(vec3 target[LEGS], Tree tree) {
+float errorOf(Rig r, Tree tree) {
   float worst = 0.0;
-  for (int l = 0; l < LEGS; ++l) worst = max(worst, distance(target[l], tree.joint[l * JOINTS + BONES]));
+  for (int l = 0; l < LEGS; ++l) worst = max(worst, distance(r.target[l], tree.joint[l * JOINTS + BONES]));
   return worst;
 }
 
-void iterate(vec3 root[LEGS], float bone[LEGS * BONES], vec3 target[LEGS], vec3 anchor, inout Tree tree) {
+void iterate(Rig r, inout Tree tree) {
   vec3 q[LEGS * BONES], mean = vec3(0.0);  // where bone i should end
   for (int l = 0; l < LEGS; ++l) {
-    vec3 end = target[l];
+    vec3 end = r.target[l];
     for (int i = BONES - 1; i >= 0; --i) {
       q[l * BONES + i] = end;
-      end += bone[l * BONES + i] * unit(tree.joint[l * JOINTS + i] - end);
+      end += r.bone[l * BONES + i] * unit(tree.joint[l * JOINTS + i] - end);
     }
-    mean += (end - root[l]) / float(LEGS);
+    mean += (end - r.root[l]) / float(LEGS);
   }
-  tree.body = mix(mean, anchor, constants.anchor);
+  tree.body = mean * (1.0 - constants.anchor);
   for (int l = 0; l < LEGS; ++l) {
-    vec3 p = tree.body + root[l], before = tree.joint[l * JOINTS];
+    vec3 p = tree.body + r.root[l], before = tree.joint[l * JOINTS];
     tree.joint[l * JOINTS] = p;
     for (int i = 0; i < BONES; ++i) {
       vec3 v = q[l * BONES + i] - p, kept = tree.joint[l * JOINTS + i + 1] - before;
       before = tree.joint[l * JOINTS + i + 1];
       float v2 = dot(v, v);
-      p += v2 < 1e-12 ? kept : v * (bone[l * BONES + i] * inversesqrt(max(v2, 1e-20)));
+      p += v2 < 1e-12 ? kept : v * (r.bone[l * BONES + i] * inversesqrt(max(v2, 1e-20)));
       tree.joint[l * JOINTS + i + 1] = p;
     }
   }
@@ -64,34 +69,33 @@ void main() {
   int index = int(gl_GlobalInvocationID.x);
   if (index >= int(constants.count)) return;
   Tree tree;
-  vec3 root[LEGS], target[LEGS];
-  float bone[LEGS * BONES];
+  Rig r;
   bool lost = false;
-  // Solved about the body's first place, in lengths of the longest leg.
+  // About the body's first place, which is its anchor, in lengths of the longest leg.
   vec3 place = LOAD4(bodies, index).xyz;
   tree.body = vec3(0.0);
   for (int l = 0; l < LEGS; ++l) {
-    root[l] = LOAD4(rig, l * JOINTS).xyz;
-    target[l] = (LOAD4(targets, index * LEGS + l).xyz - place) / constants.reach;
-    lost = lost || !finite(target[l]);
-    vec3 p = root[l];
+    r.root[l] = LOAD4(rig, l * JOINTS).xyz;
+    r.target[l] = (LOAD4(targets, index * LEGS + l).xyz - place) / constants.reach;
+    lost = lost || !finite(r.target[l]);
+    vec3 p = r.root[l];
     tree.joint[l * JOINTS] = p;
     for (int i = 0; i < BONES; ++i) {
       vec4 b = LOAD4(rig, l * JOINTS + 1 + i);
-      bone[l * BONES + i] = b.w;
+      r.bone[l * BONES + i] = b.w;
       p += b.w * b.xyz;
       tree.joint[l * JOINTS + i + 1] = p;
     }
   }
-  float error = lost ? 0.0 : errorOf(target, tree), last = error;
+  float error = lost ? 0.0 : errorOf(r, tree), last = error;
   float reason = lost ? STOP_SKIPPED : (error > constants.tolerance ? STOP_CAP : STOP_TOLERANCE);
   Tree best;
   keepIf(true, best, tree);
   bool open = error > constants.tolerance;
   int k = 0;
   for (; open && k < int(constants.iterations); ++k) {
-    iterate(root, bone, target, vec3(0.0), tree);
-    float now = errorOf(target, tree);
+    iterate(r, tree);
+    float now = errorOf(r, tree);
     keepIf(now < error, best, tree);
     error = min(error, now);
     bool stalled = abs(last - now) < max(1e-3 * constants.tolerance, 3e-7);
