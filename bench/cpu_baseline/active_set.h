@@ -133,7 +133,13 @@ class ActiveSet : private LimitedChain<F, N> {
   void move(const State& state, Posture<F, N>& trial) const {
     Columns<F, N> columns;
     F ellipseR[kMostBones], ellipseT[kMostBones];
-    for (int b = 0; b < this->bones(); ++b) addColumns(state.posture, b, columns, ellipseR[b], ellipseT[b]);
+    Mat3<F> frame = broadcast<F>(this->model_.bone[0].carry);
+    for (int b = 0; b < this->bones(); ++b) {
+      const BoneModel& bone = this->model_.bone[b];
+      const Mat3<F> turned = turnedFrame(bone, frame, state.posture.d[b], state.posture.twist[b]);
+      if (bone.turns) addColumns(state.posture, b, frame, turned, columns, ellipseR[b], ellipseT[b]);
+      if (b + 1 < this->bones()) frame = product(turned, this->model_.bone[b + 1].carry);
+    }
     const F square = state.error * state.error;
     const F damping = (F(0.25f) * smaller(square, F(0.25f)) + F(1e-5f)) * state.damping;
     const Vec3<F> e = state.target - state.posture.joint[this->bones() - 1];
@@ -147,12 +153,11 @@ class ActiveSet : private LimitedChain<F, N> {
 
   static Turned<F> turned(const Vec3<F>& d) { return turnedOf(d, d.x * d.x + d.y * d.y < F(1e-12f)); }
 
-  void addColumns(const Posture<F, N>& posture, int b, Columns<F, N>& columns, F& ellipseR,
-                  F& ellipseT) const {
+  // `a`: A_b, `end`: F_b.
+  void addColumns(const Posture<F, N>& posture, int b, const Mat3<F>& a, const Mat3<F>& end,
+                  Columns<F, N>& columns, F& ellipseR, F& ellipseT) const {
     const BoneModel& bone = this->model_.bone[b];
-    if (!bone.turns) return;
     const Vec3<F>& d = posture.d[b];
-    const Mat3<F>& a = posture.frame[b];
     const Vec3<F> tip = posture.joint[this->bones() - 1], r = b == 0 ? tip : tip - posture.joint[b - 1];
     if (bone.kind == LimitKind::hinge) {
       columns.add(cross(a.x, r), hingeRoom(d, bone.lowSine, bone.lowCosine, -kUnlimited),
@@ -173,7 +178,7 @@ class ActiveSet : private LimitedChain<F, N> {
       columns.add(tangential);
     }
     if (bone.twists) {
-      columns.add(cross(a * d, r), twistRoom(posture.twist[b], bone.twistLowTanHalf, -kUnlimited),
+      columns.add(cross(end.z, r), twistRoom(posture.twist[b], bone.twistLowTanHalf, -kUnlimited),
                   twistRoom(posture.twist[b], bone.twistHighTanHalf, kUnlimited));
     }
   }
@@ -273,9 +278,6 @@ class ActiveSet : private LimitedChain<F, N> {
     for (int b = 0; b < this->bones(); ++b) {
       posture.d[b] = select(mask, trial.d[b], posture.d[b]);
       posture.twist[b] = select(mask, trial.twist[b], posture.twist[b]);
-      posture.frame[b].x = select(mask, trial.frame[b].x, posture.frame[b].x);
-      posture.frame[b].y = select(mask, trial.frame[b].y, posture.frame[b].y);
-      posture.frame[b].z = select(mask, trial.frame[b].z, posture.frame[b].z);
       posture.joint[b] = select(mask, trial.joint[b], posture.joint[b]);
     }
   }

@@ -147,7 +147,8 @@ class FreeChain {
       back[i - 1] = placeToward(back[i], state.joint[i - 1], model_.bone[i].length);
     Vec3<F> place{F(0), F(0), F(0)};
 #pragma GCC unroll 4
-    for (int i = 0; i < n; ++i) state.joint[i] = place = placeToward(place, back[i], model_.bone[i].length);
+    for (int i = 0; i < n; ++i)
+      state.joint[i] = place = place + ofLength(back[i] - place, model_.bone[i].length);
   }
 
   const Model& model_;

@@ -41,17 +41,19 @@ Vec3<F> anyPerpendicular(const Vec3<F>& line) {
   return normalized(axis - line * dot(axis, line));
 }
 
-// l normalize(v); along X where v is nothing, so that no bone collapses. (What makes that so is far below
-// rounding elsewhere.)
+// l normalize(to - from), added to `from`.
+template <class F>
+Vec3<F> placeToward(const Vec3<F>& from, const Vec3<F>& to, float l) {
+  const Vec3<F> gap = to - from;
+  return from + gap * (inverseLength(gap) * F(l));
+}
+
+// l normalize(v); along X where v is nothing, so that no bone of a result collapses. (What makes that so is
+// far below rounding elsewhere.)
 template <class F>
 Vec3<F> ofLength(Vec3<F> v, float l) {
   v.x = v.x + F(2e-10f);
   return v * (inverseLength(v) * F(l));
-}
-
-template <class F>
-Vec3<F> placeToward(const Vec3<F>& from, const Vec3<F>& to, float l) {
-  return from + ofLength(to - from, l);
 }
 
 // True where every joint is within 1e-3 of the line from base to tip.

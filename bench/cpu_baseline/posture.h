@@ -4,13 +4,12 @@
 
 namespace skitter::baseline {
 
-// Where limited chains stand: of every bone the unit swing direction in its frame, tan(twist / 2), the frame
-// A_i in which both are, and the joint at its end.
+// Where limited chains stand: of every bone the unit swing direction in its frame, tan(twist / 2), and the
+// joint at its end. Frames are found anew where they are needed, which is cheaper than carrying them about.
 template <class F, int N>
 struct Posture {
   Vec3<F> d[kCapacity<N>];
   F twist[kCapacity<N>];
-  Mat3<F> frame[kCapacity<N>];
   Vec3<F> joint[kCapacity<N>];
 };
 
@@ -52,7 +51,7 @@ Vec3<F> along(const BoneModel& bone, const Mat3<F>& frame) {
   return frame.x * F(bone.length * bone.offsetX) + frame.z * F(bone.length * bone.offsetZ);
 }
 
-// Frames and joints from directions and twists.
+// Joints from directions and twists.
 template <class F, int N>
 void forward(const Model& model, Posture<F, N>& posture) {
   Mat3<F> frame = broadcast<F>(model.bone[0].carry);
@@ -60,7 +59,6 @@ void forward(const Model& model, Posture<F, N>& posture) {
   const int n = boneCount<N>(model);
   for (int i = 0; i < n; ++i) {
     const BoneModel& bone = model.bone[i];
-    posture.frame[i] = frame;
     const Mat3<F> turned = turnedFrame(bone, frame, posture.d[i], posture.twist[i]);
     posture.joint[i] = place = place + along(bone, turned);
     if (i + 1 < n) frame = product(turned, model.bone[i + 1].carry);
@@ -169,9 +167,6 @@ class LimitedChain {
     forward(model_, arc);
     for (int b = 0; b < bones(); ++b) {
       posture.d[b] = select(mask, arc.d[b], posture.d[b]);
-      posture.frame[b].x = select(mask, arc.frame[b].x, posture.frame[b].x);
-      posture.frame[b].y = select(mask, arc.frame[b].y, posture.frame[b].y);
-      posture.frame[b].z = select(mask, arc.frame[b].z, posture.frame[b].z);
       posture.joint[b] = select(mask, arc.joint[b], posture.joint[b]);
     }
     error = select(mask, length(target - posture.joint[bones() - 1]), error);
