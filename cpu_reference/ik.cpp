@@ -1,18 +1,26 @@
 #include "cpu_reference/ik.h"
 
 #include "cpu_reference/active_set.h"
+#include "cpu_reference/ccd.h"
 #include "cpu_reference/deadlock.h"
 #include "cpu_reference/fabrik.h"
+#include "cpu_reference/jacobian.h"
 
 namespace skitter::reference {
 namespace {
 
-// At most `iterations` while the tip is further than `enough` from the target. The best pose seen is kept.
-void fabrikUntil(double enough, int iterations, const glm::dvec3& target, Posture& posture) {
+void iterate(IkSolver solver, const glm::dvec3& target, Posture& posture) {
+  if (solver == IkSolver::fabrik) return fabrik(target, posture);
+  if (solver == IkSolver::ccd) return ccd(target, posture);
+  jacobian(methodOf(solver), target, posture);
+}
+
+// While the tip is further than `enough` from the target. The best pose seen is kept.
+void approach(const IkPlan& plan, double enough, const glm::dvec3& target, Posture& posture) {
   Pose best = posture.pose();
   double bestError = glm::length(target - posture.tip()), error = bestError;
-  for (int iteration = 0; iteration < iterations && error > enough; ++iteration) {
-    fabrik(target, posture);
+  for (int iteration = 0; iteration < plan.approachIterations && error > enough; ++iteration) {
+    iterate(plan.approach, target, posture);
     error = glm::length(target - posture.tip());
     if (error < bestError) {
       bestError = error;
@@ -34,7 +42,7 @@ glm::dvec3 ikTarget(const Limb& limb, const AgentBody& body, const glm::dvec3& f
 }
 
 Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Foot& foot,
-         const Chain& previous, int fabrikIterations, int polishIterations) {
+         const Chain& previous, const IkPlan& plan) {
   Chain chain = previous;
   Posture posture(limb, previous.directions);
   glm::dvec3 target = ikTarget(limb, body, foot.target);
@@ -43,8 +51,9 @@ Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Fo
   chain.errorBefore = glm::length(target - posture.tip()) * limb.reach;
   if (finite) {
     breakDeadlock(target, posture);
-    fabrikUntil(tuning.fabrikError, fabrikIterations, target, posture);
-    if (polishIterations > 0) activeSet(polish(tuning, polishIterations - 1), target, posture, chain.damping);
+    approach(plan, tuning.approachError, target, posture);
+    if (plan.polishIterations > 0)
+      activeSet(polish(tuning, plan.polishIterations - 1), target, posture, chain.damping);
   }
   chain.directions = posture.directions();
   chain.tip = body.orientation * (limb.root + limb.reach * posture.tip());

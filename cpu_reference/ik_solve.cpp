@@ -24,19 +24,6 @@ bool isDissertation(IkSolver solver) {
 
 bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-Jacobian methodOf(IkSolver solver) {
-  switch (solver) {
-    case IkSolver::transpose:
-      return Jacobian::transpose;
-    case IkSolver::pseudoinverse:
-      return Jacobian::pseudoinverse;
-    case IkSolver::targetAttached:
-      return Jacobian::targetAttached;
-    default:
-      return Jacobian::dls;
-  }
-}
-
 OutOfCone outOfCone(IkSolver solver) {
   return solver == IkSolver::dissertationKeep ? OutOfCone::keep : OutOfCone::edge;
 }
@@ -137,6 +124,19 @@ IkResult solveOnce(const IkChain& chain, const IkSettings& settings, const glm::
 }
 
 }  // namespace
+
+Jacobian methodOf(IkSolver solver) {
+  switch (solver) {
+    case IkSolver::transpose:
+      return Jacobian::transpose;
+    case IkSolver::pseudoinverse:
+      return Jacobian::pseudoinverse;
+    case IkSolver::targetAttached:
+      return Jacobian::targetAttached;
+    default:
+      return Jacobian::dls;
+  }
+}
 
 bool accepts(const IkChain& chain, IkSolver solver) {
   if (solver == IkSolver::twoBone) return chain.free && chain.bones.size() == 2;

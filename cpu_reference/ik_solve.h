@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cpu_reference/ik_chain.h"
+#include "cpu_reference/jacobian.h"
 
 // A whole solve of docs/ik.md.
 namespace skitter::reference {
@@ -46,6 +47,9 @@ struct IkResult {
 // Whether `solver` can solve `chain`: two bones in closed form and stretch-align are for free chains, the
 // active set is for limited ones, the dissertation's are for cones and free bones without twist.
 bool accepts(const IkChain& chain, IkSolver solver);
+
+// The Jacobian family's member of a solver's name.
+Jacobian methodOf(IkSolver solver);
 
 // One iteration, the k-th (from 0) of its solve, of any solver. `target` is finite and in the chain's
 // lengths.

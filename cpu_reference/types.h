@@ -32,7 +32,7 @@ struct Tuning {
   double reachMost = 0, reachLeast = 0, reachComfort = 0, slopeLeast = 0, slopeWeight = 0, reachWeight = 0;
   bool nearestOnly = false;
   double stepHeight = 0, stepClearance = 0, stepHeightMax = 0;
-  double fabrikError = 0, restPull = 0, pullError = 0, ikTolerance = 0;
+  double approachError = 0, restPull = 0, pullError = 0, ikTolerance = 0;
 };
 
 // Samples of a heightfield, row after row; owned by the caller.

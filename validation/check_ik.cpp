@@ -55,8 +55,7 @@ void checkIk(const Setting& setting, const Moment& moment, Judge& judge) {
     const reference::Foot foot = footOf(moment.after, leg);
     const reference::Chain previous = chainOf(moment.before, leg, setting.bones);
     const reference::Chain got = chainOf(moment.after, leg, setting.bones);
-    const reference::Chain expected = reference::ik(setting.tuning, limb, body, foot, previous,
-                                                    setting.fabrikIterations, setting.polishIterations);
+    const reference::Chain expected = reference::ik(setting.tuning, limb, body, foot, previous, setting.ik);
     const reference::Posture posture(limb, got.directions), wanted(limb, expected.directions);
 
     Sample sample;

@@ -75,7 +75,7 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.stepHeight = p.stepHeight;
   t.stepClearance = p.stepClearance;
   t.stepHeightMax = p.stepHeightMax;
-  t.fabrikError = p.fabrikError;
+  t.approachError = p.approachError;
   t.restPull = p.restPull;
   t.pullError = p.pullError;
   t.ikTolerance = p.ikTolerance;

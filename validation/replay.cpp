@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "shared/ik_batch.h"
 #include "shared/records.h"
 #include "skitter/error.h"
 #include "validation/checks.h"
@@ -53,7 +54,7 @@ uint64_t scrambled(uint64_t x) {
 }  // namespace
 
 Replay::Replay(const Rig& rig, const Heightfield& terrain, const shared::Parameters& parameters,
-               const std::vector<float>& rigRecords, int fabrikIterations, int polishIterations,
+               const std::vector<float>& rigRecords, int solver, int approachIterations, int polishIterations,
                uint64_t seed)
     : terrain_(terrain), seed_(seed) {
   size_t bones = 0;
@@ -67,8 +68,9 @@ Replay::Replay(const Rig& rig, const Heightfield& terrain, const shared::Paramet
   setting_.creature = creatureOf(rigRecords, setting_.legs, setting_.bones, rig.groupCount());
   setting_.extent = std::max({std::abs(setting_.heights.originX), std::abs(setting_.heights.originZ),
                               setting_.tuning.halfExtentX, setting_.tuning.halfExtentZ});
-  setting_.fabrikIterations = fabrikIterations;
-  setting_.polishIterations = polishIterations;
+  // The reference has no `automatic`.
+  setting_.ik = {static_cast<reference::IkSolver>(solver - shared::SOLVER_FABRIK), approachIterations,
+                 polishIterations};
   for (const Stage& stage : stages) judges_.emplace_back(stage.name);
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cpu_reference/ik.h"
 #include "cpu_reference/types.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
@@ -18,7 +19,7 @@ struct Setting {
   reference::Creature creature;
   int legs = 0, bones = 0;  // bones of the longest chain: shorter ones are padded
   double extent = 0;        // metres, how far the terrain reaches from the world's origin
-  int fabrikIterations = 0, polishIterations = 0;
+  reference::IkPlan ik;
 };
 
 // Which agents a tick compares.
@@ -33,10 +34,12 @@ struct ReplayRange {
 // that a stage itself or a later one writes come from `before`, those of earlier stages from `after`.
 class Replay {
  public:
-  // `rigRecords` as in shaders/shared/records.h. Throws Error(input) when its size does not fit the rig.
-  // `seed` decides which agents a strided range begins with. `terrain` is copied.
+  // `rigRecords` as in shaders/shared/records.h, `solver` of shaders/shared/ik_batch.h. Throws Error(input)
+  // when its size does not fit the rig. `seed` decides which agents a strided range begins with. `terrain` is
+  // copied.
   Replay(const Rig& rig, const Heightfield& terrain, const shared::Parameters& parameters,
-         const std::vector<float>& rigRecords, int fabrikIterations, int polishIterations, uint64_t seed);
+         const std::vector<float>& rigRecords, int solver, int approachIterations, int polishIterations,
+         uint64_t seed);
   Replay(const Replay&) = delete;
   Replay& operator=(const Replay&) = delete;
 

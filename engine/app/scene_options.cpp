@@ -60,6 +60,11 @@ void SceneOptions::addTo(CLI::App& command, const char* agentsHelp) {
           "--rig", rig,
           "the first herd's rig: spider, a model with its sidecar beside it, or a sidecar (docs/rig.md)")
       ->type_name("FILE");
+  command
+      .add_option("--solver", solver,
+                  "every herd's inverse kinematics: active-set, fabrik, ccd, transpose, pseudoinverse, dls, "
+                  "target-attached [the scene's]")
+      ->type_name("NAME");
   addTerrainTo(command);
   command
       .add_option_function<std::string>(
@@ -181,6 +186,8 @@ Scene SceneOptions::load() const {
     if (result.herds.empty()) throw inputError(fmt::format("--rig: {} has no herds", result.name));
     result.herds.front().rig = rig;
   }
+  if (!solver.empty())
+    for (Herd& herd : result.herds) herd.solver = solver;
   if (seed) result.seed = *seed;
   applyTerrain(result);
   return result;

@@ -42,8 +42,8 @@ std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd, uint64_t seed
   std::vector<std::unique_ptr<Replay>> replays;
   for (const crowd::Herd& herd : crowd.impl().herds) {
     replays.push_back(std::make_unique<Replay>(herd.rig, crowd.impl().terrain, herd.parameters,
-                                               herd.rigRecords, crowd::kFabrikIterations,
-                                               crowd::kPolishIterations, seed));
+                                               herd.rigRecords, herd.ik.solver, herd.ik.approach,
+                                               herd.ik.polish, seed));
   }
   return replays;
 }

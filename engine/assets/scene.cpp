@@ -200,6 +200,10 @@ class SceneReader {
     enum class Controller { clip, loop, adaptive } controller = Controller::adaptive;
     fields.readKind("controller", controller, {"clip", "loop", "adaptive"});
     fields.read("controller", herd.controller);
+    enum class Solver { first } solver = Solver::first;
+    fields.readKind("solver", solver,
+                    {"active-set", "fabrik", "ccd", "transpose", "pseudoinverse", "dls", "target-attached"});
+    fields.read("solver", herd.solver);
     fields.readInteger("agents", herd.agents, 0, maxAgents);
     if (const auto* spawn = fields.find("spawn")) herd.spawn = readSpawn(*spawn, path + ".spawn");
     if (const auto* goal = fields.find("goal")) herd.goal = readGoal(*goal, path + ".goal");

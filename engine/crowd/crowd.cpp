@@ -95,7 +95,7 @@ void setTick(Impl& crowd, float dt) {
                      ": steps are timed in ticks, so a crowd keeps its first dt");
   crowd.dt = dt;
   for (crowd::Herd& herd : crowd.herds) {
-    herd.parameters = crowd::tuningFor(herd.rig, crowd.terrain, dt);
+    herd.parameters = crowd::tuningFor(herd.rig, herd.ik, crowd.terrain, dt);
     std::memcpy(herd.parameterBlock.bytes().data(), &herd.parameters, sizeof herd.parameters);
   }
 }
@@ -134,7 +134,8 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     herd.legs = herd.rig.legCount();
     herd.bones = herd.rig.maxBones();
     herd.groups = herd.rig.groupCount();
-    herd.parameters = crowd::tuningFor(herd.rig, terrain, 1.0f / 60);
+    herd.ik = crowd::ikPlanFor(from.solver);
+    herd.parameters = crowd::tuningFor(herd.rig, herd.ik, terrain, 1.0f / 60);
     herd.parameterBlock =
         gpu::HostBuffer(context, sizeof herd.parameters, gpu::HostUse::upload, "parameters");
     std::memcpy(herd.parameterBlock.bytes().data(), &herd.parameters, sizeof herd.parameters);

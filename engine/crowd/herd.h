@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "crowd/tuning.h"
 #include "gpu/buffer.h"
 #include "gpu/image.h"
 #include "gpu/kernel.h"
@@ -31,6 +32,7 @@ struct Page {
 struct Herd {
   Rig rig;
   int legs = 0, bones = 0, groups = 0;  // bones of the longest chain
+  IkPlan ik{};
   shared::Parameters parameters{};
   gpu::HostBuffer parameterBlock;  // uniform; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer

@@ -24,8 +24,9 @@ void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd&
     info.constants = {
         {CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
     if (std::strcmp(stage.name, "ik") == 0) {
-      info.constants.emplace_back(CONSTANT_FABRIK_ITERATIONS, kFabrikIterations);
-      info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, kPolishIterations);
+      info.constants.emplace_back(CONSTANT_APPROACH_ITERATIONS, herd.ik.approach);
+      info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, herd.ik.polish);
+      info.constants.emplace_back(CONSTANT_SOLVER, herd.ik.solver);
     }
     herd.kernels.emplace_back(context, info);
   }

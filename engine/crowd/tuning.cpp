@@ -2,11 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+
+#include "shared/ik_batch.h"
+#include "skitter/error.h"
 
 namespace skitter::crowd {
+namespace {
+
+// Each may take as long as the approach and the polish of the plan that ships.
+constexpr int kComparedIterations = 4;
+
+constexpr std::pair<const char*, int> kCompared[] = {
+    {"fabrik", shared::SOLVER_FABRIK},
+    {"ccd", shared::SOLVER_CCD},
+    {"transpose", shared::SOLVER_TRANSPOSE},
+    {"pseudoinverse", shared::SOLVER_PSEUDOINVERSE},
+    {"dls", shared::SOLVER_DLS},
+    {"target-attached", shared::SOLVER_TARGET_ATTACHED},
+};
+
+}  // namespace
+
+IkPlan ikPlanFor(const std::string& solver) {
+  if (solver == "active-set") return {shared::SOLVER_FABRIK, 4, 2};
+  for (const auto& [name, id] : kCompared)
+    if (solver == name) return {id, kComparedIterations, 0};
+  throw inputError("solver '" + solver +
+                   "' is unknown; there are: active-set, fabrik, ccd, transpose, pseudoinverse, dls, "
+                   "target-attached");
+}
 
 // Each value says its unit, and what breaks when it is wrong. L is the leg length.
-shared::Parameters tuningFor(const Rig& rig, const Heightfield& terrain, float dt) {
+shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield& terrain, float dt) {
   const float length = rig.legLength;
   shared::Parameters p{};
   p.dt = dt;
@@ -69,10 +98,12 @@ shared::Parameters tuningFor(const Rig& rig, const Heightfield& terrain, float d
   p.stepClearance = 0.03f * length;
   p.stepHeightMax = 0.5f * length;
 
-  p.fabrikError = 0.25f;  // of the reach; less, and FABRIK bends a tracked leg more than it need be
-  p.restPull = 0.05f;     // a step; more, and it fights the target near the limits
-  p.pullError = 0.1f;     // of the reach: about a fast tick; out of reach no pull may act
-  p.ikTolerance = 2e-5f;  // of the reach; a planted foot's slide is the sum of such errors
+  p.approachError = 0.25f;  // of the reach; less, and FABRIK bends a tracked leg more than it need be
+  p.restPull = 0.05f;       // a step; more, and it fights the target near the limits
+  p.pullError = 0.1f;       // of the reach: about a fast tick; out of reach no pull may act
+  p.ikTolerance = 2e-5f;    // of the reach; a planted foot's slide is the sum of such errors
+  // Without a polish the approach goes all the way.
+  if (ik.polish == 0) p.approachError = p.ikTolerance;
   return p;
 }
 

@@ -1,16 +1,23 @@
 #pragma once
 
+#include <string>
+
 #include "shared/parameters.h"
 #include "skitter/heightfield.h"
 #include "skitter/rig.h"
 
 namespace skitter::crowd {
 
-// Iterations of the ik stage a tick; docs/stages.md says what each buys.
-inline constexpr int kFabrikIterations = 4;
-inline constexpr int kPolishIterations = 2;
+// What the ik stage does a tick; docs/stages.md says what each buys.
+struct IkPlan {
+  int solver;    // shared::SOLVER_, of the approach
+  int approach;  // its iterations, at most
+  int polish;    // the active set's step and chord steps
+};
+// Of a scene's `solver`. Throws Error(input) where it is unknown.
+IkPlan ikPlanFor(const std::string& solver);
 
 // The tuning that ships, scaled to the rig, for ticks of `dt` seconds on this terrain.
-shared::Parameters tuningFor(const Rig& rig, const Heightfield& terrain, float dt);
+shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield& terrain, float dt);
 
 }  // namespace skitter::crowd

@@ -70,7 +70,7 @@ struct Parameters {
   float stepClearance;
   float stepHeightMax;
   // ik
-  float fabrikError;  // share of the reach beyond which FABRIK iterates
+  float approachError;  // share of the reach beyond which the approach iterates
   float restPull;     // share of the angle from rest taken back a step once on target
   float pullError;    // share of the reach below which the rest pull acts
   float ikTolerance;  // share of the reach that counts as arrived

@@ -1,11 +1,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/stage.glsl"
+#include "shared/ik_batch.h"
 #include "lib/active_set.glsl"
+#include "lib/ccd.glsl"
 #include "lib/fabrik.glsl"
+#include "lib/jacobian.glsl"
 #include "lib/limb.glsl"
 
-layout(constant_id = CONSTANT_FABRIK_ITERATIONS) const int FABRIK_ITERATIONS = 4;
+layout(constant_id = CONSTANT_APPROACH_ITERATIONS) const int APPROACH_ITERATIONS = 4;
+layout(constant_id = CONSTANT_SOLVER) const int SOLVER = SOLVER_FABRIK;
 layout(constant_id = CONSTANT_POLISH_ITERATIONS) const int POLISH_ITERATIONS = 2;
 
 LOAD4_BUFFER(BINDING_RIG, rig);
@@ -14,6 +18,12 @@ LOAD4_BUFFER(BINDING_FOOT, feet);
 LOAD4_BUFFER(BINDING_CHAIN, chains);
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+
+void approach(Limb limb, vec3 target, inout Pose pose) {
+  if (SOLVER == SOLVER_FABRIK) fabrikIteration(limb, target, pose);
+  if (SOLVER == SOLVER_CCD) ccdIteration(limb, target, pose);
+  if (SOLVER >= SOLVER_TRANSPOSE && SOLVER <= SOLVER_TARGET_ATTACHED) jacobianIteration(limb, target, SOLVER, pose);
+}
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
@@ -43,11 +53,11 @@ void main() {
   // `if` would be paid for by all.
   for (bool stuck = deadlocked(target, pose); stuck; stuck = false) bend(limb, pose);
   float error = distance(target, pose.tip);
-  // FABRIK brings a chain near that is far from its target (a start, a jump).
+  // FABRIK, or the solver that the herd names, brings a chain near that is far from its target (a start, a jump).
   Pose trial;
   keepIf(true, trial, pose);
-  for (int i = 0; i < FABRIK_ITERATIONS && error > parameters.fabrikError; ++i) {
-    fabrikIteration(limb, target, trial);
+  for (int i = 0; i < APPROACH_ITERATIONS && error > parameters.approachError; ++i) {
+    approach(limb, target, trial);
     float e = distance(target, trial.tip);
     bool better = e < error;
     keepIf(better, pose, trial);

@@ -103,8 +103,8 @@ void expectEveryStage(Device& device, const Rig& rig, uint64_t seeds, float fart
     Crowd crowd(device, ground, sceneOf(65), std::vector<Rig>{rig});
     crowd::Herd& herd = crowd.impl().herds[0];
     scramble(device.context(), crowd, seed, farthest);
-    validation::Replay replay(herd.rig, ground, herd.parameters, herd.rigRecords, crowd::kFabrikIterations,
-                              crowd::kPolishIterations, seed);
+    validation::Replay replay(herd.rig, ground, herd.parameters, herd.rigRecords, herd.ik.solver,
+                              herd.ik.approach, herd.ik.polish, seed);
     HerdState before = crowd.download(0);
     for (int tick = 0; tick < 4; ++tick) {
       simulate(device, crowd, 1);

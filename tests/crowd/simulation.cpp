@@ -47,8 +47,8 @@ std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const 
   // The first tick fixes dt, and with it the tuning that the reference is given.
   simulate(device, crowd, 1);
   const crowd::Herd& herd = crowd.impl().herds.at(0);
-  validation::Replay replay(herd.rig, terrain, herd.parameters, herd.rigRecords, crowd::kFabrikIterations,
-                            crowd::kPolishIterations, seed);
+  validation::Replay replay(herd.rig, terrain, herd.parameters, herd.rigRecords, herd.ik.solver,
+                            herd.ik.approach, herd.ik.polish, seed);
   HerdState before = crowd.download(0);
   for (int i = 0; i < ticks; ++i) {
     simulate(device, crowd, 1);

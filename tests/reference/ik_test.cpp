@@ -58,8 +58,8 @@ class Ik : public testing::Test {
   }
 
   Chain solve(const Limb& limb, const glm::dvec3& target, const Chain& start, int fabrik, int polish) const {
-    return reference::ik(tuning, limb, bodyAt(0, 0), {limb.root + limb.reach * target, 1}, start, fabrik,
-                         polish);
+    return reference::ik(tuning, limb, bodyAt(0, 0), {limb.root + limb.reach * target, 1}, start,
+                         {reference::IkSolver::fabrik, fabrik, polish});
   }
 
   static double violation(const Limb& limb, const Chain& chain) {

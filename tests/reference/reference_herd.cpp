@@ -1,5 +1,7 @@
 #include "reference_herd.h"
 
+#include "shared/ik_batch.h"
+
 #include <cmath>
 
 #include "cpu_reference/body.h"
@@ -30,7 +32,14 @@ ReferenceHerd::ReferenceHerd(const Heightfield& terrain, uint32_t agents, int pa
 }
 
 Replay ReferenceHerd::replay() const {
-  return {rig_, terrain_, parameters_, rigRecords_, fabrikIterations, polishIterations, 1};
+  return {rig_,
+          terrain_,
+          parameters_,
+          rigRecords_,
+          shared::SOLVER_FABRIK,
+          plan.approachIterations,
+          plan.polishIterations,
+          1};
 }
 
 void ReferenceHerd::spawn(uint32_t agents) {
@@ -123,8 +132,7 @@ void ReferenceHerd::tickAgent(size_t agent) {
     }
     putFoot(state_, leg, reference::swing(stepOf(state_, leg), body, n));
     putChain(state_, leg, bones_,
-             reference::ik(tuning, limb, body, footOf(state_, leg), chainOf(state_, leg, bones_),
-                           fabrikIterations, polishIterations));
+             reference::ik(tuning, limb, body, footOf(state_, leg), chainOf(state_, leg, bones_), plan));
     const reference::Chain chain = chainOf(state_, leg, bones_);
     const auto posed = reference::pose(limb, body, chain.directions);
     for (size_t b = 0; b < bones; ++b) putBone(state_, entry + 1 + l * bones + b, posed[b]);

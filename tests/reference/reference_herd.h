@@ -22,7 +22,7 @@ class ReferenceHerd {
   int bones() const { return bones_; }
   validation::Replay replay() const;
 
-  static constexpr int fabrikIterations = 1, polishIterations = 2;
+  static constexpr reference::IkPlan plan = {reference::IkSolver::fabrik, 1, 2};
 
  private:
   void spawn(uint32_t agents);

@@ -178,7 +178,7 @@ shared::Parameters parametersFor(const Heightfield& terrain) {
   p.stepHeight = 0.12f;
   p.stepClearance = 0.03f;
   p.stepHeightMax = 0.5f;
-  p.fabrikError = 0.05f;
+  p.approachError = 0.05f;
   p.restPull = 0.05f;
   p.pullError = 2e-3f;
   p.ikTolerance = 1e-4f;

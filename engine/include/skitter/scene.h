@@ -40,6 +40,7 @@ struct Herd {
   std::string rig =
       "spider";  // "spider", a model (.glb, .gltf) or a sidecar (.rig.json), relative to the scene
   std::string controller = "adaptive";
+  std::string solver = "active-set";  // of the legs: docs/scene.md
   uint32_t agents = 1000;
   Spawn spawn;
   Goal goal;
