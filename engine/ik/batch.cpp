@@ -58,6 +58,7 @@ void checkOptions(const Options& options) {
 struct Page {
   uint32_t chains = 0;
   gpu::Buffer target, base, state, joint, rotation, report, list;
+  gpu::Buffer sink;  // of what is not written; each page has its own, as dispatches of pages may overlap
   gpu::Bindings bindings;
 };
 
@@ -224,6 +225,7 @@ void Batch::Impl::makePages() {
     page.joint = make(bones, "ik joints");
     page.rotation = make(options.rotations ? bones : 0, "ik rotations");
     page.report = make(1, "ik reports");
+    page.sink = make(0, "ik sink");
     page.list = gpu::Buffer(*context, (shared::LIST_FIRST + (quick ? page.chains : 0)) * 4, "ik list",
                             gpu::BufferUse::indirect);
     gpu::clear(*context, page.target);
@@ -246,9 +248,9 @@ void Batch::Impl::bind(Page& page) {
       {BATCH_TARGET, pick(0, page.target)},
       {BATCH_BASE, options.bases ? pick(1, page.base) : &unused},
       {BATCH_STATE, options.start == Start::previous ? &stateOf(page) : &unused},
-      {BATCH_STATE_OUT, ownState ? &page.state : &unused},
+      {BATCH_STATE_OUT, ownState ? &page.state : &page.sink},
       {BATCH_JOINT_OUT, pick(2, page.joint)},
-      {BATCH_ROTATION_OUT, options.rotations ? pick(3, page.rotation) : &unused},
+      {BATCH_ROTATION_OUT, options.rotations ? pick(3, page.rotation) : &page.sink},
       {BATCH_REPORT_OUT, &reportOf(page)},
       {BATCH_LIST, &page.list},
   };

@@ -121,8 +121,10 @@ void main() {
   if (POLE && !lost && BONES > 1) turnToPole(pole, best);
   for (int i = 1; i <= BONES; ++i) {
     vec3 p = constants.reach * best.joint[i];
-    if (PREVIOUS && BASES) STORE4(statesOut, chain * BONES + i - 1, vec4(p, 0.0));
-    STORE4(jointsOut, chain * BONES + i - 1, vec4(BASES ? base + rotate(orientation, p) : p, 0.0));
+    // What a lost target keeps is kept to the bit.
+    if (PREVIOUS && BASES && !lost) STORE4(statesOut, chain * BONES + i - 1, vec4(p, 0.0));
+    if (BASES || !(PREVIOUS && lost))
+      STORE4(jointsOut, chain * BONES + i - 1, vec4(BASES ? base + rotate(orientation, p) : p, 0.0));
   }
   if (ROTATIONS) {
     vec4 r = vec4(0.0, 0.0, 0.0, 1.0);

@@ -168,7 +168,7 @@ void main() {
   float reason = arrived ? STOP_TOLERANCE : (dot(target, target) > 1.0 ? STOP_UNREACHABLE : (k < budget ? STOP_STALL : STOP_CAP));
   reason = lost ? STOP_SKIPPED : reason;
 
-  if (PREVIOUS) {
+  if (PREVIOUS && !lost) {
     // After attempts in vain, a pause: longer each time, so that a target out of reach costs little.
     bool paused = inVain && !arrived && !jumped && worth < 1.0;
     pause = paused ? nextPause : max(pause - 1.0, 0.0);
