@@ -75,6 +75,20 @@ ik::Chain randomChain(const std::string& limits, size_t joints, Random& random) 
   return chain;
 }
 
+ik::Chain randomRig(const std::vector<std::string>& kinds, Random& random) {
+  ik::Chain chain = randomChain("free", kinds.size() + 1, random);
+  for (size_t i = 0; i < kinds.size(); ++i) {
+    ik::Bone& bone = chain.bones[i];
+    if (kinds[i] == "cone") bone.limit = ik::Cone{angle(random, 15, 100)};
+    if (kinds[i] == "ellipse") bone.limit = randomEllipse(random);
+    if (kinds[i] != "hinge") continue;
+    const double wide = uniform(random, 20, 150), low = uniform(random, -130, 130 - wide);
+    bone.limit = ik::Hinge{besides(bone.direction, 90 * degree, random), static_cast<float>(degree * low),
+                           static_cast<float>(degree * (low + wide))};
+  }
+  return chain;
+}
+
 ik::Chain evenChain(size_t joints, double bend, const ik::Limit& limit) {
   ik::Chain chain;
   for (size_t i = 0; i + 1 < joints; ++i) {

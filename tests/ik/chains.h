@@ -24,6 +24,9 @@ extern const std::vector<std::string> limitKinds;
 
 // A chain of random lengths and limits, bent at rest.
 ik::Chain randomChain(const std::string& limits, size_t joints, Random& random);
+// The same with limits of each bone's own kind: cones of 15 to 100 degrees, ellipses likewise, hinges 20 to
+// 150 degrees wide within 130 either way.
+ik::Chain randomRig(const std::vector<std::string>& kinds, Random& random);
 // Equal bones that add up to 1, each turned by `bend` radians against the one before, by turns this way and
 // that.
 ik::Chain evenChain(size_t joints, double bend, const ik::Limit& limit = ik::Free{});
