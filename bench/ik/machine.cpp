@@ -1,0 +1,45 @@
+#include "bench/ik/machine.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <thread>
+
+#include "bench/cpu_baseline/batch.h"
+
+namespace skitter::bench {
+namespace {
+
+std::string processorName() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+std::string processor() {
+  return fmt::format("{}, {} threads", processorName(), std::thread::hardware_concurrency());
+}
+
+std::string engineBuild() { return SKITTER_ENGINE_FLAGS ", " SKITTER_ENGINE_COMPILER; }
+
+}  // namespace
+
+nlohmann::ordered_json describeMachine(const DeviceReport& device) {
+  return {{"device", device.name},
+          {"deviceType", device.typeName()},
+          {"driver", device.driver},
+          {"loads", device.loads == LoadPath::texel ? "texel buffers" : "storage buffers"},
+          {"cpu", processor()},
+          {"engineBuild", engineBuild()},
+          {"cpuOpponentBuild", baseline::buildDescription()}};
+}
+
+std::string machineLines(const DeviceReport& device) {
+  return fmt::format("device        {} ({}), {}\ncpu           {}\nengine        {}\ncpu opponent  {}\n",
+                     device.name, device.typeName(), device.driver, processor(), engineBuild(),
+                     baseline::buildDescription());
+}
+
+}  // namespace skitter::bench
