@@ -111,15 +111,7 @@ void freeJacobian(float bone[BONES], vec3 target, int solver, vec3 rest[BONES], 
       e -= cross(own[i], r);
     }
   }
-  vec3 lambda;
-  if (solver == SOLVER_TRANSPOSE) {
-    vec3 me = times(m, e);
-    float below = dot(me, me);
-    lambda = below < 1e-20 ? vec3(0.0) : e * (dot(e, me) / max(below, 1e-20));
-  } else {
-    m.diagonal += vec3(solver == SOLVER_PSEUDOINVERSE ? 1e-6 * (m.diagonal.x + m.diagonal.y + m.diagonal.z) : 0.01);
-    lambda = times(inverseOf(m), e);
-  }
+  vec3 lambda = lambdaOf(solver, m, e);
   float largest = 0.0;
   for (int i = 0; i < BONES; ++i) {
     vec3 r = bone[i] > 0.0 ? end - pose.joint[i] : vec3(0.0);

@@ -1,5 +1,5 @@
-// The batch of chains (docs/ik.md), as GLSL and C++ both see it: solvers, bindings of set 0, specialization and
-// push constants. Every buffer is an array of vec4.
+// The batch of chains (docs/ik.md), as GLSL and C++ both see it: solvers, bindings of set 0, specialization
+// and push constants. Every buffer is an array of vec4.
 #ifndef SKITTER_IK_BATCH_H
 #define SKITTER_IK_BATCH_H
 
@@ -45,14 +45,14 @@ BATCH int BATCH_REPORT = 9;
 BATCH int BATCH_LIST = 10;  // uint: an indirect dispatch, then how many chains, then which
 
 // Beside CONSTANT_BONES, CONSTANT_LIMITS_LOW, CONSTANT_LIMITS_HIGH and CONSTANT_SOLVER.
-BATCH int CONSTANT_PREVIOUS = 8;   // solves continue
-BATCH int CONSTANT_BASES = 9;      // each chain has a base
-BATCH int CONSTANT_ROTATIONS = 10; // rotations are written
-BATCH int CONSTANT_TWISTS = 11;    // a bone has a twist range
-BATCH int CONSTANT_STRAIGHT = 12;  // a start pose may be straight
-BATCH int CONSTANT_POLE = 13;      // there is a pole
+BATCH int CONSTANT_PREVIOUS = 8;     // solves continue
+BATCH int CONSTANT_BASES = 9;        // each chain has a base
+BATCH int CONSTANT_ROTATIONS = 10;   // rotations are written
+BATCH int CONSTANT_TWISTS = 11;      // a bone has a twist range
+BATCH int CONSTANT_STRAIGHT = 12;    // a start pose may be straight
+BATCH int CONSTANT_POLE = 13;        // there is a pole
 BATCH int CONSTANT_REST_LEGAL = 14;  // no limit forbids the rest pose
-BATCH int CONSTANT_PULL = 15;  // the rest pull acts
+BATCH int CONSTANT_PULL = 15;        // the rest pull acts
 BATCH int CONSTANT_PASS = 16;
 
 // One dispatch solves all, or a quick one does what most chains need and lists those that need more, which a
@@ -71,7 +71,8 @@ BATCH_FUNCTION int stateStride(int bones, bool twists) {
 }
 // seed: directions and twists as in the state, then p_1 .. p_n, lengths in units of the reach.
 BATCH_FUNCTION int seedStride(int bones, bool twists) { return stateStride(bones, twists) + bones; }
-// report: error, iterations, stop + STOPS * (solves to come without restarts + PAUSES * the next pause), damping.
+// report: error, iterations, stop + STOPS * (solves to come without restarts + PAUSES * the next pause),
+// damping.
 BATCH float STOPS = 8.0;
 BATCH float PAUSES = 64.0;
 BATCH float FIRST_PAUSE = 1.0;

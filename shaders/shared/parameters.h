@@ -71,9 +71,9 @@ struct Parameters {
   float stepHeightMax;
   // ik
   float approachError;  // share of the reach beyond which the approach iterates
-  float restPull;     // share of the angle from rest taken back a step once on target
-  float pullError;    // share of the reach below which the rest pull acts
-  float ikTolerance;  // share of the reach that counts as arrived
+  float restPull;       // share of the angle from rest taken back a step once on target
+  float pullError;      // share of the reach below which the rest pull acts
+  float ikTolerance;    // share of the reach that counts as arrived
 };
 
 #ifdef __cplusplus
