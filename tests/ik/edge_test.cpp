@@ -199,7 +199,7 @@ TEST_F(ChainTest, TheDissertationsRulesDiffer) {
 }
 
 TEST_F(ChainTest, ForwardKinematicsOfTheRotationsGiveTheJoints) {
-  for (const std::string& limits : limitKinds) {
+  for (const char* limits : {"free", "free-base", "mixed"}) {
     Random random(11);
     const ik::Chain chain = randomChain(limits, 5, random);
     const reference::IkChain expected = validation::referenceOf(chain);

@@ -76,7 +76,7 @@ ik::Chain hingedSpiderLeg() {
 // Equal patterns of kinds share their kernels.
 ik::Chain mixedRig(size_t pattern, Random& random) {
   const std::vector<std::string> kinds[] = {
-      {"cone", "hinge", "hinge"}, {"ellipse", "hinge", "cone"}, {"hinge", "cone", "ellipse", "hinge"}};
+      {"cone", "hinge", "hinge"}, {"ellipse", "hinge", "cone"}, {"hinge", "cone", "ellipse"}};
   return randomRig(kinds[pattern % 3], random);
 }
 
