@@ -257,7 +257,7 @@ class Comparison {
     return {"error in a tie",
             0,
             std::max(0.0, got.error - std::max(reached, settings_.tolerance)),
-            must        ? reference::tolerance::roundoff
+            must        ? reference::tolerance::ikTie
             : isWhole() ? elsewhere
                         : otherWay,
             glm::dvec3(expected.result.error),
