@@ -1,6 +1,8 @@
 #include "crowd/stage.h"
 #include "embedded/ik_comp_storage.h"
 #include "embedded/ik_comp_texel.h"
+#include "embedded/ik_compared_comp_storage.h"
+#include "embedded/ik_compared_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -18,6 +20,10 @@ Stage ikStage() {
            {BINDING_CHAIN_OUT, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::legs};
+}
+
+gpu::ShaderCode comparedIkCode() {
+  return {embedded::ik_compared_comp_texel(), embedded::ik_compared_comp_storage()};
 }
 
 }  // namespace skitter::crowd

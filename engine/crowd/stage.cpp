@@ -5,6 +5,7 @@
 #include "crowd/herd.h"
 #include "crowd/tuning.h"
 #include "shared/bindings.h"
+#include "shared/ik_batch.h"
 
 namespace skitter::crowd {
 
@@ -19,11 +20,13 @@ void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd&
   using namespace shared;
   for (const Stage& stage : stages()) {
     gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
+    const bool isIk = std::strcmp(stage.name, "ik") == 0;
+    if (isIk && herd.ik.solver != SOLVER_FABRIK) info.code = comparedIkCode();
     for (const StageShader& other : options.shaders)
       if (other.stage == stage.name) info.code = {other.texel, other.storage};
     info.constants = {
         {CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
-    if (std::strcmp(stage.name, "ik") == 0) {
+    if (isIk) {
       info.constants.emplace_back(CONSTANT_APPROACH_ITERATIONS, herd.ik.approach);
       info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, herd.ik.polish);
       info.constants.emplace_back(CONSTANT_SOLVER, herd.ik.solver);

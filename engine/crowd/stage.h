@@ -31,6 +31,8 @@ Stage gaitStage();
 Stage footholdStage();
 Stage swingStage();
 Stage ikStage();
+// Of the ik stage with the solvers that are there to be compared.
+gpu::ShaderCode comparedIkCode();
 Stage poseStage();
 Stage measureStage();
 

@@ -7,6 +7,11 @@
 layout(constant_id = CONSTANT_LIMITS_LOW) const uint LIMITS_LOW = 0x11111111u;
 layout(constant_id = CONSTANT_LIMITS_HIGH) const uint LIMITS_HIGH = 0x11111111u;
 
+#ifdef ONLY_CONES
+// Known to every compiler, where specialization alone leaves the other kinds' code to drivers that do not unroll.
+bool mayBe(int bone, int kind) { return (kind & LIMIT_CONE) != 0; }
+bool mustBe(int bone, int kind) { return kind == LIMIT_CONE; }
+#else
 // Whether a kind may occur at a bone: known when the pipeline is made, so what cannot occur costs nothing.
 bool mayBe(int bone, int kind) {
   return (((bone < 8 ? LIMITS_LOW : LIMITS_HIGH) >> uint(4 * (bone & 7))) & uint(kind)) != 0u;
@@ -14,6 +19,8 @@ bool mayBe(int bone, int kind) {
 bool mustBe(int bone, int kind) {
   return (((bone < 8 ? LIMITS_LOW : LIMITS_HIGH) >> uint(4 * (bone & 7))) & 7u) == uint(kind);
 }
+
+#endif
 
 // Abramowitz & Stegun 4.4.49, error 2e-8 within [0, 1].
 float arctangent(float x) {

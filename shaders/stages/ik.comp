@@ -1,12 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define ONLY_CONES  // are what rigs have
 #include "stages/stage.glsl"
 #include "shared/ik_batch.h"
 #include "lib/active_set.glsl"
-#include "lib/ccd.glsl"
 #include "lib/fabrik.glsl"
-#include "lib/jacobian.glsl"
 #include "lib/limb.glsl"
+// What is there to be compared stays out of what ships: some drivers take long over code that is never run.
+#ifdef COMPARED_SOLVERS
+#include "lib/ccd.glsl"
+#include "lib/jacobian.glsl"
+#endif
 
 layout(constant_id = CONSTANT_APPROACH_ITERATIONS) const int APPROACH_ITERATIONS = 4;
 layout(constant_id = CONSTANT_SOLVER) const int SOLVER = SOLVER_FABRIK;
@@ -21,8 +25,10 @@ layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint 
 
 void approach(Limb limb, vec3 target, inout Pose pose) {
   if (SOLVER == SOLVER_FABRIK) fabrikIteration(limb, target, pose);
+#ifdef COMPARED_SOLVERS
   if (SOLVER == SOLVER_CCD) ccdIteration(limb, target, pose);
   if (SOLVER >= SOLVER_TRANSPOSE && SOLVER <= SOLVER_TARGET_ATTACHED) jacobianIteration(limb, target, SOLVER, pose);
+#endif
 }
 
 void main() {
