@@ -66,6 +66,11 @@ std::vector<glm::vec4> unpausedReports(uint32_t chains) {
   return std::vector<glm::vec4>(chains, {0, 0, shared::STOPS * shared::PAUSES * shared::FIRST_PAUSE, 1});
 }
 
+// The inverse of a base's rotation, stored xyzw.
+glm::quat turnedBack(const glm::vec4& rotation) {
+  return glm::conjugate(glm::quat(rotation.w, rotation.x, rotation.y, rotation.z));
+}
+
 // No chain listed: an empty dispatch.
 void clearList(const Page& page, vk::CommandBuffer cmd) {
   const std::array<uint32_t, shared::LIST_FIRST> none = {0, 1, 1, 0};
@@ -345,12 +350,18 @@ void Batch::setJoints(std::span<const glm::vec3> joints) {
   Impl& batch = *impl_;
   const uint32_t n = batch.bones;
   assert(batch.options.start == Start::previous && joints.size() == size_t{batch.chains} * (n + 1));
-  std::vector<glm::vec4> records;
+  std::vector<glm::vec4> records, bases;
+  if (batch.options.bases) bases = batch.download(&Page::base, 1, shared::BASE_STRIDE);
   std::vector<float> states;
   for (uint32_t c = 0; c < batch.chains; ++c) {
     const auto own = joints.subspan(size_t{c} * (n + 1), n + 1);
-    const std::vector<glm::dvec3> wanted(own.begin(), own.end());
-    for (uint32_t i = 1; i <= n; ++i) records.emplace_back(own[i] - own[0], 0.0f);
+    const glm::quat back =
+        bases.empty() ? glm::quat(1, 0, 0, 0) : turnedBack(bases[size_t{c} * shared::BASE_STRIDE + 1]);
+    std::vector<glm::dvec3> wanted = {glm::dvec3(0)};
+    for (uint32_t i = 1; i <= n; ++i) {
+      records.emplace_back(back * (own[i] - own[0]), 0.0f);
+      wanted.emplace_back(records.back());
+    }
     if (batch.positional) continue;
     appendPose(batch.skeleton, batch.skeleton.aim(wanted), states);
   }

@@ -277,6 +277,29 @@ TEST_P(BatchTest, PagesDoNotMatter) {
   }
 }
 
+TEST_P(BatchTest, JointsGivenAboutTurnedBasesAreWhereTheyWere) {
+  for (const char* limits : {"free", "cone"}) {
+    Random random(6);
+    const ik::Chain chain = randomChain(limits, 5, random);
+    std::vector<ik::Base> bases;
+    for (size_t c = 0; c < 64; ++c)
+      bases.push_back(
+          {3.0 * randomDirection(random), glm::normalize(glm::quat(1, vec3(2.0 * randomDirection(random))))});
+    ik::Batch batch(device(), chain, 64, {.start = ik::Start::previous, .bases = true});
+    batch.setBases(bases);
+    // A target that is not finite keeps the pose, so what is written is what was given.
+    batch.setTargets(std::vector<vec3>(64, vec3(NAN)));
+    batch.solve();
+    const std::vector<vec3> given = batch.downloadJoints();
+    batch.setJoints(given);
+    batch.solve();
+    const std::vector<vec3> got = batch.downloadJoints();
+    for (size_t j = 0; j < given.size(); ++j)
+      // A dozen roundings of world coordinates below 8.
+      EXPECT_LT(glm::length(got[j] - given[j]), 12 * 8 * 6e-8f * 4) << limits << ", chain " << j / 5;
+  }
+}
+
 TEST_P(BatchTest, MovedBasesCarryTheirChains) {
   for (const char* limits : {"free", "mixed"}) {
     Random random(4);

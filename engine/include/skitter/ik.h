@@ -162,7 +162,7 @@ class Batch {
   void setBases(std::span<const Base>);  // with Options::bases
   void reset();                          // every chain to its rest pose
   // Start poses from joints, J a chain, base first: bones are aimed at the next joint within their limits,
-  // without twist. For Start::previous.
+  // without twist. With bases, joints are in the world and the bases those set last. For Start::previous.
   void setJoints(std::span<const glm::vec3>);
   // For tools and validation, as shaders/shared/ik_batch.h lays them out: what solves continue from, with
   // Start::previous, and the poses from which the active set starts anew.
@@ -188,7 +188,9 @@ class Batch {
   Span rotations(uint32_t page) const;  // J - 1 a chain: xyzw
   Span reports(uint32_t page) const;    // one: error, iterations, stop + 8 * the solver's own, damping
   // The caller's buffers in place of the batch's, for a batch of one page: large enough, and bound until the
-  // batch goes or others are given. Those left empty stay the batch's own.
+  // batch goes or others are given. Those left empty stay the batch's own. With
+  // Start::previous and reports of the caller's, reset() before the first solve: reports carry a solver's
+  // memory.
   struct Buffers {
     Span targets, bases, joints, rotations, reports;
   };
