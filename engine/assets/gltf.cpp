@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <glm/gtc/quaternion.hpp>
+#include <map>
 #include <new>
 
 #include "gltf_file.h"
@@ -142,31 +143,32 @@ class Reader {
     }
   }
 
-  glm::dmat4 localTransform(size_t index) const {
+  void readTransform(size_t index, Node& to) const {
     const tinygltf::Node& node = model_.nodes[index];
     const std::string what = fmt::format("nodes[{}]", index);
     checkFinite(node.matrix, 16, what + ".matrix");
     checkFinite(node.translation, 3, what + ".translation");
     checkFinite(node.rotation, 4, what + ".rotation");
     checkFinite(node.scale, 3, what + ".scale");
-    glm::dmat4 local(1);
-    if (!node.matrix.empty()) {
+    glm::dmat4& local = to.parentFromNode;
+    to.hasMatrix = !node.matrix.empty();
+    if (to.hasMatrix) {
       for (int k = 0; k < 16; ++k) local[k / 4][k % 4] = node.matrix[static_cast<size_t>(k)];
-      return local;
+      return;
     }
-    glm::dvec3 scale(1);
-    if (!node.scale.empty()) scale = {node.scale[0], node.scale[1], node.scale[2]};
+    if (!node.scale.empty()) to.scale = {node.scale[0], node.scale[1], node.scale[2]};
     if (!node.rotation.empty()) {
       const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
       if (std::fabs(glm::length(q) - 1) > 0.01)
         fail("{}.rotation has length {}, expected 1", what, glm::length(q));
-      local = glm::mat4_cast(glm::normalize(q));
+      to.rotation = glm::normalize(q);
+      local = glm::mat4_cast(to.rotation);
     }
-    for (int k = 0; k < 3; ++k) local[k] *= scale[k];
+    for (int k = 0; k < 3; ++k) local[k] *= to.scale[k];
     if (!node.translation.empty()) {
-      local[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1);
+      to.translation = {node.translation[0], node.translation[1], node.translation[2]};
+      local[3] = glm::dvec4(to.translation, 1);
     }
-    return local;
   }
 
   void readNodes(Document& document) const {
@@ -200,7 +202,8 @@ class Reader {
     markScene(document);
     for (int i : order) {
       Node& node = document.nodes[static_cast<size_t>(i)];
-      node.modelFromNode = localTransform(static_cast<size_t>(i));
+      readTransform(static_cast<size_t>(i), node);
+      node.modelFromNode = node.parentFromNode;
       if (node.parent == -1) continue;
       const Node& parent = document.nodes[static_cast<size_t>(node.parent)];
       node.modelFromNode = parent.modelFromNode * node.modelFromNode;
@@ -484,7 +487,7 @@ class Reader {
     }
   }
 
-  // Names and lengths. A fault in a clip costs the clip, not the file: nothing else depends on it.
+  // A fault in a clip costs the clip, not the file: nothing else depends on it.
   void readClips(Document& document) {
     const auto animations = file_.json.find("animations");
     if (animations == file_.json.end()) return;
@@ -494,7 +497,7 @@ class Reader {
     for (size_t i = 0; i < animations->size(); ++i) {
       const std::string what = fmt::format("animations[{}]", i);
       try {
-        document.clips.push_back(clip((*animations)[i], what));
+        document.clips.push_back(clip((*animations)[i], what, document.nodes));
       } catch (const Error& error) {
         notes_.push_back(std::string(error.what()).substr(name_.size() + 2) + ": clip left out");
       } catch (const nlohmann::json::exception&) {
@@ -515,38 +518,105 @@ class Reader {
     return indexAt(sampler, key, model_.accessors.size(), part + "." + key);
   }
 
-  Clip clip(const nlohmann::json& json, const std::string& what) {
+  Clip clip(const nlohmann::json& json, const std::string& what, const std::vector<Node>& nodes) {
     Clip clip;
     clip.name = json.value("name", std::string());
     const nlohmann::json& samplers = json.at("samplers");
-    clip.channels = json.at("channels").size();
-    for (const nlohmann::json& channel : json.at("channels")) {
-      const int sampler = indexAt(channel, "sampler", samplers.size(), what + " has a channel whose sampler");
+    const nlohmann::json& channels = json.at("channels");
+    clip.channelCount = channels.size();
+    std::map<std::pair<size_t, std::string>, size_t> samplerOf;  // read once for each path that it drives
+    std::map<std::pair<int, Path>, size_t> channelOf;
+    std::vector<std::string> notes;
+    size_t morphs = 0;
+    for (const nlohmann::json& channel : channels) {
+      const int index = indexAt(channel, "sampler", samplers.size(), what + " has a channel whose sampler");
       const nlohmann::json& target = channel.at("target");
-      if (target.contains("node")) {
-        indexAt(target, "node", model_.nodes.size(), what + " targets a node that");
+      int node = -1;
+      if (target.contains("node"))
+        node = indexAt(target, "node", model_.nodes.size(), what + " targets a node that");
+      const std::string path = target.at("path").get<std::string>();
+      const auto [known, isNew] =
+          samplerOf.try_emplace({static_cast<size_t>(index), path}, clip.samplers.size());
+      if (isNew) {
+        const nlohmann::json& from = samplers.at(static_cast<size_t>(index));
+        clip.samplers.push_back(sampler(from, path, fmt::format("{}.samplers[{}]", what, index)));
+        clip.seconds = std::max(clip.seconds, clip.samplers.back().times.back());
       }
-      const nlohmann::json& from = samplers.at(static_cast<size_t>(sampler));
-      const std::string part = fmt::format("{}.samplers[{}]", what, sampler);
-      const Values times =
-          accessor(accessorAt(from, "input", part), {TINYGLTF_TYPE_SCALAR}, false, part + ".input");
-      for (size_t k = 0; k < times.count; ++k) {
-        if (times.numbers[k] < 0 || (k > 0 && times.numbers[k] <= times.numbers[k - 1])) {
-          fail("{} has the time {} at key {}, expected times that rise from 0", part, times.numbers[k], k);
-        }
+      if (path == "weights") {
+        ++morphs;
+        continue;
       }
-      clip.seconds = std::max(clip.seconds, times.numbers.back());
-      const bool weights = target.at("path").get<std::string>() == "weights";
-      const Values output =
-          accessor(accessorAt(from, "output", part),
-                   {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, false, part + ".output");
-      const size_t each = from.value("interpolation", std::string("LINEAR")) == "CUBICSPLINE" ? 3 : 1;
-      if (!weights && output.count != each * times.count) {
-        fail("{} has {} outputs for {} keys, expected {}", part, output.count, times.count,
-             each * times.count);
+      if (node == -1) continue;  // nothing in the file that it moves
+      if (nodes[static_cast<size_t>(node)].hasMatrix) {
+        notes.push_back(fmt::format("{} moves nodes[{}], which has a matrix: not moved", what, node));
+        continue;
+      }
+      const auto [place, first] =
+          channelOf.try_emplace({node, clip.samplers[known->second].path}, clip.moving.size());
+      if (first) {
+        clip.moving.push_back({node, known->second});
+        continue;
+      }
+      clip.moving[place->second].sampler = known->second;
+      notes.push_back(
+          fmt::format("{} has two channels of the {} of nodes[{}]: the later counts", what, path, node));
+    }
+    if (morphs > 0)
+      notes.push_back(fmt::format("{} has {} channels of morph weights: left out", what, morphs));
+    // One line a clip: a file may have very many channels.
+    if (notes.size() > 1) notes[0] += fmt::format(", and {} more like it", notes.size() - 1);
+    if (!notes.empty()) notes_.push_back(notes[0]);
+    return clip;
+  }
+
+  Sampler sampler(const nlohmann::json& from, const std::string& path, const std::string& part) {
+    Sampler sampler;
+    Values times = accessor(accessorAt(from, "input", part), {TINYGLTF_TYPE_SCALAR}, false, part + ".input");
+    for (size_t k = 0; k < times.count; ++k) {
+      if (times.numbers[k] < 0 || (k > 0 && times.numbers[k] <= times.numbers[k - 1])) {
+        fail("{} has the time {} at key {}, expected times that rise from 0", part, times.numbers[k], k);
       }
     }
-    return clip;
+    sampler.times = std::move(times.numbers);
+    const std::string interpolation = from.value("interpolation", std::string("LINEAR"));
+    if (interpolation == "STEP") {
+      sampler.interpolation = Interpolation::step;
+    } else if (interpolation == "CUBICSPLINE") {
+      sampler.interpolation = Interpolation::cubicSpline;
+    } else if (interpolation != "LINEAR") {
+      fail("{}.interpolation is {}, expected STEP, LINEAR or CUBICSPLINE", part,
+           describeJson(from.at("interpolation")));
+    }
+    const int output = accessorAt(from, "output", part);
+    if (path == "weights") {
+      accessor(output, {TINYGLTF_TYPE_SCALAR}, false, part + ".output");
+      return sampler;
+    }
+    if (path == "rotation") {
+      sampler.path = Path::rotation;
+    } else if (path == "scale") {
+      sampler.path = Path::scale;
+    } else if (path != "translation") {
+      fail("{} drives {}, expected translation, rotation, scale or weights", part, describeJson(path));
+    }
+    const bool turns = sampler.path == Path::rotation;
+    Values values =
+        accessor(output, {turns ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3}, false, part + ".output");
+    const size_t each = sampler.interpolation == Interpolation::cubicSpline ? 3 : 1;
+    if (values.count != each * sampler.times.size()) {
+      fail("{} has {} outputs for {} keys, expected {}", part, values.count, sampler.times.size(),
+           each * sampler.times.size());
+    }
+    sampler.values = std::move(values.numbers);
+    for (size_t k = 0; turns && k < sampler.times.size(); ++k) {
+      double* key = sampler.values.data() + 4 * (each == 3 ? 3 * k + 1 : k);
+      const double length = std::sqrt(key[0] * key[0] + key[1] * key[1] + key[2] * key[2] + key[3] * key[3]);
+      if (!(std::fabs(length - 1) <= 0.1)) {
+        fail("{} has a rotation of length {} at key {}, expected 1", part, length, k);
+      }
+      for (int i = 0; each == 1 && i < 4; ++i) key[i] /= length;
+    }
+    return sampler;
   }
 
   void notePictures() {

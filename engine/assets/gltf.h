@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -17,6 +18,11 @@ struct Node {
   int parent = -1;
   int mesh = -1, skin = -1;
   bool inScene = false;  // reachable from the default scene, or any node of a file without scenes
+  // At rest. A node with a matrix has only that: it cannot be animated.
+  bool hasMatrix = false;
+  glm::dvec3 translation{0}, scale{1};
+  glm::dquat rotation{1, 0, 0, 0};
+  glm::dmat4 parentFromNode{1};
   glm::dmat4 modelFromNode{1};
 };
 
@@ -44,10 +50,29 @@ struct Skin {
   std::vector<glm::dmat4> nodeFromBind;
 };
 
+enum class Path { translation, rotation, scale };
+enum class Interpolation { step, linear, cubicSpline };
+
+// Keys: times that rise strictly from 0 or later, and their values: 4 numbers each (xyzw) for a rotation, of
+// unit length but for cubic splines, else 3; for a cubic spline three runs of those a key: in-tangent, value,
+// out-tangent.
+struct Sampler {
+  Path path = Path::translation;
+  Interpolation interpolation = Interpolation::linear;
+  std::vector<double> times, values;
+};
+
+struct Channel {
+  int node = 0;
+  size_t sampler = 0;
+};
+
 struct Clip {
   std::string name;
-  double seconds = 0;
-  size_t channels = 0;
+  double seconds = 0;           // the last time of all channels of the file
+  size_t channelCount = 0;      // of the file
+  std::vector<Channel> moving;  // those that move nodes, each property of a node once
+  std::vector<Sampler> samplers;
 };
 
 struct Document {

@@ -210,7 +210,7 @@ Model makeModel(const gltf::Document& document, const std::string& name) {
   model.meshes = document.meshes.size();
   model.notes = document.notes;
   for (const gltf::Clip& clip : document.clips)
-    model.clips.push_back({clip.name, clip.seconds, clip.channels});
+    model.clips.push_back({clip.name, clip.seconds, clip.channelCount});
   ModelBuilder(document, model).build();
   return model;
 }
