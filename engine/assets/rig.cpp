@@ -3,34 +3,33 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <new>
-#include <system_error>
 
 #include "bend.h"
 #include "embedded/spider_glb.h"
-#include "file.h"
-#include "gltf.h"
-#include "model.h"
+#include "placement.h"
 #include "rig_setup.h"
+#include "rig_source.h"
+#include "skitter/clip.h"
 #include "skitter/error.h"
 
 namespace skitter {
 namespace {
 
 constexpr double minBoneLength = 1e-6;  // metres
-constexpr double maxCoordinate = 1e4;   // metres
 
 // A model and its setup become a rig: legs and skin in metres, +Y up, facing +Z, the origin below the body.
 class RigBuilder {
  public:
   RigBuilder(const Model& model, const RigSetup& setup, const std::string& name, const std::string& path)
-      : model_(model), setup_(setup), name_(name), path_(path.empty() ? "" : path + ".") {}
+      : model_(model),
+        setup_(setup),
+        name_(name),
+        path_(path.empty() ? "" : path + "."),
+        placement_(placeModel(model, setup, name, path)) {}
 
   Rig build() {
-    for (size_t i = 0; i < setup_.legs.size(); ++i) findChain(i);
-    place();
     Rig rig;
     rig.name = std::filesystem::path(model_.name).stem().string();
     rig.groups = setup_.groups;
@@ -41,7 +40,7 @@ class RigBuilder {
     addSkin(rig);
     for (size_t i = 0; i < setup_.legs.size(); ++i) {
       const RigSetup::Leg& from = setup_.legs[i];
-      if (from.bend) bendLeg(rig, i, rotation_ * *from.bend, from.bendDegrees);
+      if (from.bend) bendLeg(rig, i, placement_.rotation * *from.bend, from.bendDegrees);
     }
     return rig;
   }
@@ -54,73 +53,10 @@ class RigBuilder {
 
   std::string pathOf(size_t leg) const { return fmt::format("{}legs[{}]", path_, leg); }
 
-  int findNode(const std::string& joint, const std::string& path) const {
-    std::vector<size_t> found;
-    for (size_t i = 0; i < model_.nodes.size(); ++i) {
-      if (model_.nodes[i].name == joint) found.push_back(i);
-    }
-    if (found.size() > 1) {
-      fail("{}: two nodes are named \"{}\": #{} and #{}", path, joint, found[0], found[1]);
-    }
-    if (found.size() == 1) return static_cast<int>(found[0]);
-    size_t index = 0;
-    const char* end = joint.data() + joint.size();
-    if (joint.front() == '#' && std::from_chars(joint.data() + 1, end, index).ptr == end &&
-        joint.size() > 1) {
-      if (index < model_.nodes.size()) return static_cast<int>(index);
-      fail("{} is \"{}\", but there are {} nodes", path, joint, model_.nodes.size());
-    }
-    fail("{}: no node is named \"{}\"", path, joint);
-  }
-
-  void findChain(size_t legIndex) {
-    const RigSetup::Leg& from = setup_.legs[legIndex];
-    std::vector<int> chain;
-    std::vector<glm::dvec3> points;
-    for (size_t j = 0; j < from.joints.size(); ++j) {
-      const std::string path = fmt::format("{}.joints[{}]", pathOf(legIndex), j);
-      const int node = findNode(from.joints[j], path);
-      for (size_t other = 0; other < chains_.size(); ++other) {
-        if (std::find(chains_[other].begin(), chains_[other].end(), node) != chains_[other].end()) {
-          fail("{}: \"{}\" is a joint of leg {} already", path, from.joints[j], setup_.legs[other].name);
-        }
-      }
-      if (j > 0 && !model_.isAncestor(chain.back(), node)) {
-        fail("{}: \"{}\" is no descendant of \"{}\"; joints run from root to foot", path, from.joints[j],
-             from.joints[j - 1]);
-      }
-      chain.push_back(node);
-      points.push_back(model_.nodes[static_cast<size_t>(node)].position());
-    }
-    if (from.tipOffset) points.push_back(points.back() + *from.tipOffset);
-    chains_.push_back(std::move(chain));
-    points_.push_back(std::move(points));
-  }
-
-  // How the model becomes the creature: turned, moved and scaled.
-  void place() {
-    const glm::dvec3 up = glm::normalize(setup_.up);
-    const glm::dvec3 forward = glm::normalize(setup_.forward - up * glm::dot(setup_.forward, up));
-    rotation_ = glm::transpose(glm::dmat3(glm::cross(up, forward), up, forward));
-    double longest = 0;
-    glm::dvec3 feet(0);
-    for (const auto& points : points_) {
-      double reach = 0;
-      for (size_t i = 0; i + 1 < points.size(); ++i) reach += glm::length(points[i + 1] - points[i]);
-      longest = std::max(longest, reach);
-      feet += points.back() / static_cast<double>(points_.size());
-    }
-    origin_ = setup_.origin.value_or(feet);
-    scale_ = setup_.scale.value_or(1.0);
-    if (!setup_.legLength) return;
-    if (!(longest > 0)) fail("{}legLength: the legs have length 0", path_);
-    scale_ = *setup_.legLength / longest;
-  }
-
   // `describe` says what is there, should it lie too far away.
   template <typename Describe>
   glm::dvec3 toCreature(const glm::dvec3& position, const Describe& describe) const {
-    const glm::dvec3 p = rotation_ * ((position - origin_) * scale_);
+    const glm::dvec3 p = placement_.toCreature(position);
     for (int k = 0; k < 3; ++k) {
       if (!(std::fabs(p[k]) <= maxCoordinate)) {
         fail("{} rests at {} m, expected within {} m", describe(), p[k], maxCoordinate);
@@ -137,7 +73,8 @@ class RigBuilder {
     leg.group =
         static_cast<int>(std::find(rig.groups.begin(), rig.groups.end(), from.group) - rig.groups.begin());
     std::vector<glm::dvec3> points;
-    for (const glm::dvec3& point : points_[index]) points.push_back(toCreature(point, [&] { return path; }));
+    for (const glm::dvec3& point : placement_.points[index])
+      points.push_back(toCreature(point, [&] { return path; }));
     double reach = 0;
     for (size_t i = 0; i + 1 < points.size(); ++i) {
       const double length = glm::length(points[i + 1] - points[i]);
@@ -175,8 +112,8 @@ class RigBuilder {
       height += static_cast<double>(leg.root().y) / static_cast<double>(rig.legs.size());
       radius = std::max(radius, std::fabs(static_cast<double>(leg.root().z)));
     }
-    if (setup_.bodyHeight) height = *setup_.bodyHeight * scale_;
-    if (setup_.bodyRadius) radius = *setup_.bodyRadius * scale_;
+    if (setup_.bodyHeight) height = *setup_.bodyHeight * placement_.scale;
+    if (setup_.bodyRadius) radius = *setup_.bodyRadius * placement_.scale;
     if (!(height > 0)) {
       fail("{}bodyHeight is missing and the legs' roots lie {:.3g} m above the ground, expected over 0",
            path_, height);
@@ -192,10 +129,10 @@ class RigBuilder {
   // A node that is no joint of a leg moves with its nearest ancestor that is one, else with the body.
   std::vector<uint16_t> mapPalette(const Rig& rig) const {
     std::vector<int> own(model_.nodes.size(), -1);
-    for (size_t leg = 0; leg < chains_.size(); ++leg) {
+    for (size_t leg = 0; leg < placement_.chains.size(); ++leg) {
       const size_t bones = rig.legs[leg].bones.size();
-      for (size_t j = 0; j < chains_[leg].size(); ++j) {
-        own[static_cast<size_t>(chains_[leg][j])] =
+      for (size_t j = 0; j < placement_.chains[leg].size(); ++j) {
+        own[static_cast<size_t>(placement_.chains[leg][j])] =
             1 + static_cast<int>(leg) * rig.maxBones() + static_cast<int>(std::min(j, bones - 1));
       }
     }
@@ -217,7 +154,7 @@ class RigBuilder {
       const Model::Vertex& from = model_.vertices[v];
       SkinVertex vertex;
       vertex.position = glm::vec3(toCreature(from.position, [v] { return fmt::format("vertex {}", v); }));
-      vertex.normal = glm::vec3(rotation_ * glm::dvec3(from.normal));
+      vertex.normal = glm::vec3(placement_.rotation * glm::dvec3(from.normal));
       vertex.colour = from.colour * glm::vec3(setup_.colour);
       weigh(from, palette, vertex);
       rig.vertices.push_back(vertex);
@@ -259,29 +196,8 @@ class RigBuilder {
   const RigSetup& setup_;
   const std::string& name_;
   const std::string path_;
-  std::vector<std::vector<int>> chains_;         // a leg's joints
-  std::vector<std::vector<glm::dvec3>> points_;  // a leg's joints and tip, in the model's units and axes
-  glm::dmat3 rotation_{1};
-  glm::dvec3 origin_{0};
-  double scale_ = 1;
+  const Placement placement_;
 };
-
-Rig rigOfExtras(const gltf::Document& document, const Model& model, const std::string& name) {
-  RigSetup setup = readRigSetup(document.extras, name, "skitter", false);
-  setup.origin = glm::dvec3(0);
-  return buildRig(model, setup, name, "skitter");
-}
-
-Rig rigOfSidecar(const std::filesystem::path& sidecar) {
-  const RigSetup setup = loadRigSetup(sidecar);
-  const std::filesystem::path file = sidecar.parent_path() / setup.model;
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) {
-    throw inputError(fmt::format("{}: model is \"{}\", but there is no file {}", sidecar.string(),
-                                 setup.model, file.string()));
-  }
-  return buildRig(loadModel(file), setup, sidecar.string(), "");
-}
 
 }  // namespace
 
@@ -303,36 +219,27 @@ Rig buildRig(const Model& model, const RigSetup& setup, const std::string& name)
   return buildRig(model, setup, name, "");
 }
 
-Rig parseRig(std::span<const uint8_t> gltf, const std::string& name) {
-  const gltf::Document document = gltf::parse(gltf, name);
-  if (document.extras.is_null()) {
-    throw inputError(fmt::format(
-        "{}: has no legs: a rig needs `skitter` in the extras of its scene or of a node (docs/rig.md)",
-        name));
-  }
-  return rigOfExtras(document, makeModel(document, name), name);
+namespace {
+
+Rig buildRig(const RigSource& source) {
+  return buildRig(source.model, source.setup, source.name, source.path);
 }
 
-Rig loadRig(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  if (file.extension() == ".json") return rigOfSidecar(file);
-  std::error_code ignored;
-  const std::filesystem::path sidecar = sidecarOf(file);
-  if (std::filesystem::exists(sidecar, ignored) && std::filesystem::exists(file, ignored)) {
-    const RigSetup setup = loadRigSetup(sidecar);
-    if (std::filesystem::path(setup.model).filename() != file.filename()) {
-      throw inputError(fmt::format("{}: model is \"{}\", but the file beside it is {}", sidecar.string(),
-                                   setup.model, file.filename().string()));
-    }
-    return buildRig(loadModel(file), setup, sidecar.string(), "");
+}  // namespace
+
+Rig parseRig(std::span<const uint8_t> gltf, const std::string& name) {
+  return buildRig(parseRigSource(gltf, name));
+}
+
+Rig loadRig(const std::filesystem::path& file) { return buildRig(loadRigSource(file, NoLegs::refused)); }
+
+Rig proposedRig(const std::filesystem::path& file) {
+  const RigSource source = loadRigSource(file, NoLegs::proposed);
+  if (source.setup.legs.empty()) {
+    throw inputError(fmt::format("{}: has no legs, and none are found: write {} (docs/rig.md)", source.name,
+                                 sidecarOf(file).filename().string()));
   }
-  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  const gltf::Document document = gltf::parse(readFile(file), name, folder);
-  if (document.extras.is_null()) {
-    throw inputError(fmt::format("{}: has no legs: run `skitter rig {}` to propose {} (docs/rig.md)", name,
-                                 name, sidecar.filename().string()));
-  }
-  return rigOfExtras(document, makeModel(document, name), name);
+  return buildRig(source);
 }
 
 Rig spiderRig() { return parseRig(embedded::spider_glb(), "spider.glb"); }
