@@ -137,8 +137,9 @@ def rounded(values, digits=9):
     return [round(v, digits) + 0.0 for v in values]
 
 
-def write(path, name, mesh, joints, material, extras=None):
-    """The joints' first is the root; `material` is a name and a roughness."""
+def write(path, name, mesh, joints, material, extras=None, clips=()):
+    """The joints' first is the root; `material` is a name and a roughness; a clip has a name, times, and channels: a joint, a
+    path and a row a time, linear between."""
     binary, views, accessors = bytearray(), [], []
 
     def accessor(data, component, kind, count, target=None, normalized=False, bounds=None):
@@ -181,6 +182,17 @@ def write(path, name, mesh, joints, material, extras=None):
     inverse_bind = accessor(b"".join(struct.pack("<16f", 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0,
                                                  *rounded(scale(j.position, -1.0)), 1) for j in joints),
                             5126, "MAT4", len(joints))
+    animations = []
+    for clip in clips:
+        times = rounded(clip["times"], 6)
+        bounds = [[struct.unpack("<f", struct.pack("<f", t))[0]] for t in (times[0], times[-1])]
+        samplers = {"input": accessor(floats([times]), 5126, "SCALAR", len(times), bounds=bounds)}
+        outputs = [accessor(floats(rows), 5126, f"VEC{len(rows[0])}", len(rows)) for _, _, rows in clip["channels"]]
+        animations.append({
+            "name": clip["name"],
+            "samplers": [dict(samplers, output=output) for output in outputs],
+            "channels": [{"sampler": k, "target": {"node": joint + 1, "path": kind}}
+                         for k, (joint, kind, _) in enumerate(clip["channels"])]})
     scene = {"name": name, "nodes": [0, 1]}
     if extras: scene["extras"] = extras
     document = {
@@ -197,6 +209,7 @@ def write(path, name, mesh, joints, material, extras=None):
         "bufferViews": views,
         "buffers": [{"byteLength": len(binary)}],
     }
+    if animations: document["animations"] = animations
     text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     binary += bytes(-len(binary) % 4)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the built-in spider: generate.py OUTPUT.glb
 
-A rigged, skinned low-poly spider with eight legs of four bones. Metres, +Y up, facing +Z (so +X is its left), the
+A rigged, skinned low-poly spider with eight legs of four bones, and its clips. Metres, +Y up, facing +Z (so +X is its left), the
 origin on the ground below the body.
 """
 import math
@@ -10,6 +10,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import clips
 from creature import Joint, Mesh, add, build_eye, build_leg, build_limb, build_loft, mix, scale, smooth, write
 
 BONES = ("coxa", "femur", "tibia", "tarsus")
@@ -118,7 +119,7 @@ def build():
         build_eye(mesh, (sign * 0.043, 0.288, 0.150), 0.0105, EYE, {body: 1.0})
         build_eye(mesh, (sign * 0.033, 0.315, 0.136), 0.0110, EYE, {body: 1.0})
 
-    legs = []
+    legs, walkers = [], {}
     for index in range(4):
         for letter in "LR":
             name = f"{letter}{index + 1}"
@@ -128,13 +129,15 @@ def build():
                 joints.append(Joint(f"{name}_{suffix}", chain[-1] if chain else body, point))
                 chain.append(len(joints) - 1)
             build_leg(mesh, points, outward, chain[:4], body, LEG_RINGS, LEG_SIDES, TIP)
-            legs.append({"name": name, "group": "A" if (letter == "L") == (index % 2 == 0) else "B",
+            in_a = (letter == "L") == (index % 2 == 0)
+            walkers[chain[0]] = (clips.Leg(points, outward, CONES), index, in_a)
+            legs.append({"name": name, "group": "A" if in_a else "B",
                          "joints": [joints[j].name for j in chain], "coneHalfAngleDegrees": list(CONES)})
-    return mesh, joints, legs
+    return mesh, joints, legs, clips.build(walkers, (body, BODY), abdomen, (2, 3))
 
 
 if __name__ == "__main__":
     if len(sys.argv) != 2: sys.exit("usage: generate.py OUTPUT.glb")
-    mesh, joints, legs = build()
+    mesh, joints, legs, moves = build()
     extras = {"skitter": {"groups": ["A", "B"], "legs": legs, "bodyHeight": BODY[1], "bodyRadius": BODY_RADIUS}}
-    print("%d triangles, %d vertices" % write(sys.argv[1], "spider", mesh, joints, ("chitin", 0.55), extras))
+    print("%d triangles, %d vertices" % write(sys.argv[1], "spider", mesh, joints, ("chitin", 0.55), extras, moves))

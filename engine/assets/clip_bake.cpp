@@ -20,7 +20,7 @@ double inSingle(double value) { return static_cast<double>(static_cast<float>(va
 // docs/clip.md, Root motion and Frames.
 class Baker {
  public:
-  Baker(const gltf::Document& document, const gltf::Clip& from, const ClipSkin& skin,
+  Baker(const gltf::Document& document, const BakeRange& range, const ClipSkin& skin,
         const std::vector<ClipLeg>& legs, double error, const std::string& what, BakeBudget& budget)
       : document_(document),
         skin_(skin),
@@ -28,27 +28,24 @@ class Baker {
         allowed_(error),
         what_(what),
         budget_(budget),
-        sampler_(document, from, skin.nodes, skin.creatureFromModel) {
-    clip_.name = from.name;
-    clip_.seconds = inSingle(from.seconds);
-    clip_.channels = from.channelCount;
+        range_(range),
+        sampler_(document, range.clip, skin.nodes, skin.creatureFromModel) {
+    clip_.name = range.clip.name;
+    clip_.seconds = inSingle(range.end - range.begin);
+    clip_.channels = range.clip.channelCount;
   }
 
   Clip bake() {
     if (!(clip_.seconds <= maxSeconds)) fail("lasts {} s, expected up to {}", clip_.seconds, maxSeconds);
     setRootVelocity();
-    std::vector<double> times = sampler_.keyTimes();
-    times.insert(times.end(), {0.0, clip_.seconds});
-    times = tidy(std::move(times));
-    std::vector<double> jumps = tidy(sampler_.jumpTimes());
+    const std::vector<Knot> knots = findKnots();
     size_t first = 0;
-    for (size_t k = 0; k < times.size(); ++k) {
-      const bool jump = std::binary_search(jumps.begin(), jumps.end(), times[k]);
-      if (!jump && k + 1 < times.size()) continue;
-      bakeStretch({times.begin() + static_cast<std::ptrdiff_t>(first),
-                   times.begin() + static_cast<std::ptrdiff_t>(k) + 1},
-                  jump);
-      if (jump && k + 1 == times.size()) keep(frameAt(times[k], Side::at));
+    for (size_t k = 0; k < knots.size(); ++k) {
+      const bool last = k + 1 == knots.size();
+      if (!knots[k].jump && !last) continue;
+      bakeStretch({knots.begin() + static_cast<std::ptrdiff_t>(first),
+                   knots.begin() + static_cast<std::ptrdiff_t>(k) + 1});
+      if (knots[k].jump && last) keep(frameAt(knots[k], Side::at));
       first = k;
     }
     addFeet();
@@ -57,6 +54,11 @@ class Baker {
   }
 
  private:
+  // A time of the baked clip, in single precision, and the file's, which may have more digits.
+  struct Knot {
+    double time = 0, source = 0;
+    bool jump = false;
+  };
   struct Frame {
     double time = 0;
     std::vector<glm::vec4> rows;
@@ -68,14 +70,23 @@ class Baker {
     throw inputError(what_ + ": " + fmt::format(format, std::forward<Arguments>(arguments)...));
   }
 
-  // As frames have them: in single precision, within the clip, each once.
-  std::vector<double> tidy(std::vector<double> times) const {
-    for (double& time : times) time = inSingle(time);
-    times.erase(std::remove_if(times.begin(), times.end(), [&](double t) { return t > clip_.seconds; }),
-                times.end());
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
-    return times;
+  // Begin, end and the keys between, each time once; where keys fall together in single precision the last.
+  std::vector<Knot> findKnots() const {
+    const std::vector<double> jumps = sampler_.jumpTimes();
+    std::vector<Knot> knots{{0, range_.begin, false}};
+    for (const double source : sampler_.keyTimes()) {
+      if (source <= range_.begin || source > range_.end) continue;
+      const double time = inSingle(source - range_.begin);
+      const bool jump = std::binary_search(jumps.begin(), jumps.end(), source);
+      if (time > knots.back().time) {
+        knots.push_back({time, source, jump});
+      } else {
+        knots.back().source = source;
+        knots.back().jump = knots.back().jump || jump;
+      }
+    }
+    if (clip_.seconds > knots.back().time) knots.push_back({clip_.seconds, range_.end, false});
+    return knots;
   }
 
   // The highest node that is translated and has most of the skin on it and below.
@@ -92,7 +103,7 @@ class Baker {
     }
     if (root == -1 || !(clip_.seconds > 0)) return;
     const auto n = static_cast<size_t>(root);
-    const glm::dvec3 from(sampler_.sample(0)[n][3]), to(sampler_.sample(clip_.seconds)[n][3]);
+    const glm::dvec3 from(sampler_.sample(range_.begin)[n][3]), to(sampler_.sample(range_.end)[n][3]);
     rootVelocity_ = (to - from) / clip_.seconds;
     rootVelocity_.y = 0;
     // What is taken out is what is stored.
@@ -101,16 +112,16 @@ class Baker {
   }
 
   // M' of every entry at a time.
-  const std::vector<Rows>& exact(double time, Side side) {
+  const std::vector<Rows>& exact(const Knot& knot, Side side) {
     const size_t work = skin_.nodes.size() + skin_.entries.size();
     if (work > budget_.samples) fail("the clips of the file take too much time to bake");
     budget_.samples -= work;
-    const std::vector<glm::dmat4>& creatureFromNode = sampler_.sample(time, side);
+    const std::vector<glm::dmat4>& creatureFromNode = sampler_.sample(knot.source, side);
     exact_.resize(skin_.entries.size());
     for (size_t e = 0; e < skin_.entries.size(); ++e) {
       const ClipSkin::Entry& entry = skin_.entries[e];
       glm::dmat4 matrix = creatureFromNode[static_cast<size_t>(entry.node)] * entry.nodeFromBound;
-      matrix[3] -= glm::dvec4(rootVelocity_ * time, 0);
+      matrix[3] -= glm::dvec4(rootVelocity_ * knot.time, 0);
       for (int k = 0; k < 3; ++k) {
         exact_[e][static_cast<size_t>(k)] = {matrix[0][k], matrix[1][k], matrix[2][k], matrix[3][k]};
       }
@@ -118,13 +129,13 @@ class Baker {
     return exact_;
   }
 
-  Frame frameAt(double time, Side side) {
-    Frame frame{time, {}};
+  Frame frameAt(const Knot& knot, Side side) {
+    Frame frame{knot.time, {}};
     frame.rows.reserve(3 * skin_.entries.size());
-    for (const Rows& rows : exact(time, side)) {
+    for (const Rows& rows : exact(knot, side)) {
       for (const glm::dvec4& row : rows) {
         for (int k = 0; k < 4; ++k) {
-          if (!(std::fabs(row[k]) <= 1e12)) fail("carries skin to {} m at {} s", row[k], time);
+          if (!(std::fabs(row[k]) <= 1e12)) fail("has a matrix that holds {} at {} s", row[k], knot.source);
         }
         frame.rows.emplace_back(row);
       }
@@ -132,7 +143,7 @@ class Baker {
     return frame;
   }
 
-  void keep(Frame frame) {
+  void keep(const Frame& frame) {
     if (clip_.times.size() == Clip::maxFrames) {
       fail("takes over {} frames to err by {:.3g} m at most", Clip::maxFrames, allowed_);
     }
@@ -142,14 +153,14 @@ class Baker {
     clip_.rows.insert(clip_.rows.end(), frame.rows.begin(), frame.rows.end());
   }
 
-  // From the first to the last of `times`, at which the clip may jump.
-  void bakeStretch(std::vector<double> times, bool jumpsAtEnd) {
-    times_ = std::move(times);
-    Frame first = frameAt(times_.front(), Side::at);
+  // From the first to the last of `knots`; at both the clip may jump.
+  void bakeStretch(std::vector<Knot> knots) {
+    knots_ = std::move(knots);
+    const Frame first = frameAt(knots_.front(), Side::at);
     keep(first);
-    if (times_.size() < 2) return;
-    const Frame last = frameAt(times_.back(), jumpsAtEnd ? Side::before : Side::at);
-    refine(0, times_.size() - 1, first, last);
+    if (knots_.size() < 2) return;
+    const Frame last = frameAt(knots_.back(), knots_.back().jump ? Side::before : Side::at);
+    refine(0, knots_.size() - 1, first, last);
   }
 
   void refine(size_t first, size_t last, const Frame& from, const Frame& to) {
@@ -164,15 +175,15 @@ class Baker {
       return;
     }
     const size_t middle = (first + last) / 2;
-    const Frame frame = frameAt(times_[middle], Side::at);
+    const Frame frame = frameAt(knots_[middle], Side::at);
     refine(first, middle, from, frame);
     refine(middle, last, frame, to);
   }
 
   void bisect(const Frame& from, const Frame& to) {
-    const double middle = inSingle(0.5 * (from.time + to.time));
+    const Knot middle = between(from.time, to.time, 0.5);
     double error = 0;
-    const bool whole = middle <= from.time || middle >= to.time;  // no time lies between
+    const bool whole = middle.time <= from.time || middle.time >= to.time;  // no time lies between
     if (whole || fitsWithin(from.time, to.time, from, to, error)) {
       clip_.error = std::max(clip_.error, error);
       keep(to);
@@ -183,33 +194,39 @@ class Baker {
     bisect(frame, to);
   }
 
+  Knot between(double from, double to, double share) const {
+    const double time = inSingle(from + share * (to - from));
+    return {time, range_.begin + time, false};
+  }
+
   // Whether an interval between two key times errs little enough there and between all key times within.
   bool fits(size_t first, size_t last, const Frame& from, const Frame& to, double& error) {
     if (!fitsWithin(from.time, to.time, from, to, error)) return false;
     if (last - first < 2) return true;
     for (size_t k = first; k < last; ++k) {
-      if (k > first && !fitsAt(times_[k], from, to, error)) return false;
-      if (!fitsWithin(times_[k], times_[k + 1], from, to, error)) return false;
+      if (k > first && !fitsAt(knots_[k], from, to, error)) return false;
+      if (!fitsWithin(knots_[k].time, knots_[k + 1].time, from, to, error)) return false;
     }
     return true;
   }
 
   bool fitsWithin(double begin, double end, const Frame& from, const Frame& to, double& error) {
     for (const double share : quarters) {
-      const double time = inSingle(begin + share * (end - begin));
-      if (time > begin && time < end && !fitsAt(time, from, to, error)) return false;
+      const Knot knot = between(begin, end, share);
+      if (knot.time > begin && knot.time < end && !fitsAt(knot, from, to, error)) return false;
     }
     return true;
   }
 
-  bool fitsAt(double time, const Frame& from, const Frame& to, double& error) {
-    const double u = (time - from.time) / (to.time - from.time);
-    const std::vector<Rows>& rows = exact(time, Side::at);
+  bool fitsAt(const Knot& knot, const Frame& from, const Frame& to, double& error) {
+    const double u = (knot.time - from.time) / (to.time - from.time);
+    const std::vector<Rows>& rows = exact(knot, Side::at);
     for (size_t e = 0; e < rows.size(); ++e) {
       const ClipSkin::Entry& entry = skin_.entries[e];
       glm::dmat4 off(0);  // columns: the rows of what the frames lack
       for (size_t k = 0; k < 3; ++k) {
-        off[static_cast<int>(k)] = glm::dvec4(from.rows[3 * e + k]) * (1 - u) + glm::dvec4(to.rows[3 * e + k]) * u - rows[e][k];
+        off[static_cast<int>(k)] =
+            glm::dvec4(from.rows[3 * e + k]) * (1 - u) + glm::dvec4(to.rows[3 * e + k]) * u - rows[e][k];
       }
       for (int corner = 0; corner < 8; ++corner) {
         const double miss = glm::length(cornerOf(entry, corner) * off);
@@ -243,7 +260,8 @@ class Baker {
       for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 bound = cornerOf(entry, corner);
         glm::dvec3 p;
-        for (int k = 0; k < 3; ++k) p[k] = glm::dot(glm::dvec4(clip_.rows[3 * m + static_cast<size_t>(k)]), bound);
+        for (int k = 0; k < 3; ++k)
+          p[k] = glm::dot(glm::dvec4(clip_.rows[3 * m + static_cast<size_t>(k)]), bound);
         least = glm::min(least, p);
         most = glm::max(most, p);
       }
@@ -263,18 +281,19 @@ class Baker {
   const double allowed_;
   const std::string& what_;
   BakeBudget& budget_;
+  const BakeRange range_;
   ClipSampler sampler_;
   Clip clip_;
   glm::dvec3 rootVelocity_{0};
-  std::vector<double> times_;    // of the stretch
-  std::vector<Rows> exact_;      // at the time asked for last
+  std::vector<Knot> knots_;  // of the stretch
+  std::vector<Rows> exact_;  // at the time asked for last
 };
 
 }  // namespace
 
-Clip bakeClip(const gltf::Document& document, const gltf::Clip& from, const ClipSkin& skin,
+Clip bakeClip(const gltf::Document& document, const BakeRange& range, const ClipSkin& skin,
               const std::vector<ClipLeg>& legs, double error, const std::string& what, BakeBudget& budget) {
-  return Baker(document, from, skin, legs, error, what, budget).bake();
+  return Baker(document, range, skin, legs, error, what, budget).bake();
 }
 
 }  // namespace skitter

@@ -41,7 +41,8 @@ Value spline(const Sampler& sampler, const Place& place) {
   if (place.seconds <= 0) return v;
   const double u = place.u, d = place.seconds, u2 = u * u, u3 = u2 * u;
   return v * (2 * u3 - 3 * u2 + 1) + valueAt<Value>(sampler, k + 2) * (d * (u3 - 2 * u2 + u)) +
-         valueAt<Value>(sampler, k + 4) * (3 * u2 - 2 * u3) + valueAt<Value>(sampler, k + 3) * (d * (u3 - u2));
+         valueAt<Value>(sampler, k + 4) * (3 * u2 - 2 * u3) +
+         valueAt<Value>(sampler, k + 3) * (d * (u3 - u2));
 }
 
 glm::dquat rotationOf(const glm::dvec4& xyzw) {

@@ -58,7 +58,9 @@ class SkinBinder {
     throw inputError(name_ + ": " + fmt::format(format, std::forward<Arguments>(arguments)...));
   }
 
-  const glm::dmat4& restOf(int node) const { return document_.nodes[static_cast<size_t>(node)].modelFromNode; }
+  const glm::dmat4& restOf(int node) const {
+    return document_.nodes[static_cast<size_t>(node)].modelFromNode;
+  }
 
   // The entry of a node and a constant, found or made.
   size_t entryOf(int node, const glm::dmat4& nodeFromBind) {
@@ -92,9 +94,8 @@ class SkinBinder {
     std::map<uint32_t, size_t> known;  // entries of the skin's joints
     const auto entryOfJoint = [&](uint32_t joint) {
       if (const auto found = known.find(joint); found != known.end()) return found->second;
-      return known[joint] =
-                 skin ? entryOf(skin->joints[joint], skin->nodeFromBind[joint] * vertexFromModel)
-                      : entryOf(nodeIndex, vertexFromModel);
+      return known[joint] = skin ? entryOf(skin->joints[joint], skin->nodeFromBind[joint] * vertexFromModel)
+                                 : entryOf(nodeIndex, vertexFromModel);
     };
     for (const gltf::Primitive& part : document_.meshes[static_cast<size_t>(node.mesh)].primitives) {
       for (size_t v = 0; v < part.positions.size(); ++v) {
@@ -121,9 +122,8 @@ class SkinBinder {
         same->weight += influence.weight;
       }
     }
-    std::stable_sort(kept.begin(), kept.end(), [](const gltf::Influence& a, const gltf::Influence& b) {
-      return a.weight > b.weight;
-    });
+    std::stable_sort(kept.begin(), kept.end(),
+                     [](const gltf::Influence& a, const gltf::Influence& b) { return a.weight > b.weight; });
     if (kept.size() > 4) kept.resize(4);
     double total = 0;
     for (const gltf::Influence& influence : kept) total += influence.weight;
@@ -157,8 +157,9 @@ class SkinBinder {
     }
     const glm::dvec3 bound = glm::transpose(restFromBound) * glm::dvec3(from.normal);
     const double length = glm::length(bound);
-    vertex.normal = length > 1e-30 && std::isfinite(length) ? glm::vec3(bound / length)
-                                                            : glm::vec3(placement_.rotation * glm::dvec3(from.normal));
+    vertex.normal = length > 1e-30 && std::isfinite(length)
+                        ? glm::vec3(bound / length)
+                        : glm::vec3(placement_.rotation * glm::dvec3(from.normal));
     set_.vertices.push_back(vertex);
   }
 
@@ -196,7 +197,8 @@ class SkinBinder {
     std::vector<size_t> order(skin_.entries.size());
     std::iota(order.begin(), order.end(), size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-      return rank_[static_cast<size_t>(skin_.entries[a].node)] < rank_[static_cast<size_t>(skin_.entries[b].node)];
+      return rank_[static_cast<size_t>(skin_.entries[a].node)] <
+             rank_[static_cast<size_t>(skin_.entries[b].node)];
     });
     std::vector<uint16_t> place(order.size());
     std::vector<ClipSkin::Entry> sorted;
@@ -206,7 +208,8 @@ class SkinBinder {
     }
     skin_.entries = std::move(sorted);
     for (SkinVertex& vertex : set_.vertices) {
-      for (size_t k = 0; k < 4; ++k) vertex.bones[k] = vertex.weights[k] > 0 ? place[vertex.bones[k]] : uint16_t{0};
+      for (size_t k = 0; k < 4; ++k)
+        vertex.bones[k] = vertex.weights[k] > 0 ? place[vertex.bones[k]] : uint16_t{0};
     }
     for (ClipLeg& leg : set_.legs) {
       for (uint16_t& joint : leg.joints) joint = place[joint];
@@ -273,8 +276,8 @@ class SkinBinder {
   ClipSet& set_;
   ClipSkin skin_;
   glm::dmat4 modelFromCreature_{1};
-  std::vector<size_t> rank_;                       // of each node in parentsFirst
-  std::map<int, std::vector<size_t>> entriesOf_;   // of a node
+  std::vector<size_t> rank_;                      // of each node in parentsFirst
+  std::map<int, std::vector<size_t>> entriesOf_;  // of a node
 };
 
 }  // namespace

@@ -4,7 +4,8 @@
 
 namespace skitter {
 
-// Which feet stand at which frame, and from that the clip's speed and ground (docs/clip.md, Stance and speed).
+// Which feet stand at which frame, and from that the clip's speed and ground (docs/clip.md, Stance and
+// speed).
 void findStance(Clip& clip, size_t legs, double legLength);
 
 }  // namespace skitter

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,7 @@ struct Clip {
   size_t channels = 0;        // of the file
   double error = 0;           // of the frames against exact sampling, metres; at most 1e-4 ClipSet::size
   glm::vec3 rootVelocity{0};  // m/s, y is 0: taken out of the frames; the agent moves so to give it back
-  float speed = 0;   // m/s: the ground speed at which stance feet stand, negative backward; 0: it stands
+  float speed = 0;   // m/s: the ground speed at which its stance feet stand still, negative backward; 0: idle
   float ground = 0;  // height of the stance feet in the clip: the ground, in model space
   glm::vec3 least{0}, most{0};  // a box that holds the skin all through the clip
   std::vector<float> times;     // ascending from 0 to seconds; 1 to maxFrames
@@ -65,11 +66,18 @@ struct ClipSet {
   const Clip& clip(const std::string& clipName) const;
 };
 
-// The clips of a rig's file: a sidecar or a model; `rig` is what loadRig or proposedRig made of the same
-// file. A model without legs is placed as it comes, for a Rig without legs. A clip that is faulty or that
-// takes over maxFrames is left out and named in `notes`. Throws Error(input) that names the file and the
-// fault.
-ClipSet loadClips(const std::filesystem::path& file, const Rig& rig);
+// A stretch of a clip that becomes a clip of its own: some files hold idle, walk and death in one take.
+struct ClipCut {
+  std::string clip;         // of the file, the first of that name
+  std::string name;         // of the new one
+  double from = 0, to = 0;  // seconds, 0 <= from < to <= the clip's
+};
+
+// The clips of a rig's file, a sidecar or a model, and after them the cuts. `rig` is what loadRig or
+// proposedRig made of the same file. A model without legs is placed as it comes, for a Rig without legs. A
+// clip that is faulty or takes over maxFrames is left out and named in `notes`. Throws Error(input) that
+// names the file and the fault.
+ClipSet loadClips(const std::filesystem::path& file, const Rig& rig, std::span<const ClipCut> cuts = {});
 // Of the built-in spider: "walk" and "idle".
 ClipSet spiderClips();
 
