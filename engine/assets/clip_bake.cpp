@@ -94,7 +94,8 @@ class Baker {
     int root = -1;
     size_t highest = 0;
     for (const int node : skin_.nodes) {
-      if (!sampler_.translates(node) || !(skin_.weightBelow[static_cast<size_t>(node)] > 0.5)) continue;
+      const auto n = static_cast<size_t>(node);
+      if (!sampler_.translates(node) || skin_.inLeg[n] || !(skin_.weightBelow[n] > 0.5)) continue;
       size_t above = 0;
       for (int i = node; i != -1; i = document_.nodes[static_cast<size_t>(i)].parent) ++above;
       if (root != -1 && above >= highest) continue;

@@ -20,8 +20,8 @@ struct BakeRange {
   double begin = 0, end = 0;
 };
 
-// Frames, error, root velocity and box of a clip, and its feet; not yet its stance. `error` is what the frames
-// may err, in metres. Throws Error(input) that begins with `what` where the clip cannot be had.
+// Frames, error, root velocity and box of a clip, and its feet; not yet its stance. `error` is what the
+// frames may err, in metres. Throws Error(input) that begins with `what` where the clip cannot be had.
 Clip bakeClip(const gltf::Document& document, const BakeRange& range, const ClipSkin& skin,
               const std::vector<ClipLeg>& legs, double error, const std::string& what, BakeBudget& budget);
 

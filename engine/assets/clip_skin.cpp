@@ -37,6 +37,7 @@ class SkinBinder {
       rank_[static_cast<size_t>(document_.parentsFirst[k])] = k;
     }
     skin_.weightBelow.resize(document_.nodes.size(), 0);
+    skin_.inLeg.resize(document_.nodes.size(), false);
     for (size_t i = 0; i < document_.nodes.size(); ++i) {
       const gltf::Node& node = document_.nodes[i];
       if (!node.inScene || node.mesh == -1) continue;
@@ -240,6 +241,7 @@ class SkinBinder {
       ClipJoint& joint = joints[static_cast<size_t>(i)];
       const int parent = document_.nodes[static_cast<size_t>(i)].parent;
       if (joint.leg == -1 && parent != -1) joint = joints[static_cast<size_t>(parent)];
+      skin_.inLeg[static_cast<size_t>(i)] = joint.leg != -1;
     }
     for (const ClipSkin::Entry& entry : skin_.entries) {
       ClipJoint joint = joints[static_cast<size_t>(entry.node)];

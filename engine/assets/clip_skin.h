@@ -23,6 +23,7 @@ struct ClipSkin {
   glm::dmat4 creatureFromModel{1};
   std::vector<Entry> entries;       // as ClipSet::joints
   std::vector<int> nodes;           // those of the entries and all above them, parents first
+  std::vector<bool> inLeg;          // of each node of the document: a joint of a leg, or below one
   std::vector<double> weightBelow;  // of each node of the document: the skin's weight on it and below, 0 to 1
 };
 

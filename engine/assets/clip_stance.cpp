@@ -14,7 +14,7 @@ constexpr double leastSpeed = 0.05;  // leg lengths a second: slower is standing
 struct Limits {
   double height, forward;
 };
-constexpr Limits begins{0.12, 0.15}, stays{0.2, 0.3};
+constexpr Limits begins{0.15, 0.15}, stays{0.25, 0.3};
 
 struct Foot {
   std::vector<double> y, z, advance;  // the last the speed along z
