@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "part_file.h"
 #include "rig_picture.h"
+#include "skitter/clip.h"
 #include "skitter/error.h"
 #include "skitter/rig_setup.h"
 #include "values.h"
@@ -27,7 +28,16 @@ struct Inspection {
   RigProposal proposal;
   std::optional<Rig> rig;  // of its sidecar or its extras
   std::string rigFault;    // why there is none
+  ClipSet clips;           // on that rig, else on the proposed one, else on none
+  std::string clipFault;   // why they cannot be baked
 };
+
+// On whichever rig the file gives: a model without legs can be played too.
+ClipSet bakeClips(const std::string& file, const Inspection& inspection) {
+  if (inspection.rig) return loadClips(file, *inspection.rig);
+  if (std::filesystem::exists(sidecarOf(file))) throw inputError(inspection.rigFault);
+  return loadClips(file, inspection.proposal.setup.legs.empty() ? Rig() : proposedRig(file));
+}
 
 Inspection look(const std::string& file) {
   Inspection inspection;
@@ -37,6 +47,12 @@ Inspection look(const std::string& file) {
     inspection.rig = loadRig(file);
   } catch (const Error& error) {
     inspection.rigFault = error.what();
+  }
+  if (inspection.model.clips.empty()) return inspection;
+  try {
+    inspection.clips = bakeClips(file, inspection);
+  } catch (const Error& error) {
+    inspection.clipFault = error.what();
   }
   return inspection;
 }
@@ -49,6 +65,32 @@ std::string describeChain(const Model& model, const FoundLeg& leg) {
     text += fmt::format("; the leg begins at {}", model.reference(leg.root));
   if (!leg.footJoint) text += "; foot without a joint";
   return text;
+}
+
+double relativeError(const ClipSet& set, const Clip& clip) {
+  return set.size > 0 ? clip.error / set.size : 0;
+}
+
+void printClips(const Inspection& inspection) {
+  if (!inspection.clipFault.empty()) {
+    for (const Model::Clip& clip : inspection.model.clips) {
+      fmt::print("          \"{}\", {:.3g} s, {} channels\n", clip.name, clip.seconds, clip.channels);
+    }
+    fmt::print("          not played: {}\n", inspection.clipFault);
+    return;
+  }
+  const ClipSet& set = inspection.clips;
+  for (const Clip& clip : set.clips) {
+    fmt::print("          \"{}\", {:.3g} s, {} channels: {} frames of {} joints, error {:.2g} of the size",
+               clip.name, clip.seconds, clip.channels, clip.frames(), set.joints.size(),
+               relativeError(set, clip));
+    if (clip.speed != 0) fmt::print("; speed {:.3g} m/s", clip.speed);
+    if (clip.rootVelocity != glm::vec3(0)) {
+      fmt::print("; root motion {:.3g} m/s left, {:.3g} forward", clip.rootVelocity.x, clip.rootVelocity.z);
+    }
+    fmt::print("\n");
+  }
+  for (const std::string& note : set.notes) fmt::print("          {}\n", note);
 }
 
 void print(const std::string& file, const Inspection& inspection) {
@@ -68,9 +110,7 @@ void print(const std::string& file, const Inspection& inspection) {
   fmt::print("  skin    {} skins, {} joints, {} nodes\n", model.skins, model.jointCount(),
              model.nodes.size());
   fmt::print("  clips   {}\n", model.clips.size());
-  for (const Model::Clip& clip : model.clips) {
-    fmt::print("          \"{}\", {:.3g} s, {} channels\n", clip.name, clip.seconds, clip.channels);
-  }
+  printClips(inspection);
   fmt::print("  legs    {} found\n", inspection.proposal.found.size());
   for (const FoundLeg& leg : inspection.proposal.found) {
     fmt::print("          {}: {}\n", leg.name, describeChain(model, leg));
@@ -91,9 +131,20 @@ void print(const std::string& file, const Inspection& inspection) {
 
 nlohmann::ordered_json describe(const std::string& file, const Inspection& inspection) {
   const Model& model = inspection.model;
-  nlohmann::ordered_json clips = nlohmann::ordered_json::array(), legs = nlohmann::ordered_json::array();
+  nlohmann::ordered_json clips = nlohmann::ordered_json::array(), legs = nlohmann::ordered_json::array(),
+                         baked = nlohmann::ordered_json::array();
   for (const Model::Clip& clip : model.clips) {
     clips.push_back({{"name", clip.name}, {"seconds", clip.seconds}, {"channels", clip.channels}});
+  }
+  for (const Clip& clip : inspection.clips.clips) {
+    baked.push_back({{"name", clip.name},
+                     {"seconds", clip.seconds},
+                     {"channels", clip.channels},
+                     {"frames", clip.frames()},
+                     {"error", relativeError(inspection.clips, clip)},
+                     {"speed", clip.speed},
+                     {"ground", clip.ground},
+                     {"rootVelocity", {clip.rootVelocity.x, clip.rootVelocity.z}}});
   }
   for (const FoundLeg& leg : inspection.proposal.found) {
     std::vector<std::string> joints;
@@ -112,6 +163,9 @@ nlohmann::ordered_json describe(const std::string& file, const Inspection& inspe
           {"vertices", model.vertices.size()},
           {"triangles", model.indices.size() / 3},
           {"clips", clips},
+          {"bakedClips", baked},
+          {"clipsLeftOut", inspection.clips.notes},
+          {"clipFault", inspection.clipFault},
           {"legs", legs},
           {"odd", model.notes},
           {"found", inspection.proposal.notes},

@@ -27,6 +27,19 @@ TEST_F(RigCommand, InspectSaysWhatThereIs) {
   EXPECT_EQ(report.at("isRig"), false);
 }
 
+TEST_F(RigCommand, InspectSaysHowClipsAreBaked) {
+  const Result result =
+      skitter({"inspect", SKITTER_ROOT "/assets/spider.glb", "--json", file("spider.json")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find("\"walk\", 0.6 s, 28 channels: 87 frames of 44 joints"), std::string::npos)
+      << result.out;
+  EXPECT_NE(result.out.find("speed 1 m/s"), std::string::npos) << result.out;
+  const nlohmann::json walk = json("spider.json").at("bakedClips").at(0);
+  EXPECT_EQ(walk.at("name"), "walk");
+  EXPECT_LE(walk.at("error"), 1e-4);
+  EXPECT_NEAR(walk.at("speed"), 1, 1e-3);
+}
+
 // Models that nobody here made, the counts those of MANIFEST.md beside them.
 TEST_F(RigCommand, InspectCountsForeignModelsAndFindsLegs) {
   const fs::path data = SKITTER_ROOT "/../shared/data/gltf";
