@@ -1,3 +1,4 @@
+#include "check_clips.h"
 #include "check_rig.h"
 #include "skitter/model.h"
 #include "skitter/rig_setup.h"
@@ -39,9 +40,19 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const Model model = loadModel(name);
     checkModel(model);
     const RigProposal proposal = proposeRig(model);
-    if (proposal.setup.legs.empty()) return;
-    parseRigSetup(writeRigSetup(proposal.setup), "proposal");
-    fuzz::checkRig(buildRig(model, proposal.setup, name));
+    Rig rig;
+    if (!proposal.setup.legs.empty()) {
+      parseRigSetup(writeRigSetup(proposal.setup), "proposal");
+      rig = buildRig(model, proposal.setup, name);
+      fuzz::checkRig(rig);
+    }
+    if (model.clips.empty()) return;
+    // Legs in the extras count before those that are found.
+    try {
+      rig = loadRig(name);
+    } catch (const Error&) {
+    }
+    fuzz::checkClips(loadClips(name, rig));
   });
   return 0;
 }

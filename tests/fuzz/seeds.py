@@ -82,7 +82,10 @@ class Gltf:
         self.accessors.append(sparse)
         hat = len(self.accessors) - 1
         times = self.accessor("SCALAR", 5126, "f", [(0,), (1,)], min=[0], max=[1])
-        turns = self.accessor("VEC4", 5126, "4f", [(0, 0, 0, 1)] * 2)
+        turns = self.accessor("VEC4", 5126, "4f", [(0, 0, 0, 1), (0, 0.6, 0, 0.8)])
+        quarters = self.accessor("VEC4", 5120, "4b", [(0, 0, 0, 127), (90, 0, 0, 90)], normalized=True)
+        ways = self.accessor("VEC3", 5126, "3f", [(0, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 1), (0.1, 1, 0.5), (0, 0, 0)])
+        sizes = self.accessor("VEC3", 5126, "3f", [(1, 1, 1), (1, 2, 1)])
         return {
             "asset": {"version": "2.0"}, "scene": 0, "extensionsUsed": ["KHR_materials_unlit"],
             "scenes": [{"nodes": [0, joints, joints + 1], "extras": {"skitter": {
@@ -97,8 +100,11 @@ class Gltf:
             "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]}}],
             "skins": [{"joints": list(range(joints)), "skeleton": 0,
                        "inverseBindMatrices": self.accessor("MAT4", 5126, "16f", bind)}],
-            "animations": [{"name": "walk", "samplers": [{"input": times, "output": turns, "interpolation": "LINEAR"}],
-                            "channels": [{"sampler": 0, "target": {"node": 1, "path": "rotation"}}]}],
+            "animations": [{"name": "walk",
+                            "samplers": [{"input": times, "output": output, "interpolation": kind} for output, kind in
+                                         ((turns, "LINEAR"), (ways, "CUBICSPLINE"), (sizes, "STEP"), (quarters, "STEP"))],
+                            "channels": [{"sampler": sampler, "target": {"node": node, "path": path}} for sampler, node, path in
+                                         ((0, 1, "rotation"), (1, 0, "translation"), (2, 2, "scale"), (3, 4, "rotation"))]}],
             "images": [{"uri": "none.png"}], "accessors": self.accessors, "bufferViews": self.views}
 
 
