@@ -15,6 +15,11 @@ namespace {
 constexpr double maxSeconds = 86400;
 constexpr double quarters[] = {0.5, 0.25, 0.75};  // the middle first: it errs most
 
+void spend(BakeBudget& budget, size_t samples, const std::string& what) {
+  if (samples > budget.samples) throw inputError(what + ": the clips of the file take too long to bake");
+  budget.samples -= samples;
+}
+
 double inSingle(double value) { return static_cast<double>(static_cast<float>(value)); }
 
 // docs/clip.md, Root motion and Frames.
@@ -114,9 +119,7 @@ class Baker {
 
   // M' of every entry at a time.
   const std::vector<Rows>& exact(const Knot& knot, Side side) {
-    const size_t work = skin_.nodes.size() + skin_.entries.size();
-    if (work > budget_.samples) fail("the clips of the file take too much time to bake");
-    budget_.samples -= work;
+    spend(budget_, skin_.nodes.size() + skin_.entries.size(), what_);
     const std::vector<glm::dmat4>& creatureFromNode = sampler_.sample(knot.source, side);
     exact_.resize(skin_.entries.size());
     for (size_t e = 0; e < skin_.entries.size(); ++e) {
@@ -294,6 +297,8 @@ class Baker {
 
 Clip bakeClip(const gltf::Document& document, const BakeRange& range, const ClipSkin& skin,
               const std::vector<ClipLeg>& legs, double error, const std::string& what, BakeBudget& budget) {
+  // What a clip takes however short it is.
+  spend(budget, document.nodes.size(), what);
   return Baker(document, range, skin, legs, error, what, budget).bake();
 }
 

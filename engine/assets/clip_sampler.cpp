@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace skitter {
 namespace {
@@ -60,6 +61,12 @@ glm::dvec4 slerp(const glm::dvec4& from, glm::dvec4 to, double u) {
   const double angle = std::acos(std::min(cosine, 1.0));
   if (angle < 1e-6) return from * (1 - u) + to * u;
   return (from * std::sin((1 - u) * angle) + to * std::sin(u * angle)) / std::sin(angle);
+}
+
+std::vector<double> eachOnce(std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
 }
 
 }  // namespace
@@ -127,40 +134,39 @@ const std::vector<glm::dmat4>& ClipSampler::sample(double time, Side side) {
   return worldFromNode_;
 }
 
-std::vector<double> ClipSampler::keyTimes() const {
-  std::vector<double> times;
+// Those of the nodes that move, each once however many channels share it.
+std::vector<const Sampler*> ClipSampler::samplers() const {
+  std::vector<const Sampler*> found;
   for (const int node : order_) {
     for (const Sampler* sampler : channels_[static_cast<size_t>(node)].paths) {
-      if (!sampler) continue;
-      times.insert(times.end(), sampler->times.begin(), sampler->times.end());
-      // Many channels share their times: no more than twice as many as are kept lie in memory.
-      if (times.size() > (size_t{1} << 16)) {
-        std::sort(times.begin(), times.end());
-        times.erase(std::unique(times.begin(), times.end()), times.end());
-      }
+      if (sampler) found.push_back(sampler);
     }
   }
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
+  std::sort(found.begin(), found.end(), std::less<>());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+std::vector<double> ClipSampler::keyTimes() const {
+  std::vector<double> times;
+  for (const Sampler* sampler : samplers()) {
+    times.insert(times.end(), sampler->times.begin(), sampler->times.end());
+  }
+  return eachOnce(std::move(times));
 }
 
 std::vector<double> ClipSampler::jumpTimes() const {
   std::vector<double> times;
-  for (const int node : order_) {
-    for (const Sampler* sampler : channels_[static_cast<size_t>(node)].paths) {
-      if (!sampler || sampler->interpolation != Interpolation::step) continue;
-      const size_t width = sampler->path == Path::rotation ? 4 : 3;
-      for (size_t k = 1; k < sampler->times.size(); ++k) {
-        const auto value = sampler->values.begin() + static_cast<std::ptrdiff_t>(k * width);
-        const auto before = value - static_cast<std::ptrdiff_t>(width);
-        if (!std::equal(before, value, value)) times.push_back(sampler->times[k]);
-      }
+  for (const Sampler* sampler : samplers()) {
+    if (sampler->interpolation != Interpolation::step) continue;
+    const size_t width = sampler->path == Path::rotation ? 4 : 3;
+    for (size_t k = 1; k < sampler->times.size(); ++k) {
+      const auto value = sampler->values.begin() + static_cast<std::ptrdiff_t>(k * width);
+      const auto before = value - static_cast<std::ptrdiff_t>(width);
+      if (!std::equal(before, value, value)) times.push_back(sampler->times[k]);
     }
   }
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
+  return eachOnce(std::move(times));
 }
 
 }  // namespace skitter

@@ -38,6 +38,8 @@ class ClipSampler {
     const gltf::Sampler* operator[](size_t path) const { return paths[path]; }
   };
 
+  std::vector<const gltf::Sampler*> samplers() const;
+
   const gltf::Document& document_;
   std::vector<int> order_;  // the nodes that move
   std::vector<Channels> channels_;

@@ -445,6 +445,20 @@ TEST_F(SmallClips, WhatTakesTooMuchIsLeftOutSoon) {
   }
 }
 
+TEST_F(SmallClips, ManyClipsOfManyNodesEndSoon) {
+  Glb glb = small();
+  move(glb, "knee", "translation", "LINEAR", {0, 1}, {1, 0, 0, 2, 0, 0});
+  const nlohmann::json clip = glb.json["animations"][0];
+  glb.json["animations"] = std::vector<nlohmann::json>(10000, clip);
+  for (int i = 0; i < 50000; ++i) glb.json["nodes"].push_back(nlohmann::json::object());
+  const auto start = std::chrono::steady_clock::now();
+  const ClipSet set = load(glb);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_GT(set.clips.size(), 1000u);
+  EXPECT_EQ(set.clips.size() + set.notes.size(), 10000u);
+  EXPECT_NE(set.notes.at(0).find("take too long to bake"), std::string::npos);
+}
+
 TEST_F(SmallClips, ARigOfAnotherFileIsRefused) {
   Glb glb = small();
   test::writeBytes(folder_ / "odd.glb", glb.bytes());
