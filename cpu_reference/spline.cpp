@@ -174,7 +174,7 @@ SplineSample HermiteSpline::at(double time) const {
   const auto [i, s] = place(time);
   const double step = keys_[i + 1].time - keys_[i].time;
   const Bezier& b = segments_[i];
-  return {b.at(s), b.derivative(s) / step, b.secondDerivative(s) / (step * step)};
+  return {b.at(s), b.derivative(s) / step, b.secondDerivative(s) / (step * step), step};
 }
 
 double HermiteSpline::lengthAt(double time) const {
@@ -207,7 +207,8 @@ Travel travelAtPhase(const HermiteSpline& spline, double phase, double rounds, d
   result.velocity = sample.velocity * (span / duration);
   if (constantSpeed) {
     const double speed = glm::length(sample.velocity);
-    result.velocity = speed > 0 ? sample.velocity / speed * (spline.length() / duration) : dvec3(0);
+    result.velocity =
+        speed * sample.step >= 1e-10 ? sample.velocity / speed * (spline.length() / duration) : dvec3(0);
   }
   result.travelled =
       rounds * spline.length() + (constantSpeed ? phase * spline.length() : spline.lengthAt(time));

@@ -31,6 +31,7 @@ struct SplineRecipe {
 
 struct SplineSample {
   glm::dvec3 position{0}, velocity{0}, acceleration{0};
+  double step = 1;  // h of its segment
 };
 
 // A segment by its Bernstein polynomial over s in [0, 1].

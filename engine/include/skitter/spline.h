@@ -34,7 +34,7 @@ struct SplineTangents {
 
 // Coordinates and knots within +-1e6.
 struct SplineChain {
-  std::vector<glm::vec3> points;  // 2 to 1024
+  std::vector<glm::vec3> points = {};  // 2 to 1024
   // When the points are met, each at least 1e-6 after the one before; as many as points, and if closed one
   // more: when it is back at the first. Empty: 0, 1, 2, ..
   std::vector<float> knots = {};
