@@ -26,7 +26,7 @@ constexpr uint32_t kMostPageSplines = 1u << 20;
 
 struct Page {
   uint32_t splines = 0;
-  gpu::Buffer key, given, tangent, length, clock, motion;
+  gpu::Buffer key, given, tangent, length, summary, clock, motion;
   gpu::Bindings tangents, lengths, travel;
 };
 
@@ -130,11 +130,15 @@ void SplineBatch::Impl::makeKernels() {
   tangents = makeKernel("tangents", {tangents_comp_texel(), tangents_comp_storage()},
                         {{SPLINE_KEY, load4}, {SPLINE_GIVEN, load4}, {SPLINE_TANGENT_OUT, store}});
   lengths = makeKernel("lengths", {lengths_comp_texel(), lengths_comp_storage()},
-                       {{SPLINE_KEY, load4}, {SPLINE_TANGENT, load4}, {SPLINE_LENGTH_OUT, store}});
+                       {{SPLINE_KEY, load4},
+                        {SPLINE_TANGENT, load4},
+                        {SPLINE_LENGTH_OUT, store},
+                        {SPLINE_SUMMARY_OUT, store}});
   travel = makeKernel("travel", {travel_comp_texel(), travel_comp_storage()},
                       {{SPLINE_KEY, load4},
                        {SPLINE_TANGENT, load4},
                        {SPLINE_LENGTH, load4},
+                       {SPLINE_SUMMARY, load4},
                        {SPLINE_CLOCK, load4},
                        {SPLINE_MOTION_OUT, store}});
 }
@@ -148,7 +152,7 @@ void SplineBatch::Impl::makePages() {
       std::min<uint64_t>({kMostPageSplines, reach / (16 * tangentStride),
                           uint64_t{limits.maxComputeWorkGroupCountX} * shared::WORK_GROUP / keys}));
   if (options.pageSplines > 0) pageSplines = std::min(pageSplines, options.pageSplines);
-  const uint64_t stride = 2 * uint64_t{keys} + (hasGiven ? 2 : 1) * tangentStride + 1 + shared::MOTION_STRIDE;
+  const uint64_t stride = 2 * uint64_t{keys} + (hasGiven ? 2 : 1) * tangentStride + 2 + shared::MOTION_STRIDE;
   const uint64_t needed = stride * 16 * splines;
   if (needed > limits.availableBytes)
     throw deviceError(fmt::format("{} splines of {} points need {} MiB, {} has {} MiB", splines,
@@ -164,6 +168,7 @@ void SplineBatch::Impl::makePages() {
     page.given = make(hasGiven ? tangentStride : 0, "spline tangents given");
     page.tangent = make(tangentStride, "spline tangents");
     page.length = make(keys, "spline lengths");
+    page.summary = make(1, "spline summaries");
     page.clock = make(1, "spline clocks");
     page.motion = make(shared::MOTION_STRIDE, "spline motions");
     if (hasGiven) gpu::clear(*context, page.given);
@@ -178,11 +183,14 @@ void SplineBatch::Impl::bind(Page& page) {
                     *from = hasGiven ? &of(givenTangents, page.given) : &unused;
   page.tangents =
       tangents.bind(*context, {{SPLINE_KEY, key}, {SPLINE_GIVEN, from}, {SPLINE_TANGENT_OUT, &page.tangent}});
-  page.lengths = lengths.bind(
-      *context, {{SPLINE_KEY, key}, {SPLINE_TANGENT, &page.tangent}, {SPLINE_LENGTH_OUT, &page.length}});
+  page.lengths = lengths.bind(*context, {{SPLINE_KEY, key},
+                                         {SPLINE_TANGENT, &page.tangent},
+                                         {SPLINE_LENGTH_OUT, &page.length},
+                                         {SPLINE_SUMMARY_OUT, &page.summary}});
   page.travel = travel.bind(*context, {{SPLINE_KEY, key},
                                        {SPLINE_TANGENT, &page.tangent},
                                        {SPLINE_LENGTH, &page.length},
+                                       {SPLINE_SUMMARY, &page.summary},
                                        {SPLINE_CLOCK, clock},
                                        {SPLINE_MOTION_OUT, motion}});
 }
@@ -245,7 +253,7 @@ uint64_t SplineBatch::memoryBytes() const {
   uint64_t bytes = 0;
   for (const Page& page : impl_->pages)
     for (const gpu::Buffer* buffer :
-         {&page.key, &page.given, &page.tangent, &page.length, &page.clock, &page.motion})
+         {&page.key, &page.given, &page.tangent, &page.length, &page.summary, &page.clock, &page.motion})
       bytes += buffer->size();
   return bytes;
 }
@@ -340,10 +348,9 @@ std::vector<SplineMotion> SplineBatch::downloadMotions() const {
 }
 
 std::vector<float> SplineBatch::downloadLengths() const {
-  const std::vector<glm::vec4> records = impl_->download(&Page::length, givenNone, impl_->keys);
   std::vector<float> lengths;
-  for (size_t r = 0; r < records.size(); r += impl_->keys)
-    lengths.push_back(records[r].y > 0 ? 0.0f : records[r + impl_->keys - 1].x);
+  for (const glm::vec4& summary : impl_->download(&Page::summary, givenNone, 1))
+    lengths.push_back(summary.w > 0 ? 0.0f : summary.x);
   return lengths;
 }
 

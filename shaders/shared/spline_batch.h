@@ -25,15 +25,16 @@ SPLINE float STATE_MOVING = 1.0;
 SPLINE float STATE_FINISHED = 2.0;
 SPLINE float STATE_REFUSED = 3.0;
 
-SPLINE int SPLINE_KEY = 0;    // a key: point, knot
-SPLINE int SPLINE_GIVEN = 1;  // two a key: tangent arriving, leaving
-SPLINE int SPLINE_TANGENT =
-    2;  // two a key: tangent arriving, leaving; w of the first: 1 if the key may not be
+SPLINE int SPLINE_KEY = 0;      // a key: point, knot
+SPLINE int SPLINE_GIVEN = 1;    // two a key: tangent arriving, leaving
+SPLINE int SPLINE_TANGENT = 2;  // as given; w of the arriving one: 1 if the key may not be
 SPLINE int SPLINE_TANGENT_OUT = 3;
-SPLINE int SPLINE_LENGTH = 4;  // a key: arc length from the first; y of the first: 1 if the spline is refused
+SPLINE int SPLINE_LENGTH = 4;  // a key: arc length from the first
 SPLINE int SPLINE_LENGTH_OUT = 5;
 SPLINE int SPLINE_CLOCK = 6;       // start, the rest of start, duration, active
 SPLINE int SPLINE_MOTION_OUT = 7;  // position, length travelled; velocity, state
+SPLINE int SPLINE_SUMMARY = 8;     // length, first knot, last knot - first, 1 if the spline is refused
+SPLINE int SPLINE_SUMMARY_OUT = 9;
 
 SPLINE int CONSTANT_KEYS = 0;
 SPLINE int CONSTANT_CLOSED = 1;

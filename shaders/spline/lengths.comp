@@ -5,6 +5,7 @@
 #include "spline/segment.glsl"
 
 STORE4_BUFFER(SPLINE_LENGTH_OUT, lengthsOut);
+STORE4_BUFFER(SPLINE_SUMMARY_OUT, summariesOut);
 
 void main() {
   int spline = int(gl_GlobalInvocationID.x);
@@ -16,5 +17,7 @@ void main() {
     faults = max(faults, LOAD4(tangents, TANGENT_STRIDE * (spline * KEYS + i + 1)).w);
     STORE4(lengthsOut, spline * KEYS + i + 1, vec4(travelled, 0.0, 0.0, 0.0));
   }
-  STORE4(lengthsOut, spline * KEYS, vec4(0.0, faults, 0.0, 0.0));
+  STORE4(lengthsOut, spline * KEYS, vec4(0.0));
+  float first = LOAD4(keys, spline * KEYS).w, last = LOAD4(keys, spline * KEYS + SEGMENTS).w;
+  STORE4(summariesOut, spline, vec4(travelled, first, last - first, faults));
 }

@@ -9,6 +9,7 @@ layout(constant_id = CONSTANT_ARC_LENGTH) const bool ARC_LENGTH = true;
 layout(constant_id = CONSTANT_CONSTANT_SPEED) const bool CONSTANT_SPEED = false;
 
 LOAD4_BUFFER(SPLINE_LENGTH, lengths);
+LOAD4_BUFFER(SPLINE_SUMMARY, summaries);
 LOAD4_BUFFER(SPLINE_CLOCK, clocks);
 STORE4_BUFFER(SPLINE_MOTION_OUT, motionsOut);
 
@@ -16,21 +17,26 @@ float milestone(int spline, int k) {
   return CONSTANT_SPEED ? LOAD4(lengths, spline * KEYS + k).x : LOAD4(keys, spline * KEYS + k).w;
 }
 
-// The last segment that begins at `at` or before.
+// The last segment that begins at `at` or before. Strides that no spline of the batch needs fold away.
 int segmentOf(int spline, float at) {
   int i = 0;
-  for (int stride = 512; stride > 0; stride >>= 1)
-    if (i + stride < SEGMENTS && milestone(spline, i + stride) <= at) i += stride;
+  for (int stride = 512; stride > 0; stride >>= 1) {
+    if (stride >= SEGMENTS) continue;
+    int next = i + stride;
+    float begins = milestone(spline, min(next, SEGMENTS));
+    i = next < SEGMENTS && begins <= at ? next : i;
+  }
   return i;
 }
 
 void main() {
   int spline = int(gl_GlobalInvocationID.x);
   if (spline >= int(constants.count)) return;
-  vec4 clock = LOAD4(clocks, spline);
+  vec4 clock = LOAD4(clocks, spline), summary = LOAD4(summaries, spline);
+  float total = summary.x, first = summary.y, span = summary.z;
   float duration = clock.z;
   Exact elapsed = elapsedSince(clock.x, clock.y, constants.now, constants.nowRest);
-  bool refused = LOAD4(lengths, spline * KEYS).y > 0.0 || !(duration > 0.0 && duration <= 1e30) ||
+  bool refused = summary.w > 0.0 || !(duration > 0.0 && duration <= 1e30) ||
                  !(abs(elapsed.value) <= 1e30) || isnan(clock.w);
   bool begun = clock.w > 0.0 && elapsed.value >= 0.0;
   bool over = !CLOSED && begun && elapsed.value >= duration;
@@ -39,12 +45,11 @@ void main() {
   float phase = begun ? min(since / duration, 1.0) : 0.0;
   rounds = begun ? rounds : 0.0;
 
-  float begins, time, total = LOAD4(lengths, spline * KEYS + SEGMENTS).x;
-  float first = LOAD4(keys, spline * KEYS).w, span = LOAD4(keys, spline * KEYS + SEGMENTS).w - first;
+  float begins, time;
   float at = CONSTANT_SPEED ? phase * total : first + phase * span;
   int i = segmentOf(spline, at);
   Cubic cubic = segmentAt(spline, i, time, begins);
-  float before = LOAD4(lengths, spline * KEYS + i).x;
+  float before = ARC_LENGTH || CONSTANT_SPEED ? LOAD4(lengths, spline * KEYS + i).x : 0.0;
   float s = clamp((at - begins) / time, 0.0, 1.0);
   if (CONSTANT_SPEED) s = cubicAtLength(cubic, at - before, LOAD4(lengths, spline * KEYS + i + 1).x - before);
   vec3 tangent = cubicTangent(cubic, s);
