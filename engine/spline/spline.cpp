@@ -61,10 +61,10 @@ std::vector<float> splineKnots(std::span<const glm::vec3> points, bool closed, f
   double knot = 0;
   for (size_t i = 0; i < segments; ++i) {
     const double distance = glm::distance(dvec3(points[i]), dvec3(points[(i + 1) % points.size()]));
-    knot += std::max(std::pow(distance, static_cast<double>(power)), 1e-6);
+    // Points on one another still are apart in float32.
+    knot += std::max({std::pow(distance, static_cast<double>(power)), 2e-6, 0x1p-21 * knot});
     knots.push_back(static_cast<float>(knot));
   }
-  // Small steps of a long way are below what float32 can tell apart.
   checkKnots("the spline", knots);
   return knots;
 }

@@ -49,6 +49,7 @@ SPLINE int MOTION_STRIDE = 2;   // a spline
 SPLINE float LARGEST_COORDINATE = 1e6;
 SPLINE float LARGEST_TANGENT = 1e12;
 SPLINE float LEAST_STEP = 1e-6;
+SPLINE float LARGEST_LENGTH = 1e18;  // of all of it: what float32 can square and sum
 
 // Push constants of every entry point.
 struct SplineConstants {

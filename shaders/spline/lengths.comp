@@ -19,5 +19,5 @@ void main() {
   }
   STORE4(lengthsOut, spline * KEYS, vec4(0.0));
   float first = LOAD4(keys, spline * KEYS).w, last = LOAD4(keys, spline * KEYS + SEGMENTS).w;
-  STORE4(summariesOut, spline, vec4(travelled, first, last - first, faults));
+  STORE4(summariesOut, spline, vec4(travelled, first, last - first, travelled <= LARGEST_LENGTH ? faults : 1.0));
 }

@@ -1,6 +1,8 @@
 // Batches of splines on the device, held against the reference.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "cpu_reference/spline_tolerance.h"
 #include "gpu/buffer.h"
 #include "gpu/submit.h"
@@ -120,6 +122,50 @@ TEST_P(SplineBatchTest, LengthsAreTheReferences) {
     EXPECT_NEAR(lengths[n], spline.length(), reference::tolerance::SplineBounds(recipe, spline).length())
         << "seed " << run.seed << ", spline " << n;
   }
+}
+
+// Points on one another, there and back, the largest that may be, the shortest steps.
+TEST_P(SplineBatchTest, NastyChains) {
+  using glm::vec3;
+  const std::vector<std::vector<vec3>> chains = {
+      std::vector<vec3>(4, vec3(1, 2, 3)),
+      {vec3(0), vec3(1), vec3(1), vec3(2)},
+      {vec3(0), vec3(1), vec3(0), vec3(1)},
+      {vec3(-1e6f), vec3(1e6f), vec3(-1e6f, 1e6f, 0), vec3(0)},
+      {vec3(0), vec3(1e-30f), vec3(1e-20f), vec3(1)},
+  };
+  const std::vector<std::vector<float>> knots = {
+      {0, 1, 2, 3}, {0, 2e-6f, 1, 2}, {-1e6f, -1, 1, 1e6f}, {1, 1.5f, 1.5f + 2e-6f, 2}};
+  for (const SplineRule rule : allRules)
+    for (const bool even : {false, true}) {
+      SplineRun run{.options = {.points = 4, .tangents = someTangents(rule), .constantSpeed = even},
+                    .now = 5};
+      for (const auto& chain : chains)
+        for (const auto& times : knots)
+          for (const float phase : {0.0f, 0.3f, 0.999f, 1.0f}) {
+            run.points.insert(run.points.end(), chain.begin(), chain.end());
+            run.arriving.insert(run.arriving.end(), 4, vec3(0.5f, 0, -2));
+            run.knots.insert(run.knots.end(), times.begin(), times.end());
+            run.clocks.emplace_back().activate(run.now - phase);
+            ++run.splines;
+          }
+      run.leaving = run.arriving;
+      const std::vector<SplineMotion> motions = travelled(device(), run);
+      for (uint32_t n = 0; n < run.splines; ++n) {
+        const SplineMotion& m = motions[n];
+        ASSERT_TRUE(std::isfinite(glm::length(m.position)) && !std::isnan(glm::length(m.velocity)) &&
+                    std::isfinite(m.travelled))
+            << nameOf(rule) << ", spline " << n;
+        const double size = glm::distance(run.points[4 * n], run.points[4 * n + 1]);
+        if (size == 0 && n < 16 && rule != SplineRule::given) {
+          EXPECT_EQ(m.position, run.points[4 * n]) << nameOf(rule) << ", spline " << n;
+          EXPECT_EQ(m.velocity, vec3(0));
+          EXPECT_EQ(m.travelled, 0);
+        }
+      }
+      const Verdict verdict = judge(run, motions);
+      EXPECT_LE(verdict.worst, 1) << verdict.text;
+    }
 }
 
 // In the caller's command buffer and buffers: one record beyond each end stays as it is.

@@ -124,5 +124,19 @@ TEST_F(SplineRefuseTest, WhatIsWrongOnTheDeviceIsMarkedAndHurtsNoOther) {
   }
 }
 
+// Out and back by the largest tangents over the longest time.
+TEST_F(SplineRefuseTest, ALengthThatFloat32CannotSumIsMarked) {
+  SplineBatch batch(device(), 1, {.tangents = {SplineRule::given}});
+  batch.setPoints(std::vector<vec3>(2), std::vector<float>{-1e6f, 1e6f});
+  batch.setTangents(std::vector<vec3>{vec3(1e12f), vec3(-1e12f)});
+  batch.travel(0);
+  EXPECT_EQ(batch.downloadMotions()[0].state, SplineState::refused);
+  EXPECT_EQ(batch.downloadLengths()[0], 0);
+  batch.setTangents(std::vector<vec3>{vec3(1e11f), vec3(-1e11f)});
+  batch.travel(0);
+  EXPECT_EQ(batch.downloadMotions()[0].state, SplineState::idle);
+  EXPECT_NEAR(batch.downloadLengths()[0], std::sqrt(3.0) * 1e17, 1e12);
+}
+
 }  // namespace
 }  // namespace skitter::test

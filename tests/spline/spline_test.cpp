@@ -148,8 +148,12 @@ TEST(Spline, KnotsFromChords) {
   EXPECT_EQ(splineKnots(points, false, 0.5f), (std::vector<float>{0, 2, 5}));
   EXPECT_EQ(splineKnots(points, false, 1), (std::vector<float>{0, 4, 13}));
   EXPECT_EQ(splineKnots(points, true, 0), (std::vector<float>{0, 1, 2, 3}));
-  // Points on one another still are apart in time.
-  EXPECT_GT(splineKnots(std::vector<vec3>(2), false, 1)[1], 0);
+  // Points on one another still are apart in time, late ones too.
+  std::vector<vec3> still(5, vec3(1000, 0, 0));
+  still[0] = vec3(0);
+  EXPECT_NO_THROW(Spline({.points = still, .knots = splineKnots(still, false, 1)}));
+  EXPECT_NO_THROW(
+      Spline({.points = std::vector<vec3>(9), .knots = splineKnots(std::vector<vec3>(9), false, 1)}));
 }
 
 }  // namespace
