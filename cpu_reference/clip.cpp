@@ -71,13 +71,6 @@ dmat4 localMatrix(const dvec3& t, const dvec4& r, const dvec3& s) {
   return m;
 }
 
-int depthOf(const std::vector<ClipNode>& nodes, int node) {
-  int depth = 0;
-  for (int at = nodes[static_cast<size_t>(node)].parent; at >= 0; at = nodes[static_cast<size_t>(at)].parent)
-    ++depth;
-  return depth;
-}
-
 }  // namespace
 
 dvec4 sampleChannel(const ClipChannel& channel, double t, ClipSide side) {
@@ -135,24 +128,29 @@ std::vector<int> clipTreeOrder(const std::vector<ClipNode>& nodes) {
 }
 
 int clipRoot(const std::vector<ClipNode>& nodes, const std::vector<ClipChannel>& channels,
-             const std::vector<double>& skinWeight) {
+             const std::vector<double>& skinWeight, const std::vector<int>& legJoints) {
   const std::vector<int> order = clipTreeOrder(nodes);
+  const auto parentOf = [&](int n) { return nodes[static_cast<size_t>(n)].parent; };
   std::vector<double> below = skinWeight;
   double whole = 0;
   for (const double weight : skinWeight) whole += weight;
   for (auto n = order.rbegin(); n != order.rend(); ++n)
-    if (const int parent = nodes[static_cast<size_t>(*n)].parent; parent >= 0)
-      below[static_cast<size_t>(parent)] += below[static_cast<size_t>(*n)];
-  int root = -1;
-  for (const int n : order) {
-    const bool moves = std::any_of(channels.begin(), channels.end(), [&](const ClipChannel& channel) {
-      return channel.node == n && channel.property == ClipProperty::translation;
-    });
-    if (!moves || nodes[static_cast<size_t>(n)].matrix || !(below[static_cast<size_t>(n)] > whole / 2))
-      continue;
-    if (root < 0 || depthOf(nodes, n) < depthOf(nodes, root)) root = n;
-  }
-  return root;
+    if (parentOf(*n) >= 0) below[static_cast<size_t>(parentOf(*n))] += below[static_cast<size_t>(*n)];
+  const auto isOfLeg = [&](int n) {
+    for (; n >= 0; n = parentOf(n))
+      if (std::find(legJoints.begin(), legJoints.end(), n) != legJoints.end()) return true;
+    return false;
+  };
+  const auto moves = [&](int n) {
+    return !nodes[static_cast<size_t>(n)].matrix &&
+           std::any_of(channels.begin(), channels.end(), [&](const ClipChannel& channel) {
+             return channel.node == n && channel.property == ClipProperty::translation;
+           });
+  };
+  // Breadth first, so the highest comes first; two that carry over half each cannot be beside one another.
+  for (const int n : order)
+    if (moves(n) && !isOfLeg(n) && below[static_cast<size_t>(n)] > whole / 2) return n;
+  return -1;
 }
 
 dvec3 clipRootVelocity(const std::vector<ClipNode>& nodes, const std::vector<ClipChannel>& channels, int root,

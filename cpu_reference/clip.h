@@ -40,9 +40,9 @@ std::vector<glm::dmat4> clipPose(const std::vector<ClipNode>&, const std::vector
 
 // The nodes in the order of the file's tree: breadth first, siblings and roots by index.
 std::vector<int> clipTreeOrder(const std::vector<ClipNode>&);
-// `skinWeight`: how much of the skin each node carries. -1: there is none.
+// `skinWeight`: how much of the skin each node carries; `legJoints`: nodes of all legs. -1: there is none.
 int clipRoot(const std::vector<ClipNode>&, const std::vector<ClipChannel>&,
-             const std::vector<double>& skinWeight);
+             const std::vector<double>& skinWeight, const std::vector<int>& legJoints = {});
 // In the model space that `modelFromFile` (P) leads to; `root` may be -1.
 glm::dvec3 clipRootVelocity(const std::vector<ClipNode>&, const std::vector<ClipChannel>&, int root,
                             const glm::dmat4& modelFromFile);

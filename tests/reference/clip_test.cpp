@@ -128,8 +128,11 @@ TEST(ReferenceClip, TheRootIsTheHighestThatMovesOverHalfOfTheSkin) {
   std::vector<ClipChannel> channels = armChannels;
   channels.push_back({.node = 0, .times = {0}, .values = {dvec4(0)}});
   EXPECT_EQ(clipRoot(armNodes, channels, {1, 1, 1}), 1);
+  EXPECT_EQ(clipRoot(armNodes, channels, {1, 1, 1}, {2}), 1);
+  EXPECT_EQ(clipRoot(armNodes, channels, {1, 1, 1}, {1}), -1);
   channels.erase(channels.begin() + 1, channels.begin() + 3);
   EXPECT_EQ(clipRoot(armNodes, channels, {3, 1, 1}), 0);
+  EXPECT_EQ(clipRoot(armNodes, channels, {3, 1, 1}, {2}), -1);
   EXPECT_EQ(clipRoot(armNodes, channels, {2, 1, 1}), -1);
   EXPECT_EQ(clipRoot(armNodes, {}, {1, 1, 1}), -1);
 }
