@@ -58,7 +58,7 @@ class SplineBounds {
     // D, a, b err by 3 of their size; c and e weigh them by 6 and 4 and add 5; Horner's rule adds 6 of at
     // most 6.
     bounds.position = roundoff * (2 * farthest_ + 64 * size) + slack;
-    double fastest = glm::length(travel.velocity);
+    double fastest = glm::length(travel.velocity), shift = 0, turn = 0;
     if (travel.state == TravelState::moving) {
       const double turned = span / duration;
       bounds.velocity = rate * turned;
@@ -72,11 +72,13 @@ class SplineBounds {
         double phase = travel.phase + side;
         phase = spline_.closed() ? phase - std::floor(phase) : std::clamp(phase, 0.0, 1.0);
         const Travel beside = travelAtPhase(spline_, phase, travel.rounds, duration, constantSpeed);
-        bounds.position += glm::distance(beside.position, travel.position);
-        bounds.velocity += glm::distance(beside.velocity, travel.velocity);
+        shift = std::max(shift, glm::distance(beside.position, travel.position));
+        turn = std::max(turn, glm::distance(beside.velocity, travel.velocity));
         fastest = std::max(fastest, glm::length(beside.velocity));
       }
     }
+    bounds.position += shift;
+    bounds.velocity += turn;
     bounds.travelled =
         fastest * duration * bounds.phase + (travel.rounds + 1) * (length_ + 3 * roundoff * spline_.length());
     return bounds;
