@@ -61,6 +61,10 @@ void SceneOptions::addTo(CLI::App& command, const char* agentsHelp) {
           "the first herd's rig: spider, a model with its sidecar beside it, or a sidecar (docs/rig.md)")
       ->type_name("FILE");
   command
+      .add_option("--controller", controller,
+                  "how every herd's legs move: adaptive, loop, clip, planted (docs/scene.md) [the scene's]")
+      ->type_name("NAME");
+  command
       .add_option("--solver", solver,
                   "every herd's inverse kinematics: active-set, fabrik, ccd, transpose, pseudoinverse, dls, "
                   "target-attached [the scene's]")
@@ -186,6 +190,8 @@ Scene SceneOptions::load() const {
     if (result.herds.empty()) throw inputError(fmt::format("--rig: {} has no herds", result.name));
     result.herds.front().rig = rig;
   }
+  if (!controller.empty())
+    for (Herd& herd : result.herds) herd.controller = controller;
   if (!solver.empty())
     for (Herd& herd : result.herds) herd.solver = solver;
   if (seed) result.seed = *seed;

@@ -19,9 +19,10 @@ namespace skitter::app {
 struct SceneOptions {
   std::string scene;  // empty: the built-in scene
   std::optional<uint64_t> agents, seed;
-  std::string rig;      // empty: the scene's own
-  std::string solver;   // of every herd; empty: the scene's own
-  std::string terrain;  // empty: the scene's own
+  std::string rig;         // empty: the scene's own
+  std::string solver;      // of every herd; empty: the scene's own
+  std::string controller;  // of every herd; empty: the scene's own
+  std::string terrain;     // empty: the scene's own
   std::optional<Size> terrainSize;
   std::optional<std::pair<double, double>> spacing, heights;
   std::optional<double> scale, exaggeration, voidValue;

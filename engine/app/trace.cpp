@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "crowd/herd.h"
 #include "shared/records.h"
 #include "skitter/error.h"
 
@@ -51,7 +54,43 @@ struct Values {
   std::vector<uint8_t> stance;
 };
 
-void appendAgent(const HerdState& state, const Rig& rig, size_t agent, Values& values) {
+// Where a bone starts, relative to the body, and its rotation.
+struct Placed {
+  float start[3], rotation[4];
+};
+
+Placed placedByPose(const float* pose) {
+  return {{pose[4], pose[5], pose[6]}, {pose[0], pose[1], pose[2], pose[3]}};
+}
+
+// Of a matrix whose columns may be scaled.
+Placed placedByMatrix(const float* rows, const glm::vec3& start) {
+  glm::mat3 turn;
+  Placed placed{};
+  for (int r = 0; r < 3; ++r) {
+    const float* row = rows + 4 * r;
+    placed.start[r] = row[0] * start.x + row[1] * start.y + row[2] * start.z + row[3];
+    for (int c = 0; c < 3; ++c) turn[c][r] = row[c];
+  }
+  for (int c = 0; c < 3; ++c) turn[c] = glm::normalize(turn[c]);
+  const glm::quat q = glm::normalize(glm::quat_cast(turn));
+  const float xyzw[4] = {q.x, q.y, q.z, q.w};
+  std::copy(xyzw, xyzw + 4, placed.rotation);
+  return placed;
+}
+
+void appendAgent(const HerdState& state, const crowd::Herd& herd, size_t agent, Values& values) {
+  const Rig& rig = herd.rig;
+  const auto placedOf = [&](size_t leg, size_t bone) {
+    if (!crowd::playsClips(herd.controller)) {
+      const size_t entry = 1 + leg * static_cast<size_t>(herd.bones) + bone;
+      return placedByPose(
+          vec4(state.pose, (agent * static_cast<size_t>(rig.paletteSize()) + entry) * POSE_STRIDE));
+    }
+    const ClipLeg& chain = herd.clipSet.legs[leg];
+    const size_t entry = agent * static_cast<size_t>(herd.clips.joints) + chain.joints[bone];
+    return placedByMatrix(vec4(state.pose, entry * MATRIX_STRIDE), chain.starts[bone]);
+  };
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const auto legs = static_cast<size_t>(rig.legCount()), bones = static_cast<size_t>(rig.maxBones());
   const auto chainSize = static_cast<size_t>(chainStride(rig.maxBones()));
@@ -70,9 +109,9 @@ void appendAgent(const HerdState& state, const Rig& rig, size_t agent, Values& v
   for (size_t l = 0; l < legs; ++l) {
     const size_t leg = agent * legs + l, own = rig.legs[l].bones.size();
     for (size_t b = 0; b < own; ++b) {
-      const float* pose = vec4(state.pose, (agent * (1 + legs * bones) + 1 + l * bones + b) * POSE_STRIDE);
-      values.rotations.insert(values.rotations.end(), pose, pose + 4);
-      pushJoint(pose + 4);
+      const Placed placed = placedOf(l, b);
+      values.rotations.insert(values.rotations.end(), placed.rotation, placed.rotation + 4);
+      pushJoint(placed.start);
     }
     pushJoint(vec4(state.chain, leg * chainSize + tipAt));
     values.rotations.insert(values.rotations.end(), 4 * (bones - own), nan);
@@ -132,7 +171,8 @@ void Trace::append(const Crowd& crowd) {
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
     const HerdState state = crowd.download(h);
     Values values;
-    for (size_t agent = 0; agent < state.agents; ++agent) appendAgent(state, crowd.rig(h), agent, values);
+    for (size_t agent = 0; agent < state.agents; ++agent)
+      appendAgent(state, crowd.impl().herds[h], agent, values);
     herds_[h].joints.append(std::span<const float>(values.joints));
     herds_[h].rotations.append(std::span<const float>(values.rotations));
     herds_[h].stance.append(std::span<const uint8_t>(values.stance));

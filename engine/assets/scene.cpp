@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -18,6 +19,8 @@ namespace {
 constexpr uint64_t maxAgents = 16777216;  // of a scene; above it an agent's index is no exact float
 constexpr double worldLimit = 4000;       // metres from the origin
 constexpr double cameraLimit = 1e5;       // metres
+constexpr size_t maxCuts = 64;
+constexpr double maxClipSeconds = 86400;
 constexpr double maxVoidValue = std::numeric_limits<double>::max();
 
 // One JSON object: reads its known keys, leaves defaults where a key is missing, and knows which key no one
@@ -34,6 +37,9 @@ class Fields {
 
   void read(const char* key, float& value, double least, double most) {
     if (const auto* json = find(key)) value = static_cast<float>(number(*json, pathOf(key), least, most));
+  }
+  void read(const char* key, double& value, double least, double most) {
+    if (const auto* json = find(key)) value = number(*json, pathOf(key), least, most);
   }
   template <typename Number>
   void read(const char* key, std::optional<Number>& value, double least, double most) {
@@ -56,6 +62,14 @@ class Fields {
       fail(pathOf(key), *json, "a string that is not empty");
     }
     value = json->get<std::string>();
+  }
+  void read(const char* key, std::vector<std::string>& values) {
+    const auto* json = find(key);
+    if (!json) return;
+    const bool strings = json->is_array() && std::all_of(json->begin(), json->end(),
+                                                         [](const auto& item) { return item.is_string(); });
+    if (!strings || json->size() > 64) fail(pathOf(key), *json, "an array of at most 64 strings");
+    values = json->get<std::vector<std::string>>();
   }
   template <int Size>
   void read(const char* key, glm::vec<Size, float>& value, double limit) {
@@ -192,14 +206,38 @@ class SceneReader {
     fields.readInteger(key, side.emplace(), minSamples, maxSamples);
   }
 
+  std::vector<ClipCut> readCuts(const nlohmann::json& json, const std::string& path) const {
+    if (!json.is_array() || json.size() > maxCuts)
+      throw inputError(fmt::format("{}: {} is {}, expected an array of at most {} objects", file_, path,
+                                   describeJson(json), maxCuts));
+    std::vector<ClipCut> cuts;
+    for (const nlohmann::json& item : json) {
+      const std::string itemPath = fmt::format("{}[{}]", path, cuts.size());
+      ClipCut cut;
+      Fields fields(item, file_, itemPath);
+      fields.read("clip", cut.clip);
+      fields.read("name", cut.name);
+      fields.read("from", cut.from, 0, maxClipSeconds);
+      fields.read("to", cut.to, 0, maxClipSeconds);
+      fields.finish();
+      if (cut.name.empty()) throw inputError(fmt::format("{}: {}.name is missing", file_, itemPath));
+      if (!(cut.from < cut.to))
+        throw inputError(
+            fmt::format("{}: {}.to is {}, expected more than from, {}", file_, itemPath, cut.to, cut.from));
+      cuts.push_back(cut);
+    }
+    return cuts;
+  }
   Herd readHerd(const nlohmann::json& json, const std::string& path) const {
     Herd herd;
     Fields fields(json, file_, path);
     fields.read("rig", herd.rig);
     if (herd.rig != "spider") herd.rig = (folder_ / herd.rig).string();
-    enum class Controller { clip, loop, adaptive } controller = Controller::adaptive;
-    fields.readKind("controller", controller, {"clip", "loop", "adaptive"});
+    enum class Controller { first } controller = Controller::first;
+    fields.readKind("controller", controller, {"adaptive", "loop", "clip", "planted"});
     fields.read("controller", herd.controller);
+    fields.read("clips", herd.clips);
+    if (const auto* cuts = fields.find("cuts")) herd.cuts = readCuts(*cuts, path + ".cuts");
     enum class Solver { first } solver = Solver::first;
     fields.readKind("solver", solver,
                     {"active-set", "fabrik", "ccd", "transpose", "pseudoinverse", "dls", "target-attached"});

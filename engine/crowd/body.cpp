@@ -1,4 +1,6 @@
 #include "crowd/stage.h"
+#include "embedded/body_blind_comp_storage.h"
+#include "embedded/body_blind_comp_texel.h"
 #include "embedded/body_comp_storage.h"
 #include "embedded/body_comp_texel.h"
 #include "shared/bindings.h"
@@ -16,6 +18,20 @@ Stage bodyStage() {
            {BINDING_STEER, load4},
            {BINDING_STEP, load4},
            {BINDING_CHAIN, load4},
+           {BINDING_BODY, load4},
+           {BINDING_BODY_OUT, store}},
+          Stage::Over::agents};
+}
+
+Stage blindBodyStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"body",
+          {embedded::body_blind_comp_texel(), embedded::body_blind_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_HEIGHTS, heights},
+           {BINDING_RIG, load4},
+           {BINDING_STEER, load4},
            {BINDING_BODY, load4},
            {BINDING_BODY_OUT, store}},
           Stage::Over::agents};

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "crowd/herd.h"
 #include "crowd/page.h"
@@ -25,9 +26,6 @@ using crowd::Page;
 using crowd::Stage;
 using Impl = Crowd::Impl;
 
-// Places in crowd::stages().
-constexpr size_t kFoothold = 3, kSwing = 4, kIk = 5, kPose = 6, kMeasure = 7;
-
 // The chains start at rest and must reach their feet before the first tick.
 constexpr int kSettleIterations = 24;
 // World coordinates beyond it are too coarse in float32 for a foot to be placed.
@@ -35,14 +33,47 @@ constexpr float kFarthest = 4096;
 
 std::vector<Rig> loadRigs(const Scene& scene) {
   std::vector<Rig> rigs;
-  for (const Herd& herd : scene.herds) rigs.push_back(herd.rig == "spider" ? spiderRig() : loadRig(herd.rig));
+  for (const Herd& herd : scene.herds) {
+    const bool clips = crowd::playsClips(crowd::controllerNamed(herd.controller));
+    rigs.push_back(herd.rig == "spider" ? spiderRig() : clips ? proposedRig(herd.rig) : loadRig(herd.rig));
+  }
   return rigs;
 }
 
+void loadClips(const gpu::Context& context, const Herd& from, crowd::Herd& herd) {
+  herd.clipSet = from.rig == "spider" ? spiderClips() : skitter::loadClips(from.rig, herd.rig, from.cuts);
+  std::vector<std::string> names = from.clips;
+  if (names.empty())
+    for (const ClipCut& cut : from.cuts) names.push_back(cut.name);
+  herd.clips = crowd::clipRecords(herd.clipSet, names, herd.bones);
+  for (Clip& clip : herd.clipSet.clips) clip.rows = {};
+  const auto upload = [&](gpu::Buffer& buffer, const std::vector<float>& records, const char* name) {
+    buffer = gpu::Buffer(context, records.size() * sizeof(float), name);
+    gpu::upload(context, buffer, records);
+  };
+  upload(herd.clipHeads, herd.clips.heads, "clips");
+  upload(herd.clipTimes, herd.clips.times, "clip frames");
+  upload(herd.clipRows, herd.clips.rows, "clip rows");
+  upload(herd.clipLegs, herd.clips.legs, "clip legs");
+  upload(herd.clipBones, herd.clips.bones, "clip joints");
+}
+
+uint32_t invocations(const crowd::Herd& herd, const Page& page, Stage::Over over) {
+  switch (over) {
+    case Stage::Over::agents:
+      return page.agents;
+    case Stage::Over::joints:
+      return page.agents * gpu::groupsFor(static_cast<uint32_t>(herd.clips.joints), shared::JOINTS_EACH);
+    case Stage::Over::legs:
+    case Stage::Over::listed:
+      break;
+  }
+  return page.agents * static_cast<uint32_t>(herd.legs);
+}
+
 void dispatch(const crowd::Herd& herd, const Page& page, size_t index, float tick, vk::CommandBuffer cmd) {
-  const Stage& stage = crowd::stages()[index];
-  const uint32_t count =
-      stage.over == Stage::Over::agents ? page.agents : page.agents * static_cast<uint32_t>(herd.legs);
+  const Stage& stage = crowd::stagesOf(herd.controller)[index];
+  const uint32_t count = invocations(herd, page, stage.over);
   const shared::TickConstants constants{count, tick};
   const auto push = gpu::bytesOf(constants);
   if (stage.over == Stage::Over::listed)
@@ -58,9 +89,23 @@ void clearLists(const Impl& crowd, vk::CommandBuffer cmd) {
     for (const Page& page : herd.pages) cmd.updateBuffer(page.counters.handle(), 0, sizeof none, none.data());
 }
 
-void recordStage(Impl& crowd, size_t index, float tick, vk::CommandBuffer cmd) {
-  for (const crowd::Herd& herd : crowd.herds)
-    for (const Page& page : herd.pages) dispatch(herd, page, index, tick, cmd);
+bool hasStage(const Impl& crowd, std::string_view name) {
+  return std::any_of(crowd.herds.begin(), crowd.herds.end(), [&](const crowd::Herd& herd) {
+    const std::vector<Stage>& stages = crowd::stagesOf(herd.controller);
+    return std::any_of(stages.begin(), stages.end(), [&](const Stage& stage) { return stage.name == name; });
+  });
+}
+
+// Of every herd whose controller has it.
+void recordStage(const Impl& crowd, std::string_view name, float tick, vk::CommandBuffer cmd) {
+  for (const crowd::Herd& herd : crowd.herds) {
+    // Of a clip as it is, feet are looked at by measure alone.
+    if (name == "swing" && herd.controller == crowd::Controller::clip && !crowd.options.measure) continue;
+    const std::vector<Stage>& stages = crowd::stagesOf(herd.controller);
+    for (size_t i = 0; i < stages.size(); ++i)
+      if (stages[i].name == name)
+        for (const Page& page : herd.pages) dispatch(herd, page, i, tick, cmd);
+  }
 }
 
 // Every pipeline runs once with nothing to do, so that no tick pays for its translation to machine code, and
@@ -70,19 +115,19 @@ void settle(Impl& crowd) {
     clearLists(crowd, cmd);
     gpu::transferToCompute(cmd);
     const shared::TickConstants nothing{0, 0};
-    for (size_t i = 0; i < crowd::stages().size(); ++i) {
-      for (const crowd::Herd& herd : crowd.herds)
+    for (const crowd::Herd& herd : crowd.herds)
+      for (size_t i = 0; i < herd.kernels.size(); ++i) {
         for (const Page& page : herd.pages)
           herd.kernels[i].dispatch(cmd, page.bindings[i], gpu::bytesOf(nothing), 1);
-      gpu::computeToCompute(cmd);
-    }
-    recordStage(crowd, kSwing, 0, cmd);
+        gpu::computeToCompute(cmd);
+      }
+    recordStage(crowd, "swing", 0, cmd);
     for (int i = 0; i < kSettleIterations; ++i) {
       gpu::computeToCompute(cmd);
-      recordStage(crowd, kIk, 0, cmd);
+      recordStage(crowd, "ik", 0, cmd);
     }
     gpu::computeToCompute(cmd);
-    recordStage(crowd, kPose, 0, cmd);
+    recordStage(crowd, "pose", 0, cmd);
   });
 }
 
@@ -124,12 +169,11 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
       "heights");
   gpu::uploadImage(context, crowd.heights, terrain.heights);
   if (options.timestamps)
-    crowd.timer = gpu::StageTimer(context, static_cast<uint32_t>(crowd::stages().size()));
+    crowd.timer = gpu::StageTimer(context, static_cast<uint32_t>(crowd::frame().size()));
 
   for (const Herd& from : scene.herds) {
     crowd::Herd& herd = crowd.herds.emplace_back();
-    if (from.controller != "adaptive")
-      throw inputError("controller '" + from.controller + "' is unknown; there is: adaptive");
+    herd.controller = crowd::controllerNamed(from.controller);
     herd.rig = std::move(rigs[crowd.herds.size() - 1]);
     herd.legs = herd.rig.legCount();
     herd.bones = herd.rig.maxBones();
@@ -142,16 +186,17 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     herd.rigRecords = crowd::rigRecords(herd.rig);
     herd.rigBuffer = gpu::Buffer(context, herd.rigRecords.size() * sizeof(float), "rig");
     gpu::upload(context, herd.rigBuffer, herd.rigRecords);
+    if (crowd::playsClips(herd.controller)) loadClips(context, from, herd);
     crowd::makeKernels(context, options, herd);
 
-    const crowd::RecordBytes bytes = crowd::recordBytes(herd.rig);
+    const crowd::RecordBytes bytes = crowd::recordBytes(herd);
     const uint64_t needed = bytes.sum() * from.agents;
     if (needed > context.limits().availableBytes)
       throw deviceError(std::to_string(from.agents) + " agents need " + std::to_string(needed >> 20) +
                         " MiB, " + context.report().name + " has " +
                         std::to_string(context.limits().availableBytes >> 20) + " MiB");
     const uint64_t herdIndex = crowd.herds.size() - 1;
-    const crowd::Spawner spawner(from, herd.rig, terrain, herd.parameters, scene.seed + (herdIndex << 32));
+    const crowd::Spawner spawner(from, herd, terrain, scene.seed + (herdIndex << 32));
     const uint32_t most = crowd::agentsPerPage(context, options, bytes);
     for (uint32_t first = 0; first < from.agents; first += most)
       herd.pages.push_back(crowd::makePage(crowd, herd, spawner, first, std::min(most, from.agents - first)));
@@ -174,12 +219,13 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   gpu::computeToTransfer(cmd);
   clearLists(crowd, cmd);
   gpu::transferToCompute(cmd);
-  for (size_t i = 0; i < crowd::stages().size(); ++i) {
-    if ((i == kPose && !crowd.options.pose) || (i == kMeasure && !crowd.options.measure)) continue;
-    crowd.timer.begin(cmd, crowd::stages()[i].name);
-    recordStage(crowd, i, tick, cmd);
-    crowd.timer.end(cmd, crowd::stages()[i].name);
-    if (i + 1 == kFoothold)
+  for (const std::string_view name : crowd::frame()) {
+    if (!hasStage(crowd, name)) continue;
+    if ((name == "pose" && !crowd.options.pose) || (name == "measure" && !crowd.options.measure)) continue;
+    crowd.timer.begin(cmd, name.data());
+    recordStage(crowd, name, tick, cmd);
+    crowd.timer.end(cmd, name.data());
+    if (name == "gait")
       gpu::computeToIndirectAndCompute(cmd);
     else
       gpu::computeToCompute(cmd);
@@ -202,7 +248,7 @@ uint64_t Crowd::agentCount() const {
 uint64_t Crowd::memoryBytes() const {
   uint64_t bytes = 0;
   for (const crowd::Herd& herd : impl_->herds)
-    for (const Page& page : herd.pages) bytes += crowd::recordBytes(herd.rig).sum() * page.agents;
+    for (const Page& page : herd.pages) bytes += crowd::recordBytes(herd).sum() * page.agents;
   return bytes;
 }
 

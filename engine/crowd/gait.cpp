@@ -1,6 +1,8 @@
 #include "crowd/stage.h"
 #include "embedded/gait_comp_storage.h"
 #include "embedded/gait_comp_texel.h"
+#include "embedded/gait_loop_comp_storage.h"
+#include "embedded/gait_loop_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -19,6 +21,18 @@ Stage gaitStage() {
            {BINDING_GAIT_OUT, store},
            {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
+          Stage::Over::agents};
+}
+
+Stage loopGaitStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"gait",
+          {embedded::gait_loop_comp_texel(), embedded::gait_loop_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_BODY, load4},
+           {BINDING_GAIT, load4},
+           {BINDING_GAIT_OUT, store}},
           Stage::Over::agents};
 }
 

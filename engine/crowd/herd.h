@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "crowd/clip_records.h"
+#include "crowd/stage.h"
 #include "crowd/tuning.h"
 #include "gpu/buffer.h"
 #include "gpu/image.h"
@@ -23,21 +25,26 @@ struct Page {
   uint32_t firstAgent = 0;
   uint32_t agents = 0;
   gpu::Buffer goal, steer, body, gait, step, foot, chain, pose, metric;
+  gpu::Buffer play, start, fix;         // where clips are played, the latter two where they are planted
   gpu::Buffer list;                     // legs that begin a step this tick
   gpu::Buffer counters;                 // indirect arguments and counts
   gpu::Buffer histogram;                // of reach errors
-  std::vector<gpu::Bindings> bindings;  // one a stage, in the frame's order
+  std::vector<gpu::Bindings> bindings;  // one a stage of the controller
 };
 
 struct Herd {
   Rig rig;
+  Controller controller = Controller::adaptive;
   int legs = 0, bones = 0, groups = 0;  // bones of the longest chain
   IkPlan ik{};
+  ClipSet clipSet;  // without its frames: what a picture and a tool need
+  ClipRecords clips;
+  gpu::Buffer clipHeads, clipTimes, clipRows, clipLegs, clipBones;
   shared::Parameters parameters{};
   gpu::HostBuffer parameterBlock;  // uniform; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
   gpu::Buffer rigBuffer;
-  std::vector<gpu::Kernel> kernels;  // one a stage, specialised by legs, bones and groups
+  std::vector<gpu::Kernel> kernels;  // one a stage of the controller, specialised
   std::vector<Page> pages;
 };
 

@@ -3,6 +3,8 @@
 #include "embedded/ik_comp_texel.h"
 #include "embedded/ik_compared_comp_storage.h"
 #include "embedded/ik_compared_comp_texel.h"
+#include "embedded/ik_planted_comp_storage.h"
+#include "embedded/ik_planted_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -18,6 +20,22 @@ Stage ikStage() {
            {BINDING_FOOT, load4},
            {BINDING_CHAIN, load4},
            {BINDING_CHAIN_OUT, store},
+           {BINDING_COUNTERS, store}},
+          Stage::Over::legs};
+}
+
+Stage plantedIkStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"ik",
+          {embedded::ik_planted_comp_texel(), embedded::ik_planted_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_RIG, load4},
+           {BINDING_BODY, load4},
+           {BINDING_FOOT, load4},
+           {BINDING_START, load4},
+           {BINDING_CHAIN_OUT, store},
+           {BINDING_FIX_OUT, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::legs};
 }

@@ -52,6 +52,25 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
     case BINDING_POSE:
     case BINDING_POSE_OUT:
       return {binding, &page.pose};
+    case BINDING_PLAY:
+    case BINDING_PLAY_OUT:
+      return {binding, &page.play};
+    case BINDING_START:
+    case BINDING_START_OUT:
+      return {binding, &page.start};
+    case BINDING_FIX:
+    case BINDING_FIX_OUT:
+      return {binding, &page.fix};
+    case BINDING_CLIP:
+      return {binding, &herd.clipHeads};
+    case BINDING_CLIP_FRAME:
+      return {binding, &herd.clipTimes};
+    case BINDING_CLIP_ROW:
+      return {binding, &herd.clipRows};
+    case BINDING_CLIP_LEG:
+      return {binding, &herd.clipLegs};
+    case BINDING_CLIP_JOINT:
+      return {binding, &herd.clipBones};
     default:
       return {binding, &page.metric};
   }
@@ -59,8 +78,10 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
 
 }  // namespace
 
-RecordBytes recordBytes(const Rig& rig) {
+RecordBytes recordBytes(const Herd& herd) {
   using namespace shared;
+  const Rig& rig = herd.rig;
+  const bool clips = playsClips(herd.controller), planted = herd.controller == Controller::planted;
   const auto legs = static_cast<uint64_t>(rig.legCount());
   const auto vec4s = [](uint64_t count, int stride) { return count * static_cast<uint64_t>(stride) * 16; };
   return {.goal = vec4s(1, GOAL_STRIDE),
@@ -70,9 +91,13 @@ RecordBytes recordBytes(const Rig& rig) {
           .step = vec4s(legs, STEP_STRIDE),
           .foot = vec4s(legs, FOOT_STRIDE),
           .chain = vec4s(legs, chainStride(rig.maxBones())),
-          .pose = vec4s(static_cast<uint64_t>(rig.paletteSize()), POSE_STRIDE),
+          .pose = clips ? vec4s(static_cast<uint64_t>(herd.clips.joints), MATRIX_STRIDE)
+                        : vec4s(static_cast<uint64_t>(rig.paletteSize()), POSE_STRIDE),
           .metric = vec4s(legs, METRIC_STRIDE),
-          .list = legs * 4};
+          .list = legs * 4,
+          .play = clips ? vec4s(1, PLAY_STRIDE) : 0,
+          .start = planted ? vec4s(legs, chainStride(rig.maxBones())) : 0,
+          .fix = planted ? vec4s(legs * static_cast<uint64_t>(rig.maxBones()), FIX_STRIDE) : 0};
 }
 
 uint32_t agentsPerPage(const gpu::Context& context, const CrowdOptions& options, const RecordBytes& bytes) {
@@ -89,7 +114,7 @@ uint32_t agentsPerPage(const gpu::Context& context, const CrowdOptions& options,
 Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner, uint32_t first,
               uint32_t agents) {
   const gpu::Context& context = *crowd.context;
-  const RecordBytes bytes = recordBytes(herd.rig);
+  const RecordBytes bytes = recordBytes(herd);
   HerdState spawned;
   spawner.append(first, agents, spawned);
   Page page;
@@ -108,6 +133,9 @@ Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner
   make(page.pose, bytes.pose, "pose");
   make(page.metric, bytes.metric, "metric");
   make(page.list, bytes.list, "list");
+  if (bytes.play > 0) make(page.play, bytes.play, "play");
+  if (bytes.start > 0) make(page.start, bytes.start, "start");
+  if (bytes.fix > 0) make(page.fix, bytes.fix, "fix");
   page.counters = gpu::Buffer(context, shared::COUNTERS * 4, "counters", gpu::BufferUse::indirect);
   page.histogram = gpu::Buffer(context, shared::HISTOGRAM_BUCKETS * 4, "histogram");
   gpu::upload(context, page.goal, spawned.goal);
@@ -118,12 +146,16 @@ Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner
   gpu::upload(context, page.foot, spawned.foot);
   gpu::upload(context, page.chain, spawned.chain);
   gpu::upload(context, page.metric, spawned.metric);
+  if (bytes.play > 0) gpu::upload(context, page.play, spawned.play);
+  if (bytes.start > 0) gpu::clear(context, page.start);
+  if (bytes.fix > 0) gpu::clear(context, page.fix);
   gpu::clear(context, page.pose);
   gpu::clear(context, page.counters);
   gpu::clear(context, page.histogram);
-  for (size_t i = 0; i < stages().size(); ++i) {
+  const std::vector<Stage>& stages = stagesOf(herd.controller);
+  for (size_t i = 0; i < stages.size(); ++i) {
     std::vector<gpu::Binding> list;
-    for (const gpu::BindingDecl& declared : stages()[i].bindings)
+    for (const gpu::BindingDecl& declared : stages[i].bindings)
       list.push_back(bindingOf(crowd, herd, page, declared.binding));
     page.bindings.push_back(herd.kernels[i].bind(context, list));
   }

@@ -9,12 +9,14 @@ namespace skitter::crowd {
 
 // Bytes an agent in each of the page's record buffers.
 struct RecordBytes {
-  uint64_t goal, steer, body, gait, step, foot, chain, pose, metric, list;
-  uint64_t largest() const { return std::max({body, step, foot, chain, pose, metric, list}); }
-  uint64_t sum() const { return goal + steer + body + gait + step + foot + chain + pose + metric + list; }
+  uint64_t goal, steer, body, gait, step, foot, chain, pose, metric, list, play, start, fix;
+  uint64_t largest() const { return std::max({body, step, foot, chain, pose, metric, list, fix}); }
+  uint64_t sum() const {
+    return goal + steer + body + gait + step + foot + chain + pose + metric + list + play + start + fix;
+  }
 };
 
-RecordBytes recordBytes(const Rig& rig);
+RecordBytes recordBytes(const Herd& herd);
 
 // The most agents whose records fit the device's bindings. Throws Error(device) when not even one does.
 uint32_t agentsPerPage(const gpu::Context& context, const CrowdOptions& options, const RecordBytes& bytes);

@@ -1,6 +1,10 @@
 #include "crowd/stage.h"
+#include "embedded/pose_clip_comp_storage.h"
+#include "embedded/pose_clip_comp_texel.h"
 #include "embedded/pose_comp_storage.h"
 #include "embedded/pose_comp_texel.h"
+#include "embedded/pose_planted_comp_storage.h"
+#include "embedded/pose_planted_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -16,6 +20,34 @@ Stage poseStage() {
            {BINDING_CHAIN, load4},
            {BINDING_POSE_OUT, store}},
           Stage::Over::legs};
+}
+
+Stage clipPoseStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"pose",
+          {embedded::pose_clip_comp_texel(), embedded::pose_clip_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_BODY, load4},
+           {BINDING_PLAY, load4},
+           {BINDING_CLIP_ROW, load4},
+           {BINDING_POSE_OUT, store}},
+          Stage::Over::joints};
+}
+
+Stage plantedPoseStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"pose",
+          {embedded::pose_planted_comp_texel(), embedded::pose_planted_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_BODY, load4},
+           {BINDING_PLAY, load4},
+           {BINDING_CLIP_ROW, load4},
+           {BINDING_CLIP_JOINT, load4},
+           {BINDING_FIX, load4},
+           {BINDING_POSE_OUT, store}},
+          Stage::Over::joints};
 }
 
 }  // namespace skitter::crowd

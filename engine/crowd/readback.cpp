@@ -35,6 +35,9 @@ HerdState Crowd::download(uint32_t herdIndex) const {
     appendRecords(context, page.chain, state.chain);
     appendRecords(context, page.pose, state.pose);
     appendRecords(context, page.metric, state.metric);
+    if (page.play) appendRecords(context, page.play, state.play);
+    if (page.start) appendRecords(context, page.start, state.start);
+    if (page.fix) appendRecords(context, page.fix, state.fix);
   }
   return state;
 }
@@ -85,12 +88,14 @@ uint64_t Crowd::stateHash() const {
   uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, a word at a time
   for (const crowd::Herd& herd : impl_->herds) {
     // Record by record over the herd, not page by page: how agents are paged must not show.
-    for (const auto buffer : {&Page::goal, &Page::body, &Page::gait, &Page::step, &Page::chain})
-      for (const Page& page : herd.pages)
+    for (const auto buffer : {&Page::goal, &Page::body, &Page::gait, &Page::step, &Page::chain, &Page::play})
+      for (const Page& page : herd.pages) {
+        if (!(page.*buffer)) continue;
         for (const uint32_t word : gpu::download<uint32_t>(context, page.*buffer)) {
           hash = (hash ^ word) * 0x100000001b3ull;
           hash ^= hash >> 32;
         }
+      }
   }
   return hash;
 }

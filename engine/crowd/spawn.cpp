@@ -23,14 +23,18 @@ void push(std::vector<float>& records, float a, float b, float c, float d) {
 
 }  // namespace
 
-Spawner::Spawner(const skitter::Herd& herd, const Rig& rig, const Heightfield& terrain,
-                 const shared::Parameters& tuning, uint64_t seed)
-    : herd_(herd), rig_(rig), terrain_(terrain), tuning_(tuning), seed_(seed) {
+Spawner::Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield& terrain, uint64_t seed)
+    : herd_(from),
+      rig_(herd.rig),
+      clips_(herd.clips),
+      terrain_(terrain),
+      tuning_(herd.parameters),
+      seed_(seed) {
   // A block about as deep as wide; closer together only where the terrain has no room.
-  const float spacing = herd.spawn.spacing;
-  const float roomX = terrain.extentX() - 4 * tuning.edgeMargin;
-  const float roomZ = terrain.extentZ() - 4 * tuning.edgeMargin;
-  const auto agents = std::max(1u, herd.agents);
+  const float spacing = from.spawn.spacing;
+  const float roomX = terrain.extentX() - 4 * tuning_.edgeMargin;
+  const float roomZ = terrain.extentZ() - 4 * tuning_.edgeMargin;
+  const auto agents = std::max(1u, from.agents);
   const auto side = static_cast<uint32_t>(std::ceil(std::sqrt(static_cast<double>(agents))));
   const auto widest = std::max(1u, static_cast<uint32_t>(roomX / spacing));
   lanes_ = std::min(side, std::max(widest, static_cast<uint32_t>(std::sqrt(agents * roomX / roomZ))));
@@ -101,12 +105,22 @@ void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
     push(state.body, 0, 0, 1, 0);
     push(state.gait, uniform(seed_, agent, 2), 0, 0, 1);
     push(state.gait, 0, 1, 0, 0);
+    if (clips_.clips > 0) {
+      const auto clip = static_cast<float>(clips_.standing);
+      const float seconds = clips_.heads[static_cast<size_t>(clips_.standing) * 4 + 2];
+      const float time = seconds * uniform(seed_, agent, 2);
+      push(state.play, clip, time, clip, time);
+      push(state.play, 1, 0, 0, 0);
+      push(state.play, 0, 0, 0, 0);
+    }
 
     for (const Leg& leg : rig_.legs) {
       const glm::vec3 home = q * leg.home;
       const glm::vec3 foot(localX + home.x, terrain_.at(p.x + home.x, p.z + home.z), localZ + home.z);
       push(state.step, foot.x, foot.y, foot.z, tileX);
-      push(state.step, foot.x, foot.y, foot.z, tileZ);
+      // Where clips are played it is no lift-off but an offset: docs/stages.md, planted.
+      const glm::vec3 liftOff = clips_.clips > 0 ? glm::vec3(0) : foot;
+      push(state.step, liftOff.x, liftOff.y, liftOff.z, tileZ);
       push(state.step, 0, 0, 0, -1000);
       push(state.step, 0, 0, 0, 1);
       push(state.foot, home.x, foot.y - height, home.z, 1);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "crowd/herd.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
 
@@ -11,8 +12,7 @@ namespace skitter::crowd {
 // Where agent i of n starts: the herd's spawn, goal and seed decide alone, so pages never change a crowd.
 class Spawner {
  public:
-  Spawner(const skitter::Herd& herd, const Rig& rig, const Heightfield& terrain,
-          const shared::Parameters& tuning, uint64_t seed);
+  Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield& terrain, uint64_t seed);
 
   // Appends the initial records of agents [first, first + count): standing at home, feet on the ground.
   void append(uint32_t first, uint32_t count, HerdState& state) const;
@@ -26,6 +26,7 @@ class Spawner {
 
   const skitter::Herd& herd_;
   const Rig& rig_;
+  const ClipRecords& clips_;
   const Heightfield& terrain_;
   const shared::Parameters& tuning_;
   uint64_t seed_;

@@ -1,31 +1,76 @@
 #include "crowd/stage.h"
 
+#include <bit>
 #include <cstring>
 
 #include "crowd/herd.h"
 #include "crowd/tuning.h"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
+#include "skitter/error.h"
 
 namespace skitter::crowd {
 
-const std::vector<Stage>& stages() {
-  static const std::vector<Stage> list = {
+Controller controllerNamed(const std::string& name) {
+  if (name == "adaptive") return Controller::adaptive;
+  if (name == "loop") return Controller::loop;
+  if (name == "clip") return Controller::clip;
+  if (name == "planted") return Controller::planted;
+  throw inputError("controller '" + name + "' is unknown; there are: adaptive, loop, clip, planted");
+}
+
+const std::vector<const char*>& frame() {
+  static const std::vector<const char*> names = {"navigate", "body", "clip", "gait",   "foothold",
+                                                 "swing",    "ik",   "pose", "measure"};
+  return names;
+}
+
+const std::vector<Stage>& stagesOf(Controller controller) {
+  static const std::vector<Stage> adaptive = {
       navigateStage(), bodyStage(), gaitStage(), footholdStage(),
       swingStage(),    ikStage(),   poseStage(), measureStage(),
   };
-  return list;
+  static const std::vector<Stage> loop = {
+      navigateStage(), blindBodyStage(), loopGaitStage(), loopSwingStage(),
+      ikStage(),       poseStage(),      measureStage(),
+  };
+  static const std::vector<Stage> clip = {
+      navigateStage(), blindBodyStage(), clipStage(), clipSwingStage(), clipPoseStage(), measureStage(),
+  };
+  static const std::vector<Stage> planted = {
+      navigateStage(),  blindBodyStage(),   clipStage(),    plantedSwingStage(),
+      plantedIkStage(), plantedPoseStage(), measureStage(),
+  };
+  switch (controller) {
+    case Controller::clip:
+      return clip;
+    case Controller::planted:
+      return planted;
+    case Controller::loop:
+      return loop;
+    case Controller::adaptive:
+      break;
+  }
+  return adaptive;
 }
+
 void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd) {
   using namespace shared;
-  for (const Stage& stage : stages()) {
+  for (const Stage& stage : stagesOf(herd.controller)) {
     gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
     const bool isIk = std::strcmp(stage.name, "ik") == 0;
-    if (isIk && herd.ik.solver != SOLVER_FABRIK) info.code = comparedIkCode();
+    if (isIk && herd.ik.solver != SOLVER_FABRIK && herd.controller != Controller::planted)
+      info.code = comparedIkCode();
     for (const StageShader& other : options.shaders)
       if (other.stage == stage.name) info.code = {other.texel, other.storage};
     info.constants = {
         {CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
+    if (playsClips(herd.controller)) {
+      info.constants.emplace_back(CONSTANT_CLIPS, herd.clips.clips);
+      info.constants.emplace_back(CONSTANT_JOINTS, herd.clips.joints);
+      info.constants.emplace_back(CONSTANT_SEARCH_STEPS,
+                                  static_cast<int>(std::bit_width(static_cast<uint32_t>(herd.clips.frames))));
+    }
     if (isIk) {
       info.constants.emplace_back(CONSTANT_APPROACH_ITERATIONS, herd.ik.approach);
       info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, herd.ik.polish);

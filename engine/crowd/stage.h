@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "gpu/kernel.h"
@@ -7,9 +8,16 @@
 
 namespace skitter::crowd {
 
+// How a herd moves; the names are those of a scene's `controller`.
+enum class Controller { clip, planted, loop, adaptive };
+// Throws Error(input) where it is unknown.
+Controller controllerNamed(const std::string& name);
+constexpr bool playsClips(Controller c) { return c == Controller::clip || c == Controller::planted; }
+
 // A stage of the frame: one compute shader, the records it binds, and what it runs over.
 struct Stage {
-  enum class Over { agents, legs, listed };  // listed: the legs that begin a step, counted on the device
+  // listed: the legs that begin a step, counted on the device.   joints: of the clips' palette.
+  enum class Over { agents, legs, listed, joints };
 
   const char* name;
   gpu::ShaderCode code;
@@ -17,8 +25,10 @@ struct Stage {
   Over over;
 };
 
-// The frame: every stage in the order in which it is recorded.
-const std::vector<Stage>& stages();
+// Every stage's name in the order in which they are recorded; a controller has those that it needs.
+const std::vector<const char*>& frame();
+// A controller's stages, in that order.
+const std::vector<Stage>& stagesOf(Controller controller);
 
 struct Herd;
 // A pipeline a stage, specialised by the herd's legs, bones and groups.
@@ -27,13 +37,22 @@ void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd&
 // Each in a file of its own name.
 Stage navigateStage();
 Stage bodyStage();
+Stage blindBodyStage();
+Stage clipStage();
 Stage gaitStage();
+Stage loopGaitStage();
 Stage footholdStage();
 Stage swingStage();
+Stage loopSwingStage();
+Stage clipSwingStage();
+Stage plantedSwingStage();
 Stage ikStage();
+Stage plantedIkStage();
 // Of the ik stage with the solvers that are there to be compared.
 gpu::ShaderCode comparedIkCode();
 Stage poseStage();
+Stage clipPoseStage();
+Stage plantedPoseStage();
 Stage measureStage();
 
 }  // namespace skitter::crowd

@@ -98,6 +98,13 @@ shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield
   p.stepClearance = 0.03f * length;
   p.stepHeightMax = 0.5f * length;
 
+  p.clipFade = dt / 0.25f;  // seconds
+  p.clipIdle = 0.05f * length;
+  p.clipHysteresis = 0.25f;
+  p.clipRateMost = 2.5f;  // more, and legs blur
+  p.plantStray = 0.35f * length;
+  p.plantKeep = std::exp(-dt / 0.08f);  // seconds; less snaps, more lands off the clip's place
+
   p.approachError = 0.25f;  // of the reach; less, and FABRIK bends a tracked leg more than it need be
   p.restPull = 0.05f;       // a step; more, and it fights the target near the limits
   p.pullError = 0.1f;       // of the reach: about a fast tick; out of reach no pull may act

@@ -22,7 +22,7 @@ Walk walkOf(const Herd& herd, const crowd::Herd& live, const Heightfield& terrai
   const auto side = uint32_t(std::ceil(std::sqrt(double(herd.agents))));
   const uint32_t row = uint32_t(float(herd.agents) * kFollowRow) / side;
   HerdState state;
-  crowd::Spawner(herd, live.rig, terrain, live.parameters, seed)
+  crowd::Spawner(herd, live, terrain, seed)
       .append(std::min(herd.agents - 1, row * side + side / 2), 1, state);
   const std::vector<float>& body = state.body;
   const glm::vec2 start(body[4] * shared::TILE_SIZE + body[0], body[5] * shared::TILE_SIZE + body[2]);

@@ -37,7 +37,7 @@ std::vector<gpu::VertexStream> streams(bool shaded) {
            .attributes = {{0, F::eR32Uint, 0}}}};
 }
 
-gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences) {
+gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences, bool matrices) {
   return {s.context,
           {.name = "crowd",
            .vertex = {embedded::crowd_vert_texel(), embedded::crowd_vert_storage()},
@@ -52,11 +52,11 @@ gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences) {
            .colour = s.colour,
            .depth = s.depth,
            .samples = s.samples,
-           .constants = {{shared::CONSTANT_INFLUENCES, influences}}}};
+           .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}}};
 }
 
 // Both faces cast: a closed skin loses nothing by it, an open one keeps its shadow.
-gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences) {
+gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences, bool matrices) {
   return {s.context,
           {.name = "crowd shadow",
            .vertex = {embedded::shadow_vert_texel(), embedded::shadow_vert_storage()},
@@ -69,7 +69,7 @@ gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences) {
            .depth = s.shadow.image().format(),
            .depthUse = gpu::DepthUse::shadow,
            .cull = {},
-           .constants = {{shared::CONSTANT_INFLUENCES, influences}}}};
+           .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}}};
 }
 
 }  // namespace
@@ -77,10 +77,12 @@ gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences) {
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s.context) {
   for (const crowd::Herd& source : crowd.herds) {
     Herd herd;
-    herd.palette = uint32_t(1 + source.legs * source.bones);
-    herd.mesh = uploadMesh(s.context, makeMesh(source.rig), source.rig.name);
-    herd.draw = drawPipeline(s, herd.mesh.influences);
-    herd.shadow = shadowPipeline(s, herd.mesh.influences);
+    const bool clips = crowd::playsClips(source.controller);
+    herd.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
+    herd.mesh =
+        uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
+    herd.draw = drawPipeline(s, herd.mesh.influences, clips);
+    herd.shadow = shadowPipeline(s, herd.mesh.influences, clips);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
       Page page;

@@ -15,14 +15,22 @@ namespace {
 constexpr std::array<float, shared::CAMERA_LODS> kShare{1.0f, 0.35f, 0.12f, 0.05f};
 constexpr float kLargestError = 0.05f;  // of the mesh's extent
 
-glm::vec3 restStart(const Rig& rig, uint32_t entry) {
-  if (entry == 0) return glm::vec3(0);
-  const uint32_t bones = uint32_t(rig.maxBones());
-  const std::vector<Bone>& chain = rig.legs.at((entry - 1) / bones).bones;
-  return chain.at(std::min(size_t((entry - 1) % bones), chain.size() - 1)).start;
+// A skin, and where each entry of its palette starts: vertices are stored relative to it.
+struct Skin {
+  const std::vector<SkinVertex>& vertices;
+  const std::vector<uint32_t>& indices;
+  std::vector<glm::vec3> starts;
+};
+
+std::vector<glm::vec3> restStarts(const Rig& rig) {
+  std::vector<glm::vec3> starts = {glm::vec3(0)};
+  for (const Leg& leg : rig.legs)
+    for (int i = 0; i < rig.maxBones(); ++i)
+      starts.push_back(leg.bones[std::min(size_t(i), leg.bones.size() - 1)].start);
+  return starts;
 }
 
-MeshVertex meshVertex(const Rig& rig, const SkinVertex& skin, int& influences) {
+MeshVertex meshVertex(const Skin& from, const SkinVertex& skin, int& influences) {
   // Heaviest first, so that a rig whose vertices hang on few bones needs few loads.
   std::array<int, 4> order{0, 1, 2, 3};
   std::stable_sort(order.begin(), order.end(),
@@ -33,7 +41,7 @@ MeshVertex meshVertex(const Rig& rig, const SkinVertex& skin, int& influences) {
     if (weight <= 0) continue;
     influences = std::max(influences, int(i) + 1);
     vertex.bones[i] = skin.bones[order[i]];
-    vertex.influences[i] = glm::vec4(skin.position - restStart(rig, vertex.bones[i]), weight);
+    vertex.influences[i] = glm::vec4(skin.position - from.starts.at(vertex.bones[i]), weight);
   }
   vertex.normal = skin.normal;
   vertex.colour = skin.colour;
@@ -46,11 +54,11 @@ struct Welded {
   std::vector<SkinVertex> vertices;
   std::vector<uint32_t> indices;
 };
-Welded weld(const Rig& rig) {
+Welded weld(const Skin& skin) {
   std::vector<glm::vec3> positions;
-  for (const SkinVertex& vertex : rig.vertices) positions.push_back(vertex.position);
+  for (const SkinVertex& vertex : skin.vertices) positions.push_back(vertex.position);
   std::vector<uint32_t> remap(positions.size());
-  const size_t count = meshopt_generateVertexRemap(remap.data(), rig.indices.data(), rig.indices.size(),
+  const size_t count = meshopt_generateVertexRemap(remap.data(), skin.indices.data(), skin.indices.size(),
                                                    positions.data(), positions.size(), sizeof(glm::vec3));
   Welded welded;
   welded.vertices.resize(count);
@@ -60,14 +68,14 @@ Welded weld(const Rig& rig) {
     SkinVertex& vertex = welded.vertices[remap[i]];
     const float before = shared[remap[i]]++;
     if (before == 0) {
-      vertex = rig.vertices[i];
+      vertex = skin.vertices[i];
     } else {
-      vertex.normal += rig.vertices[i].normal;
-      vertex.colour = (vertex.colour * before + rig.vertices[i].colour) / (before + 1);
+      vertex.normal += skin.vertices[i].normal;
+      vertex.colour = (vertex.colour * before + skin.vertices[i].colour) / (before + 1);
     }
   }
   for (SkinVertex& vertex : welded.vertices) vertex.normal /= std::max(glm::length(vertex.normal), 1e-6f);
-  for (const uint32_t index : rig.indices) welded.indices.push_back(remap[index]);
+  for (const uint32_t index : skin.indices) welded.indices.push_back(remap[index]);
   return welded;
 }
 
@@ -80,7 +88,7 @@ std::vector<uint32_t> simplified(const Welded& mesh, float share) {
   return indices;
 }
 
-void append(MeshData& data, MeshLod& lod, const Rig& rig, std::vector<SkinVertex> vertices,
+void append(MeshData& data, MeshLod& lod, const Skin& skin, std::vector<SkinVertex> vertices,
             std::vector<uint32_t> indices) {
   meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), vertices.size());
   std::vector<SkinVertex> used(vertices.size());
@@ -89,8 +97,16 @@ void append(MeshData& data, MeshLod& lod, const Rig& rig, std::vector<SkinVertex
   lod = {.firstIndex = uint32_t(data.indices.size()),
          .indexCount = uint32_t(indices.size()),
          .firstVertex = int32_t(data.vertices.size())};
-  for (const SkinVertex& vertex : used) data.vertices.push_back(meshVertex(rig, vertex, data.influences));
+  for (const SkinVertex& vertex : used) data.vertices.push_back(meshVertex(skin, vertex, data.influences));
   data.indices.insert(data.indices.end(), indices.begin(), indices.end());
+}
+
+void appendLods(MeshData& data, const Skin& skin) {
+  if (skin.indices.empty()) return;
+  append(data, data.lods[0], skin, skin.vertices, skin.indices);
+  const Welded welded = weld(skin);
+  for (size_t i = 1; i < data.lods.size(); ++i)
+    append(data, data.lods[i], skin, welded.vertices, simplified(welded, kShare[i]));
 }
 
 }  // namespace
@@ -100,12 +116,15 @@ MeshData makeMesh(const Rig& rig) {
   for (const SkinVertex& vertex : rig.vertices)
     data.radius = std::max(data.radius, glm::length(vertex.position));
   for (const Leg& leg : rig.legs) data.radius = std::max(data.radius, glm::length(leg.root()) + leg.reach);
-  if (rig.indices.empty()) return data;
+  appendLods(data, {rig.vertices, rig.indices, restStarts(rig)});
+  return data;
+}
 
-  append(data, data.lods[0], rig, rig.vertices, rig.indices);
-  const Welded welded = weld(rig);
-  for (size_t i = 1; i < data.lods.size(); ++i)
-    append(data, data.lods[i], rig, welded.vertices, simplified(welded, kShare[i]));
+MeshData makeMesh(const ClipSet& set) {
+  MeshData data;
+  for (const Clip& clip : set.clips)
+    data.radius = std::max(data.radius, glm::length(glm::max(glm::abs(clip.least), glm::abs(clip.most))));
+  appendLods(data, {set.vertices, set.indices, std::vector<glm::vec3>(set.joints.size())});
   return data;
 }
 

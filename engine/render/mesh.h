@@ -5,6 +5,7 @@
 #include "gpu/buffer.h"
 #include "gpu/graphics.h"
 #include "render/picture.h"
+#include "skitter/clip.h"
 #include "skitter/rig.h"
 
 namespace skitter::render {
@@ -31,6 +32,7 @@ struct MeshData {
   float radius = 0;    // of a sphere about the body's position that holds every pose, metres
 };
 MeshData makeMesh(const Rig&);
+MeshData makeMesh(const ClipSet&);  // its palette holds matrices
 
 struct Mesh {
   gpu::Buffer vertices, indices;

@@ -10,6 +10,14 @@ vec3 rotate(vec4 q, vec3 v) {
 }
 vec3 rotateBack(vec4 q, vec3 v) { return rotate(vec4(-q.xyz, q.w), v); }
 
+mat3 matrixOf(vec4 q) {
+  vec3 t = 2.0 * q.xyz;
+  vec3 d = t * q.xyz, w = t * q.w;
+  float xy = t.x * q.y, xz = t.x * q.z, yz = t.y * q.z;
+  return mat3(1.0 - d.y - d.z, xy + w.z, xz - w.y, xy - w.z, 1.0 - d.x - d.z, yz + w.x, xz + w.y, yz - w.x,
+              1.0 - d.x - d.y);
+}
+
 vec4 quaternionProduct(vec4 a, vec4 b) {
   return vec4(a.w * b.xyz + b.w * a.xyz + cross(a.xyz, b.xyz), a.w * b.w - dot(a.xyz, b.xyz));
 }

@@ -20,6 +20,7 @@ BINDING DRAW_COMMANDS = 7;   // indirect draws, counted by cull
 BINDING DRAW_DRAWN = 8;      // the picture before its edges are smoothed
 
 BINDING CONSTANT_INFLUENCES = 0;
+BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 #undef BINDING
 
 #ifdef __cplusplus

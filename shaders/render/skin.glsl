@@ -4,6 +4,7 @@
 #include "lib/math.glsl"
 
 layout(constant_id = CONSTANT_INFLUENCES) const int INFLUENCES = 4;
+layout(constant_id = CONSTANT_MATRICES) const bool MATRICES = false;
 layout(push_constant) uniform ConstantBlock { CrowdConstants constants; };
 LOAD4_BUFFER(DRAW_BODY, bodies)
 LOAD4_BUFFER(DRAW_POSE, poses)
@@ -21,7 +22,15 @@ struct Skinned {
 };
 
 void influence(uint bone, vec4 part, vec3 normal, inout Skinned s) {
-  int entry = (int(agent * constants.palette) + int(bone)) * POSE_STRIDE;
+  int entry = (int(agent * constants.palette) + int(bone)) * (MATRICES ? MATRIX_STRIDE : POSE_STRIDE);
+  if (MATRICES) {
+    vec4 a = LOAD4(poses, entry), b = LOAD4(poses, entry + 1), c = LOAD4(poses, entry + 2);
+    s.position += part.w * vec3(dot(a, vec4(part.xyz, 1.0)), dot(b, vec4(part.xyz, 1.0)), dot(c, vec4(part.xyz, 1.0)));
+    // Cofactors: the inverse transpose but for its scale.
+    s.normal += part.w * vec3(dot(cross(b.xyz, c.xyz), normal), dot(cross(c.xyz, a.xyz), normal),
+                              dot(cross(a.xyz, b.xyz), normal));
+    return;
+  }
   vec4 rotation = LOAD4(poses, entry);
   s.position += part.w * (LOAD4(poses, entry + 1).xyz + rotate(rotation, part.xyz));
   s.normal += part.w * rotate(rotation, normal);

@@ -69,6 +69,13 @@ struct Parameters {
   float stepHeight;
   float stepClearance;
   float stepHeightMax;
+  // clip
+  float clipFade;        // a tick's share of a cross-fade
+  float clipIdle;        // m/s below which a standing clip is played
+  float clipHysteresis;  // octaves of speed by which another clip must be nearer
+  float clipRateMost;
+  float plantStray;  // m that a locked foot may be from where the clip wants it
+  float plantKeep;   // share of an unlocked foot's offset that is left after a tick
   // ik
   float approachError;  // share of the reach beyond which the approach iterates
   float restPull;       // share of the angle from rest taken back a step once on target

@@ -66,6 +66,32 @@ SKITTER_FUNCTION int chainStride(int bones) { return (bones + 1) / 2 + 2; }
 // A vertex v of that bone is at  body + [1] + R (v - rest start).
 SKITTER_CONST int POSE_STRIDE = 2;
 
+// play, per agent, written by clip.
+//   [0] clip, its time (s), clip faded from, its time
+//   [1] weight of the first, its rate, the other's, unused
+//   [2] of both: frame, fraction to the next one          frames count through all clips of the herd
+SKITTER_CONST int PLAY_STRIDE = 3;
+
+// start, per leg, written by swing of planted: a chain record whose
+//   [n]   is the clip's root x, y, z (model), unused
+// fix, per leg, written by ik of planted: a bone
+//   [0] q, quaternion xyzw, model
+//   [1] move x, y, z (model), unused
+SKITTER_CONST int FIX_STRIDE = 2;
+// step, of planted, written by swing.
+//   [0] lock x, y, z, tile x   [1] offset o x, y, z, tile z   [2] 0, 0, 0, 1 if locked   [3] unused
+// pose, per agent, of clip and planted, written by pose: an entry a joint of
+//   [0..2] rows of the matrix from the clips' skin to world axes about the body's position
+SKITTER_CONST int MATRIX_STRIDE = 3;
+// Joints that one invocation poses: the agent's records are loaded once for them.
+SKITTER_CONST int JOINTS_EACH = 1;
+
+// The clips of a herd, constant.
+//   clip, each  [0] first frame, frames, seconds, speed (m/s; 0: standing)
+//   frame, each [0] time (s), 1 / time to the next (0 at the last), mask of legs that stand, unused
+//   row, a frame and joint: three rows of its matrix, model space, less the clip's ground; one frame more
+//   than there are leg, a leg and joint 0 .. bones: place before skinning x, y, z, palette entry joint, each
+//   [0] its bone's place among an agent's bones (leg * bones + bone), or -1, unused
 // metric, per leg, written by measure.
 //   [0] previous tip: tile-local x, y, z of the step's tile; slip of the stance so far (m)
 //   [1] slip over finished stances (m), finished stances, penetration sum (m), float sum (m)

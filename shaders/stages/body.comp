@@ -7,10 +7,17 @@
 layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_STEER, steers);
+#ifndef BLIND
 LOAD4_BUFFER(BINDING_STEP, steps);
 LOAD4_BUFFER(BINDING_CHAIN, chains);
+#endif
 LOAD4_BUFFER(BINDING_BODY, bodies);
 STORE4_BUFFER(BINDING_BODY_OUT, bodiesOut);
+
+float ground(vec2 world) {
+  return heightAt(heights, vec2(parameters.originX, parameters.originZ),
+                  vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), world).x;
+}
 
 void main() {
   int agent = int(gl_GlobalInvocationID.x);
@@ -23,6 +30,13 @@ void main() {
   // Ground points are summed relative to the old position; the new one differs by `moved`.
   float follow = 1.0;
   PlaneSums sums = PlaneSums(vec3(0.0), vec3(0.0), vec2(0.0));
+#ifdef BLIND
+  // Legs that do not know where they stand: the body lies on the ground below their homes.
+  for (int leg = 0; leg < LEGS; ++leg) {
+    vec3 home = rotate(body.orientation, LOAD4(rig, leg * rigStride(BONES) + 1).xyz);
+    addPoint(sums, vec3(home.x, ground(worldOf(body.local, body.tile) + home.xz) - body.local.y, home.z));
+  }
+#else
   for (int leg = 0; leg < LEGS; ++leg) {
     int stepAt = (agent * LEGS + leg) * STEP_STRIDE;
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
@@ -36,6 +50,7 @@ void main() {
     follow = u >= 1.0 ? min(follow, slow) : follow;
     addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));
   }
+#endif
 
   follow = max(follow, parameters.followLeast);
 
@@ -67,9 +82,7 @@ void main() {
   float height = planeHeight;
   for (int k = -1; k <= 1; ++k) {
     vec3 belly = parameters.bodyHeight * normal + float(k) * parameters.bodyRadius * forward;
-    float ground = heightAt(heights, vec2(parameters.originX, parameters.originZ),
-                            vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), world + belly.xz).x;
-    height = max(height, ground + parameters.bellyClearance - belly.y);
+    height = max(height, ground(world + belly.xz) + parameters.bellyClearance - belly.y);
   }
   body.local.y = mix(body.local.y + dot(slope, moved), height, parameters.heightBlend);
 

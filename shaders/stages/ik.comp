@@ -19,7 +19,12 @@ layout(constant_id = CONSTANT_POLISH_ITERATIONS) const int POLISH_ITERATIONS = 2
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_FOOT, feet);
+#ifdef PLANTED
+LOAD4_BUFFER(BINDING_START, chains);
+STORE4_BUFFER(BINDING_FIX_OUT, fixesOut);
+#else
 LOAD4_BUFFER(BINDING_CHAIN, chains);
+#endif
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
 
@@ -30,6 +35,16 @@ void approach(Limb limb, vec3 target, inout Pose pose) {
   if (SOLVER >= SOLVER_TRANSPOSE && SOLVER <= SOLVER_TARGET_ATTACHED) jacobianIteration(limb, target, SOLVER, pose);
 #endif
 }
+
+#ifdef PLANTED
+// Of bone i, in model space.
+vec3 boneDirection(Limb limb, int i, Pose pose) { return rotate(swung(limb, i, pose.parent[i], pose.d[i], 0.0), limb.z[i]); }
+
+vec4 shortestArc(vec3 from, vec3 to) {
+  vec4 q = vec4(cross(from, to), 1.0 + dot(from, to));
+  return q * inversesqrt(max(dot(q, q), 1e-12));
+}
+#endif
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
@@ -44,6 +59,18 @@ void main() {
   Pose pose;
   LOAD_DIRECTIONS(pose.d, chains, at);
   forwardKinematics(limb, pose);
+#ifdef PLANTED
+  // The clip's pose, which what is solved is held against, and its root.
+  root.xyz = LOAD4(chains, at + chainDirections(BONES)).xyz;
+  vec3 clipJoint[BONES], clipBone[BONES];
+  for (int i = 0; i < BONES; ++i) {
+    clipJoint[i] = pose.joint[i];
+    clipBone[i] = boneDirection(limb, i, pose);
+    // What was animated is allowed, whatever the rig's limits are.
+    limb.cosLimit[i] = min(limb.cosLimit[i], pose.d[i].z);
+    limb.sinLimit[i] = sqrt(1.0 - limb.cosLimit[i] * limb.cosLimit[i]);
+  }
+#endif
 
   vec4 orientation = LOAD4(bodies, agent * BODY_STRIDE + 2);
   vec3 target = (rotateBack(orientation, LOAD4(feet, record).xyz) - root.xyz) / reach;
@@ -78,4 +105,12 @@ void main() {
   vec3 tip = rotate(orientation, root.xyz + reach * pose.tip);
   STORE4(chainsOut, at + chainDirections(BONES), vec4(tip, error * reach));
   STORE4(chainsOut, at + chainDirections(BONES) + 1, vec4(damping, before * reach, 0.0, 0.0));
+#ifdef PLANTED
+  for (int i = 0; i < BONES; ++i) {
+    vec4 q = shortestArc(clipBone[i], boneDirection(limb, i, pose));
+    vec3 move = root.xyz + reach * pose.joint[i] - rotate(q, root.xyz + reach * clipJoint[i]);
+    STORE4(fixesOut, (record * BONES + i) * FIX_STRIDE, q);
+    STORE4(fixesOut, (record * BONES + i) * FIX_STRIDE + 1, vec4(move, 0.0));
+  }
+#endif
 }

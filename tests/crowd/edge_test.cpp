@@ -74,7 +74,7 @@ using InputTest = GpuTest;
 
 TEST_F(InputTest, RefusesWhatItDoesNotKnow) {
   Scene scene = sceneOf(1);
-  scene.herds[0].controller = "loop";
+  scene.herds[0].controller = "magic";
   EXPECT_THROW(Crowd(device(), flatGround(), scene), Error);
   Crowd crowd(device(), flatGround(), sceneOf(1));
   EXPECT_THROW(simulate(device(), crowd, 1, 0), Error);

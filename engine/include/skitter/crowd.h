@@ -46,6 +46,7 @@ struct Fidelity {
 struct HerdState {
   uint32_t agents = 0;
   std::vector<float> goal, steer, body, gait, step, foot, chain, pose, metric;
+  std::vector<float> play, start, fix;  // empty where the controller has none
 };
 
 struct StageTime {

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "skitter/clip.h"
 #include "skitter/heightfield.h"
 
 namespace skitter {
@@ -40,6 +41,9 @@ struct Herd {
   std::string rig =
       "spider";  // "spider", a model (.glb, .gltf) or a sidecar (.rig.json), relative to the scene
   std::string controller = "adaptive";
+  // That clip and planted play (docs/clip.md); empty: the cuts or, without any, all that suit.
+  std::vector<std::string> clips;
+  std::vector<ClipCut> cuts;          // clips cut out of those of the file
   std::string solver = "active-set";  // of the legs: docs/scene.md
   uint32_t agents = 1000;
   Spawn spawn;

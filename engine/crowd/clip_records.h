@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "skitter/clip.h"
+
+namespace skitter::crowd {
+
+// The clips that a herd plays, as the stages read them (shaders/shared/records.h).
+struct ClipRecords {
+  int clips = 0, joints = 0, frames = 0;  // frames of the longest clip
+  int standing = 0;                       // the clip that an agent begins with
+  std::vector<float> heads, times, rows, legs, bones;
+};
+
+// Of the clips that are named or, without names, of all. Throws Error(input) that names the file where there
+// is none, or none of that name.
+ClipRecords clipRecords(const ClipSet& set, const std::vector<std::string>& names, int maxBones);
+
+}  // namespace skitter::crowd

@@ -1,0 +1,19 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stages/stage.glsl"
+#include "lib/gait.glsl"
+
+LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_GAIT, gaits);
+STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
+
+void main() {
+  int agent = int(gl_GlobalInvocationID.x);
+  if (agent >= int(constants.count)) return;
+  int at = agent * BODY_STRIDE;
+  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  Stride stride = strideFor(parameters, body.surfaceSpeed, body.turnRate, float(GROUPS));
+  float phase = LOAD4(gaits, agent * GAIT_STRIDE).x + (body.still > 0.0 ? 0.0 : parameters.dt / stride.cycle);
+  STORE4(gaitsOut, agent * GAIT_STRIDE, vec4(phase - floor(phase), 0.0, 0.0, stride.ticks));
+  STORE4(gaitsOut, agent * GAIT_STRIDE + 1, vec4(stride.halfStride, stride.cycle, 0.0, 0.0));
+}

@@ -1,0 +1,94 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define ONLY_CONES
+#include "stages/stage.glsl"
+#include "shared/ik_batch.h"
+#include "lib/chain.glsl"
+#include "lib/clip.glsl"
+#include "lib/heightfield.glsl"
+#include "lib/limb.glsl"
+
+LOAD4_BUFFER(BINDING_RIG, rig);
+LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_PLAY, plays);
+LOAD4_BUFFER(BINDING_CLIP_FRAME, frames);
+LOAD4_BUFFER(BINDING_CLIP_ROW, rows);
+LOAD4_BUFFER(BINDING_CLIP_LEG, legs);
+STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
+#ifdef PLANTED
+layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
+LOAD4_BUFFER(BINDING_STEP, steps);
+STORE4_BUFFER(BINDING_STEP_OUT, stepsOut);
+STORE4_BUFFER(BINDING_START_OUT, chainsOut);
+
+// Height of the ground below a point relative to the body.
+float drop(Body body, vec2 q) {
+  return heightAt(heights, vec2(parameters.originX, parameters.originZ),
+                  vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), worldOf(body.local, body.tile) + q).x -
+         body.local.y;
+}
+#else
+STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
+#endif
+
+void main() {
+  int record = int(gl_GlobalInvocationID.x);
+  if (record >= int(constants.count)) return;
+  int agent = record / LEGS, leg = record - agent * LEGS;
+  int bodyAt = agent * BODY_STRIDE, playAt = agent * PLAY_STRIDE, at = record * chainStride(BONES);
+  Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
+                         LOAD4(bodies, bodyAt + 3));
+  Play play = unpackPlay(LOAD4(plays, playAt), LOAD4(plays, playAt + 1), LOAD4(plays, playAt + 2));
+  uint standing = uint(LOAD4(frames, int(play.weight < 0.5 ? play.frames.z : play.frames.x)).z);
+  bool stands = (standing >> leg & 1u) != 0u;
+
+  vec3 joint[BONES + 1];
+  for (int i = 0; i <= BONES; ++i) {
+    vec4 place = LOAD4(legs, leg * (BONES + 1) + i), m[3];
+    LOAD_MATRIX(m, rows, play, int(place.w));
+    joint[i] = transformed(m, place.xyz);
+  }
+  Limb limb;
+  LOAD_LIMB(limb, rig, leg * rigStride(BONES) + RIG_LEG_STRIDE);
+  vec3 d[BONES];
+  vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
+  for (int i = 0; i < BONES; ++i) {
+    vec3 along = joint[i + 1] - joint[i];
+    vec3 v = rotateBack(r, unit(along));
+    d[i] = dot(along, along) > 1e-16 ? vec3(dot(limb.x[i], v), dot(limb.y[i], v), max(dot(limb.z[i], v), -0.999))
+                                     : vec3(0.0, 0.0, 1.0);
+    r = swung(limb, i, r, d[i], 0.0);
+  }
+  vec3 foot = joint[BONES], target = rotate(body.orientation, foot);
+  float u = stands ? 1.0 : 0.5;
+
+#ifdef PLANTED
+  int stepAt = record * STEP_STRIDE;
+  vec4 s0 = LOAD4(steps, stepAt), s1 = LOAD4(steps, stepAt + 1);
+  bool locked = LOAD4(steps, stepAt + 2).w > 0.0;
+  vec3 lock = fromTile(s0.xyz, vec2(s0.w, s1.w), body.local, body.tile), offset = s1.xyz;
+  float above = max(foot.y, 0.0);
+  vec3 wanted = vec3(target.x, drop(body, target.xz) + above, target.z);
+  offset = stands && locked ? lock - wanted : offset;
+  float stray = length(offset.xz);
+  bool locks = stands && !locked && stray <= 0.5 * parameters.plantStray;
+  vec3 place = wanted + offset;
+  lock = locks ? vec3(place.x, drop(body, place.xz) + above, place.z) : lock;
+  locked = locks || (stands && locked && stray <= parameters.plantStray);
+  offset *= locked ? 1.0 : parameters.plantKeep;
+  target = locked ? lock : wanted + offset;
+  u = locked ? 1.0 : 0.5;
+  // Both tiles are the body's present one.
+  STORE4(stepsOut, stepAt, vec4(lock + body.local, body.tile.x));
+  STORE4(stepsOut, stepAt + 1, vec4(offset, body.tile.y));
+  STORE4(stepsOut, stepAt + 2, vec4(0.0, 0.0, 0.0, locked ? 1.0 : 0.0));
+  STORE4(stepsOut, stepAt + 3, vec4(0.0));
+  vec3 end = joint[0];
+#else
+  vec3 end = target;
+#endif
+  STORE4(feetOut, record, vec4(target, u));
+  STORE_DIRECTIONS(chainsOut, at, d);
+  STORE4(chainsOut, at + chainDirections(BONES), vec4(end, 0.0));
+  STORE4(chainsOut, at + chainDirections(BONES) + 1, vec4(1.0, 0.0, 0.0, 0.0));
+}

@@ -1,0 +1,25 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stages/stage.glsl"
+#include "lib/loop.glsl"
+
+LOAD4_BUFFER(BINDING_RIG, rig);
+LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_GAIT, gaits);
+STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
+
+void main() {
+  int record = int(gl_GlobalInvocationID.x);
+  if (record >= int(constants.count)) return;
+  int agent = record / LEGS, leg = record - agent * LEGS;
+  int at = agent * BODY_STRIDE;
+  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  vec4 home = LOAD4(rig, leg * rigStride(BONES) + 1);
+  vec4 gait = LOAD4(gaits, agent * GAIT_STRIDE);
+  float cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;
+  float speed = body.surfaceSpeed + abs(body.turnRate) * parameters.homeRadius;
+  float lift = parameters.stepHeight * min(1.0, speed / (0.1 * parameters.legLength));
+  LoopFoot foot = loopFoot(home.xyz, body.turnRate, body.surfaceSpeed, fract(gait.x + home.w / float(GROUPS)), cycle,
+                           gait.w * parameters.dt, lift);
+  STORE4(feetOut, record, vec4(rotate(body.orientation, foot.place), foot.u));
+}
