@@ -33,6 +33,7 @@ struct Tuning {
   bool nearestOnly = false;
   double stepHeight = 0, stepClearance = 0, stepHeightMax = 0;
   double approachError = 0, restPull = 0, pullError = 0, ikTolerance = 0;
+  double deadZone = 0, skateSpeed = 0, limitDeadZone = 0, jerkTicks = 24, jerkPath = 0;
 };
 
 // Samples of a heightfield, row after row; owned by the caller.
@@ -129,14 +130,17 @@ struct BonePose {
   glm::dvec3 position{0};           // relative
 };
 
+// Sums over the ticks in which an agent was watched; metres and radians.
 struct Metric {
-  glm::dvec3 previousTip{0};  // local to the step's tile
-  double slip = -1;           // of the stance so far; -1: there is no planted previous tip
-  double finishedSlip = 0, finishedStances = 0;
-  double penetration = 0, floating = 0;  // sums, metres
-  double ticks = 0, stanceTicks = 0;
-  double largestError = 0;      // metres
-  double largestViolation = 0;  // radians
+  double ticks = 0;
+  double planted = 0, stays = 0, skates = 0;  // leg-ticks: planted, planted a tick before too, skating
+  double slip = 0, stances = 0;               // over finished stances
+  double largestError = 0, largestViolation = 0;
+  double penetration = 0, penetrationBeyond = 0, floating = 0, floatingBeyond = 0;
+  double depth = 0, deepest = 0, violations = 0;
+  double pairs = 0, crossings = 0;
+  double supported = 0, unstable = 0, margin = 0, leastMargin = 0;
+  double footJerk = 0, footPath = 0, bodyJerk = 0, bodyPath = 0;  // sums of W^5 Q and of P^2
 };
 
 // normalize(v) = v / sqrt(max(|v|^2, 1e-20))

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cstring>
+
 #include "cpu_reference/heightfield.h"
 #include "cpu_reference/measure.h"
 #include "cpu_reference/tolerances.h"
@@ -6,50 +9,208 @@
 #include "validation/convert.h"
 
 namespace skitter::validation {
+namespace {
+
+namespace tolerance = reference::tolerance;
+using reference::Metric;
+
+// Sums are compared with the rounding that adding one tick's legs to them costs.
+class Comparison {
+ public:
+  Comparison(Sample& sample, const Metric& expected, const Metric& got, double unit, double legs)
+      : sample_(sample), expected_(expected), got_(got), unit_(unit), legs_(legs) {}
+
+  void length(const char* quantity, double Metric::*member, double bound) {
+    const double e = expected_.*member, g = got_.*member;
+    const double rounding = (legs_ + 2) * tolerance::roundoff * std::abs(e);
+    sample_.compare(quantity, std::abs(e - g) / unit_, (bound + rounding) / unit_, {e, 0, 0, 0},
+                    {g, 0, 0, 0});
+  }
+  void number(const char* quantity, double Metric::*member, double bound) {
+    const double e = expected_.*member, g = got_.*member;
+    const double rounding = (legs_ + 2) * tolerance::roundoff * std::abs(e);
+    sample_.compare(quantity, std::abs(e - g), bound + rounding, {e, 0, 0, 0}, {g, 0, 0, 0});
+  }
+  // A count; `close` of its decisions could have gone the other way.
+  void count(const char* quantity, double Metric::*member, double close = 0) {
+    const double e = expected_.*member, g = got_.*member;
+    if (e != g && close > 0) ties_ = true;
+    sample_.compare(quantity, std::max(0.0, std::abs(e - g) - close), 0, {e, 0, 0, 0}, {g, 0, 0, 0});
+  }
+  bool ties() const { return ties_; }
+
+ private:
+  Sample& sample_;
+  const Metric &expected_, &got_;
+  double unit_, legs_;
+  bool ties_ = false;
+};
+
+struct TrailBounds {
+  double at, first, second, third;
+};
+
+TrailBounds compareTrail(const reference::Trail& expected, const reference::Trail& got, double at,
+                         double unit, Sample& sample) {
+  // x_n - x_(n-1) of tile-local coordinates: both are records or have just been compared.
+  const TrailBounds bound{at, at + tolerance::relative,
+                          at + tolerance::relative + 2 * tolerance::roundoff * glm::length(expected.second),
+                          at + tolerance::relative + 8 * tolerance::roundoff * glm::length(expected.second)};
+  const auto vector = [&](const char* quantity, const glm::dvec3& e, const glm::dvec3& g, double by) {
+    sample.compare(quantity, glm::length(e - g) / unit, by / unit, {e, 0}, {g, 0});
+  };
+  vector("position / leg length", expected.at, got.at, bound.at);
+  vector("first difference / leg length", expected.first, got.first, bound.first);
+  vector("second difference / leg length", expected.second, got.second, bound.second);
+  sample.compare("path / leg length", std::abs(expected.path - got.path) / unit,
+                 (bound.first + 8 * tolerance::roundoff * expected.path) / unit, {expected.path, 0, 0, 0},
+                 {got.path, 0, 0, 0});
+  // Of the tick's |e3|^2, which is at most all of Q.
+  const double third = std::sqrt(expected.jerk);
+  sample.compare("sum of squared third differences", std::abs(expected.jerk - got.jerk),
+                 (2 * third + bound.third) * bound.third + 8 * tolerance::roundoff * expected.jerk,
+                 {expected.jerk, 0, 0, 0}, {got.jerk, 0, 0, 0});
+  return bound;
+}
+
+// Of W^5 Q and of P^2, from what Q and P err by in the tick that closes the window.
+double jerkBound(const reference::Trail& trail, const TrailBounds& bound, double ticks) {
+  const double sum = (2 * std::sqrt(trail.jerk) + bound.third) * bound.third;
+  return std::pow(ticks, 5) * (sum + 16 * tolerance::roundoff * trail.jerk);
+}
+double pathBound(const reference::Trail& trail, const TrailBounds& bound) {
+  return (2 * trail.path + bound.first) * bound.first + 20 * tolerance::roundoff * trail.path * trail.path;
+}
+
+// Nearest two distinct planted tips: a direction between them turns by their rounding over it.
+double nearestPair(const std::vector<reference::Foot>& feet, const std::vector<reference::Chain>& chains,
+                   double most) {
+  for (size_t a = 0; a < feet.size(); ++a)
+    for (size_t b = 0; b < a; ++b)
+      if (feet[a].progress >= 1 && feet[b].progress >= 1)
+        most =
+            std::min(most, std::hypot(chains[a].tip.x - chains[b].tip.x, chains[a].tip.z - chains[b].tip.z));
+  return std::max(most, 1e-4);
+}
+
+void compareUnwatched(const Moment& moment, Judge& judge) {
+  Sample sample;
+  const auto before = records(moment.before.metric, moment.agent, shared::METRIC_STRIDE);
+  const auto after = records(moment.after.metric, moment.agent, shared::METRIC_STRIDE);
+  sample.same("metric of an agent that is not watched", 0,
+              std::memcmp(before.data(), after.data(), before.size_bytes()) == 0 ? 0 : 1);
+  judge.add(moment.n, moment.agent, -1, sample);
+}
+
+}  // namespace
 
 void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
-  namespace tolerance = reference::tolerance;
+  const uint64_t every = moment.after.watchEvery;
+  const reference::WatchTurn turn = reference::watchTurn(moment.n, every);
+  if (moment.agent % every != turn.turn) return compareUnwatched(moment, judge);
+
+  const reference::Tuning& tuning = setting.tuning;
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
-  const size_t legs = static_cast<size_t>(setting.legs);
-  const double unit = setting.tuning.legLength;
+  const size_t legs = static_cast<size_t>(setting.legs), slot = moment.agent / every;
+  const double unit = tuning.legLength;
+  std::vector<reference::Foot> feet;
+  std::vector<reference::Chain> chains;
   for (size_t l = 0; l < legs; ++l) {
-    const size_t leg = moment.agent * legs + l;
-    const reference::Limb& limb = setting.creature.limbs[l];
-    const reference::Chain chain = chainOf(moment.after, leg, setting.bones);
-    const reference::Metric previous = metricOf(moment.before, leg), got = metricOf(moment.after, leg);
-    const reference::Metric expected = reference::measure(
-        setting.heights, limb, body, stepOf(moment.after, leg), footOf(moment.after, leg), chain, previous);
-
-    Sample sample;
-    sample.finite("metric", records(moment.after.metric, leg, shared::METRIC_STRIDE));
-    const double vertical = 6 * tolerance::roundoff * (std::abs(body.y) + limb.reach);
-    const glm::dvec3 apart = got.previousTip - expected.previousTip;
-    const glm::dvec4 want{expected.previousTip, 0}, found{got.previousTip, 0};
-    sample.compare("tip, horizontally / leg length", std::hypot(apart.x, apart.z) / unit,
-                   tolerance::relative / unit, want, found);
-    sample.compare("tip's height / leg length", std::abs(apart.y) / unit, vertical / unit, want, found);
-
-    const auto length = [&](const char* quantity, double e, double g, double bound) {
-      const double rounding = 4 * tolerance::roundoff * std::abs(e);
-      sample.compare(quantity, std::abs(e - g) / unit, (bound + rounding) / unit, {e, 0, 0, 0}, {g, 0, 0, 0});
-    };
-    const glm::dvec2 position = body.world();
-    const reference::Relief relief =
-        reference::reliefNear(setting.heights, position.x + chain.tip.x, position.y + chain.tip.z);
-    const double above =
-        tolerance::height(relief, setting.extent, 2 * tolerance::roundoff * limb.reach) + vertical;
-    length("slip of the stance / leg length", expected.slip, got.slip, 2 * tolerance::relative);
-    length("slip over finished stances / leg length", expected.finishedSlip, got.finishedSlip, 0);
-    length("penetration / leg length", expected.penetration, got.penetration, above);
-    length("float / leg length", expected.floating, got.floating, above);
-    length("largest reach error / leg length", expected.largestError, got.largestError, 0);
-    sample.compare("largest limit violation, rad", std::abs(expected.largestViolation - got.largestViolation),
-                   tolerance::limit, {expected.largestViolation, 0, 0, 0}, {got.largestViolation, 0, 0, 0});
-    sample.same("finished stances", expected.finishedStances, got.finishedStances);
-    sample.same("ticks", expected.ticks, got.ticks);
-    sample.same("stance ticks", expected.stanceTicks, got.stanceTicks);
-    judge.add(moment.n, moment.agent, static_cast<int>(l), sample);
+    feet.push_back(footOf(moment.after, moment.agent * legs + l));
+    chains.push_back(chainOf(moment.after, moment.agent * legs + l, setting.bones));
   }
+  const reference::Measured expected =
+      reference::measure(tuning, setting.heights, setting.creature, body, feet, chains, turn.watched,
+                         watchedOf(moment.before, slot, setting.legs), metricOf(moment.before, moment.agent));
+  const Metric got = metricOf(moment.after, moment.agent);
+  const reference::Watched watched = watchedOf(moment.after, slot, setting.legs);
+
+  Sample sample;
+  sample.finite("metric", records(moment.after.metric, moment.agent, shared::METRIC_STRIDE));
+  sample.finite("watch", records(moment.after.watch, slot, shared::watchStride(setting.legs)));
+
+  // Adding a tip to its body rounds once, in x and z below 32 m, in y with the height.
+  TrailBounds bound = compareTrail(expected.watched.body, watched.body, 0, unit, sample);
+  const double bodyJerk = expected.closes ? jerkBound(expected.watched.body, bound, tuning.jerkTicks) : 0;
+  const double bodyPath = expected.closes ? pathBound(expected.watched.body, bound) : 0;
+  const bool bodyTie = expected.closes && std::abs(expected.bodyPath) <= 2 * bound.first;
+  double footJerk = 0, footPath = 0, lengths = 0, vertical = 0, deepest = 0;
+  double skates = 0, violations = 0, crossings = 0;
+  bool footTie = false;
+  for (size_t l = 0; l < legs; ++l) {
+    const reference::Limb& limb = setting.creature.limbs[l];
+    const reference::TipTrail& trail = expected.watched.tips[l];
+    const reference::LegDecisions& leg = expected.legs[l];
+    const double height = 6 * tolerance::roundoff * (std::abs(body.y) + limb.reach);
+    bound = compareTrail(trail, watched.tips[l], tolerance::relative + height, unit, sample);
+    sample.compare("slip of the stance / leg length", std::abs(trail.slip - watched.tips[l].slip) / unit,
+                   (2 * tolerance::relative + 4 * tolerance::roundoff * std::abs(trail.slip)) / unit,
+                   {trail.slip, 0, 0, 0}, {watched.tips[l].slip, 0, 0, 0});
+
+    const glm::dvec2 world = body.world();
+    const auto relief =
+        reference::reliefNear(setting.heights, world.x + chains[l].tip.x, world.y + chains[l].tip.z);
+    vertical += tolerance::height(relief, setting.extent, 2 * tolerance::roundoff * limb.reach) + height;
+
+    const double length = limb.reach + glm::length(limb.root);
+    const double joint = tolerance::bonePosition(setting.bones) * length;
+    double steepest = 0;
+    for (const glm::dvec3& p : reference::jointsOf(limb, chains[l].directions)) {
+      const glm::dvec3 q = body.orientation * p;
+      const auto below = reference::reliefNear(setting.heights, world.x + q.x, world.y + q.z);
+      steepest =
+          std::max(steepest, tolerance::height(below, setting.extent, joint + tolerance::rotated(length)));
+    }
+    const double depth = steepest + joint + tolerance::rotated(length) + height;
+    lengths += depth;
+    deepest = std::max(deepest, depth);
+
+    if (leg.stays && std::abs(leg.slide) <= 2 * bound.first) ++skates;
+    if (std::abs(leg.violation) <= tolerance::limit) ++violations;
+    if (leg.paired && std::abs(leg.crossing) <= 4 * joint + 4 * tolerance::roundoff * length) ++crossings;
+    if (!leg.closes || leg.path < -2 * bound.first) continue;
+    footTie = footTie || leg.path <= 2 * bound.first;
+    footJerk += jerkBound(trail, bound, tuning.jerkTicks);
+    footPath += pathBound(trail, bound);
+  }
+
+  Comparison metric(sample, expected.metric, got, unit, static_cast<double>(legs));
+  metric.count("ticks", &Metric::ticks);
+  metric.count("planted leg-ticks", &Metric::planted);
+  metric.count("leg-ticks planted twice", &Metric::stays);
+  metric.count("skating leg-ticks", &Metric::skates, skates);
+  metric.count("finished stances", &Metric::stances);
+  metric.length("slip over finished stances / leg length", &Metric::slip, 0);
+  metric.length("largest reach error / leg length", &Metric::largestError, 0);
+  metric.number("largest limit violation, rad", &Metric::largestViolation, tolerance::limit);
+  metric.count("leg-ticks beyond a limit", &Metric::violations, violations);
+  metric.length("penetration / leg length", &Metric::penetration, vertical);
+  metric.length("penetration beyond the dead zone / leg length", &Metric::penetrationBeyond, vertical);
+  metric.length("float / leg length", &Metric::floating, vertical);
+  metric.length("float beyond the dead zone / leg length", &Metric::floatingBeyond, vertical);
+  metric.length("segment penetration / leg length", &Metric::depth, lengths);
+  metric.length("largest segment penetration / leg length", &Metric::deepest, deepest);
+  metric.count("pair-ticks", &Metric::pairs);
+  metric.count("crossings", &Metric::crossings, crossings);
+
+  const double turned = nearestPair(feet, chains, 2 * unit);
+  const double margin = 16 * tolerance::roundoff * 2 * unit * (1 + 2 * unit / turned);
+  metric.count("ticks with a support", &Metric::supported);
+  metric.count("unstable ticks", &Metric::unstable,
+               expected.supported && std::abs(expected.margin) <= margin ? 1 : 0);
+  metric.length("stability margin / leg length", &Metric::margin, margin);
+  metric.length("least stability margin / leg length", &Metric::leastMargin, margin);
+
+  // A window whose path is that close to the least adds all of its jerk or nothing.
+  if (!footTie) {
+    metric.number("jerk of the feet", &Metric::footJerk, footJerk);
+    metric.number("squared path of the feet", &Metric::footPath, footPath);
+  }
+  if (!bodyTie) {
+    metric.number("jerk of the body", &Metric::bodyJerk, bodyJerk);
+    metric.number("squared path of the body", &Metric::bodyPath, bodyPath);
+  }
+  judge.add(moment.n, moment.agent, -1, sample, metric.ties() || footTie || bodyTie);
 }
 
 }  // namespace skitter::validation

@@ -79,6 +79,11 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.restPull = p.restPull;
   t.pullError = p.pullError;
   t.ikTolerance = p.ikTolerance;
+  t.deadZone = p.deadZone;
+  t.skateSpeed = p.skateSpeed;
+  t.limitDeadZone = p.limitDeadZone;
+  t.jerkTicks = p.jerkTicks;
+  t.jerkPath = p.jerkPath;
   return t;
 }
 
@@ -259,20 +264,77 @@ void putBone(HerdState& state, size_t entry, const reference::BonePose& bone) {
   store(state.pose, base + 1, {bone.position, 0});
 }
 
-reference::Metric metricOf(const HerdState& state, size_t leg) {
-  const size_t base = at(leg, shared::METRIC_STRIDE);
-  const glm::dvec4 a = load(state.metric, base), b = load(state.metric, base + 1);
-  const glm::dvec4 c = load(state.metric, base + 2);
-  return {a, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w};
+namespace {
+
+reference::Trail trailOf(const std::vector<float>& watch, size_t base) {
+  const glm::dvec4 first = load(watch, base + 1), second = load(watch, base + 2);
+  return {load(watch, base), first, second, first.w, second.w};
 }
 
-void putMetric(HerdState& state, size_t leg, const reference::Metric& metric) {
-  const size_t base = at(leg, shared::METRIC_STRIDE);
-  store(state.metric, base, {metric.previousTip, metric.slip});
-  store(state.metric, base + 1,
-        {metric.finishedSlip, metric.finishedStances, metric.penetration, metric.floating});
-  store(state.metric, base + 2,
-        {metric.ticks, metric.stanceTicks, metric.largestError, metric.largestViolation});
+void putTrail(std::vector<float>& watch, size_t base, const reference::Trail& trail, double slip) {
+  store(watch, base, {trail.at, slip});
+  store(watch, base + 1, {trail.first, trail.path});
+  store(watch, base + 2, {trail.second, trail.jerk});
+}
+
+}  // namespace
+
+reference::Watched watchedOf(const HerdState& state, size_t slot, int legs) {
+  size_t base = at(slot, shared::watchStride(legs));
+  reference::Watched watched;
+  watched.body = trailOf(state.watch, base);
+  for (int leg = 0; leg < legs; ++leg) {
+    base += shared::WATCH_TRAIL_STRIDE;
+    watched.tips.push_back({trailOf(state.watch, base), load(state.watch, base).w});
+  }
+  return watched;
+}
+
+void putWatched(HerdState& state, size_t slot, const reference::Watched& watched) {
+  size_t base = at(slot, shared::watchStride(static_cast<int>(watched.tips.size())));
+  putTrail(state.watch, base, watched.body, 0);
+  for (const reference::TipTrail& tip : watched.tips)
+    putTrail(state.watch, base += shared::WATCH_TRAIL_STRIDE, tip, tip.slip);
+}
+
+reference::Metric metricOf(const HerdState& state, size_t agent) {
+  const float* m = state.metric.data() + 4 * at(agent, shared::METRIC_STRIDE);
+  return {.ticks = m[0],
+          .planted = m[1],
+          .stays = m[2],
+          .skates = m[3],
+          .slip = m[4],
+          .stances = m[5],
+          .largestError = m[6],
+          .largestViolation = m[7],
+          .penetration = m[8],
+          .penetrationBeyond = m[9],
+          .floating = m[10],
+          .floatingBeyond = m[11],
+          .depth = m[12],
+          .deepest = m[13],
+          .violations = m[14],
+          .pairs = m[16],
+          .crossings = m[17],
+          .supported = m[18],
+          .unstable = m[19],
+          .margin = m[20],
+          .leastMargin = m[21],
+          .footJerk = m[24],
+          .footPath = m[25],
+          .bodyJerk = m[26],
+          .bodyPath = m[27]};
+}
+
+void putMetric(HerdState& state, size_t agent, const reference::Metric& m) {
+  const size_t base = at(agent, shared::METRIC_STRIDE);
+  store(state.metric, base, {m.ticks, m.planted, m.stays, m.skates});
+  store(state.metric, base + 1, {m.slip, m.stances, m.largestError, m.largestViolation});
+  store(state.metric, base + 2, {m.penetration, m.penetrationBeyond, m.floating, m.floatingBeyond});
+  store(state.metric, base + 3, {m.depth, m.deepest, m.violations, 0});
+  store(state.metric, base + 4, {m.pairs, m.crossings, m.supported, m.unstable});
+  store(state.metric, base + 5, {m.margin, m.leastMargin, 0, 0});
+  store(state.metric, base + 6, {m.footJerk, m.footPath, m.bodyJerk, m.bodyPath});
 }
 
 }  // namespace skitter::validation

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "cpu_reference/measure.h"
 #include "cpu_reference/types.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
@@ -23,7 +24,9 @@ reference::Step stepOf(const HerdState& state, size_t leg);
 reference::Foot footOf(const HerdState& state, size_t leg);
 reference::Chain chainOf(const HerdState& state, size_t leg, int bones);
 reference::BonePose boneOf(const HerdState& state, size_t entry);
-reference::Metric metricOf(const HerdState& state, size_t leg);
+reference::Metric metricOf(const HerdState& state, size_t agent);
+// `slot`: the agent's number over HerdState::watchEvery.
+reference::Watched watchedOf(const HerdState& state, size_t slot, int legs);
 
 // Rounded to float into records that are already of full size.
 void putGoal(HerdState& state, size_t agent, const reference::Goal& goal);
@@ -34,6 +37,7 @@ void putStep(HerdState& state, size_t leg, const reference::Step& step);
 void putFoot(HerdState& state, size_t leg, const reference::Foot& foot);
 void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& chain);
 void putBone(HerdState& state, size_t entry, const reference::BonePose& bone);
-void putMetric(HerdState& state, size_t leg, const reference::Metric& metric);
+void putMetric(HerdState& state, size_t agent, const reference::Metric& metric);
+void putWatched(HerdState& state, size_t slot, const reference::Watched& watched);
 
 }  // namespace skitter::validation

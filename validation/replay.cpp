@@ -40,7 +40,11 @@ void expectSizes(const Setting& setting, const HerdState& state, size_t agents) 
   expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
   expect("chain records", state.chain, legs, shared::chainStride(setting.bones));
   expect("pose records", state.pose, 1 + legs * static_cast<size_t>(setting.bones), shared::POSE_STRIDE);
-  if (!state.metric.empty()) expect("metric records", state.metric, legs, shared::METRIC_STRIDE);
+  if (state.metric.empty()) return;
+  expect("metric records", state.metric, 1, shared::METRIC_STRIDE);
+  const size_t watched = (agents + state.watchEvery - 1) / state.watchEvery;
+  expectSize("watch records", state.watch.size(),
+             4 * watched * static_cast<size_t>(shared::watchStride(setting.legs)));
 }
 
 // splitmix64: Steele, Lea & Flood 2014.

@@ -25,12 +25,13 @@ namespace skitter::app {
 namespace {
 
 constexpr uint64_t headlessFrames = 300;
-constexpr uint64_t maxFrames = 100000000, maxTicksPerFrame = 1000;
+constexpr uint64_t maxFrames = 100000000, maxTicksPerFrame = 1000, maxWatchEvery = 1000000;
 
 struct RunOptions {
   SceneOptions scene;
   std::optional<uint64_t> frames;
   uint64_t ticksPerFrame = 1;
+  uint32_t watchEvery = 0;
   Size size{1280, 720};
   std::string view, out, json, trace;
   bool poses = false, unmeasured = false;
@@ -124,6 +125,7 @@ int run(const RunOptions& options) {
   CrowdOptions crowdOptions;
   crowdOptions.timestamps = options.timings;
   crowdOptions.measure = !options.unmeasured;
+  crowdOptions.watchEvery = options.watchEvery;
   crowdOptions.pose = options.poses || windowed || target.kind != OutTarget::Kind::none || !options.trace.empty();
   Crowd crowd(device, terrain, scene, crowdOptions);
 
@@ -156,7 +158,10 @@ int run(const RunOptions& options) {
     summary.wantedTicks = ticks;
   }
   summary.ticks = crowd.tick();
+  summary.watchEvery = crowd.watchEvery();
   summary.fidelity = crowd.fidelity();
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h)
+    summary.herds.push_back({crowd.rig(h).name, scene.herds[h].agents, crowd.fidelity(h)});
   summary.stateHash = crowd.stateHash();
   if (trace) {
     trace->finish(crowd, terrain);
@@ -188,6 +193,14 @@ void addNumbers(CLI::App& command, RunOptions& options) {
             options.ticksPerFrame = parseWhole("--ticks-per-frame", text, 1, maxTicksPerFrame);
           },
           "simulation steps from one frame to the next [1]")
+      ->type_name("N");
+  command
+      .add_option_function<std::string>(
+          "--watch-every",
+          [&options](const std::string& text) {
+            options.watchEvery = static_cast<uint32_t>(parseWhole("--watch-every", text, 1, maxWatchEvery));
+          },
+          "measure one agent of every N at a time [1 up to 256 agents, else 64]")
       ->type_name("N");
   command
       .add_option_function<std::string>(

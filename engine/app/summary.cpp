@@ -27,6 +27,51 @@ std::optional<double> cpuMicroseconds(const Summary& summary) {
 
 void printRow(const char* name, const std::string& value) { fmt::print("{:<12}{}\n", name, value); }
 
+void printFidelity(const Fidelity& f, uint32_t watchEvery) {
+  printRow("watched", fmt::format("1 agent of {} at a time: {} agent-ticks, {} stances", watchEvery,
+                                  f.agentTicks, f.stances));
+  printRow("feet", fmt::format("slip {:.3f} % of leg length a stance, penetration {:.3f} %, float {:.3f} %, "
+                               "skating {:.3f} % of the time",
+                               100 * f.slip, 100 * f.penetration, 100 * f.floating, 100 * f.skating));
+  printRow(
+      "legs",
+      fmt::format("{:.3f} % of leg length below the ground, at most {:.3f} %; {:.3f} % of neighbours cross",
+                  100 * f.segmentPenetration, 100 * f.segmentPenetrationMost, 100 * f.crossing));
+  printRow("reach error", fmt::format("{:.4f} % of leg length (99th percentile), at most {:.4f} %",
+                                      100 * f.reachErrorP99, 100 * f.reachErrorMost));
+  printRow("limits", fmt::format("exceeded by at most {:.6f} rad, {:.3f} % of the time", f.limitViolation,
+                                 100 * f.limitViolations));
+  printRow("jerk", fmt::format("feet {:.0f}, body {:.0f} (normalised, 0.4 s)", f.footJerk, f.bodyJerk));
+  printRow("stability",
+           fmt::format("margin {:.2f} % of leg length, least {:.2f} %; unstable {:.3f} % of the time",
+                       100 * f.margin, 100 * f.marginLeast, 100 * f.unstable));
+}
+
+nlohmann::ordered_json jsonOf(const Fidelity& f) {
+  return {{"agentTicks", f.agentTicks},
+          {"stances", f.stances},
+          {"slip", f.slip},
+          {"skating", f.skating},
+          {"penetration", f.penetration},
+          {"penetrationBeyond", f.penetrationBeyond},
+          {"float", f.floating},
+          {"floatBeyond", f.floatingBeyond},
+          {"segmentPenetration", f.segmentPenetration},
+          {"segmentPenetrationMost", f.segmentPenetrationMost},
+          {"crossing", f.crossing},
+          {"reachErrorP99", f.reachErrorP99},
+          {"reachErrorMost", f.reachErrorMost},
+          {"limitViolation", f.limitViolation},
+          {"limitViolations", f.limitViolations},
+          {"footJerk", f.footJerk},
+          {"bodyJerk", f.bodyJerk},
+          {"margin", f.margin},
+          {"marginLeast", f.marginLeast},
+          {"unstable", f.unstable},
+          {"lastResorts", f.lastResorts},
+          {"notFinite", f.notFinite}};
+}
+
 }  // namespace
 
 void Summary::print() const {
@@ -46,11 +91,11 @@ void Summary::print() const {
     printRow("", fmt::format("{:<10}{:9.4f} ms a tick", stage.stage,
                              stage.milliseconds / static_cast<double>(std::max<uint64_t>(ticks, 1))));
   }
-  printRow("feet", fmt::format("slip {:.3f} % of leg length a stance, penetration {:.3f} %, float {:.3f} %",
-                               100 * fidelity.slip, 100 * fidelity.penetration, 100 * fidelity.floating));
-  printRow("reach error",
-           fmt::format("{:.4f} % of leg length (99th percentile)", 100 * fidelity.reachErrorP99));
-  printRow("limits", fmt::format("exceeded by at most {:.6f} rad", fidelity.limitViolation));
+  printFidelity(fidelity, watchEvery);
+  for (size_t h = 0; h < herds.size() && herds.size() > 1; ++h) {
+    fmt::print("herd {}: {}, {} agents\n", h, herds[h].rig, herds[h].agents);
+    printFidelity(herds[h].fidelity, watchEvery);
+  }
   if (fidelity.lastResorts > 0)
     printRow("no foothold", fmt::format("{} steps, a last resort", fidelity.lastResorts));
   if (fidelity.notFinite > 0) printRow("not finite", fmt::format("{} foot targets", fidelity.notFinite));
@@ -63,18 +108,18 @@ nlohmann::ordered_json Summary::json() const {
   const auto tick = spreadOf(times.milliseconds);
   nlohmann::ordered_json milliseconds = {{"min", nullptr}, {"median", nullptr}, {"max", nullptr}};
   if (tick) milliseconds = {{"min", tick->min}, {"median", tick->median}, {"max", tick->max}};
+  nlohmann::ordered_json perHerd = nlohmann::ordered_json::array();
+  for (const HerdFigures& herd : herds)
+    perHerd.push_back({{"rig", herd.rig}, {"agents", herd.agents}, {"fidelity", jsonOf(herd.fidelity)}});
   return {{"device", device},
           {"agents", agents},
           {"ticks", ticks},
           {"seed", seed},
           {"tickMilliseconds", milliseconds},
           {"cpuMicrosecondsPerAgentTick", orNull(cpuMicroseconds(*this))},
-          {"fidelity",
-           {{"slip", fidelity.slip},
-            {"penetration", fidelity.penetration},
-            {"float", fidelity.floating},
-            {"reachErrorP99", fidelity.reachErrorP99},
-            {"limitViolation", fidelity.limitViolation}}},
+          {"watchEvery", watchEvery},
+          {"fidelity", jsonOf(fidelity)},
+          {"herds", perHerd},
           {"stateHash", fmt::format("{:016x}", stateHash)}};
 }
 

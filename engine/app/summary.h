@@ -11,6 +11,12 @@
 
 namespace skitter::app {
 
+struct HerdFigures {
+  std::string rig;
+  uint32_t agents = 0;
+  Fidelity fidelity;
+};
+
 // What a run came to: printed for people and written for programs.
 struct Summary {
   std::string device;
@@ -19,8 +25,10 @@ struct Summary {
   uint64_t agents = 0, ticks = 0, frames = 0, seed = 0;
   uint64_t wantedTicks = 0;  // more than `ticks` where the run was interrupted
   TickTimes times;
-  bool cpuTold = true;  // the CPU time is the simulation's alone
-  Fidelity fidelity;
+  bool cpuTold = true;      // the CPU time is the simulation's alone
+  uint32_t watchEvery = 1;  // the figures are of one agent of this many at a time
+  Fidelity fidelity;        // of all herds
+  std::vector<HerdFigures> herds;
   uint64_t stateHash = 0;
   std::vector<std::string> files;
 

@@ -13,6 +13,7 @@
 #include "crowd/spawn.h"
 #include "crowd/stage.h"
 #include "crowd/tuning.h"
+#include "crowd/watch.h"
 #include "gpu/barrier.h"
 #include "gpu/context.h"
 #include "gpu/submit.h"
@@ -60,26 +61,32 @@ void loadClips(const gpu::Context& context, const Herd& from, crowd::Herd& herd)
 
 uint32_t invocations(const crowd::Herd& herd, const Page& page, Stage::Over over) {
   switch (over) {
-    case Stage::Over::agents:
-      return page.agents;
     case Stage::Over::joints:
       return page.agents * gpu::groupsFor(static_cast<uint32_t>(herd.clips.joints), shared::JOINTS_EACH);
     case Stage::Over::legs:
     case Stage::Over::listed:
+      return page.agents * static_cast<uint32_t>(herd.legs);
+    case Stage::Over::agents:
+    case Stage::Over::watched:
       break;
   }
-  return page.agents * static_cast<uint32_t>(herd.legs);
+  return page.agents;
 }
 
-void dispatch(const crowd::Herd& herd, const Page& page, size_t index, float tick, vk::CommandBuffer cmd) {
+void dispatch(const crowd::Herd& herd, const Page& page, size_t index, uint64_t tick, uint32_t every,
+              vk::CommandBuffer cmd) {
   const Stage& stage = crowd::stagesOf(herd.controller)[index];
-  const uint32_t count = invocations(herd, page, stage.over);
-  const shared::TickConstants constants{count, tick};
+  shared::TickConstants constants{invocations(herd, page, stage.over), static_cast<float>(tick), 0, 1, 0};
+  if (stage.over == Stage::Over::watched) {
+    const crowd::Watch watch = crowd::watchAt(tick, every, page);
+    constants = {watch.count, static_cast<float>(tick), watch.first, every, watch.watched};
+  }
   const auto push = gpu::bytesOf(constants);
   if (stage.over == Stage::Over::listed)
     herd.kernels[index].dispatchIndirect(cmd, page.bindings[index], push, page.counters);
   else
-    herd.kernels[index].dispatch(cmd, page.bindings[index], push, gpu::groupsFor(count, shared::WORK_GROUP));
+    herd.kernels[index].dispatch(cmd, page.bindings[index], push,
+                                 gpu::groupsFor(constants.count, shared::WORK_GROUP));
 }
 
 // Zero listed legs; the counts since the start stay.
@@ -97,14 +104,14 @@ bool hasStage(const Impl& crowd, std::string_view name) {
 }
 
 // Of every herd whose controller has it.
-void recordStage(const Impl& crowd, std::string_view name, float tick, vk::CommandBuffer cmd) {
+void recordStage(const Impl& crowd, std::string_view name, uint64_t tick, vk::CommandBuffer cmd) {
   for (const crowd::Herd& herd : crowd.herds) {
     // Of a clip as it is, feet are looked at by measure alone.
     if (name == "swing" && herd.controller == crowd::Controller::clip && !crowd.options.measure) continue;
     const std::vector<Stage>& stages = crowd::stagesOf(herd.controller);
     for (size_t i = 0; i < stages.size(); ++i)
       if (stages[i].name == name)
-        for (const Page& page : herd.pages) dispatch(herd, page, i, tick, cmd);
+        for (const Page& page : herd.pages) dispatch(herd, page, i, tick, crowd.watchEvery, cmd);
   }
 }
 
@@ -114,7 +121,7 @@ void settle(Impl& crowd) {
   gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
     clearLists(crowd, cmd);
     gpu::transferToCompute(cmd);
-    const shared::TickConstants nothing{0, 0};
+    const shared::TickConstants nothing{};
     for (const crowd::Herd& herd : crowd.herds)
       for (size_t i = 0; i < herd.kernels.size(); ++i) {
         for (const Page& page : herd.pages)
@@ -171,6 +178,10 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
   if (options.timestamps)
     crowd.timer = gpu::StageTimer(context, static_cast<uint32_t>(crowd::frame().size()));
 
+  uint64_t agents = 0;
+  for (const Herd& from : scene.herds) agents += from.agents;
+  crowd.watchEvery = crowd::watchEvery(options, agents);
+
   for (const Herd& from : scene.herds) {
     crowd::Herd& herd = crowd.herds.emplace_back();
     herd.controller = crowd::controllerNamed(from.controller);
@@ -190,7 +201,7 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     crowd::makeKernels(context, options, herd);
 
     const crowd::RecordBytes bytes = crowd::recordBytes(herd);
-    const uint64_t needed = bytes.sum() * from.agents;
+    const uint64_t needed = bytes.sum(crowd.watchEvery) * from.agents;
     if (needed > context.limits().availableBytes)
       throw deviceError(std::to_string(from.agents) + " agents need " + std::to_string(needed >> 20) +
                         " MiB, " + context.report().name + " has " +
@@ -212,7 +223,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   Impl& crowd = *impl_;
   const vk::CommandBuffer cmd(commandBuffer);
   setTick(crowd, dt);
-  const auto tick = static_cast<float>(++crowd.tick);
+  const uint64_t tick = ++crowd.tick;
 
   crowd.timer.reset(cmd);
   gpu::graphicsToCompute(cmd);
@@ -235,6 +246,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
 }
 
 uint64_t Crowd::tick() const { return impl_->tick; }
+uint32_t Crowd::watchEvery() const { return impl_->watchEvery; }
 uint32_t Crowd::herdCount() const { return static_cast<uint32_t>(impl_->herds.size()); }
 const Rig& Crowd::rig(uint32_t herd) const { return impl_->herds.at(herd).rig; }
 
@@ -248,7 +260,8 @@ uint64_t Crowd::agentCount() const {
 uint64_t Crowd::memoryBytes() const {
   uint64_t bytes = 0;
   for (const crowd::Herd& herd : impl_->herds)
-    for (const Page& page : herd.pages) bytes += crowd::recordBytes(herd).sum() * page.agents;
+    for (const Page& page : herd.pages)
+      bytes += crowd::recordBytes(herd).sum(impl_->watchEvery) * page.agents;
   return bytes;
 }
 

@@ -24,7 +24,7 @@ namespace skitter::crowd {
 struct Page {
   uint32_t firstAgent = 0;
   uint32_t agents = 0;
-  gpu::Buffer goal, steer, body, gait, step, foot, chain, pose, metric;
+  gpu::Buffer goal, steer, body, gait, step, foot, chain, pose, metric, watch;
   gpu::Buffer play, start, fix;         // where clips are played, the latter two where they are planted
   gpu::Buffer list;                     // legs that begin a step this tick
   gpu::Buffer counters;                 // indirect arguments and counts
@@ -58,6 +58,7 @@ struct Crowd::Impl {
   Heightfield terrain;  // heights in memory too: cameras and tools look up the ground
   gpu::Image heights;   // R32F, columns x rows, in state sampled; what every stage and the picture read
   std::vector<crowd::Herd> herds;
+  uint32_t watchEvery = 1;  // measure watches one agent of this many
   uint64_t tick = 0;
   float dt = 0;  // of the first tick; 0 before it
   gpu::StageTimer timer;

@@ -14,12 +14,14 @@ Stage measureStage() {
            {BINDING_HEIGHTS, heights},
            {BINDING_RIG, load4},
            {BINDING_BODY, load4},
-           {BINDING_STEP, load4},
+           {BINDING_FOOT, load4},
            {BINDING_CHAIN, load4},
+           {BINDING_WATCH, load4},
+           {BINDING_WATCH_OUT, store},
            {BINDING_METRIC, load4},
            {BINDING_METRIC_OUT, store},
            {BINDING_HISTOGRAM, store}},
-          Stage::Over::legs};
+          Stage::Over::watched};
 }
 
 }  // namespace skitter::crowd

@@ -71,6 +71,9 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
       return {binding, &herd.clipLegs};
     case BINDING_CLIP_JOINT:
       return {binding, &herd.clipBones};
+    case BINDING_WATCH:
+    case BINDING_WATCH_OUT:
+      return {binding, &page.watch};
     default:
       return {binding, &page.metric};
   }
@@ -93,8 +96,9 @@ RecordBytes recordBytes(const Herd& herd) {
           .chain = vec4s(legs, chainStride(rig.maxBones())),
           .pose = clips ? vec4s(static_cast<uint64_t>(herd.clips.joints), MATRIX_STRIDE)
                         : vec4s(static_cast<uint64_t>(rig.paletteSize()), POSE_STRIDE),
-          .metric = vec4s(legs, METRIC_STRIDE),
+          .metric = vec4s(1, METRIC_STRIDE),
           .list = legs * 4,
+          .watch = vec4s(1, watchStride(rig.legCount())),
           .play = clips ? vec4s(1, PLAY_STRIDE) : 0,
           .start = planted ? vec4s(legs, chainStride(rig.maxBones())) : 0,
           .fix = planted ? vec4s(legs * static_cast<uint64_t>(rig.maxBones()), FIX_STRIDE) : 0};
@@ -136,6 +140,8 @@ Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner
   if (bytes.play > 0) make(page.play, bytes.play, "play");
   if (bytes.start > 0) make(page.start, bytes.start, "start");
   if (bytes.fix > 0) make(page.fix, bytes.fix, "fix");
+  const uint64_t watched = (uint64_t{agents} + crowd.watchEvery - 1) / crowd.watchEvery;
+  page.watch = gpu::Buffer(context, bytes.watch * watched, "watch");
   page.counters = gpu::Buffer(context, shared::COUNTERS * 4, "counters", gpu::BufferUse::indirect);
   page.histogram = gpu::Buffer(context, shared::HISTOGRAM_BUCKETS * 4, "histogram");
   gpu::upload(context, page.goal, spawned.goal);
@@ -145,11 +151,12 @@ Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner
   gpu::upload(context, page.step, spawned.step);
   gpu::upload(context, page.foot, spawned.foot);
   gpu::upload(context, page.chain, spawned.chain);
-  gpu::upload(context, page.metric, spawned.metric);
   if (bytes.play > 0) gpu::upload(context, page.play, spawned.play);
   if (bytes.start > 0) gpu::clear(context, page.start);
   if (bytes.fix > 0) gpu::clear(context, page.fix);
   gpu::clear(context, page.pose);
+  gpu::clear(context, page.metric);
+  gpu::clear(context, page.watch);
   gpu::clear(context, page.counters);
   gpu::clear(context, page.histogram);
   const std::vector<Stage>& stages = stagesOf(herd.controller);

@@ -1,8 +1,7 @@
 // What the host asks of a crowd after the fact; each waits for the device.
 #include <algorithm>
-#include <cmath>
 
-#include "crowd/herd.h"
+#include "crowd/watch.h"
 #include "gpu/context.h"
 #include "gpu/transfer.h"
 #include "skitter/crowd.h"
@@ -18,13 +17,26 @@ void appendRecords(const gpu::Context& context, const gpu::Buffer& buffer, std::
   records.insert(records.end(), page.begin(), page.end());
 }
 
+// A page's watched agents come from its start; in the herd each has the place of its number.
+void appendWatch(const Crowd::Impl& crowd, const crowd::Herd& herd, const Page& page,
+                 std::vector<float>& watch) {
+  const crowd::Watch now = crowd::watchAt(crowd.tick, crowd.watchEvery, page);
+  const auto floats = static_cast<size_t>(4 * shared::watchStride(herd.legs));
+  const std::vector<float> slots = gpu::download<float>(*crowd.context, page.watch);
+  watch.resize(((size_t{page.firstAgent} + page.agents + crowd.watchEvery - 1) / crowd.watchEvery) * floats);
+  const size_t first = (size_t{page.firstAgent} + now.first) / crowd.watchEvery * floats;
+  std::copy_n(slots.begin(), now.count * floats, watch.begin() + static_cast<ptrdiff_t>(first));
+}
+
 }  // namespace
 
 HerdState Crowd::download(uint32_t herdIndex) const {
   const gpu::Context& context = *impl_->context;
   context.waitIdle();
   HerdState state;
-  for (const Page& page : impl_->herds.at(herdIndex).pages) {
+  state.watchEvery = impl_->watchEvery;
+  const crowd::Herd& herd = impl_->herds.at(herdIndex);
+  for (const Page& page : herd.pages) {
     state.agents += page.agents;
     appendRecords(context, page.goal, state.goal);
     appendRecords(context, page.steer, state.steer);
@@ -38,48 +50,9 @@ HerdState Crowd::download(uint32_t herdIndex) const {
     if (page.play) appendRecords(context, page.play, state.play);
     if (page.start) appendRecords(context, page.start, state.start);
     if (page.fix) appendRecords(context, page.fix, state.fix);
+    appendWatch(*impl_, herd, page, state.watch);
   }
   return state;
-}
-
-Fidelity Crowd::fidelity() const {
-  const gpu::Context& context = *impl_->context;
-  context.waitIdle();
-  Fidelity f;
-  double slip = 0, stances = 0, penetration = 0, floating = 0, ticks = 0, planted = 0;
-  std::vector<uint64_t> buckets(shared::HISTOGRAM_BUCKETS);
-  for (const crowd::Herd& herd : impl_->herds) {
-    const double length = herd.rig.legLength;
-    for (const Page& page : herd.pages) {
-      const std::vector<float> m = gpu::download<float>(context, page.metric);
-      for (size_t i = 0; i + 11 < m.size(); i += shared::METRIC_STRIDE * 4) {
-        slip += m[i + 4] / length;
-        stances += m[i + 5];
-        penetration += m[i + 6] / length;
-        floating += m[i + 7] / length;
-        ticks += m[i + 8];
-        planted += m[i + 9];
-        f.limitViolation = std::max(f.limitViolation, double{m[i + 11]});
-      }
-      const std::vector<uint32_t> counts = gpu::download<uint32_t>(context, page.histogram);
-      for (size_t i = 0; i < buckets.size(); ++i) buckets[i] += counts[i];
-      const std::vector<uint32_t> counters = gpu::download<uint32_t>(context, page.counters);
-      f.lastResorts += counters[shared::COUNTER_LAST_RESORTS];
-      f.notFinite += counters[shared::COUNTER_NOT_FINITE];
-    }
-  }
-  if (stances > 0) f.slip = slip / stances;
-  if (ticks > 0) f.penetration = penetration / ticks;
-  if (planted > 0) f.floating = floating / planted;
-  uint64_t all = 0, seen = 0;
-  for (const uint64_t count : buckets) all += count;
-  for (size_t i = 0; i < buckets.size() && all > 0; ++i) {
-    seen += buckets[i];
-    if (static_cast<double>(seen) < 0.99 * static_cast<double>(all)) continue;
-    f.reachErrorP99 = std::exp2(static_cast<double>(i + 1) / 4 - 20);  // the bucket's upper edge
-    break;
-  }
-  return f;
 }
 
 uint64_t Crowd::stateHash() const {

@@ -127,9 +127,6 @@ void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
       for (int i = 0; i < shared::chainDirections(bones); ++i) push(state.chain, 0, 0, 0, 0);
       push(state.chain, home.x, home.y, home.z, 0);
       push(state.chain, 1, 0, 0, 0);
-      push(state.metric, 0, 0, 0, -1);
-      push(state.metric, 0, 0, 0, 0);
-      push(state.metric, 0, 0, 0, 0);
     }
   }
   state.agents += count;

@@ -16,8 +16,9 @@ constexpr bool playsClips(Controller c) { return c == Controller::clip || c == C
 
 // A stage of the frame: one compute shader, the records it binds, and what it runs over.
 struct Stage {
-  // listed: the legs that begin a step, counted on the device.   joints: of the clips' palette.
-  enum class Over { agents, legs, listed, joints };
+  // listed: the legs that begin a step, counted on the device; watched: agents whom measure looks at; joints:
+  // of the clips' palette.
+  enum class Over { agents, legs, listed, watched, joints };
 
   const char* name;
   gpu::ShaderCode code;

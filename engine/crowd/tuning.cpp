@@ -111,6 +111,12 @@ shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield
   p.ikTolerance = 2e-5f;    // of the reach; a planted foot's slide is the sum of such errors
   // Without a polish the approach goes all the way.
   if (ik.polish == 0) p.approachError = p.ikTolerance;
+
+  p.deadZone = 0.005f * length;
+  p.skateSpeed = 0.1f * length;  // m/s
+  p.limitDeadZone = 1e-4f;       // radians; a clamped direction is within 1e-6
+  p.jerkTicks = std::max(4.0f, std::floor(0.4f / dt + 0.5f));
+  p.jerkPath = 0.05f * length;
   return p;
 }
 

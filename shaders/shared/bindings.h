@@ -46,6 +46,8 @@ BINDING BINDING_CLIP_FRAME = 31;
 BINDING BINDING_CLIP_ROW = 32;
 BINDING BINDING_CLIP_LEG = 33;
 BINDING BINDING_CLIP_JOINT = 34;
+BINDING BINDING_WATCH = 35;
+BINDING BINDING_WATCH_OUT = 36;
 
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
@@ -65,11 +67,18 @@ BINDING CONSTANT_SEARCH_STEPS = 22;  // 2 to their power is more than a clip has
 // Push constants of every stage.
 struct TickConstants {
 #ifdef __cplusplus
-  uint32_t count;  // invocations with work: agents or legs of the page
+  uint32_t count;  // invocations with work: agents, legs or watched agents of the page
   float tick;      // n, the tick being computed
+  // Of measure alone: invocation i looks at agent first + i * every of the page, watched for so many ticks.
+  uint32_t first;
+  uint32_t every;
+  uint32_t watched;
 #else
   uint count;
   float tick;
+  uint first;
+  uint every;
+  uint watched;
 #endif
 };
 

@@ -81,6 +81,12 @@ struct Parameters {
   float restPull;       // share of the angle from rest taken back a step once on target
   float pullError;      // share of the reach below which the rest pull acts
   float ikTolerance;    // share of the reach that counts as arrived
+  // measure
+  float deadZone;       // depth or height of a foot that may count as touching
+  float skateSpeed;     // m/s, horizontal, above which a planted foot skates
+  float limitDeadZone;  // radians beyond a limit that do not count
+  float jerkTicks;      // ticks a window of normalised jerk
+  float jerkPath;       // a window with a shorter path does not count
 };
 
 #ifdef __cplusplus

@@ -89,14 +89,31 @@ SKITTER_CONST int JOINTS_EACH = 1;
 // The clips of a herd, constant.
 //   clip, each  [0] first frame, frames, seconds, speed (m/s; 0: standing)
 //   frame, each [0] time (s), 1 / time to the next (0 at the last), mask of legs that stand, unused
-//   row, a frame and joint: three rows of its matrix, model space, less the clip's ground; one frame more
-//   than there are leg, a leg and joint 0 .. bones: place before skinning x, y, z, palette entry joint, each
-//   [0] its bone's place among an agent's bones (leg * bones + bone), or -1, unused
-// metric, per leg, written by measure.
-//   [0] previous tip: tile-local x, y, z of the step's tile; slip of the stance so far (m)
-//   [1] slip over finished stances (m), finished stances, penetration sum (m), float sum (m)
-//   [2] ticks measured, stance ticks, largest reach error (m), largest limit violation (rad)
-SKITTER_CONST int METRIC_STRIDE = 3;
+//   row, a frame and joint: three rows of its matrix, model space, less the clip's ground; a frame more
+//   leg, a leg and joint 0 .. bones: place before skinning x, y, z, palette entry
+//   joint, each [0] place of its bone among an agent's (leg * bones + bone), or -1, unused
+
+// Ticks in a row for which an agent is watched.
+SKITTER_CONST int WATCH_TICKS = 128;
+
+// watch, per watched agent, written by measure: the trail of its body and then of each tip,
+// WATCH_TRAIL_STRIDE vec4 each. It is of the agent that is watched at the time.
+//   [0] position, tile-local x, y, z; of a tip: slip of the stance so far (m), WATCH_AIR or WATCH_UNSEEN
+//   [1] difference from the position a tick before x, y, z; path in the open window P (m)
+//   [2] difference of that from the one a tick before x, y, z; sum Q of squared third differences (m^2)
+SKITTER_CONST int WATCH_TRAIL_STRIDE = 3;
+SKITTER_CONST float WATCH_AIR = -1.0;     // not planted
+SKITTER_CONST float WATCH_UNSEEN = -2.0;  // planted since before the watch began
+SKITTER_FUNCTION int watchStride(int legs) { return WATCH_TRAIL_STRIDE * (1 + legs); }
+
+// metric, per agent, written by measure: sums over the ticks in which it was watched.
+//   [0] ticks; leg-ticks planted; of these planted a tick before too; of those skating
+//   [1] slip over finished stances (m), finished stances, largest reach error (m), largest limit violation
+//   (rad) [2] penetration, the same beyond the dead zone, float, the same beyond the dead zone (m) [3]
+//   segment penetration (m), its largest (m), leg-ticks beyond a limit, unused [4] pair-ticks of neighbours,
+//   of these crossing, ticks with a support, unstable ticks [5] stability margin (m), its least (m), unused,
+//   unused [6] W^5 Q over windows of the tips, their P^2, the same of the body (m^2)
+SKITTER_CONST int METRIC_STRIDE = 7;
 
 // rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE a bone (zero-length bones pad short
 // legs).
@@ -128,8 +145,6 @@ SKITTER_CONST int COUNTER_NOT_FINITE = 5;
 SKITTER_CONST int COUNTERS = 8;
 // reach errors, per page: counts per bucket of a leg length; bucket k holds errors of 2^(k/4 - 20) and more.
 SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
-// Ticks from one count to the next: an atomic a leg is the dearest thing in measure.
-SKITTER_CONST float HISTOGRAM_EVERY = 4.0;
 
 #ifdef __cplusplus
 }  // namespace skitter::shared

@@ -20,7 +20,8 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   EXPECT_EQ(files(), std::vector<std::string>{"run.json"});
   const nlohmann::json run = json("run.json");
   EXPECT_EQ(keysOf(run), (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
-                                                "cpuMicrosecondsPerAgentTick", "fidelity", "stateHash"}));
+                                                "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity",
+                                                "herds", "stateHash"}));
   EXPECT_EQ(run.at("agents"), 20);
   EXPECT_EQ(run.at("ticks"), 30);
   EXPECT_EQ(run.at("seed"), 7);
@@ -30,8 +31,33 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   EXPECT_LE(tick.at("min"), tick.at("median"));
   EXPECT_LE(tick.at("median"), tick.at("max"));
   EXPECT_GT(run.at("cpuMicrosecondsPerAgentTick"), 0);
-  EXPECT_EQ(keysOf(run.at("fidelity")),
-            (std::set<std::string>{"slip", "penetration", "float", "reachErrorP99", "limitViolation"}));
+  EXPECT_EQ(keysOf(run.at("fidelity")), (std::set<std::string>{"agentTicks",
+                                                               "stances",
+                                                               "slip",
+                                                               "skating",
+                                                               "penetration",
+                                                               "penetrationBeyond",
+                                                               "float",
+                                                               "floatBeyond",
+                                                               "segmentPenetration",
+                                                               "segmentPenetrationMost",
+                                                               "crossing",
+                                                               "reachErrorP99",
+                                                               "reachErrorMost",
+                                                               "limitViolation",
+                                                               "limitViolations",
+                                                               "footJerk",
+                                                               "bodyJerk",
+                                                               "margin",
+                                                               "marginLeast",
+                                                               "unstable",
+                                                               "lastResorts",
+                                                               "notFinite"}));
+  EXPECT_EQ(run.at("watchEvery"), 1);
+  EXPECT_EQ(run.at("fidelity").at("agentTicks"), 20 * 30);
+  ASSERT_EQ(run.at("herds").size(), 1u);
+  EXPECT_EQ(run.at("herds")[0].at("agents"), 20);
+  EXPECT_EQ(run.at("herds")[0].at("fidelity"), run.at("fidelity"));
   EXPECT_EQ(run.at("stateHash").get<std::string>().size(), 16u);
   for (const char* word : {"device", "agents", "median", "state hash", "slip"}) {
     EXPECT_NE(result.out.find(word), std::string::npos) << word;

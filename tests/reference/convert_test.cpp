@@ -16,7 +16,7 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   const HerdState& state = herd.state();
   HerdState copy = state;
   for (auto* buffer : {&copy.goal, &copy.steer, &copy.body, &copy.gait, &copy.step, &copy.foot, &copy.chain,
-                       &copy.pose, &copy.metric}) {
+                       &copy.pose, &copy.metric, &copy.watch}) {
     std::fill(buffer->begin(), buffer->end(), 0.0f);
   }
   const size_t bones = static_cast<size_t>(herd.bones());
@@ -25,11 +25,12 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
     putDesired(copy, agent, desiredOf(state, agent));
     putBody(copy, agent, bodyOf(state, agent));
     putGait(copy, agent, gaitOf(state, agent));
+    putMetric(copy, agent, metricOf(state, agent));
+    putWatched(copy, agent, watchedOf(state, agent, 8));
     for (size_t leg = 8 * agent; leg < 8 * agent + 8; ++leg) {
       putStep(copy, leg, stepOf(state, leg));
       putFoot(copy, leg, footOf(state, leg));
       putChain(copy, leg, herd.bones(), chainOf(state, leg, herd.bones()));
-      putMetric(copy, leg, metricOf(state, leg));
     }
     for (size_t i = 0; i < 1 + 8 * bones; ++i) {
       putBone(copy, agent * (1 + 8 * bones) + i, boneOf(state, agent * (1 + 8 * bones) + i));
@@ -44,6 +45,7 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   EXPECT_EQ(copy.chain, state.chain);
   EXPECT_EQ(copy.pose, state.pose);
   EXPECT_EQ(copy.metric, state.metric);
+  EXPECT_EQ(copy.watch, state.watch);
 }
 
 TEST(Convert, boneFramesAreRightHandedAndOrthonormal) {

@@ -54,7 +54,8 @@ void ReferenceHerd::spawn(uint32_t agents) {
   state_.foot.resize(4 * count * legCount * shared::FOOT_STRIDE);
   state_.chain.resize(4 * count * legCount * chain);
   state_.pose.resize(4 * count * (1 + legCount * static_cast<size_t>(bones_)) * shared::POSE_STRIDE);
-  state_.metric.resize(4 * count * legCount * shared::METRIC_STRIDE);
+  state_.metric.resize(4 * count * shared::METRIC_STRIDE);
+  state_.watch.resize(4 * count * static_cast<size_t>(shared::watchStride(legs())));
 
   const reference::Heights heights = heightsOf(terrain_, parameters_);
   const reference::Creature creature = creatureOf(rigRecords_, legs(), bones_, rig_.groupCount());
@@ -85,7 +86,6 @@ void ReferenceHerd::spawn(uint32_t agents) {
       reference::Chain rest;
       rest.directions.resize(static_cast<size_t>(bones_));
       putChain(state_, agent * legCount + l, bones_, rest);
-      putMetric(state_, agent * legCount + l, {});
     }
   }
 }
@@ -123,6 +123,8 @@ void ReferenceHerd::tickAgent(size_t agent) {
 
   const size_t bones = static_cast<size_t>(bones_), entry = agent * (1 + legCount * bones);
   putBone(state_, entry, reference::bodyPose(body));
+  std::vector<reference::Foot> feet;
+  std::vector<reference::Chain> chains;
   for (size_t l = 0; l < legCount; ++l) {
     const reference::Limb& limb = creature.limbs[l];
     const size_t leg = first + l;
@@ -136,10 +138,13 @@ void ReferenceHerd::tickAgent(size_t agent) {
     const reference::Chain chain = chainOf(state_, leg, bones_);
     const auto posed = reference::pose(limb, body, chain.directions);
     for (size_t b = 0; b < bones; ++b) putBone(state_, entry + 1 + l * bones + b, posed[b]);
-    putMetric(state_, leg,
-              reference::measure(heights, limb, body, stepOf(state_, leg), footOf(state_, leg), chain,
-                                 metricOf(state_, leg)));
+    feet.push_back(footOf(state_, leg));
+    chains.push_back(chain);
   }
+  const auto measured = reference::measure(tuning, heights, creature, body, feet, chains, n_ - 1,
+                                           watchedOf(state_, agent, legs()), metricOf(state_, agent));
+  putMetric(state_, agent, measured.metric);
+  putWatched(state_, agent, measured.watched);
 }
 
 }  // namespace skitter::test

@@ -182,6 +182,11 @@ shared::Parameters parametersFor(const Heightfield& terrain) {
   p.restPull = 0.05f;
   p.pullError = 2e-3f;
   p.ikTolerance = 1e-4f;
+  p.deadZone = 0.005f;
+  p.skateSpeed = 0.1f;
+  p.limitDeadZone = 1e-4f;
+  p.jerkTicks = 24;
+  p.jerkPath = 0.05f;
   return p;
 }
 

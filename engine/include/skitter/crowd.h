@@ -25,20 +25,38 @@ struct StageShader {
 struct CrowdOptions {
   bool pose = true;                       // bone rotations and positions, for drawing and traces
   bool measure = true;                    // keep the fidelity figures
+  uint32_t watchEvery = 0;                // of one agent of this many at a time, each in its turn; 0: of all
+                                          // in a crowd of at most 256, of one in 64 in a larger one
   bool timestamps = false;                // time every stage on the device
   uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
 };
 
-// What the feet did, over every tick since the crowd was made. Lengths in leg lengths.
+// How well agents moved in the ticks in which they were watched (docs/stages.md, measure, defines each).
+// Lengths in leg lengths. A figure without a sample is 0.
 struct Fidelity {
-  double slip = 0;            // mean horizontal slide of a planted foot, a stance
-  double penetration = 0;     // mean depth of all feet below the ground
-  double floating = 0;        // mean height of planted feet above the ground
-  double reachErrorP99 = 0;   // 99th percentile distance of a foot from its target
-  double limitViolation = 0;  // largest violation of a joint limit, radians
-  uint64_t lastResorts = 0;   // landings for which no foothold fitted
-  uint64_t notFinite = 0;     // targets that were not finite; the leg kept its pose
+  uint64_t agentTicks = 0;  // ticks watched, of all agents
+  uint64_t stances = 0;     // ended while watched, and seen from their touchdown
+  double slip = 0;          // mean horizontal slide of a planted foot, a stance
+  double skating = 0;  // share of planted leg-ticks in which the foot slides faster than 0.1 leg lengths/s
+  double penetration = 0;             // mean depth of all feet below the ground
+  double penetrationBeyond = 0;       // the same, of what is deeper than 0.005 leg lengths
+  double floating = 0;                // mean height of planted feet above the ground
+  double floatingBeyond = 0;          // the same, of what is higher than 0.005 leg lengths
+  double segmentPenetration = 0;      // mean depth of a leg's deepest point between root and foot
+  double segmentPenetrationMost = 0;  // the deepest
+  double crossing = 0;                // share of ticks in which a leg crosses its neighbour, seen from above
+  double reachErrorP99 = 0;           // 99th percentile distance of a foot from its target
+  double reachErrorMost = 0;
+  double limitViolation = 0;   // largest violation of a joint limit, radians
+  double limitViolations = 0;  // share of leg-ticks with more than 1e-4 rad of it
+  double footJerk = 0;         // normalised jerk over windows of 0.4 s in which the foot moves
+  double bodyJerk = 0;
+  double margin = 0;         // mean static stability margin
+  double marginLeast = 0;    // negative: the centre was outside the support polygon
+  double unstable = 0;       // share of ticks in which it was, or no foot was planted
+  uint64_t lastResorts = 0;  // landings for which no foothold fitted; of all agents and ticks
+  uint64_t notFinite = 0;    // targets that were not finite; the leg kept its pose; of all agents and ticks
 };
 
 // One herd's records as the host sees them, agent after agent: the layouts are those of
@@ -47,6 +65,8 @@ struct HerdState {
   uint32_t agents = 0;
   std::vector<float> goal, steer, body, gait, step, foot, chain, pose, metric;
   std::vector<float> play, start, fix;  // empty where the controller has none
+  uint32_t watchEvery = 1;   // measure watches one agent of this many at a time
+  std::vector<float> watch;  // of agent g at place g / watchEvery, if it is being watched
 };
 
 struct StageTime {
@@ -77,13 +97,17 @@ class Crowd {
 
   uint64_t tick() const;  // ticks recorded so far
   uint32_t herdCount() const;
+  uint32_t watchEvery() const;  // the fidelity figures are of one agent of this many at a time
   uint64_t agentCount() const;
   uint64_t memoryBytes() const;  // device memory of all records
   const Rig& rig(uint32_t herd) const;
 
   // Each of these waits for the device.
   HerdState download(uint32_t herd) const;
-  Fidelity fidelity() const;
+  Fidelity fidelity() const;  // of all herds
+  Fidelity fidelity(uint32_t herd) const;
+  // Agent by agent. reachErrorP99, lastResorts and notFinite are only counted by herd and 0 here.
+  std::vector<Fidelity> agentFidelity(uint32_t herd) const;
   uint64_t stateHash() const;                 // of every record that the next tick depends on
   std::vector<StageTime> stageTimes() const;  // empty without CrowdOptions::timestamps
 

@@ -1,0 +1,143 @@
+// The sums that measure keeps, as figures.
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "crowd/herd.h"
+#include "gpu/context.h"
+#include "gpu/transfer.h"
+#include "skitter/crowd.h"
+
+namespace skitter {
+namespace {
+
+using crowd::Page;
+
+constexpr size_t kFloats = shared::METRIC_STRIDE * 4;
+
+// The metric records of any number of agents added up; lengths in leg lengths.
+struct Sums {
+  double ticks = 0, legTicks = 0, planted = 0, stays = 0, skates = 0, slip = 0, stances = 0;
+  double penetration = 0, penetrationBeyond = 0, floating = 0, floatingBeyond = 0;
+  double depth = 0, violations = 0, pairs = 0, crossings = 0;
+  double supported = 0, unstable = 0, margin = 0;
+  double footJerk = 0, footPath = 0, bodyJerk = 0, bodyPath = 0;
+  double reachError = 0, violation = 0, deepest = 0, leastMargin = HUGE_VAL;
+
+  void add(std::span<const float, kFloats> m, const crowd::Herd& herd) {
+    const double length = herd.rig.legLength;
+    ticks += m[0];
+    legTicks += double{m[0]} * herd.legs;
+    planted += m[1];
+    stays += m[2];
+    skates += m[3];
+    slip += m[4] / length;
+    stances += m[5];
+    reachError = std::max(reachError, m[6] / length);
+    violation = std::max(violation, double{m[7]});
+    penetration += m[8] / length;
+    penetrationBeyond += m[9] / length;
+    floating += m[10] / length;
+    floatingBeyond += m[11] / length;
+    depth += m[12] / length;
+    deepest = std::max(deepest, m[13] / length);
+    violations += m[14];
+    pairs += m[16];
+    crossings += m[17];
+    supported += m[18];
+    unstable += m[19];
+    margin += m[20] / length;
+    if (m[18] > 0) leastMargin = std::min(leastMargin, m[21] / length);
+    footJerk += m[24];
+    footPath += m[25];
+    bodyJerk += m[26];
+    bodyPath += m[27];
+  }
+
+  Fidelity figures() const {
+    const auto over = [](double sum, double count) { return count > 0 ? sum / count : 0; };
+    Fidelity f;
+    f.agentTicks = static_cast<uint64_t>(ticks);
+    f.stances = static_cast<uint64_t>(stances);
+    f.slip = over(slip, stances);
+    f.skating = over(skates, stays);
+    f.penetration = over(penetration, legTicks);
+    f.penetrationBeyond = over(penetrationBeyond, legTicks);
+    f.floating = over(floating, planted);
+    f.floatingBeyond = over(floatingBeyond, planted);
+    f.segmentPenetration = over(depth, legTicks);
+    f.segmentPenetrationMost = deepest;
+    f.crossing = over(crossings, pairs);
+    f.reachErrorMost = reachError;
+    f.limitViolation = violation;
+    f.limitViolations = over(violations, legTicks);
+    f.footJerk = over(footJerk, footPath);
+    f.bodyJerk = over(bodyJerk, bodyPath);
+    f.margin = over(margin, supported);
+    f.marginLeast = supported > 0 ? leastMargin : 0;
+    f.unstable = over(unstable, ticks);
+    return f;
+  }
+};
+
+double percentile99(const std::vector<uint64_t>& buckets) {
+  uint64_t all = 0, seen = 0;
+  for (const uint64_t count : buckets) all += count;
+  for (size_t i = 0; i < buckets.size() && all > 0; ++i) {
+    seen += buckets[i];
+    if (static_cast<double>(seen) < 0.99 * static_cast<double>(all)) continue;
+    return std::exp2(static_cast<double>(i + 1) / 4 - 20);  // the bucket's upper edge
+  }
+  return 0;
+}
+
+template <class Each>
+void eachAgent(const Crowd::Impl& crowd, const crowd::Herd& herd, const Each& each) {
+  for (const Page& page : herd.pages) {
+    const std::vector<float> m = gpu::download<float>(*crowd.context, page.metric);
+    for (size_t at = 0; at + kFloats <= m.size(); at += kFloats)
+      each(std::span<const float, kFloats>(m.data() + at, kFloats));
+  }
+}
+
+Fidelity figuresOf(const Crowd::Impl& crowd, std::span<const crowd::Herd> herds) {
+  crowd.context->waitIdle();
+  Sums sums;
+  std::vector<uint64_t> buckets(shared::HISTOGRAM_BUCKETS);
+  uint64_t lastResorts = 0, notFinite = 0;
+  for (const crowd::Herd& herd : herds) {
+    eachAgent(crowd, herd, [&](std::span<const float, kFloats> m) { sums.add(m, herd); });
+    for (const Page& page : herd.pages) {
+      const std::vector<uint32_t> counts = gpu::download<uint32_t>(*crowd.context, page.histogram);
+      for (size_t i = 0; i < buckets.size(); ++i) buckets[i] += counts[i];
+      const std::vector<uint32_t> counters = gpu::download<uint32_t>(*crowd.context, page.counters);
+      lastResorts += counters[shared::COUNTER_LAST_RESORTS];
+      notFinite += counters[shared::COUNTER_NOT_FINITE];
+    }
+  }
+  Fidelity f = sums.figures();
+  f.reachErrorP99 = percentile99(buckets);
+  f.lastResorts = lastResorts;
+  f.notFinite = notFinite;
+  return f;
+}
+
+}  // namespace
+
+Fidelity Crowd::fidelity() const { return figuresOf(*impl_, impl_->herds); }
+
+Fidelity Crowd::fidelity(uint32_t herd) const { return figuresOf(*impl_, {&impl_->herds.at(herd), 1}); }
+
+std::vector<Fidelity> Crowd::agentFidelity(uint32_t herdIndex) const {
+  impl_->context->waitIdle();
+  const crowd::Herd& herd = impl_->herds.at(herdIndex);
+  std::vector<Fidelity> agents;
+  eachAgent(*impl_, herd, [&](std::span<const float, kFloats> m) {
+    Sums sums;
+    sums.add(m, herd);
+    agents.push_back(sums.figures());
+  });
+  return agents;
+}
+
+}  // namespace skitter
