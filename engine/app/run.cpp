@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "commands.h"
+#include "footfall_log.h"
 #include "gpu/submit.h"
 #include "part_file.h"
 #include "pictures.h"
@@ -33,7 +34,7 @@ struct RunOptions {
   uint64_t ticksPerFrame = 1;
   uint32_t watchEvery = 0;
   Size size{1280, 720};
-  std::string view, out, json, trace;
+  std::string view, out, json, trace, footfalls;
   bool poses = false, unmeasured = false;
   bool headless = false, force = false, timings = false, validation = false, quiet = false;
 };
@@ -100,6 +101,7 @@ int run(const RunOptions& options) {
   const OutTarget target = parseOut(options.out);
   if (!options.json.empty()) checkFileTarget("--json", options.json);
   if (!options.trace.empty()) checkFolderTarget("--trace", options.trace);
+  if (!options.footfalls.empty()) checkFileTarget("--footfalls", options.footfalls);
   const bool windowed = !options.headless && target.kind == OutTarget::Kind::none && hasDisplay();
   if (target.kind == OutTarget::Kind::video && options.frames == 0u) {
     throw inputError(fmt::format("--out {}: a video needs at least one frame, --frames is 0", options.out));
@@ -126,6 +128,7 @@ int run(const RunOptions& options) {
   crowdOptions.timestamps = options.timings;
   crowdOptions.measure = !options.unmeasured;
   crowdOptions.watchEvery = options.watchEvery;
+  if (!options.footfalls.empty()) crowdOptions.footfalls = UINT32_MAX;  // all that can be
   crowdOptions.pose = options.poses || windowed || target.kind != OutTarget::Kind::none || !options.trace.empty();
   Crowd crowd(device, terrain, scene, crowdOptions);
 
@@ -135,8 +138,11 @@ int run(const RunOptions& options) {
   std::optional<Trace> trace;
   if (!options.trace.empty())
     trace.emplace(options.trace, crowd, scene, static_cast<float>(options.scene.dt), ticks, options.force);
+  std::optional<FootfallLog> footfalls;
+  if (!options.footfalls.empty()) footfalls.emplace(options.footfalls);
   const auto afterTick = [&] {
     if (trace) trace->append(crowd);
+    if (footfalls) footfalls->append(crowd);
   };
 
   Summary summary;
@@ -167,6 +173,10 @@ int run(const RunOptions& options) {
     trace->finish(crowd, terrain);
     summary.files.push_back(
         fmt::format("{}: {} ticks of {} herds", options.trace, summary.ticks, crowd.herdCount()));
+  }
+  if (footfalls) {
+    footfalls->finish();
+    summary.files.push_back(fmt::format("{}: {} footfalls", options.footfalls, footfalls->count()));
   }
   if (!options.json.empty()) {
     writeText(options.json, summary.json().dump(2) + "\n");
@@ -232,6 +242,10 @@ void addRun(CLI::App& app, Command& chosen) {
       ->add_option("--trace", options->trace,
                    "write joints, rotations, stances and bodies of every tick (docs/trace.md)")
       ->type_name("DIR");
+  command
+      ->add_option("--footfalls", options->footfalls,
+                   "write every touchdown: herd, agent, leg, tick, seconds, place, speed of the foot")
+      ->type_name("FILE.csv");
   command->add_flag("--force", options->force, "allow a trace of more than 4 GiB");
   command->add_flag("--timings", options->timings,
                     "time every stage on the device's clock (software devices may lie)");

@@ -76,10 +76,15 @@ uint32_t invocations(const crowd::Herd& herd, const Page& page, Stage::Over over
 void dispatch(const crowd::Herd& herd, const Page& page, size_t index, uint64_t tick, uint32_t every,
               vk::CommandBuffer cmd) {
   const Stage& stage = crowd::stagesOf(herd.controller)[index];
-  shared::TickConstants constants{invocations(herd, page, stage.over), static_cast<float>(tick), 0, 1, 0};
+  shared::TickConstants constants{invocations(herd, page, stage.over),
+                                  static_cast<float>(tick),
+                                  page.firstAgent,
+                                  1,
+                                  0,
+                                  page.footfallRoom};
   if (stage.over == Stage::Over::watched) {
     const crowd::Watch watch = crowd::watchAt(tick, every, page);
-    constants = {watch.count, static_cast<float>(tick), watch.first, every, watch.watched};
+    constants = {watch.count, static_cast<float>(tick), watch.first, every, watch.watched, 0};
   }
   const auto push = gpu::bytesOf(constants);
   if (stage.over == Stage::Over::listed)
@@ -89,9 +94,9 @@ void dispatch(const crowd::Herd& herd, const Page& page, size_t index, uint64_t 
                                  gpu::groupsFor(constants.count, shared::WORK_GROUP));
 }
 
-// Zero listed legs; the counts since the start stay.
+// Zero listed legs and footfalls; the counts since the start stay.
 void clearLists(const Impl& crowd, vk::CommandBuffer cmd) {
-  constexpr std::array<uint32_t, 4> none = {0, 1, 1, 0};
+  constexpr std::array<uint32_t, 5> none = {0, 1, 1, 0, 0};
   for (const crowd::Herd& herd : crowd.herds)
     for (const Page& page : herd.pages) cmd.updateBuffer(page.counters.handle(), 0, sizeof none, none.data());
 }
@@ -107,7 +112,8 @@ bool hasStage(const Impl& crowd, std::string_view name) {
 void recordStage(const Impl& crowd, std::string_view name, uint64_t tick, vk::CommandBuffer cmd) {
   for (const crowd::Herd& herd : crowd.herds) {
     // Of a clip as it is, feet are looked at by measure alone.
-    if (name == "swing" && herd.controller == crowd::Controller::clip && !crowd.options.measure) continue;
+    const bool judged = crowd.options.measure || crowd.options.footfalls > 0;
+    if (name == "swing" && herd.controller == crowd::Controller::clip && !judged) continue;
     const std::vector<Stage>& stages = crowd::stagesOf(herd.controller);
     for (size_t i = 0; i < stages.size(); ++i)
       if (stages[i].name == name)
@@ -231,8 +237,10 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   clearLists(crowd, cmd);
   gpu::transferToCompute(cmd);
   for (const std::string_view name : crowd::frame()) {
-    if (!hasStage(crowd, name)) continue;
-    if ((name == "pose" && !crowd.options.pose) || (name == "measure" && !crowd.options.measure)) continue;
+    const CrowdOptions& options = crowd.options;
+    if (!hasStage(crowd, name) || (name == "pose" && !options.pose) ||
+        (name == "measure" && !options.measure) || (name == "footfall" && options.footfalls == 0))
+      continue;
     crowd.timer.begin(cmd, name.data());
     recordStage(crowd, name, tick, cmd);
     crowd.timer.end(cmd, name.data());
@@ -261,7 +269,8 @@ uint64_t Crowd::memoryBytes() const {
   uint64_t bytes = 0;
   for (const crowd::Herd& herd : impl_->herds)
     for (const Page& page : herd.pages)
-      bytes += crowd::recordBytes(herd).sum(impl_->watchEvery) * page.agents;
+      bytes += crowd::recordBytes(herd).sum(impl_->watchEvery) * page.agents + page.flight.size() +
+               page.footfall.size();
   return bytes;
 }
 

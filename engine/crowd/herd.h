@@ -25,7 +25,9 @@ struct Page {
   uint32_t firstAgent = 0;
   uint32_t agents = 0;
   gpu::Buffer goal, steer, body, gait, step, foot, chain, pose, metric, watch;
-  gpu::Buffer play, start, fix;         // where clips are played, the latter two where they are planted
+  gpu::Buffer play, start, fix;  // where clips are played, the latter two where they are planted
+  gpu::Buffer flight, footfall;  // empty unless footfalls are kept
+  uint32_t footfallRoom = 0;
   gpu::Buffer list;                     // legs that begin a step this tick
   gpu::Buffer counters;                 // indirect arguments and counts
   gpu::Buffer histogram;                // of reach errors

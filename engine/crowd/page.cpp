@@ -74,6 +74,11 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
     case BINDING_WATCH:
     case BINDING_WATCH_OUT:
       return {binding, &page.watch};
+    case BINDING_FLIGHT:
+    case BINDING_FLIGHT_OUT:
+      return {binding, &page.flight};
+    case BINDING_FOOTFALL_OUT:
+      return {binding, &page.footfall};
     default:
       return {binding, &page.metric};
   }
@@ -142,6 +147,11 @@ Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner
   if (bytes.fix > 0) make(page.fix, bytes.fix, "fix");
   const uint64_t watched = (uint64_t{agents} + crowd.watchEvery - 1) / crowd.watchEvery;
   page.watch = gpu::Buffer(context, bytes.watch * watched, "watch");
+  const auto legs = static_cast<uint64_t>(herd.legs) * agents;
+  page.footfallRoom = static_cast<uint32_t>(std::min<uint64_t>(crowd.options.footfalls, legs));
+  page.flight = gpu::Buffer(context, page.footfallRoom > 0 ? legs * shared::FLIGHT_STRIDE * 16 : 0, "flight");
+  page.footfall =
+      gpu::Buffer(context, uint64_t{page.footfallRoom} * shared::FOOTFALL_STRIDE * 16, "footfall");
   page.counters = gpu::Buffer(context, shared::COUNTERS * 4, "counters", gpu::BufferUse::indirect);
   page.histogram = gpu::Buffer(context, shared::HISTOGRAM_BUCKETS * 4, "histogram");
   gpu::upload(context, page.goal, spawned.goal);
@@ -157,6 +167,7 @@ Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner
   gpu::clear(context, page.pose);
   gpu::clear(context, page.metric);
   gpu::clear(context, page.watch);
+  gpu::clear(context, page.flight);
   gpu::clear(context, page.counters);
   gpu::clear(context, page.histogram);
   const std::vector<Stage>& stages = stagesOf(herd.controller);

@@ -55,6 +55,42 @@ HerdState Crowd::download(uint32_t herdIndex) const {
   return state;
 }
 
+std::vector<Footfall> Crowd::footfalls(uint32_t herd) const {
+  const gpu::Context& context = *impl_->context;
+  context.waitIdle();
+  std::vector<Footfall> all;
+  for (const Page& page : impl_->herds.at(herd).pages) {
+    const uint32_t count = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_FOOTFALLS];
+    const std::vector<float> events = gpu::download<float>(context, page.footfall);
+    for (size_t i = 0; i < std::min(count, page.footfallRoom); ++i) {
+      const float* e = events.data() + i * 4 * shared::FOOTFALL_STRIDE;
+      all.push_back({static_cast<uint32_t>(e[4]), static_cast<uint32_t>(e[5]), static_cast<uint64_t>(e[6]),
+                     double{e[6]} * impl_->dt, glm::vec3(e[0], e[1], e[2]), e[3]});
+    }
+  }
+  // The device appends them in any order.
+  std::sort(all.begin(), all.end(), [](const Footfall& a, const Footfall& b) {
+    return a.agent != b.agent ? a.agent < b.agent : a.leg < b.leg;
+  });
+  return all;
+}
+
+uint64_t Crowd::droppedFootfalls(uint32_t herd) const {
+  impl_->context->waitIdle();
+  uint64_t dropped = 0;
+  for (const Page& page : impl_->herds.at(herd).pages)
+    dropped += gpu::download<uint32_t>(*impl_->context, page.counters)[shared::COUNTER_FOOTFALLS_DROPPED];
+  return dropped;
+}
+
+std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herd) const {
+  std::vector<FootfallBuffer> buffers;
+  for (const Page& page : impl_->herds.at(herd).pages)
+    buffers.push_back(
+        {page.footfall.handle(), page.counters.handle(), shared::COUNTER_FOOTFALLS * 4, page.footfallRoom});
+  return buffers;
+}
+
 uint64_t Crowd::stateHash() const {
   const gpu::Context& context = *impl_->context;
   context.waitIdle();

@@ -20,26 +20,27 @@ Controller controllerNamed(const std::string& name) {
 }
 
 const std::vector<const char*>& frame() {
-  static const std::vector<const char*> names = {"navigate", "body", "clip", "gait",   "foothold",
-                                                 "swing",    "ik",   "pose", "measure"};
+  static const std::vector<const char*> names = {"navigate", "body", "clip", "gait",    "foothold",
+                                                 "swing",    "ik",   "pose", "measure", "footfall"};
   return names;
 }
 
 const std::vector<Stage>& stagesOf(Controller controller) {
   static const std::vector<Stage> adaptive = {
-      navigateStage(), bodyStage(), gaitStage(), footholdStage(),
-      swingStage(),    ikStage(),   poseStage(), measureStage(),
+      navigateStage(), bodyStage(), gaitStage(),    footholdStage(), swingStage(),
+      ikStage(),       poseStage(), measureStage(), footfallStage(),
   };
   static const std::vector<Stage> loop = {
       navigateStage(), blindBodyStage(), loopGaitStage(), loopSwingStage(),
-      ikStage(),       poseStage(),      measureStage(),
+      ikStage(),       poseStage(),      measureStage(),  footfallStage(),
   };
   static const std::vector<Stage> clip = {
-      navigateStage(), blindBodyStage(), clipStage(), clipSwingStage(), clipPoseStage(), measureStage(),
+      navigateStage(), blindBodyStage(), clipStage(),     clipSwingStage(),
+      clipPoseStage(), measureStage(),   footfallStage(),
   };
   static const std::vector<Stage> planted = {
       navigateStage(),  blindBodyStage(),   clipStage(),    plantedSwingStage(),
-      plantedIkStage(), plantedPoseStage(), measureStage(),
+      plantedIkStage(), plantedPoseStage(), measureStage(), footfallStage(),
   };
   switch (controller) {
     case Controller::clip:

@@ -55,5 +55,6 @@ Stage poseStage();
 Stage clipPoseStage();
 Stage plantedPoseStage();
 Stage measureStage();
+Stage footfallStage();
 
 }  // namespace skitter::crowd

@@ -48,6 +48,9 @@ BINDING BINDING_CLIP_LEG = 33;
 BINDING BINDING_CLIP_JOINT = 34;
 BINDING BINDING_WATCH = 35;
 BINDING BINDING_WATCH_OUT = 36;
+BINDING BINDING_FLIGHT = 37;
+BINDING BINDING_FLIGHT_OUT = 38;
+BINDING BINDING_FOOTFALL_OUT = 39;
 
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
@@ -69,16 +72,19 @@ struct TickConstants {
 #ifdef __cplusplus
   uint32_t count;  // invocations with work: agents, legs or watched agents of the page
   float tick;      // n, the tick being computed
-  // Of measure alone: invocation i looks at agent first + i * every of the page, watched for so many ticks.
+  // Of measure: invocation i looks at agent first + i * every of the page, watched for so many ticks. Of
+  // footfall: the page's first agent in its herd, and the events that there is room for.
   uint32_t first;
   uint32_t every;
   uint32_t watched;
+  uint32_t room;
 #else
   uint count;
   float tick;
   uint first;
   uint every;
   uint watched;
+  uint room;
 #endif
 };
 

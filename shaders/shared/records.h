@@ -136,12 +136,25 @@ SKITTER_CONST int LIMIT_WORDS = 2;
 SKITTER_CONST int LIMIT_BONES_A_WORD = 8;
 SKITTER_FUNCTION int rigStride(int bones) { return RIG_LEG_STRIDE + RIG_BONE_STRIDE * bones; }
 
-// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] listed legs,
-// [4] last resorts since the start, [5] targets that were not finite since the start.
+// flight, per leg, written by footfall.
+//   [0] tip, tile-local x, y, z; 1 in the air, 0 planted
+SKITTER_CONST int FLIGHT_STRIDE = 1;
+
+// footfall, one a touchdown of the last tick, in any order, written by footfall: counters[COUNTER_FOOTFALLS]
+// of them, or as many as there is room for.
+//   [0] place x, y, z (world metres), speed of the foot over the tick that ended there (m/s)
+//   [1] agent of the herd, leg, tick, unused
+SKITTER_CONST int FOOTFALL_STRIDE = 2;
+
+// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] listed legs, [4] footfalls
+// of the tick; since the start: [5] last resorts, [6] targets that were not finite, [7] footfalls without
+// room.
 SKITTER_CONST int COUNTER_DISPATCH_X = 0;
 SKITTER_CONST int COUNTER_LISTED = 3;
-SKITTER_CONST int COUNTER_LAST_RESORTS = 4;
-SKITTER_CONST int COUNTER_NOT_FINITE = 5;
+SKITTER_CONST int COUNTER_FOOTFALLS = 4;
+SKITTER_CONST int COUNTER_LAST_RESORTS = 5;
+SKITTER_CONST int COUNTER_NOT_FINITE = 6;
+SKITTER_CONST int COUNTER_FOOTFALLS_DROPPED = 7;
 SKITTER_CONST int COUNTERS = 8;
 // reach errors, per page: counts per bucket of a leg length; bucket k holds errors of 2^(k/4 - 20) and more.
 SKITTER_CONST int HISTOGRAM_BUCKETS = 80;

@@ -1,3 +1,5 @@
+#include <cstdio>
+#include <fstream>
 #include <set>
 
 #include "process.h"
@@ -62,6 +64,28 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   for (const char* word : {"device", "agents", "median", "state hash", "slip"}) {
     EXPECT_NE(result.out.find(word), std::string::npos) << word;
   }
+}
+
+TEST_F(Running, WritesEveryFootfall) {
+  const Result result = skitter({"run", "--headless", "--agents", "3", "--frames", "90", "--watch-every", "2",
+                                 "--footfalls", file("feet.csv"), "--json", file("run.json")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(json("run.json").at("watchEvery"), 2);
+  std::ifstream lines(file("feet.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "herd,agent,leg,tick,seconds,x,y,z,speed");
+  int count = 0, last = 0;
+  for (; std::getline(lines, line); ++count) {
+    int herd = -1, agent = -1, leg = -1, tick = -1;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%d,%d,%d", &herd, &agent, &leg, &tick), 4) << line;
+    EXPECT_EQ(herd, 0);
+    EXPECT_LT(agent, 3);
+    EXPECT_LT(leg, 8);
+    EXPECT_GE(tick, last);
+    last = tick;
+  }
+  EXPECT_GT(count, 3 * 8);
 }
 
 TEST_F(Running, QuietAndShortRunsSayNothingOnStderr) {

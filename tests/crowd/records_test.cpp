@@ -53,8 +53,9 @@ const std::map<std::string, size_t>& parameterOffsets() {
 }
 
 std::vector<crowd::Stage> everyStage() {
-  return {crowd::navigateStage(), crowd::bodyStage(), crowd::gaitStage(), crowd::footholdStage(),
-          crowd::swingStage(),    crowd::ikStage(),   crowd::poseStage(), crowd::measureStage()};
+  return {crowd::navigateStage(), crowd::bodyStage(),    crowd::gaitStage(),
+          crowd::footholdStage(), crowd::swingStage(),   crowd::ikStage(),
+          crowd::poseStage(),     crowd::measureStage(), crowd::footfallStage()};
 }
 
 TEST(Records, ParametersLieWhereBothSidesThink) {
@@ -70,7 +71,7 @@ TEST(Records, ParametersLieWhereBothSidesThink) {
       for (const auto& [member, offset] : parameterOffsets())
         EXPECT_EQ(offsets.at(member), offset) << stage.name << ": " << member;
     }
-  EXPECT_EQ(found, 12);
+  EXPECT_EQ(found, 14);
 }
 
 TEST(Records, PushConstantsAndStrides) {
@@ -79,6 +80,10 @@ TEST(Records, PushConstantsAndStrides) {
     const auto& constants = layout.offsets.at("TickConstants");
     EXPECT_EQ(constants.at("count"), offsetof(shared::TickConstants, count)) << stage.name;
     EXPECT_EQ(constants.at("tick"), offsetof(shared::TickConstants, tick)) << stage.name;
+    EXPECT_EQ(constants.at("first"), offsetof(shared::TickConstants, first)) << stage.name;
+    EXPECT_EQ(constants.at("every"), offsetof(shared::TickConstants, every)) << stage.name;
+    EXPECT_EQ(constants.at("watched"), offsetof(shared::TickConstants, watched)) << stage.name;
+    EXPECT_EQ(constants.at("room"), offsetof(shared::TickConstants, room)) << stage.name;
     for (const uint32_t stride : layout.arrayStrides) EXPECT_TRUE(stride == 16 || stride == 4) << stage.name;
   }
 }

@@ -23,12 +23,14 @@ struct StageShader {
 };
 
 struct CrowdOptions {
-  bool pose = true;                       // bone rotations and positions, for drawing and traces
-  bool measure = true;                    // keep the fidelity figures
-  uint32_t watchEvery = 0;                // of one agent of this many at a time, each in its turn; 0: of all
-                                          // in a crowd of at most 256, of one in 64 in a larger one
-  bool timestamps = false;                // time every stage on the device
-  uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
+  bool pose = true;         // bone rotations and positions, for drawing and traces
+  bool measure = true;      // keep the fidelity figures
+  uint32_t watchEvery = 0;  // of one agent of this many at a time, each in its turn; 0: of all
+                            // in a crowd of at most 256, of one in 64 in a larger one
+  uint32_t footfalls = 0;   // keep so many touchdowns of a tick, a page of the herd, at most one a
+                            // leg; 0: none
+  bool timestamps = false;  // time every stage on the device
+  uint32_t pageAgents = 0;  // most agents a page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
 };
 
@@ -67,6 +69,25 @@ struct HerdState {
   std::vector<float> play, start, fix;  // empty where the controller has none
   uint32_t watchEvery = 1;   // measure watches one agent of this many at a time
   std::vector<float> watch;  // of agent g at place g / watchEvery, if it is being watched
+};
+
+// A foot that came down: planted at the end of this tick, in the air at the end of the one before.
+struct Footfall {
+  uint32_t agent = 0, leg = 0;  // of the herd, of the rig
+  uint64_t tick = 0;
+  double seconds = 0;  // tick * dt
+  glm::vec3 place{0};  // where the foot is, world metres (float32: to 2.4e-4 m at 4 km)
+  float speed = 0;     // of the foot over that tick, m/s
+};
+
+// The touchdowns of the last tick on the device, for shaders of the caller's: FOOTFALL_STRIDE vec4 each
+// (shaders/shared/records.h), min(count, room) of them in any order. Owned by the crowd, rewritten by each
+// recorded tick; both buffers can be read from as storage buffers.
+struct FootfallBuffer {
+  VkBuffer events = VK_NULL_HANDLE;
+  VkBuffer counters = VK_NULL_HANDLE;  // holds count, a uint32
+  uint32_t countOffset = 0;            // bytes
+  uint32_t room = 0;
 };
 
 struct StageTime {
@@ -108,8 +129,14 @@ class Crowd {
   Fidelity fidelity(uint32_t herd) const;
   // Agent by agent. reachErrorP99, lastResorts and notFinite are only counted by herd and 0 here.
   std::vector<Fidelity> agentFidelity(uint32_t herd) const;
-  uint64_t stateHash() const;                 // of every record that the next tick depends on
-  std::vector<StageTime> stageTimes() const;  // empty without CrowdOptions::timestamps
+  // Of the last tick recorded, by agent and leg; empty without CrowdOptions::footfalls.
+  std::vector<Footfall> footfalls(uint32_t herd) const;
+  uint64_t droppedFootfalls(uint32_t herd) const;  // for want of room, since the start
+  uint64_t stateHash() const;                      // of every record that the next tick depends on
+  std::vector<StageTime> stageTimes() const;       // empty without CrowdOptions::timestamps
+
+  // One a page of the herd; does not wait. The last barrier of record() makes them visible.
+  std::vector<FootfallBuffer> footfallBuffers(uint32_t herd) const;
 
   struct Impl;
   Impl& impl() { return *impl_; }

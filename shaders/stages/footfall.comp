@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stages/stage.glsl"
+
+LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_FOOT, feet);
+LOAD4_BUFFER(BINDING_CHAIN, chains);
+LOAD4_BUFFER(BINDING_FLIGHT, flights);
+STORE4_BUFFER(BINDING_FLIGHT_OUT, flightsOut);
+STORE4_BUFFER(BINDING_FOOTFALL_OUT, footfalls);
+layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+
+void main() {
+  int record = int(gl_GlobalInvocationID.x);
+  if (record >= int(constants.count)) return;
+  int agent = record / LEGS, leg = record - agent * LEGS;
+  vec3 local = LOAD4(bodies, agent * BODY_STRIDE).xyz;
+  vec2 tile = LOAD4(bodies, agent * BODY_STRIDE + 1).xy;
+  vec3 tip = LOAD4(chains, record * chainStride(BONES) + chainDirections(BONES)).xyz + local;
+  bool planted = LOAD4(feet, record).w >= 1.0;
+  vec4 before = LOAD4(flights, record);
+  STORE4(flightsOut, record, vec4(tip, planted ? 0.0 : 1.0));
+
+  // A loop, because an `if` would not skip the atomic on a device that masks lanes; few feet land in a tick.
+  for (bool landed = planted && before.w == 1.0; landed; landed = false) {
+    uint place = atomicAdd(counters[COUNTER_FOOTFALLS], 1u);
+    if (place >= constants.room) {
+      atomicAdd(counters[COUNTER_FOOTFALLS_DROPPED], 1u);
+      break;
+    }
+    // The body may have changed its tile; nothing moves half a tile in a tick.
+    vec3 way = tip - before.xyz;
+    way.xz -= TILE_SIZE * round(way.xz / TILE_SIZE);
+    vec2 world = worldOf(tip, tile);
+    int at = int(place) * FOOTFALL_STRIDE;
+    STORE4(footfalls, at, vec4(world.x, tip.y, world.y, length(way) / parameters.dt));
+    STORE4(footfalls, at + 1, vec4(float(constants.first) + float(agent), float(leg), constants.tick, 0.0));
+  }
+}
