@@ -52,9 +52,7 @@ LegDecision judge(const Tuning& tuning, const Limb& limb, const AgentBody& body,
     wants.add(must.value(), must.margin());
     wants.add(step.duration < 0, never);
     leg.must = must.value();
-    if (leg.must) {
-      leg.urgency = leg.stretch < tuning.rootShare ? 3 : leg.stretch + leg.offset / tuning.legLength;
-    }
+    leg.stoodSince = step.firstTick + std::abs(step.duration);
     leg.mustMargin = must.margin();
     leg.wants = wants.value();
     leg.wantsMargin = wants.margin();
@@ -70,26 +68,15 @@ LegDecision judge(const Tuning& tuning, const Limb& limb, const AgentBody& body,
   return leg;
 }
 
-// The leg of the largest urgency, lowest index first, and by how much it leads those of other groups.
-struct Neediest {
-  size_t leg = 0;
-  double margin = never;
-};
-Neediest neediest(const Creature& creature, const std::vector<LegDecision>& legs) {
-  Neediest found;
-  for (size_t l = 1; l < legs.size(); ++l) {
-    if (legs[l].urgency > legs[found.leg].urgency) found.leg = l;
-  }
-  const double most = legs[found.leg].urgency;
-  for (size_t l = 0; l < legs.size(); ++l) {
-    found.margin = std::min(found.margin, legs[l].mustMargin);
-    // Legs that need nothing are equal exactly, and so are two at their roots: no ties of rounding.
-    const bool sameConstant = legs[l].urgency == most && (most == 0 || most == 3);
-    if (creature.limbs[l].group != creature.limbs[found.leg].group && !sameConstant) {
-      found.margin = std::min(found.margin, most - legs[l].urgency);
-    }
-  }
-  return found;
+// The window of a leg: [0, windowOpen) of a group's share of the cycle after its own beginning.
+void findWindow(const Tuning& tuning, const Creature& creature, const Limb& limb, const Gait& gait,
+                double swingTime, LegDecision& leg) {
+  const double groups = creature.groups;
+  const double spread = tuning.lagShare * (1 / groups - swingTime / gait.cycle);
+  double since = gait.phase - limb.group / groups - spread * limb.lag;
+  since = (since - std::floor(since)) * groups;
+  leg.open = since < tuning.windowOpen;
+  leg.windowMargin = std::min({since, std::abs(since - tuning.windowOpen), groups - since});
 }
 
 }  // namespace
@@ -111,56 +98,44 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
   const double groups = creature.groups;
 
   const double pace = body.v3 + std::abs(body.turnRate) * tuning.homeRadius;
-  next.halfStride = std::min(tuning.halfStrideStill + tuning.halfStrideGain * pace, tuning.halfStrideMax);
   const double unrounded = tuning.swingStill / (1 + pace / tuning.swingSpeed) / tuning.dt + 0.5;
   next.duration = choices.duration.value_or(std::max(3.0, std::floor(unrounded)));
   result.durationMargin = std::abs(unrounded - std::round(unrounded));
   const double swingTime = next.duration * tuning.dt;
-  next.cycle = std::min(tuning.cycleMax, 2 * next.halfStride / std::max(pace, 1e-3) + swingTime);
+  const double duty = std::max(tuning.dutyLeast, tuning.dutyStill - tuning.dutyGain * pace);
+  next.cycle = std::min(tuning.cycleMax, swingTime / (1 - duty));
   next.cycle = std::max(next.cycle, groups * swingTime * tuning.windowSlack);
+  const double stanceTime = next.cycle - swingTime;
+  next.halfStride = std::clamp(pace * stanceTime / 2, tuning.halfStrideStill, tuning.halfStrideMax);
   phase += tuning.dt / next.cycle;
-  phase -= std::floor(phase);
-  result.unmovedPhase = phase;
+  next.phase = phase - std::floor(phase);
 
-  bool someMust = false;
+  result.mustMargin = never;
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
-    result.legs.push_back(
-        judge(tuning, creature.limbs[l], body, steps[l], next, next.cycle - swingTime, reachErrors[l], tick));
-    const LegDecision& leg = result.legs.back();
+    const Limb& limb = creature.limbs[l];
+    LegDecision leg = judge(tuning, limb, body, steps[l], next, stanceTime, reachErrors[l], tick);
+    findWindow(tuning, creature, limb, next, swingTime, leg);
     if (!leg.planted) next.air |= 1u << l;
     if (!leg.planted && leg.wants) next.reaim |= 1u << l;
-    someMust = someMust || leg.must;
+    if (leg.planted) result.mustMargin = std::min(result.mustMargin, leg.mustMargin);
+    if (leg.must &&
+        (result.first < 0 || leg.stoodSince < result.legs[static_cast<size_t>(result.first)].stoodSince))
+      result.first = static_cast<int>(l);
+    result.legs.push_back(leg);
   }
-
-  double window = std::min(std::floor(phase * groups), groups - 1);
-  double into = phase * groups - window;
-  const auto marginOf = [&](double t) {
-    return std::min({std::abs(t), std::abs(t - tuning.windowOpen), std::abs(1 - t)});
-  };
-  result.phaseMargin = marginOf(into);
-  result.emergencyMargin = never;
-  if (next.air == 0) {
-    const Neediest needy = neediest(creature, result.legs);
-    result.emergencyMargin = needy.margin;
-    const double group = creature.limbs[needy.leg].group;
-    if (someMust && !(window == group && into < tuning.windowOpen)) {
-      result.emergency = true;
-      phase = group / groups;
-      window = group;
-      into = 0;
-    }
-  }
-  next.phase = phase;
 
   result.settleMargin = std::abs(body.still - tuning.settleTime);
-  if (body.still >= tuning.settleTime || into >= tuning.windowOpen) return result;
-  for (size_t l = 0; l < creature.limbs.size(); ++l) {
-    if ((next.air >> l & 1u) != 0 && creature.limbs[l].group != window) return result;
+  if (body.still >= tuning.settleTime) return result;
+  uint32_t yielding = 0;
+  if (result.first >= 0) {
+    yielding = creature.limbs[static_cast<size_t>(result.first)].neighbours;
+    if ((next.air & yielding) == 0) next.lift = 1u << result.first;
   }
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
-    if (creature.limbs[l].group == window && result.legs[l].planted && result.legs[l].wants) {
-      next.lift |= 1u << l;
-    }
+    const LegDecision& leg = result.legs[l];
+    const bool yields = (yielding >> l & 1u) != 0;
+    const bool neighboursStand = (creature.limbs[l].neighbours & (next.air | next.lift)) == 0;
+    if (leg.planted && leg.wants && leg.open && !yields && neighboursStand) next.lift |= 1u << l;
   }
   return result;
 }

@@ -10,11 +10,12 @@ namespace skitter::reference {
 // What a leg was judged by and how far each judgement was from falling the other way. Margins of lengths are
 // metres; a margin is infinite where the decision was not asked for.
 struct LegDecision {
-  bool planted = false, must = false, wants = false;
-  double progress = 1;  // u_l after the last tick
-  double offset = 0;    // off_l
-  double stretch = 0;   // r_l
-  double urgency = 0;
+  bool planted = false, must = false, wants = false, open = false;
+  double progress = 1;      // u_l after the last tick
+  double offset = 0;        // off_l
+  double stretch = 0;       // r_l
+  double stoodSince = 0;    // tick
+  double windowMargin = 0;  // of its phase from the nearest edge of its window, in windows
   double mustMargin = 0;
   double wantsMargin = 0;
   double reaimMargin = 0;          // of the distance between landing and prediction
@@ -24,12 +25,10 @@ struct LegDecision {
 struct GaitResult {
   Gait gait;
   std::vector<LegDecision> legs;
-  bool emergency = false;      // the phase was moved to the group of the leg that must lift
-  double unmovedPhase = 0;     // phi had there been no emergency
-  double emergencyMargin = 0;  // between the most needy leg and the next one of another group, and of must
-  double phaseMargin = 0;      // phi groups from the nearest edge of a window, in windows
-  double durationMargin = 0;   // ticks, of the rounding of D
-  double settleMargin = 0;     // seconds
+  int first = -1;             // the leg that must lift and has stood longest
+  double mustMargin = 0;      // of the nearest must of all planted legs
+  double durationMargin = 0;  // ticks, of the rounding of D
+  double settleMargin = 0;    // seconds
 };
 
 // Decisions that the caller takes instead of the rule, to recompute the other side of a tie.

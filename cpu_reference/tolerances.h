@@ -118,12 +118,15 @@ inline GaitBounds gait(const Tuning& t, const GaitResult& result, int groups, do
   GaitBounds bound{};
   // One addition below 2, and dt / C with C good to 16 roundoff.
   bound.phase = 6 * roundoff;
-  bound.halfStride = 8 * roundoff * t.halfStrideMax;
-  bound.cycle = 24 * roundoff * result.gait.cycle;
+  // v_e (C - T) / 2, clamped.
+  bound.halfStride = 32 * roundoff * t.halfStrideMax;
+  // T / (1 - duty): duty errs by 4 roundoff, and 1 - duty is more than a fifth.
+  bound.cycle = 32 * roundoff * result.gait.cycle;
   bound.duration = 12 * roundoff * (t.swingStill / t.dt + 1);
   // Where a foot stands in the model, and where it is predicted to (a Cayley turn and v3 times a time).
   bound.length = footDistance(2 * t.legLength) + 16 * roundoff * longestForecast;
-  bound.window = groups * bound.phase + 2 * roundoff * groups;
+  // A leg's own beginning: a quotient, the spread (a share below 2 of 1 / groups - T / C) times its lag.
+  bound.window = groups * (bound.phase + 24 * roundoff);
   return bound;
 }
 

@@ -25,7 +25,8 @@ struct Tuning {
   double stretchSlow = 0, stretchStop = 0, errorStop = 0, followLeast = 0, heightBlend = 0, tiltBlend = 0,
          maxSlope = 0;
   double bellyClearance = 0, ridge = 0;
-  double halfStrideStill = 0, halfStrideGain = 0, halfStrideMax = 0, swingStill = 0, swingSpeed = 0;
+  double halfStrideStill = 0, halfStrideMax = 0, swingStill = 0, swingSpeed = 0;
+  double dutyStill = 0, dutyGain = 0, dutyLeast = 0, lagShare = 0;
   double cycleMax = 0, windowSlack = 0, windowOpen = 0, liftShare = 0, stretchLift = 0, strayShare = 0;
   double errorLift = 0, rootShare = 0;
   double settleTime = 0, reaimDistance = 0, reaimLatest = 0;
@@ -58,6 +59,8 @@ struct Limb {
   glm::dvec3 root{0}, home{0};  // model space
   double reach = 0;             // metres
   int group = 0;
+  double lag = 0;           // in its group: 0 lifts first, 1 last
+  uint32_t neighbours = 0;  // bit m: leg m must stand while this one is in the air
   std::vector<BoneRest> bones;
 };
 

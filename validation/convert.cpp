@@ -50,8 +50,11 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.bellyClearance = p.bellyClearance;
   t.ridge = p.ridge;
   t.halfStrideStill = p.halfStrideStill;
-  t.halfStrideGain = p.halfStrideGain;
   t.halfStrideMax = p.halfStrideMax;
+  t.dutyStill = p.dutyStill;
+  t.dutyGain = p.dutyGain;
+  t.dutyLeast = p.dutyLeast;
+  t.lagShare = p.lagShare;
   t.swingStill = p.swingStill;
   t.swingSpeed = p.swingSpeed;
   t.cycleMax = p.cycleMax;
@@ -104,10 +107,13 @@ reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, i
     const size_t base = static_cast<size_t>(l) * static_cast<size_t>(shared::rigStride(bones));
     reference::Limb limb;
     const glm::dvec4 root = load(rigRecords, base), home = load(rigRecords, base + 1);
+    const glm::dvec4 order = load(rigRecords, base + 2);
     limb.root = root;
     limb.reach = root.w;
     limb.home = home;
     limb.group = static_cast<int>(home.w);
+    limb.lag = order.x;
+    limb.neighbours = mask(order.y);
     for (int b = 0; b < bones; ++b) {
       const size_t record =
           base + shared::RIG_LEG_STRIDE + at(static_cast<size_t>(b), shared::RIG_BONE_STRIDE);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
+#include "crowd/leg_order.h"
 #include "shared/records.h"
 
 namespace skitter::crowd {
@@ -28,9 +29,12 @@ glm::vec3 frameX(const glm::vec3& direction) {
 
 std::vector<float> rigRecords(const Rig& rig) {
   std::vector<float> records;
-  for (const Leg& leg : rig.legs) {
+  const std::vector<LegOrder> order = legOrder(rig);
+  for (size_t l = 0; l < rig.legs.size(); ++l) {
+    const Leg& leg = rig.legs[l];
     append(records, leg.root(), leg.reach);
     append(records, leg.home, static_cast<float>(leg.group));
+    append(records, {order[l].lag, static_cast<float>(order[l].neighbours), 0}, 0);
     for (int i = 0; i < rig.maxBones(); ++i) {
       const bool present = i < static_cast<int>(leg.bones.size());
       const Bone& bone = present ? leg.bones[static_cast<size_t>(i)] : leg.bones.back();

@@ -4,17 +4,26 @@
 // What speed asks of the legs (docs/stages.md, gait).
 struct Stride {
   float halfStride, ticks, swing, cycle;
+  float spread;  // of a group's lift-offs, share of a cycle
 };
 
 Stride strideFor(Parameters q, float surfaceSpeed, float turnRate, float groups) {
   Stride s;
   float v = surfaceSpeed + abs(turnRate) * q.homeRadius;
-  s.halfStride = min(q.halfStrideStill + q.halfStrideGain * v, q.halfStrideMax);
   s.ticks = max(3.0, floor(q.swingStill / (1.0 + v / q.swingSpeed) / q.dt + 0.5));
   s.swing = s.ticks * q.dt;
-  s.cycle = min(q.cycleMax, 2.0 * s.halfStride / max(v, 1e-3) + s.swing);
-  s.cycle = max(s.cycle, groups * s.swing * q.windowSlack);
+  float duty = max(q.dutyLeast, q.dutyStill - q.dutyGain * v);
+  s.cycle = max(min(q.cycleMax, s.swing / (1.0 - duty)), groups * s.swing * q.windowSlack);
+  s.halfStride = clamp(0.5 * v * (s.cycle - s.swing), q.halfStrideStill, q.halfStrideMax);
+  s.spread = q.lagShare * (1.0 / groups - s.swing / s.cycle);
   return s;
+}
+
+// May a leg of `group` that lifts `lag` after the first one of it begin a step at this phase?
+bool windowOpen(Parameters q, float phase, float group, float lag, Stride s, float groups) {
+  float since = phase - (group / groups + s.spread * lag);
+  since -= floor(since);
+  return since * groups < q.windowOpen;
 }
 
 // Where, in model space, a foot should land that touches down in `time` seconds: its home in the middle of the

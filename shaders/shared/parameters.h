@@ -41,9 +41,12 @@ struct Parameters {
   float bellyClearance;  // least height of the body's centre above the ground
   float ridge;           // regularisation of the plane fit, m^2
   // gait
-  float halfStrideStill;  // a0
-  float halfStrideGain;   // a1, seconds
+  float halfStrideStill;  // least half stride: what lifting is judged by at rest
   float halfStrideMax;
+  float dutyStill;  // stance share of a cycle at rest
+  float dutyGain;   // s/m, by how much it falls with speed
+  float dutyLeast;
+  float lagShare;  // the last leg of a group lifts this share of (1 / groups - swing / cycle) after the first
   float swingStill;     // T0, seconds
   float swingSpeed;     // v0, m/s: swing time halves at this speed
   float cycleMax;       // seconds

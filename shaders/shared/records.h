@@ -119,12 +119,14 @@ SKITTER_CONST int METRIC_STRIDE = 7;
 // legs).
 //   leg  [0] root x, y, z (model), reach (m)
 //        [1] home x, y, z (model), group
+//        [2] lag in its group (0 first, 1 last), mask of the legs that must stand while it is in the air,
+//        unused x 2
 //   bone [0] x axis of the bone frame B_i (model), length / reach
 //        [1] z axis of B_i, the rest direction r_i (model), tan(half-angle / 2)
 //        [2] rest start p_i x, y, z (model), stiffness
 //        [3] ellipse: half-angles toward +x, +y, -x, -y; hinge: tan(lo/2), tan(hi/2), c_i, sqrt(1 - c_i^2)
 //        [4] kind of limit (LIMIT_), twist: tan(lo/2), tan(hi/2), unused
-SKITTER_CONST int RIG_LEG_STRIDE = 2;
+SKITTER_CONST int RIG_LEG_STRIDE = 3;
 SKITTER_CONST int RIG_BONE_STRIDE = 5;
 // Kinds of limit. A kernel is specialised by those that may occur at each bone: four bits a bone, eight bones
 // a word, LIMIT_TWIST beside the others.

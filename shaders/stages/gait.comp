@@ -22,18 +22,18 @@ void main() {
   float phase = LOAD4(gaits, agent * GAIT_STRIDE).x + parameters.dt / stride.cycle;
   phase -= floor(phase);
 
-  uint air = 0u, airGroups = 0u, wants = 0u, again = 0u;
-  float urgency = 0.0;
-  int urgentGroup = 0;
-  uint groupOf[LEGS];
+  uint air = 0u, wants = 0u, again = 0u;
+  // The leg that must lift and has stood longest goes first, and its neighbours wait for it.
+  uint first = 0u, yields = 0u;
+  float stoodSince = 3e38;
+  uint neighbours[LEGS];
   for (int leg = 0; leg < LEGS; ++leg) {
     int stepAt = (agent * LEGS + leg) * STEP_STRIDE;
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
                         LOAD4(steps, stepAt + 3));
     int rigAt = leg * rigStride(BONES);
-    vec4 root = LOAD4(rig, rigAt), home = LOAD4(rig, rigAt + 1);
-    int group = int(home.w);
-    groupOf[leg] = 1u << group;
+    vec4 root = LOAD4(rig, rigAt), home = LOAD4(rig, rigAt + 1), order = LOAD4(rig, rigAt + 2);
+    neighbours[leg] = uint(order.y);
     float flown = constants.tick - 1.0 - s.firstTick;
     float u = clamp(flown / s.ticks, 0.0, 1.0);
     vec3 foot = rotateBack(body.orientation, fromTile(s.landing, s.tile, body.local, body.tile));
@@ -41,34 +41,30 @@ void main() {
       float stretch = length(foot - root.xyz) / root.w;
       float off = distance(foot.xz, home.xz);
       float error = LOAD4(chains, (agent * LEGS + leg) * chainStride(BONES) + chainDirections(BONES)).w;
-      bool close = stretch < parameters.rootShare;
-      bool must = close || stretch > parameters.stretchLift || off > parameters.strayShare * stride.halfStride ||
-                  error > parameters.errorLift * root.w;
+      bool must = stretch < parameters.rootShare || stretch > parameters.stretchLift ||
+                  off > parameters.strayShare * stride.halfStride || error > parameters.errorLift * root.w;
       bool far = off > parameters.liftShare * stride.halfStride;
-      wants |= far || must || s.lastResort ? 1u << leg : 0u;
-      float urgent = must ? (close ? 3.0 : stretch + off / parameters.legLength) : 0.0;
-      urgentGroup = urgent > urgency ? group : urgentGroup;
-      urgency = max(urgency, urgent);
+      wants |= (far || must || s.lastResort) && windowOpen(parameters, phase, home.w, order.x, stride, float(GROUPS))
+                   ? 1u << leg : 0u;
+      if (must && s.firstTick + s.ticks < stoodSince) {
+        stoodSince = s.firstTick + s.ticks;
+        first = 1u << leg;
+        yields = neighbours[leg];
+      }
     } else {
       air |= 1u << leg;
-      airGroups |= 1u << group;
       vec3 predicted = predictLanding(home.xyz, body.turnRate, body.surfaceSpeed, (s.ticks - flown) * parameters.dt, stance);
       bool strayed = distance(predicted.xz, foot.xz) > parameters.reaimDistance;
       again |= strayed && flown >= 4.0 && u < parameters.reaimLatest ? 1u << leg : 0u;
     }
   }
 
-  float groups = float(GROUPS);
-  int group = min(int(phase * groups), GROUPS - 1);
-  bool open = phase * groups - float(group) < parameters.windowOpen;
-  if (urgency > 0.0 && air == 0u && !(open && group == urgentGroup)) {
-    group = urgentGroup;
-    phase = float(group) / groups;
-    open = true;
-  }
-  bool may = open && (airGroups & ~(1u << group)) == 0u && body.still < parameters.settleTime;
-  uint lift = 0u;
-  for (int leg = 0; leg < LEGS; ++leg) lift |= may && groupOf[leg] == 1u << group ? wants & (1u << leg) : 0u;
+  bool settled = body.still >= parameters.settleTime;
+  uint lift = (yields & air) == 0u ? first : 0u;
+  wants &= ~yields;
+  for (int leg = 0; leg < LEGS; ++leg)
+    lift |= (neighbours[leg] & (air | lift)) == 0u ? wants & (1u << leg) : 0u;
+  lift = settled ? 0u : lift;
 
   STORE4(gaitsOut, agent * GAIT_STRIDE, vec4(phase, float(lift), float(again), stride.ticks));
   STORE4(gaitsOut, agent * GAIT_STRIDE + 1, vec4(stride.halfStride, stride.cycle, float(air), 0.0));

@@ -14,13 +14,6 @@ class Gait : public testing::Test {
   void displace(size_t l, double x) {
     steps[l] = plantedAt(body, creature.limbs[l].home + glm::dvec3(x, 0, 0));
   }
-  uint32_t maskOf(int group) const {
-    uint32_t mask = 0;
-    for (size_t l = 0; l < creature.limbs.size(); ++l) {
-      if (creature.limbs[l].group == group) mask |= 1u << l;
-    }
-    return mask;
-  }
 
   reference::Tuning tuning = validation::tuningOf(parametersFor(flatField()));
   reference::Creature creature = spiderCreature();
@@ -36,21 +29,44 @@ TEST_F(Gait, feetAtHomeStay) {
   }
 }
 
-TEST_F(Gait, displacedFeetLiftGroupByGroup) {
+TEST_F(Gait, displacedFeetLiftInTheirWindows) {
   for (size_t l = 0; l < 8; ++l) displace(l, 0.1);
-  EXPECT_EQ(reference::gait(tuning, creature, body, 0.05, steps, errors, 10).gait.lift, maskOf(0));
-  EXPECT_EQ(reference::gait(tuning, creature, body, 0.55, steps, errors, 10).gait.lift, maskOf(1));
-  EXPECT_EQ(reference::gait(tuning, creature, body, 0.30, steps, errors, 10).gait.lift, 0u);
+  // At rest 1/2 - T/C is 0.21 and the spread 1.2 times it, 0.25: as long as a window is open. In the middle
+  // of the first quarter the rear half of a group is within its window and the front half not yet.
+  const auto lifts = [&](double phase) {
+    return reference::gait(tuning, creature, body, phase, steps, errors, 10).gait.lift;
+  };
+  EXPECT_EQ(lifts(0.02), 1u << 7);
+  EXPECT_EQ(lifts(0.12), 1u << 7 | 1u << 2);
+  EXPECT_EQ(lifts(0.20), 1u << 7 | 1u << 2 | 1u << 5);
+  EXPECT_EQ(lifts(0.52), 1u << 3);
+  EXPECT_EQ(lifts(0.70), 1u << 3 | 1u << 6 | 1u << 1);
 }
 
-TEST_F(Gait, nobodyLiftsWhileTheOtherGroupFlies) {
+TEST_F(Gait, legsOfASideLiftInTheOrder4231) {
+  body.v3 = body.speed = 1;
+  for (size_t l = 0; l < 8; ++l) displace(l, 0.15);
+  std::vector<size_t> order;
+  uint32_t before = 0;
+  for (double phase = 0.47; phase < 1.47; phase += 0.005) {
+    const auto result = reference::gait(tuning, creature, body, std::fmod(phase, 1), steps, errors, 10);
+    uint32_t open = 0;
+    for (size_t l = 0; l < 4; ++l) open |= result.legs[l].open ? 1u << l : 0u;
+    for (size_t l = 0; l < 4; ++l) {
+      if ((open & ~before) >> l & 1u) order.push_back(l + 1);
+    }
+    before = open;
+  }
+  EXPECT_EQ(order, (std::vector<size_t>{4, 2, 3, 1}));
+}
+
+TEST_F(Gait, nobodyLiftsBesideALegInTheAir) {
   for (size_t l = 0; l < 8; ++l) displace(l, 0.1);
-  for (size_t l = 0; l < 8; ++l) {
-    if (creature.limbs[l].group != 1) continue;
-    steps[l].firstTick = 5;
-    steps[l].duration = 20;
-    EXPECT_EQ(reference::gait(tuning, creature, body, 0.05, steps, errors, 10).gait.lift, 0u);
-    break;
+  steps[1].firstTick = 5;
+  steps[1].duration = 20;
+  for (double phase = 0; phase < 1; phase += 0.01) {
+    const uint32_t lift = reference::gait(tuning, creature, body, phase, steps, errors, 10).gait.lift;
+    EXPECT_EQ(lift & (1u << 0 | 1u << 1 | 1u << 2), 0u) << phase;
   }
 }
 
@@ -60,22 +76,30 @@ TEST_F(Gait, nobodyLiftsWhenSettled) {
   EXPECT_EQ(reference::gait(tuning, creature, body, 0.05, steps, errors, 10).gait.lift, 0u);
 }
 
-TEST_F(Gait, legThatMustLiftMovesThePhase) {
-  size_t other = 0;
-  while (creature.limbs[other].group != 1) ++other;
-  steps[other] = plantedAt(body, creature.limbs[other].root + glm::dvec3(0.97, 0, 0));
+TEST_F(Gait, legThatMustLiftDoesSoOutsideItsWindow) {
+  steps[3] = plantedAt(body, creature.limbs[3].root + glm::dvec3(0.97, 0, 0));
   const auto result = reference::gait(tuning, creature, body, 0.05, steps, errors, 10);
-  EXPECT_TRUE(result.emergency);
-  EXPECT_DOUBLE_EQ(result.gait.phase, 0.5);
-  EXPECT_EQ(result.gait.lift, 1u << other);
+  EXPECT_EQ(result.first, 3);
+  EXPECT_EQ(result.gait.lift, 1u << 3);
 }
 
-TEST_F(Gait, footTooNearItsRootGoesBeforeAStretchedOne) {
-  size_t other = 0;
-  while (creature.limbs[other].group != 1) ++other;
-  steps[0] = plantedAt(body, creature.limbs[0].root + glm::dvec3(0.97, 0, 0));
-  steps[other] = plantedAt(body, creature.limbs[other].root + glm::dvec3(0.1, 0, 0));
-  EXPECT_DOUBLE_EQ(reference::gait(tuning, creature, body, 0.3, steps, errors, 10).gait.phase, 0.5);
+TEST_F(Gait, neighboursWaitForALegThatMustLift) {
+  for (size_t l = 0; l < 8; ++l) displace(l, 0.1);
+  steps[3] = plantedAt(body, creature.limbs[3].root + glm::dvec3(0.97, 0, 0));
+  steps[2].firstTick = 5;
+  steps[2].duration = 20;
+  // Leg 2 is in the air, so leg 3 waits; its other neighbour 7 is within its window and waits for it.
+  EXPECT_EQ(reference::gait(tuning, creature, body, 0.02, steps, errors, 10).gait.lift, 0u);
+}
+
+TEST_F(Gait, ofLegsThatMustLiftTheOneThatStoodLongestGoesFirst) {
+  for (const size_t l : {0u, 1u}) steps[l] = plantedAt(body, creature.limbs[l].root + glm::dvec3(0.97, 0, 0));
+  steps[0].firstTick = -5;
+  const auto result = reference::gait(tuning, creature, body, 0.3, steps, errors, 10);
+  EXPECT_EQ(result.first, 0);
+  EXPECT_EQ(result.gait.lift, 1u);
+  steps[1].firstTick = -6;
+  EXPECT_EQ(reference::gait(tuning, creature, body, 0.3, steps, errors, 10).gait.lift, 2u);
 }
 
 TEST_F(Gait, footThatStraysOrMissesMustLift) {
@@ -98,13 +122,15 @@ TEST_F(Gait, landingThatTheBodyLeftBehindIsAimedAnew) {
   EXPECT_EQ(reference::gait(tuning, creature, body, 0, steps, errors, 24).gait.reaim, 0u);
 }
 
-TEST_F(Gait, fasterMeansShorterAndWider) {
-  const auto slow = reference::gait(tuning, creature, body, 0, steps, errors, 1).gait;
-  body.v3 = 1.5;
-  const auto fast = reference::gait(tuning, creature, body, 0, steps, errors, 1).gait;
-  EXPECT_LT(fast.duration, slow.duration);
-  EXPECT_LT(fast.cycle, slow.cycle);
-  EXPECT_GT(fast.halfStride, slow.halfStride);
+TEST_F(Gait, dutyFallsLinearlyWithSpeed) {
+  double before = 2;
+  for (const double speed : {0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0}) {
+    body.v3 = speed;
+    const auto gait = reference::gait(tuning, creature, body, 0, steps, errors, 1).gait;
+    EXPECT_NEAR(1 - gait.duration * tuning.dt / gait.cycle, 0.75 - 0.05 * speed, 1e-6);
+    EXPECT_LT(gait.cycle, before);
+    before = gait.cycle;
+  }
 }
 
 TEST_F(Gait, marginsTellHowNearADecisionWas) {
@@ -116,21 +142,21 @@ TEST_F(Gait, marginsTellHowNearADecisionWas) {
   EXPECT_NEAR(result.legs[1].wantsMargin, enough, 1e-9);
 }
 
-TEST(GaitHerd, twoGroupsAreNeverInTheAirTogether) {
+TEST(GaitHerd, neighboursAreNeverInTheAirTogether) {
   ReferenceHerd herd(roughField(), 16);
   const reference::Creature creature = spiderCreature();
   int flights = 0;
   for (int tick = 0; tick < 600; ++tick) {
     herd.tick();
     for (size_t agent = 0; agent < 16; ++agent) {
-      bool inAir[2] = {};
+      uint32_t air = 0;
+      for (size_t l = 0; l < 8; ++l)
+        if (validation::footOf(herd.state(), agent * 8 + l).progress < 1) air |= 1u << l;
       for (size_t l = 0; l < 8; ++l) {
-        if (validation::footOf(herd.state(), agent * 8 + l).progress < 1) {
-          inAir[creature.limbs[l].group] = true;
-          ++flights;
-        }
+        if ((air >> l & 1u) == 0) continue;
+        ASSERT_EQ(air & creature.limbs[l].neighbours, 0u) << "tick " << tick << ", agent " << agent;
+        ++flights;
       }
-      ASSERT_FALSE(inAir[0] && inAir[1]) << "tick " << tick << ", agent " << agent;
     }
   }
   EXPECT_GT(flights, 10000);

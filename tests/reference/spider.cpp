@@ -69,6 +69,13 @@ std::vector<float> rigRecordsOf(const Rig& rig, int padding) {
   for (const Leg& leg : rig.legs) {
     push(leg.root(), leg.reach);
     push(leg.home, leg.group);
+    // From the rear to the front of each group; the legs before, behind and across must stand.
+    const size_t l = static_cast<size_t>(&leg - rig.legs.data()), pair = l % 4, across = (l + 4) % 8;
+    double mask = std::ldexp(1.0, static_cast<int>(across));
+    if (pair == 1 || pair == 2) mask = 0;
+    if (pair > 0) mask += std::ldexp(1.0, static_cast<int>(l) - 1);
+    if (pair < 3) mask += std::ldexp(1.0, static_cast<int>(l) + 1);
+    push({(3 - static_cast<double>(pair)) / 3, mask, 0}, 0);
     glm::dvec3 x{0}, z{0}, end{0};
     for (const Bone& bone : leg.bones) {
       z = glm::normalize(glm::dvec3(bone.direction));
@@ -152,12 +159,15 @@ shared::Parameters parametersFor(const Heightfield& terrain) {
   p.maxSlope = 2.75f;
   p.bellyClearance = 0.18f;
   p.ridge = 1e-4f;
-  p.halfStrideStill = 0.12f;
-  p.halfStrideGain = 0.08f;
+  p.halfStrideStill = 0.08f;
   p.halfStrideMax = 0.3f;
+  p.dutyStill = 0.75f;
+  p.dutyGain = 0.05f;
+  p.dutyLeast = 0.55f;
+  p.lagShare = 1.2f;
   p.swingStill = 0.35f;
   p.swingSpeed = 1.7f;
-  p.cycleMax = 1;
+  p.cycleMax = 1.2f;
   p.windowSlack = 1.1f;
   p.windowOpen = 0.5f;
   p.liftShare = 0.35f;
