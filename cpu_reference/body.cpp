@@ -105,11 +105,20 @@ SupportPlane supportPlane(const Tuning& tuning, const AgentBody& body, std::span
   return plane;
 }
 
+// Square to the plane but for a share of its slope, and leaning to where a turn's middle is.
+glm::dvec3 leaningNormal(const Tuning& tuning, const SupportPlane& plane, const AgentBody& body) {
+  const double lean =
+      std::clamp(tuning.leanGain * body.speed * body.turnRate, -tuning.leanMost, tuning.leanMost);
+  const glm::dvec3 left{body.heading.y, 0, -body.heading.x};
+  const double kept = 1 - tuning.leanLevel;
+  return normalized(glm::dvec3(-plane.b * kept, 1, -plane.c * kept) + lean * left);
+}
+
 }  // namespace
 
 BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
                 const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
-                std::span<const double> reachErrors, double tick, const BodyChoices& choices) {
+                std::span<const double> reachErrors, double tick, double phase, const BodyChoices& choices) {
   BodyResult result;
   result.body = previous;
   AgentBody& next = result.body;
@@ -129,15 +138,16 @@ BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& cr
   const SupportPlane& plane = result.plane;
 
   const glm::dvec3 upBefore = previous.orientation * glm::dvec3(0, 1, 0);
-  const glm::dvec3 up =
-      normalized(glm::mix(upBefore, normalized(glm::dvec3(-plane.b, 1, -plane.c)), tuning.tiltBlend));
+  const glm::dvec3 up = normalized(glm::mix(upBefore, leaningNormal(tuning, plane, next), tuning.tiltBlend));
   const glm::dvec2 h = next.heading;
   const glm::dvec3 forward = normalized(glm::dvec3(h.x, -(up.x * h.x + up.z * h.y) / up.y, h.y));
   next.orientation = glm::quat_cast(glm::dmat3(glm::cross(up, forward), up, forward));
   if (glm::dot(next.orientation, previous.orientation) < 0) next.orientation = -next.orientation;
 
   const double predicted = previous.y + (plane.b * h.x + plane.c * h.y) * next.speed * tuning.dt;
-  double wanted = previous.y + plane.height;
+  const double breath =
+      std::pow(4 * phase * (1 - phase), 2) * std::min(1.0, previous.still / tuning.settleTime);
+  double wanted = previous.y + plane.height + tuning.breathHeight * breath;
   const glm::dvec2 position = next.world();
   for (int k = -1; k <= 1; ++k) {
     const glm::dvec3 q = tuning.bodyHeight * up + k * tuning.bodyRadius * forward;

@@ -73,7 +73,7 @@ FootholdResult foothold(const Tuning& tuning, const Heights& heights, const Limb
                         const FootholdChoices& choices) {
   FootholdResult result;
   const double flown = tick - 1 - step.firstTick, lasted = std::abs(step.duration);
-  const double duration = lifts ? gait.duration : lasted - flown;
+  const double duration = lifts ? gait.duration : std::max(lasted - flown, 2.0);
   const double seconds = duration * tuning.dt;
   const double stanceTime = gait.cycle - gait.duration * tuning.dt;
   result.target = predictedLanding(limb, body, seconds, stanceTime);
@@ -96,23 +96,16 @@ FootholdResult foothold(const Tuning& tuning, const Heights& heights, const Limb
 
   Step& next = result.step;
   const double u = step.progress(tick - 1);
-  const SplinePoint present = splineAt(step, u);
+  const Eased time = eased(step, u);
+  const SplinePoint present = splineAt(step, time.progress);
   const glm::dvec3 liftOff = step.relative(lifts ? step.landing : present.position, body);
   const double chi = lifts ? 1 : 1 - u;
-  const glm::dvec3 up = body.orientation * glm::dvec3(0, 1, 0);
-  const glm::dvec2 position = body.world();
-  constexpr double along[3] = {3.0 / 16, 1.0 / 2, 13.0 / 16};
-  constexpr double weight[3] = {5.0 / 8, 1, 5.0 / 8};
-  double height = tuning.stepHeight * chi;
-  for (int i = 0; i < 3; ++i) {
-    const glm::dvec3 point = glm::mix(liftOff, landing, along[i]);
-    result.gaps[i] = heightAt(heights, position.x + point.x, position.y + point.z) - body.y - point.y;
-    if (result.gaps[i] > choices.gapShift - tuning.stepClearance) {
-      height = std::max(height, (result.gaps[i] * up.y + tuning.stepClearance) / weight[i]);
-    }
-  }
-  next.lift = std::min(tuning.stepHeightMax, height) * up;
-  next.startTangent = lifts ? next.lift : present.tangent * (duration / lasted);
+  std::optional<glm::dvec3> startTangent;
+  if (!lifts) startTangent = present.tangent * (time.rate * duration / lasted);
+  result.route = route(tuning, heights, body, liftOff, landing, startTangent, chi);
+  if (choices.way) result.route.chosen = *choices.way;
+  next.lift = result.route.way().lift;
+  next.startTangent = startTangent.value_or(next.lift);
   const glm::dvec3 origin{body.localX, body.y, body.localZ};
   next.landing = landing + origin;
   next.liftOff = liftOff + origin;

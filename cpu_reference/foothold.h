@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "cpu_reference/route.h"
 #include "cpu_reference/types.h"
 
 namespace skitter::reference {
@@ -25,14 +26,14 @@ struct FootholdResult {
   glm::dvec3 target{0}, root{0};  // tau and r', model space
   double side = 0;                // |o|: below it the ladder's direction is badly conditioned
   double stretch = 0;             // rho
-  glm::dvec3 gaps{0};             // of the ground above the straight way at 3/16, 1/2, 13/16
+  Route route;
 };
 
 // Decisions that the caller takes instead of the rule, to recompute the other side of a tie.
 struct FootholdChoices {
   std::optional<int> candidate;
   bool lastResort = false;  // of the forced candidate
-  double gapShift = 0;      // a gap counts if it exceeds this - stepClearance
+  std::optional<int> way;   // of Route::ways
 };
 
 // `body` is the new one, `step` the leg's last, `gait` this tick's with its durations, `tick` is n.

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "cpu_reference/heightfield.h"
+#include "cpu_reference/swing.h"
+
 namespace skitter::reference {
 namespace {
 
@@ -27,12 +30,36 @@ class Disjunction {
   double surest_ = 0, nearest_ = never;
 };
 
+// Has the ground moved under where the leg stands or will land, or risen into the rest of its way?
+void look(const Tuning& tuning, const AgentBody& body, const Step& step, const Heights& heights,
+          LegDecision& leg) {
+  const glm::dvec2 position = body.world();
+  const auto above = [&](const glm::dvec3& point) {
+    const glm::dvec3 p = step.relative(point, body);
+    return heightAt(heights, position.x + p.x, position.y + p.z) - body.y - p.y;
+  };
+  Disjunction moved;
+  const auto exceeds = [&](double distance) {
+    moved.add(distance > tuning.groundTolerance, std::abs(distance - tuning.groundTolerance));
+  };
+  if (step.duration > 0) exceeds(std::abs(above(step.landing)));
+  const double way = eased(step, leg.progress).progress;
+  for (int i = 0; i < 3 && !leg.planted; ++i)
+    exceeds(above(splineAt(step, glm::mix(way, 1.0, i / 3.0)).position));
+  leg.moved = moved.value();
+  leg.movedMargin = moved.margin();
+}
+
 LegDecision judge(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Step& step,
-                  const Gait& gait, double stanceTime, double reachError, double tick) {
+                  const Gait& gait, double stanceTime, double reachError, double tick,
+                  WatchedGround watched) {
   LegDecision leg;
   leg.progress = step.progress(tick - 1);
   leg.planted = leg.progress >= 1;
   leg.mustMargin = leg.wantsMargin = leg.reaimMargin = leg.reaimProgressMargin = never;
+  leg.movedMargin = never;
+  if (watched) look(tuning, body, step, *watched, leg);
+  const bool settled = body.still >= tuning.settleTime;
   const glm::dvec3 foot = step.relative(step.landing, body);
   const glm::dvec3 inModel = glm::conjugate(body.orientation) * foot;
   const glm::dvec2 ground{inModel.x, inModel.z};
@@ -47,14 +74,19 @@ LegDecision judge(const Tuning& tuning, const Limb& limb, const AgentBody& body,
     const double amiss = tuning.errorLift * limb.reach;
     must.add(reachError > amiss, std::abs(reachError - amiss));
     Disjunction wants;
-    const double enough = tuning.liftShare * gait.halfStride;
+    const double enough = (tuning.reachTriggered ? 0.6 : tuning.liftShare) * gait.halfStride;
     wants.add(leg.offset > enough, std::abs(leg.offset - enough));
     wants.add(must.value(), must.margin());
     wants.add(step.duration < 0, never);
-    leg.must = must.value();
+    if (tuning.reachTriggered) must.add(leg.offset > enough, std::abs(leg.offset - enough));
+    // Who stands still steps only off ground that moves.
+    Disjunction now;
+    if (!settled) now.add(must.value(), must.margin());
+    now.add(leg.moved, leg.movedMargin);
+    leg.must = now.value();
     leg.stoodSince = step.firstTick + std::abs(step.duration);
-    leg.mustMargin = must.margin();
-    leg.wants = wants.value();
+    leg.mustMargin = now.margin();
+    leg.wants = !settled && wants.value();
     leg.wantsMargin = wants.margin();
   } else if (tick - 1 - step.firstTick >= 4) {
     const double remaining = (std::abs(step.duration) - (tick - 1 - step.firstTick)) * tuning.dt;
@@ -63,7 +95,7 @@ LegDecision judge(const Tuning& tuning, const Limb& limb, const AgentBody& body,
     leg.offset = apart;
     leg.reaimMargin = std::abs(apart - tuning.reaimDistance);
     leg.reaimProgressMargin = std::abs(leg.progress - tuning.reaimLatest);
-    leg.wants = apart > tuning.reaimDistance && leg.progress < tuning.reaimLatest;
+    leg.wants = leg.moved || (apart > tuning.reaimDistance && leg.progress < tuning.reaimLatest);
   }
   return leg;
 }
@@ -75,8 +107,9 @@ void findWindow(const Tuning& tuning, const Creature& creature, const Limb& limb
   const double spread = tuning.lagShare * (1 / groups - swingTime / gait.cycle);
   double since = gait.phase - limb.group / groups - spread * limb.lag;
   since = (since - std::floor(since)) * groups;
-  leg.open = since < tuning.windowOpen;
+  leg.open = tuning.reachTriggered || since < tuning.windowOpen;
   leg.windowMargin = std::min({since, std::abs(since - tuning.windowOpen), groups - since});
+  if (tuning.reachTriggered) leg.windowMargin = never;
 }
 
 }  // namespace
@@ -92,7 +125,7 @@ glm::dvec3 predictedRoot(const Limb& limb, const AgentBody& body, double seconds
 
 GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody& body, double phase,
                 std::span<const Step> steps, std::span<const double> reachErrors, double tick,
-                const GaitChoices& choices) {
+                const GaitChoices& choices, WatchedGround watched) {
   GaitResult result;
   Gait& next = result.gait;
   const double groups = creature.groups;
@@ -113,7 +146,7 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
   result.mustMargin = never;
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
     const Limb& limb = creature.limbs[l];
-    LegDecision leg = judge(tuning, limb, body, steps[l], next, stanceTime, reachErrors[l], tick);
+    LegDecision leg = judge(tuning, limb, body, steps[l], next, stanceTime, reachErrors[l], tick, watched);
     findWindow(tuning, creature, limb, next, swingTime, leg);
     if (!leg.planted) next.air |= 1u << l;
     if (!leg.planted && leg.wants) next.reaim |= 1u << l;
@@ -125,7 +158,6 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
   }
 
   result.settleMargin = std::abs(body.still - tuning.settleTime);
-  if (body.still >= tuning.settleTime) return result;
   uint32_t yielding = 0;
   if (result.first >= 0) {
     yielding = creature.limbs[static_cast<size_t>(result.first)].neighbours;

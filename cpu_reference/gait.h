@@ -18,6 +18,8 @@ struct LegDecision {
   double windowMargin = 0;  // of its phase from the nearest edge of its window, in windows
   double mustMargin = 0;
   double wantsMargin = 0;
+  bool moved = false;              // the ground under the landing, or in its way, is no longer where it was
+  double movedMargin = 0;          // metres
   double reaimMargin = 0;          // of the distance between landing and prediction
   double reaimProgressMargin = 0;  // of u_l against reaimLatest
 };
@@ -36,11 +38,14 @@ struct GaitChoices {
   std::optional<double> duration;  // D
 };
 
+// The ground that is looked at in the ticks after an edit of the heights; without it gait knows none.
+using WatchedGround = const Heights*;
+
 // `phase` is the last tick's, `body` the new one, `reachErrors` of each leg after the last tick (metres),
 // `tick` is n.
 GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody& body, double phase,
                 std::span<const Step> steps, std::span<const double> reachErrors, double tick,
-                const GaitChoices& choices = {});
+                const GaitChoices& choices = {}, WatchedGround watched = nullptr);
 
 // Where leg `limb` would land, and where its root would then be, `seconds` before touchdown (model space).
 glm::dvec3 predictedLanding(const Limb& limb, const AgentBody& body, double seconds, double stanceTime);

@@ -20,9 +20,17 @@ SplinePoint splineAt(const Step& step, double u) {
   return hermite(knot, knotTangent, step.landing, -step.lift, 2 * u - 1);
 }
 
+Eased eased(const Step& step, double u) {
+  // A cubic Hermite spline from 0 to 1 that ends at rest, and begins at rest where the step begins on the
+  // ground.
+  const double g = step.startTangent == step.lift ? 0 : 1;
+  const double u2 = u * u, u3 = u2 * u;
+  return {(u3 - 2 * u2 + u) * g + (-2 * u3 + 3 * u2), (3 * u2 - 4 * u + 1) * g + (-6 * u2 + 6 * u)};
+}
+
 Foot swing(const Step& step, const AgentBody& body, double tick) {
   const double u = step.progress(tick);
-  const glm::dvec3 point = u >= 1 ? step.landing : splineAt(step, u).position;
+  const glm::dvec3 point = u >= 1 ? step.landing : splineAt(step, eased(step, u).progress).position;
   return {step.relative(point, body), u};
 }
 

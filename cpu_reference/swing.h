@@ -10,6 +10,12 @@ struct SplinePoint {
 };
 SplinePoint splineAt(const Step& step, double u);
 
+// Progress along the spline for progress in time, eased, and its rate.
+struct Eased {
+  double progress = 0, rate = 0;
+};
+Eased eased(const Step& step, double u);
+
 // `tick` is n.
 Foot swing(const Step& step, const AgentBody& body, double tick);
 

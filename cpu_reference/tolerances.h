@@ -85,7 +85,10 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
        (8 + legs) * roundoff * plane.spread * plane.heightSpread) /
           plane.leastEigenvalue +
       8 * roundoff * condition * (1 + slope);
-  const double up = t.tiltBlend * bound.slope + 16 * roundoff;
+  // The lean into a turn: s omega times its gain.
+  const double lean = t.leanGain * (next.speed * bound.turnRate + std::abs(next.turnRate) * bound.speed) +
+                      8 * roundoff * t.leanMost + t.leanMost * bound.heading;
+  const double up = t.tiltBlend * (bound.slope + lean) + 16 * roundoff;
   // F = (h.x, -(N . h) / N.y, h.z): a steep body amplifies by 1 / N.y.
   const double upY = (next.orientation * glm::dvec3(0, 1, 0)).y;
   const double forward = 2 * (up + bound.heading) / upY + 8 * roundoff;
@@ -105,7 +108,7 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
     const double q_error = arm * (up + forward);
     belly = std::max(belly, height(relief, extent, bound.position + q_error) + q_error);
   }
-  bound.height = t.heightBlend * std::max(planeHeight, belly) +
+  bound.height = t.heightBlend * (std::max(planeHeight, belly) + 24 * roundoff * t.breathHeight) +
                  t.dt * (next.speed * bound.slope + slope * bound.speed) + 6 * roundoff * std::abs(next.y) +
                  4 * roundoff;
   return bound;
@@ -113,6 +116,8 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
 
 struct GaitBounds {
   double phase, halfStride, cycle, duration, length, window;
+  double ground =
+      1e-30;  // of the ground above a foot's way, where it is watched; the caller knows the relief
 };
 inline GaitBounds gait(const Tuning& t, const GaitResult& result, int groups, double longestForecast) {
   GaitBounds bound{};

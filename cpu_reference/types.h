@@ -25,14 +25,16 @@ struct Tuning {
   double stretchSlow = 0, stretchStop = 0, errorStop = 0, followLeast = 0, heightBlend = 0, tiltBlend = 0,
          maxSlope = 0;
   double bellyClearance = 0, ridge = 0;
+  double leanGain = 0, leanMost = 0, leanLevel = 0, breathHeight = 0;
   double halfStrideStill = 0, halfStrideMax = 0, swingStill = 0, swingSpeed = 0;
   double dutyStill = 0, dutyGain = 0, dutyLeast = 0, lagShare = 0;
   double cycleMax = 0, windowSlack = 0, windowOpen = 0, liftShare = 0, stretchLift = 0, strayShare = 0;
   double errorLift = 0, rootShare = 0;
-  double settleTime = 0, reaimDistance = 0, reaimLatest = 0;
+  double settleTime = 0, reaimDistance = 0, reaimLatest = 0, groundTolerance = 0;
+  bool reachTriggered = false;
   double reachMost = 0, reachLeast = 0, reachComfort = 0, slopeLeast = 0, slopeWeight = 0, reachWeight = 0;
   bool nearestOnly = false;
-  double stepHeight = 0, stepClearance = 0, stepHeightMax = 0;
+  double stepHeight = 0, stepClearance = 0, stepHeightMax = 0, routeWidth = 0;
   double approachError = 0, restPull = 0, pullError = 0, ikTolerance = 0;
   double deadZone = 0, skateSpeed = 0, limitDeadZone = 0, jerkTicks = 24, jerkPath = 0;
 };

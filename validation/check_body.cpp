@@ -72,9 +72,10 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
     steps.push_back(stepOf(moment.before, moment.agent * legs + l));
     errors.push_back(chainOf(moment.before, moment.agent * legs + l, setting.bones).reachError);
   }
+  const double phase = gaitOf(moment.before, moment.agent).phase;
   const auto run = [&](const reference::BodyChoices& choices) {
     return reference::body(setting.tuning, setting.heights, setting.creature, previous, desired, steps,
-                           errors, static_cast<double>(moment.n), choices);
+                           errors, static_cast<double>(moment.n), phase, choices);
   };
   const reference::BodyResult result = run({});
   const Sample sample = compare(setting, moment, previous, result);

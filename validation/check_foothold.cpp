@@ -87,14 +87,41 @@ std::vector<reference::FootholdChoices> alternatives(const Case& c, const refere
   std::vector<reference::FootholdChoices> choices;
   for (size_t i = 0; i < all.size(); ++i) {
     if (mayFit[i] && lowest[i] <= surelyBest + tolerance::footholdScore) {
-      choices.push_back({static_cast<int>(i), false, 0});
+      choices.push_back({static_cast<int>(i), false, {}});
     }
     const bool noneSurelyFits = !std::isfinite(surelyBest);
     if (noneSurelyFits && all[i].misfit - bounds[i].distance <= leastMisfit) {
-      choices.push_back({static_cast<int>(i), true, 0});
+      choices.push_back({static_cast<int>(i), true, {}});
     }
   }
   return choices;
+}
+
+// How far a way's lift and cost may be off, where its ends are.
+struct WayBounds {
+  double lift, cost;
+};
+
+WayBounds wayBound(const Case& c, const reference::Way& way, double horizontal, double vertical) {
+  const glm::dvec2 position = c.body.world();
+  double gap = 0;
+  for (const glm::dvec2& place : way.places) {
+    const reference::Relief relief =
+        reference::reliefNear(c.setting.heights, position.x + place.x, position.y + place.y);
+    gap = std::max(gap, tolerance::height(relief, c.setting.extent, horizontal) + vertical);
+  }
+  const reference::Tuning& t = c.setting.tuning;
+  const double least = 24 * tolerance::roundoff * (1 + t.stepHeightMax);
+  WayBounds bound{};
+  // The height errs by what the ground does over the least share of the lift; the lane's direction, a
+  // normalised product, by the error of the ends over their distance.
+  const double apart = glm::length(glm::dvec2(way.places[6] - way.places[0]));
+  const double turned = 2 * horizontal / std::max(apart, 1e-6) + 16 * tolerance::roundoff;
+  bound.lift = gap * way.heightError + std::abs(way.side) * t.routeWidth * std::min(2.0, turned) + least;
+  const double capped = std::min(way.height, t.stepHeightMax), over = way.height - capped;
+  bound.cost = 2 * (glm::length(way.lift) + 100 * over) * bound.lift + 101 * bound.lift * bound.lift +
+               16 * tolerance::roundoff * way.cost;
+  return bound;
 }
 
 struct StepBounds {
@@ -115,19 +142,13 @@ StepBounds stepBounds(const Case& c, const reference::FootholdResult& result) {
   }
   bound.liftOff = tolerance::relative + (c.lifts ? 0 : tolerance::spline);
   bound.liftOffHeight = (c.lifts ? 6 : 20) * tolerance::roundoff * world;
-  const double horizontal = std::max(bound.landing, bound.liftOff);
-  const double vertical = std::max(bound.landingHeight, bound.liftOffHeight);
-  double gap = 0;
-  const glm::dvec2 position = c.body.world();
-  for (const double s : {3.0 / 16, 1.0 / 2, 13.0 / 16}) {
-    const glm::dvec3 local = glm::mix(result.step.liftOff, result.step.landing, s);
-    const reference::Relief relief = reference::reliefNear(
-        c.setting.heights, position.x + local.x - c.body.localX, position.y + local.z - c.body.localZ);
-    gap = std::max(gap, tolerance::height(relief, c.setting.extent, horizontal) + vertical);
-  }
-  bound.lift = gap * 8 / 5 + 24 * tolerance::roundoff * (1 + c.setting.tuning.stepHeightMax);
-  // dP/ds has coefficients up to 6 in the control points.
-  bound.tangent = c.lifts ? bound.lift : 6 * tolerance::local + 24 * tolerance::roundoff * world;
+  // A present tangent shifts the way by at most 4/27 of its error.
+  const double tangent = c.lifts ? 0 : 6 * tolerance::local + 24 * tolerance::roundoff * world;
+  const double horizontal = std::max(bound.landing, bound.liftOff) + tangent / 6;
+  const double vertical = std::max(bound.landingHeight, bound.liftOffHeight) + tangent / 6;
+  bound.lift = wayBound(c, result.route.way(), horizontal, vertical).lift;
+  // dP/ds has coefficients up to 6 in the control points, and time's rate is at most 3/2.
+  bound.tangent = c.lifts ? bound.lift : 2 * tangent;
   return bound;
 }
 
@@ -158,13 +179,22 @@ Sample compare(const Case& c, const reference::FootholdResult& result) {
   return sample;
 }
 
-// A gap within its bound of -stepClearance counts or not.
-bool passesEitherWay(const Case& c, const reference::FootholdChoices& choices, Sample& passed) {
-  for (const double way : {0.0, -1.0, 1.0}) {
-    reference::FootholdChoices shifted = choices;
-    const reference::FootholdResult result = c.run(shifted);
-    shifted.gapShift = way * stepBounds(c, result).lift;
-    passed = compare(c, way == 0 ? result : c.run(shifted));
+// Of ways whose costs are the same within their bounds any may be taken.
+bool passesAnyWay(const Case& c, const reference::FootholdChoices& choices, Sample& passed) {
+  const reference::FootholdResult result = c.run(choices);
+  passed = compare(c, result);
+  if (passed.passes()) return true;
+  const StepBounds bound = stepBounds(c, result);
+  const double horizontal = std::max(bound.landing, bound.liftOff);
+  const double vertical = std::max(bound.landingHeight, bound.liftOffHeight);
+  const auto boundOf = [&](const reference::Way& way) { return wayBound(c, way, horizontal, vertical).cost; };
+  const reference::Way& best = result.route.way();
+  for (size_t w = 0; w < result.route.ways.size(); ++w) {
+    const reference::Way& way = result.route.ways[w];
+    if (way.cost - best.cost > boundOf(way) + boundOf(best)) continue;
+    reference::FootholdChoices other = choices;
+    other.way = static_cast<int>(w);
+    passed = compare(c, c.run(other));
     if (passed.passes()) return true;
   }
   return false;
@@ -176,9 +206,9 @@ void checkLeg(const Case& c, size_t l, Judge& judge) {
   const int leg = static_cast<int>(l);
   if (sample.passes()) return judge.add(c.moment.n, c.moment.agent, leg, sample);
   Sample other;
-  if (passesEitherWay(c, {}, other)) return judge.add(c.moment.n, c.moment.agent, leg, other, true);
+  if (passesAnyWay(c, {}, other)) return judge.add(c.moment.n, c.moment.agent, leg, other, true);
   for (const reference::FootholdChoices& choices : alternatives(c, result)) {
-    if (passesEitherWay(c, choices, other)) return judge.add(c.moment.n, c.moment.agent, leg, other, true);
+    if (passesAnyWay(c, choices, other)) return judge.add(c.moment.n, c.moment.agent, leg, other, true);
   }
   judge.add(c.moment.n, c.moment.agent, leg, sample);
 }

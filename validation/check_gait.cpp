@@ -1,6 +1,7 @@
 #include <bit>
 
 #include "cpu_reference/gait.h"
+#include "cpu_reference/heightfield.h"
 #include "cpu_reference/tolerances.h"
 #include "shared/records.h"
 #include "validation/checks.h"
@@ -20,7 +21,8 @@ double phaseDifference(double a, double b) {
 // own, its neighbours' (who may have gone first), and which leg must lift.
 double liftTie(const Setting& setting, const reference::GaitResult& result,
                const tolerance::GaitBounds& bound, size_t l, double settleBound) {
-  double nearest = std::min(result.mustMargin / bound.length, result.settleMargin / settleBound);
+  double nearest =
+      std::min(result.mustMargin / std::max(bound.length, bound.ground), result.settleMargin / settleBound);
   for (size_t m = 0; m < result.legs.size(); ++m) {
     const bool counts = m == l || (setting.creature.limbs[l].neighbours >> m & 1u) != 0;
     if (!counts || !result.legs[m].planted) continue;
@@ -31,8 +33,26 @@ double liftTie(const Setting& setting, const reference::GaitResult& result,
 }
 
 double reaimTie(const reference::GaitResult& result, const tolerance::GaitBounds& bound, size_t l) {
-  return std::min(result.legs[l].reaimMargin / bound.length,
-                  result.legs[l].reaimProgressMargin / (6 * tolerance::roundoff));
+  const reference::LegDecision& leg = result.legs[l];
+  return std::min({leg.reaimMargin / bound.length, leg.reaimProgressMargin / (6 * tolerance::roundoff),
+                   leg.movedMargin / bound.ground});
+}
+
+// Of the ground above a foot or its way: the steepest cells near any landing, seen from a point of a spline.
+double groundBound(const Setting& setting, const Moment& moment, const reference::AgentBody& body) {
+  double bound = 0;
+  const glm::dvec2 position = body.world();
+  for (size_t l = 0; l < static_cast<size_t>(setting.legs); ++l) {
+    const reference::Step step = stepOf(moment.before, moment.agent * static_cast<size_t>(setting.legs) + l);
+    for (const glm::dvec3& point : {step.landing, step.liftOff, (step.landing + step.liftOff) / 2.0}) {
+      const glm::dvec3 p = step.relative(point, body);
+      const reference::Relief relief =
+          reference::reliefNear(setting.heights, position.x + p.x, position.y + p.z);
+      bound =
+          std::max(bound, tolerance::height(relief, setting.extent, tolerance::spline + tolerance::relative));
+    }
+  }
+  return bound + 16 * tolerance::roundoff * std::max(1.0, std::abs(body.y));
 }
 
 struct Verdict {
@@ -45,7 +65,8 @@ Verdict compare(const Setting& setting, const Moment& moment, const reference::G
   const reference::Gait& expected = result.gait;
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
   const double forecast = setting.tuning.legLength + (body.v3 + 1) * expected.cycle;
-  const auto bound = tolerance::gait(setting.tuning, result, setting.creature.groups, forecast);
+  auto bound = tolerance::gait(setting.tuning, result, setting.creature.groups, forecast);
+  if (moment.after.watched) bound.ground = groundBound(setting, moment, body);
   const double settleBound = 4 * tolerance::roundoff * (1 + setting.tuning.settleTime);
 
   Verdict verdict;
@@ -97,7 +118,8 @@ void checkGait(const Setting& setting, const Moment& moment, Judge& judge) {
   }
   const auto run = [&](const reference::GaitChoices& choices) {
     return reference::gait(setting.tuning, setting.creature, body, phase, steps, errors,
-                           static_cast<double>(moment.n), choices);
+                           static_cast<double>(moment.n), choices,
+                           moment.after.watched ? &setting.heights : nullptr);
   };
   const reference::GaitResult result = run({});
   const Verdict verdict = compare(setting, moment, result);

@@ -49,6 +49,10 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.maxSlope = p.maxSlope;
   t.bellyClearance = p.bellyClearance;
   t.ridge = p.ridge;
+  t.leanGain = p.leanGain;
+  t.leanMost = p.leanMost;
+  t.leanLevel = p.leanLevel;
+  t.breathHeight = p.breathHeight;
   t.halfStrideStill = p.halfStrideStill;
   t.halfStrideMax = p.halfStrideMax;
   t.dutyStill = p.dutyStill;
@@ -68,6 +72,8 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.settleTime = p.settleTime;
   t.reaimDistance = p.reaimDistance;
   t.reaimLatest = p.reaimLatest;
+  t.groundTolerance = p.groundTolerance;
+  t.reachTriggered = p.reachTriggered != 0;
   t.reachMost = p.reachMost;
   t.reachLeast = p.reachLeast;
   t.reachComfort = p.reachComfort;
@@ -78,6 +84,7 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.stepHeight = p.stepHeight;
   t.stepClearance = p.stepClearance;
   t.stepHeightMax = p.stepHeightMax;
+  t.routeWidth = p.routeWidth;
   t.approachError = p.approachError;
   t.restPull = p.restPull;
   t.pullError = p.pullError;

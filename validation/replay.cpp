@@ -99,6 +99,12 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
   }
 }
 
+void Replay::edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights) {
+  for (uint32_t z = 0; z < rows; ++z)
+    for (uint32_t x = 0; x < columns; ++x)
+      terrain_.heights[size_t{z0 + z} * terrain_.columns + x0 + x] = heights[size_t{z} * columns + x];
+}
+
 std::vector<StageResult> Replay::results() const {
   std::vector<StageResult> results;
   for (const Judge& judge : judges_) results.push_back(judge.result());

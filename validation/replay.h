@@ -47,6 +47,9 @@ class Replay {
   // Throws Error(input) when a record buffer's size does not fit the number of agents.
   void tick(uint64_t n, const HerdState& before, const HerdState& after, const ReplayRange& range = {});
 
+  // The terrain was edited before the next tick (Crowd::editHeights).
+  void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
+
   // navigate, body, gait, foothold, swing, ik, pose, measure. A stage without samples passes.
   std::vector<StageResult> results() const;
   bool pass() const;

@@ -69,6 +69,10 @@ void SceneOptions::addTo(CLI::App& command, const char* agentsHelp) {
                   "every herd's inverse kinematics: active-set, fabrik, ccd, transpose, pseudoinverse, dls, "
                   "target-attached [the scene's]")
       ->type_name("NAME");
+  command
+      .add_option("--stepping", stepping,
+                  "every herd's: gait, in a rhythm, or reach, each leg by itself [the scene's]")
+      ->check(CLI::IsMember({"gait", "reach"}));
   addTerrainTo(command);
   command
       .add_option_function<std::string>(
@@ -194,6 +198,8 @@ Scene SceneOptions::load() const {
     for (Herd& herd : result.herds) herd.controller = controller;
   if (!solver.empty())
     for (Herd& herd : result.herds) herd.solver = solver;
+  if (!stepping.empty())
+    for (Herd& herd : result.herds) herd.stepping = stepping;
   if (seed) result.seed = *seed;
   applyTerrain(result);
   return result;

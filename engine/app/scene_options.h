@@ -22,6 +22,7 @@ struct SceneOptions {
   std::string rig;         // empty: the scene's own
   std::string solver;      // of every herd; empty: the scene's own
   std::string controller;  // of every herd; empty: the scene's own
+  std::string stepping;    // of every herd; empty: the scene's own
   std::string terrain;     // empty: the scene's own
   std::optional<Size> terrainSize;
   std::optional<std::pair<double, double>> spacing, heights;

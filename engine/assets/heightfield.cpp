@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "skitter/error.h"
 
 namespace skitter {
 
@@ -21,6 +24,23 @@ float Heightfield::at(float x, float z) const {
   const float* north = heights.data() + j * columns + i;
   const float* south = north + columns;
   return mix(mix(north[0], north[1], a), mix(south[0], south[1], a), b);
+}
+
+void Heightfield::edit(uint32_t x0, uint32_t z0, uint32_t editColumns, uint32_t editRows,
+                       std::span<const float> samples) {
+  const auto text = [](auto value) { return std::to_string(value); };
+  if (uint64_t{x0} + editColumns > columns || uint64_t{z0} + editRows > rows)
+    throw inputError(name + ": an edit of " + text(editColumns) + " x " + text(editRows) + " samples at " +
+                     text(x0) + ", " + text(z0) + " leaves the " + text(columns) + " x " + text(rows) +
+                     " of the terrain");
+  if (samples.size() != uint64_t{editColumns} * editRows)
+    throw inputError(name + ": an edit of " + text(editColumns) + " x " + text(editRows) + " has " +
+                     text(samples.size()) + " samples");
+  if (!std::all_of(samples.begin(), samples.end(), [](float h) { return std::isfinite(h); }))
+    throw inputError(name + ": an edit has a sample that is not finite");
+  for (uint32_t z = 0; z < editRows; ++z)
+    std::copy_n(samples.begin() + std::ptrdiff_t{z} * editColumns, editColumns,
+                heights.begin() + std::ptrdiff_t{z0 + z} * columns + x0);
 }
 
 }  // namespace skitter

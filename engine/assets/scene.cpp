@@ -242,6 +242,9 @@ class SceneReader {
     fields.readKind("solver", solver,
                     {"active-set", "fabrik", "ccd", "transpose", "pseudoinverse", "dls", "target-attached"});
     fields.read("solver", herd.solver);
+    enum class Stepping { gait } stepping = Stepping::gait;
+    fields.readKind("stepping", stepping, {"gait", "reach"});
+    fields.read("stepping", herd.stepping);
     fields.readInteger("agents", herd.agents, 0, maxAgents);
     if (const auto* spawn = fields.find("spawn")) herd.spawn = readSpawn(*spawn, path + ".spawn");
     if (const auto* goal = fields.find("goal")) herd.goal = readGoal(*goal, path + ".goal");

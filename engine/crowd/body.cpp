@@ -16,6 +16,7 @@ Stage bodyStage() {
            {BINDING_HEIGHTS, heights},
            {BINDING_RIG, load4},
            {BINDING_STEER, load4},
+           {BINDING_GAIT, load4},
            {BINDING_STEP, load4},
            {BINDING_CHAIN, load4},
            {BINDING_BODY, load4},

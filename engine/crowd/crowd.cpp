@@ -73,7 +73,14 @@ uint32_t invocations(const crowd::Herd& herd, const Page& page, Stage::Over over
   return page.agents;
 }
 
-void dispatch(const crowd::Herd& herd, const Page& page, size_t index, uint64_t tick, uint32_t every,
+// Gait looks at the ground under every foot in the ticks after an edit of the heights.
+const gpu::Kernel& kernelOf(const Impl& crowd, const crowd::Herd& herd, size_t index) {
+  const bool watches = herd.watchingGait && crowd.watchUntil > 0 && crowd.tick <= crowd.watchUntil;
+  const std::string_view name = crowd::stagesOf(herd.controller)[index].name;
+  return watches && name == "gait" ? herd.watchingGait : herd.kernels[index];
+}
+
+void dispatch(const Impl& crowd, const crowd::Herd& herd, const Page& page, size_t index, uint64_t tick,
               vk::CommandBuffer cmd) {
   const Stage& stage = crowd::stagesOf(herd.controller)[index];
   shared::TickConstants constants{invocations(herd, page, stage.over),
@@ -83,15 +90,15 @@ void dispatch(const crowd::Herd& herd, const Page& page, size_t index, uint64_t 
                                   0,
                                   page.footfallRoom};
   if (stage.over == Stage::Over::watched) {
-    const crowd::Watch watch = crowd::watchAt(tick, every, page);
-    constants = {watch.count, static_cast<float>(tick), watch.first, every, watch.watched, 0};
+    const crowd::Watch watch = crowd::watchAt(tick, crowd.watchEvery, page);
+    constants = {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0};
   }
   const auto push = gpu::bytesOf(constants);
   if (stage.over == Stage::Over::listed)
     herd.kernels[index].dispatchIndirect(cmd, page.bindings[index], push, page.counters);
   else
-    herd.kernels[index].dispatch(cmd, page.bindings[index], push,
-                                 gpu::groupsFor(constants.count, shared::WORK_GROUP));
+    kernelOf(crowd, herd, index)
+        .dispatch(cmd, page.bindings[index], push, gpu::groupsFor(constants.count, shared::WORK_GROUP));
 }
 
 // Zero listed legs and footfalls; the counts since the start stay.
@@ -117,7 +124,7 @@ void recordStage(const Impl& crowd, std::string_view name, uint64_t tick, vk::Co
     const std::vector<Stage>& stages = crowd::stagesOf(herd.controller);
     for (size_t i = 0; i < stages.size(); ++i)
       if (stages[i].name == name)
-        for (const Page& page : herd.pages) dispatch(herd, page, i, tick, crowd.watchEvery, cmd);
+        for (const Page& page : herd.pages) dispatch(crowd, herd, page, i, tick, cmd);
   }
 }
 
@@ -128,11 +135,16 @@ void settle(Impl& crowd) {
     clearLists(crowd, cmd);
     gpu::transferToCompute(cmd);
     const shared::TickConstants nothing{};
+    const auto warmUp = [&](const gpu::Kernel& kernel, const crowd::Herd& herd, size_t index) {
+      for (const Page& page : herd.pages)
+        kernel.dispatch(cmd, page.bindings[index], gpu::bytesOf(nothing), 1);
+      gpu::computeToCompute(cmd);
+    };
     for (const crowd::Herd& herd : crowd.herds)
       for (size_t i = 0; i < herd.kernels.size(); ++i) {
-        for (const Page& page : herd.pages)
-          herd.kernels[i].dispatch(cmd, page.bindings[i], gpu::bytesOf(nothing), 1);
-        gpu::computeToCompute(cmd);
+        warmUp(herd.kernels[i], herd, i);
+        if (herd.watchingGait && crowd::stagesOf(herd.controller)[i].name == std::string_view("gait"))
+          warmUp(herd.watchingGait, herd, i);
       }
     recordStage(crowd, "swing", 0, cmd);
     for (int i = 0; i < kSettleIterations; ++i) {
@@ -144,6 +156,12 @@ void settle(Impl& crowd) {
   });
 }
 
+shared::Parameters parametersOf(const Impl& crowd, const crowd::Herd& herd, float dt) {
+  shared::Parameters parameters = crowd::tuningFor(herd.rig, herd.ik, crowd.terrain, dt);
+  parameters.reachTriggered = parameters.nearestOnly = herd.reachTriggered ? 1.0f : 0.0f;
+  return parameters;
+}
+
 void setTick(Impl& crowd, float dt) {
   if (!(dt > 0) || !std::isfinite(dt))
     throw inputError("dt " + std::to_string(dt) + ": expected a finite time above 0");
@@ -153,7 +171,7 @@ void setTick(Impl& crowd, float dt) {
                      ": steps are timed in ticks, so a crowd keeps its first dt");
   crowd.dt = dt;
   for (crowd::Herd& herd : crowd.herds) {
-    herd.parameters = crowd::tuningFor(herd.rig, herd.ik, crowd.terrain, dt);
+    herd.parameters = parametersOf(crowd, herd, dt);
     std::memcpy(herd.parameterBlock.bytes().data(), &herd.parameters, sizeof herd.parameters);
   }
 }
@@ -181,6 +199,7 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
       context, {vk::Format::eR32Sfloat, {terrain.columns, terrain.rows}, vk::ImageUsageFlagBits::eSampled},
       "heights");
   gpu::uploadImage(context, crowd.heights, terrain.heights);
+  crowd.edits = crowd::HeightEdits(context);
   if (options.timestamps)
     crowd.timer = gpu::StageTimer(context, static_cast<uint32_t>(crowd::frame().size()));
 
@@ -196,7 +215,10 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     herd.bones = herd.rig.maxBones();
     herd.groups = herd.rig.groupCount();
     herd.ik = crowd::ikPlanFor(from.solver);
-    herd.parameters = crowd::tuningFor(herd.rig, herd.ik, terrain, 1.0f / 60);
+    if (from.stepping != "gait" && from.stepping != "reach")
+      throw inputError("stepping '" + from.stepping + "' is unknown; there are: gait, reach");
+    herd.reachTriggered = from.stepping == "reach";
+    herd.parameters = parametersOf(crowd, herd, 1.0f / 60);
     herd.parameterBlock =
         gpu::HostBuffer(context, sizeof herd.parameters, gpu::HostUse::upload, "parameters");
     std::memcpy(herd.parameterBlock.bytes().data(), &herd.parameters, sizeof herd.parameters);
@@ -235,6 +257,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   gpu::graphicsToCompute(cmd);
   gpu::computeToTransfer(cmd);
   clearLists(crowd, cmd);
+  if (!crowd.edits.empty()) crowd.edits.record(cmd, crowd.terrain, crowd.heights);
   gpu::transferToCompute(cmd);
   for (const std::string_view name : crowd::frame()) {
     const CrowdOptions& options = crowd.options;

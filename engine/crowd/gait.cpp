@@ -13,6 +13,7 @@ Stage gaitStage() {
   return {"gait",
           {embedded::gait_comp_texel(), embedded::gait_comp_storage()},
           {{BINDING_PARAMETERS, uniform},
+           {BINDING_HEIGHTS, heights},
            {BINDING_RIG, load4},
            {BINDING_BODY, load4},
            {BINDING_STEP, load4},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "crowd/clip_records.h"
+#include "crowd/edit.h"
 #include "crowd/stage.h"
 #include "crowd/tuning.h"
 #include "gpu/buffer.h"
@@ -42,11 +43,13 @@ struct Herd {
   ClipSet clipSet;  // without its frames: what a picture and a tool need
   ClipRecords clips;
   gpu::Buffer clipHeads, clipTimes, clipRows, clipLegs, clipBones;
+  bool reachTriggered = false;  // legs step when out of reach, without a rhythm
   shared::Parameters parameters{};
   gpu::HostBuffer parameterBlock;  // uniform; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
   gpu::Buffer rigBuffer;
   std::vector<gpu::Kernel> kernels;  // one a stage of the controller, specialised
+  gpu::Kernel watchingGait;          // gait in the ticks after an edit of the heights
   std::vector<Page> pages;
 };
 
@@ -61,6 +64,8 @@ struct Crowd::Impl {
   gpu::Image heights;   // R32F, columns x rows, in state sampled; what every stage and the picture read
   std::vector<crowd::Herd> herds;
   uint32_t watchEvery = 1;  // measure watches one agent of this many
+  crowd::HeightEdits edits;
+  uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground; 0: never
   uint64_t tick = 0;
   float dt = 0;  // of the first tick; 0 before it
   gpu::StageTimer timer;

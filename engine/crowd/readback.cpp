@@ -35,6 +35,7 @@ HerdState Crowd::download(uint32_t herdIndex) const {
   context.waitIdle();
   HerdState state;
   state.watchEvery = impl_->watchEvery;
+  state.watched = impl_->tick > 0 && impl_->tick <= impl_->watchUntil;
   const crowd::Herd& herd = impl_->herds.at(herdIndex);
   for (const Page& page : herd.pages) {
     state.agents += page.agents;

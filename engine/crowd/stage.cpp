@@ -78,6 +78,10 @@ void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd&
       info.constants.emplace_back(CONSTANT_SOLVER, herd.ik.solver);
     }
     herd.kernels.emplace_back(context, info);
+    if (herd.controller == Controller::adaptive && std::strcmp(stage.name, "gait") == 0) {
+      info.constants.emplace_back(CONSTANT_WATCH, 1);
+      herd.watchingGait = gpu::Kernel(context, info);
+    }
   }
 }
 

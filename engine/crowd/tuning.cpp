@@ -68,6 +68,10 @@ shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield
   p.maxSlope = 2.75f;  // 70 degrees
   p.bellyClearance = 0.6f * rig.bodyHeight;
   p.ridge = 1e-4f * length * length;
+  p.leanGain = 0.06f / length;  // s^2/m; 0.1 L is what a pendulum does
+  p.leanMost = 0.12f;           // 7 degrees
+  p.leanLevel = 0.08f;          // more, and legs on the low side stretch on steep ground
+  p.breathHeight = 0.012f * length;
 
   p.halfStrideStill = 0.08f * length;  // less, and feet fidget at rest
   p.halfStrideMax = 0.30f * length;    // more, and side legs leave their reach
@@ -88,6 +92,7 @@ shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield
   p.settleTime = 1;                    // s
   p.reaimDistance = 0.15f * length;    // less than a ladder's spacing, and steps are re-aimed for nothing
   p.reaimLatest = 0.7f;
+  p.groundTolerance = 0.02f * length;  // less, and rounding of heights far from 0 would lift feet
 
   p.reachMost = 0.95f;  // of the reach: IK converges sublinearly beyond
   p.reachLeast = 0.30f;
@@ -100,6 +105,7 @@ shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield
   p.stepHeight = 0.12f * length;
   p.stepClearance = 0.03f * length;
   p.stepHeightMax = 0.5f * length;
+  p.routeWidth = 0.08f * length;  // two to each side; more, and a leg swings through its neighbours
 
   p.clipFade = dt / 0.25f;  // seconds
   p.clipIdle = 0.05f * length;

@@ -46,6 +46,20 @@ vec3 fitPlane(Parameters q, PlaneSums s, float count) {
   return vec3(slope, m.y - slope.x * m.x - slope.y * m.z);
 }
 
+// 5. Where the body's up axis is drawn to: square to the plane, a little more level, and into the turn. `toward`: the
+// acceleration toward the turn's middle, to the left.
+vec3 leaningNormal(Parameters q, vec2 slope, vec2 heading, float toward) {
+  float lean = clamp(q.leanGain * toward, -q.leanMost, q.leanMost);
+  vec2 up = vec2(heading.y, -heading.x) * lean - slope * (1.0 - q.leanLevel);
+  return unit(vec3(up.x, 1.0, up.y));
+}
+
+// 6. A breath a cycle of the gait's phase, between 0 and 1.
+float breathing(float phase) {
+  float x = phase * (1.0 - phase);
+  return 16.0 * x * x;
+}
+
 // 5. R_0 with up axis `normal` and a forward axis whose horizontal direction is `heading`.
 vec3 forwardAxis(vec3 normal, vec2 heading) {
   return unit(vec3(heading.x, -(normal.x * heading.x + normal.z * heading.y) / normal.y, heading.y));

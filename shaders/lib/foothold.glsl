@@ -26,18 +26,4 @@ Candidate judge(Parameters q, vec3 point, vec3 gradient, vec3 up, vec3 root, vec
   return c;
 }
 
-// Height of the lift that clears the ground between, sampled where the spline of a fresh step has 5/8, all and
-// 5/8 of its lift.
-const vec3 LIFT_AT = vec3(3.0 / 16.0, 0.5, 13.0 / 16.0);
-const vec3 LIFT_SHARE = vec3(5.0 / 8.0, 1.0, 5.0 / 8.0);
-
-float liftHeight(Parameters q, vec3 gaps, float upright, float share) {
-  float c = q.stepHeight * share;
-  for (int i = 0; i < 3; ++i) {
-    float needed = (gaps[i] * upright + q.stepClearance) / LIFT_SHARE[i];
-    c = gaps[i] > -q.stepClearance ? max(c, needed) : c;
-  }
-  return min(c, q.stepHeightMax);
-}
-
 #endif

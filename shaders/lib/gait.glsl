@@ -1,6 +1,13 @@
 #ifndef GAIT_GLSL
 #define GAIT_GLSL
 
+// Of the half stride: out of comfort without a rhythm. A leg may have to wait for a neighbour, so not all of it.
+const float REACH_SHARE = 0.6;
+// Places of a watched way, from where the foot is on.
+const int AHEAD = 3;
+// Ticks that a step aimed anew has left at least: what rises under a landing foot is climbed, not jumped on.
+const float AGAIN_LEAST = 2.0;
+
 // What speed asks of the legs (docs/stages.md, gait).
 struct Stride {
   float halfStride, ticks, swing, cycle;

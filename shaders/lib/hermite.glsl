@@ -6,6 +6,12 @@ struct Swing {
   vec3 p0, p1, lift, m0;
 };
 
+// Time, eased: a foot leaves the ground from rest and touches it at rest. A step aimed anew is under way at its
+// start; its start tangent is not the lift.
+float startRate(Swing w) { return w.m0 == w.lift ? 0.0 : 1.0; }
+float easedTime(float u, float rate) { return u * (u * (3.0 - 2.0 * u) + rate * (1.0 - u) * (1.0 - u)); }
+float easedRate(float u, float rate) { return u * (6.0 - 6.0 * u) + rate * (1.0 + u * (3.0 * u - 4.0)); }
+
 void swingSegment(Swing w, float u, out vec3 a, out vec3 ma, out vec3 b, out vec3 mb, out float s) {
   vec3 middle = 0.5 * (w.p0 + w.p1) + w.lift, mm = 0.5 * (w.p1 - w.p0);
   bool first = u < 0.5;

@@ -65,6 +65,7 @@ BINDING CONSTANT_SOLVER = 7;
 BINDING CONSTANT_CLIPS = 20;
 BINDING CONSTANT_JOINTS = 21;        // of the clips' palette
 BINDING CONSTANT_SEARCH_STEPS = 22;  // 2 to their power is more than a clip has frames
+BINDING CONSTANT_WATCH = 17;  // gait looks at the ground under every foot: the heights were edited lately
 #undef BINDING
 
 // Push constants of every stage.

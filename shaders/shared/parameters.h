@@ -40,6 +40,10 @@ struct Parameters {
   float maxSlope;        // tangent of the steepest tilt
   float bellyClearance;  // least height of the body's centre above the ground
   float ridge;           // regularisation of the plane fit, m^2
+  float leanGain;        // s^2/m, tangent of the lean into a turn for each m/s^2 toward its middle
+  float leanMost;        // its largest tangent
+  float leanLevel;       // share of the ground's slope by which the body keeps itself more level
+  float breathHeight;    // by which a resting body rises and sinks
   // gait
   float halfStrideStill;  // least half stride: what lifting is judged by at rest
   float halfStrideMax;
@@ -47,19 +51,21 @@ struct Parameters {
   float dutyGain;   // s/m, by how much it falls with speed
   float dutyLeast;
   float lagShare;  // the last leg of a group lifts this share of (1 / groups - swing / cycle) after the first
-  float swingStill;     // T0, seconds
-  float swingSpeed;     // v0, m/s: swing time halves at this speed
-  float cycleMax;       // seconds
-  float windowSlack;    // a cycle is at least groups * swing * windowSlack
-  float windowOpen;     // share of a group's window in which its legs may lift
-  float liftShare;      // of the half stride, distance from home that lifts a foot
-  float stretchLift;    // share of the reach beyond which a foot must lift
-  float strayShare;     // of the half stride, distance from home beyond which a foot must lift
-  float errorLift;      // share of the reach: a planted foot that misses by more must lift
-  float rootShare;      // share of the reach below which a foot is too close to its root
-  float settleTime;     // seconds of standing after which nobody steps
-  float reaimDistance;  // a landing point further than this from the prediction is chosen anew
-  float reaimLatest;    // progress after which it is kept
+  float swingStill;       // T0, seconds
+  float swingSpeed;       // v0, m/s: swing time halves at this speed
+  float cycleMax;         // seconds
+  float windowSlack;      // a cycle is at least groups * swing * windowSlack
+  float windowOpen;       // share of a group's window in which its legs may lift
+  float liftShare;        // of the half stride, distance from home that lifts a foot
+  float stretchLift;      // share of the reach beyond which a foot must lift
+  float strayShare;       // of the half stride, distance from home beyond which a foot must lift
+  float errorLift;        // share of the reach: a planted foot that misses by more must lift
+  float rootShare;        // share of the reach below which a foot is too close to its root
+  float settleTime;       // seconds of standing after which nobody steps
+  float reaimDistance;    // a landing point further than this from the prediction is chosen anew
+  float reaimLatest;      // progress after which it is kept
+  float groundTolerance;  // ground that moves by more under a foot makes it step anew
+  float reachTriggered;   // 1: legs step when they are out of comfort, without a rhythm
   // foothold
   float reachMost;  // landing points stay within this share of the reach
   float reachLeast;
@@ -72,6 +78,7 @@ struct Parameters {
   float stepHeight;
   float stepClearance;
   float stepHeightMax;
+  float routeWidth;  // between the lanes of a step's way, at its middle
   // clip
   float clipFade;        // a tick's share of a cross-fade
   float clipIdle;        // m/s below which a standing clip is played

@@ -8,6 +8,7 @@ layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_STEER, steers);
 #ifndef BLIND
+LOAD4_BUFFER(BINDING_GAIT, gaits);
 LOAD4_BUFFER(BINDING_STEP, steps);
 LOAD4_BUFFER(BINDING_CHAIN, chains);
 #endif
@@ -67,8 +68,15 @@ void main() {
   vec2 slope = plane.xy;
   float planeHeight = body.local.y + plane.z + dot(slope, moved);
 
+#ifdef BLIND
+  vec3 settled = unit(vec3(-slope.x, 1.0, -slope.y));
+  float breath = 0.0;
+#else
+  vec3 settled = leaningNormal(parameters, slope, body.heading, body.speed * body.turnRate);
+  float breath = breathing(LOAD4(gaits, agent * GAIT_STRIDE).x) * min(1.0, body.still / parameters.settleTime);
+#endif
   vec3 normal = rotate(body.orientation, vec3(0.0, 1.0, 0.0));
-  normal = unit(mix(normal, unit(vec3(-slope.x, 1.0, -slope.y)), parameters.tiltBlend));
+  normal = unit(mix(normal, settled, parameters.tiltBlend));
   vec3 forward = forwardAxis(normal, body.heading);
   vec4 orientation = quaternionFromColumns(cross(normal, forward), normal, forward);
   body.orientation = dot(orientation, body.orientation) < 0.0 ? -orientation : orientation;
@@ -79,7 +87,7 @@ void main() {
   body.local.xz -= crossed * TILE_SIZE;
 
   vec2 world = worldOf(body.local, body.tile);
-  float height = planeHeight;
+  float height = planeHeight + parameters.breathHeight * breath;
   for (int k = -1; k <= 1; ++k) {
     vec3 belly = parameters.bodyHeight * normal + float(k) * parameters.bodyRadius * forward;
     height = max(height, ground(world + belly.xz) + parameters.bellyClearance - belly.y);

@@ -5,6 +5,7 @@
 #include "lib/gait.glsl"
 #include "lib/heightfield.glsl"
 #include "lib/hermite.glsl"
+#include "lib/route.glsl"
 
 layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
 LOAD4_BUFFER(BINDING_RIG, rig);
@@ -35,7 +36,7 @@ void main() {
   float reach = root.w;
   float freshTicks = LOAD4(gaits, agent * GAIT_STRIDE).w, cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;
   float flown = constants.tick - 1.0 - old.firstTick;
-  float ticks = again ? old.ticks - flown : freshTicks;
+  float ticks = again ? max(old.ticks - flown, AGAIN_LEAST) : freshTicks;
   float time = ticks * parameters.dt, stance = cycle - freshTicks * parameters.dt;
 
   vec3 tau = predictLanding(home.xyz, body.turnRate, body.surfaceSpeed, time, stance);
@@ -84,15 +85,33 @@ void main() {
   Swing flight = Swing(fromTile(old.liftOff, old.tile, body.local, body.tile),
                        fromTile(old.landing, old.tile, body.local, body.tile), old.lift, old.startTangent);
   float u = stepProgress(old, constants.tick - 1.0);
-  vec3 p0 = again ? swingPoint(flight, u) : flight.p1;
+  float rate = startRate(flight), way = easedTime(u, rate);
+  vec3 p0 = again ? swingPoint(flight, way) : flight.p1;
   vec3 p1 = best.point;
-  vec3 gaps;
-  for (int i = 0; i < 3; ++i) {
-    vec3 p = mix(p0, p1, LIFT_AT[i]);
-    gaps[i] = ground(world + p.xz).x - (body.local.y + p.y);
+  vec3 m0 = again ? swingTangent(flight, way) * (easedRate(u, rate) * ticks / old.ticks) : vec3(0.0);
+  vec3 aside = unit(cross(up, p1 - p0)) * parameters.routeWidth;
+  float least = parameters.stepHeight * (again ? 1.0 - u : 1.0);
+  vec3 lift = vec3(0.0);
+  float shortest = 3e38;
+  // No bow is shorter than the least lift, so most steps look along the straight lane alone.
+  for (int lane = 0; lane < WAYS && shortest > 1.0001 * least * least; ++lane) {
+    vec3 side = aside * sideOf(lane);
+    float height = least;
+    for (int i = 0; i < SAMPLES; ++i) {
+      Place place = placeOf(p0, p1, again, m0, i);
+      vec3 p = place.straight + place.share * side;
+      float gap = ground(world + p.xz).x - (body.local.y + p.y);
+      height = max(height, (gap * up.y + parameters.stepClearance * place.clearing) / place.share);
+    }
+    float over = max(0.0, height - parameters.stepHeightMax);
+    vec3 bow = up * (height - over) + side;
+    float cost = dot(bow, bow) + ROUTE_FORBIDDEN * over * over;
+    if (cost < shortest) {
+      shortest = cost;
+      lift = bow;
+    }
   }
-  vec3 lift = up * liftHeight(parameters, gaps, up.y, again ? 1.0 - u : 1.0);
-  vec3 m0 = again ? swingTangent(flight, u) * (ticks / old.ticks) : lift;
+  m0 = again ? m0 : lift;
 
   STORE4(stepsOut, stepAt, vec4(p1 + body.local, body.tile.x));
   STORE4(stepsOut, stepAt + 1, vec4(p0 + body.local, body.tile.y));

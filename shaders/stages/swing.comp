@@ -18,5 +18,5 @@ void main() {
   float u = stepProgress(s, constants.tick);
   Swing flight = Swing(fromTile(s.liftOff, s.tile, local, tile), fromTile(s.landing, s.tile, local, tile), s.lift,
                        s.startTangent);
-  STORE4(feetOut, record, vec4(u >= 1.0 ? flight.p1 : swingPoint(flight, u), u));
+  STORE4(feetOut, record, vec4(u >= 1.0 ? flight.p1 : swingPoint(flight, easedTime(u, startRate(flight))), u));
 }

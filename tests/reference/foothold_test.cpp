@@ -106,13 +106,17 @@ TEST_F(Foothold, aimingAnewKeepsTheFootsPlaceAndWay) {
   const double tick = 17;
   const auto result =
       reference::foothold(tuning, heights, creature.limbs[0], body, gait, steps[0], false, tick);
-  const auto old = reference::splineAt(steps[0], steps[0].progress(tick - 1));
+  const auto time = reference::eased(steps[0], steps[0].progress(tick - 1));
+  const auto old = reference::splineAt(steps[0], time.progress);
   EXPECT_NEAR(
       glm::length(result.step.relative(result.step.liftOff, body) - steps[0].relative(old.position, body)), 0,
       1e-12);
   EXPECT_EQ(result.step.firstTick + result.step.duration, steps[0].firstTick + steps[0].duration);
   const auto now = reference::splineAt(result.step, 0);
-  EXPECT_NEAR(glm::length(now.tangent / result.step.duration - old.tangent / steps[0].duration), 0, 1e-12);
+  const double rate = reference::eased(result.step, 0).rate;
+  EXPECT_NEAR(
+      glm::length(now.tangent * rate / result.step.duration - old.tangent * time.rate / steps[0].duration), 0,
+      1e-12);
 }
 
 TEST_F(Foothold, everyCandidateIsOnTheGround) {

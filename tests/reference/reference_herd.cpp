@@ -114,7 +114,7 @@ void ReferenceHerd::tickAgent(size_t agent) {
   }
   putBody(state_, agent,
           reference::body(tuning, heights, creature, bodyOf(state_, agent), desiredOf(state_, agent), steps,
-                          errors, n)
+                          errors, n, gaitOf(state_, agent).phase)
               .body);
   const reference::AgentBody body = bodyOf(state_, agent);
   putGait(state_, agent,

@@ -159,6 +159,10 @@ shared::Parameters parametersFor(const Heightfield& terrain) {
   p.maxSlope = 2.75f;
   p.bellyClearance = 0.18f;
   p.ridge = 1e-4f;
+  p.leanGain = 0.06f;
+  p.leanMost = 0.12f;
+  p.leanLevel = 0.08f;
+  p.breathHeight = 0.012f;
   p.halfStrideStill = 0.08f;
   p.halfStrideMax = 0.3f;
   p.dutyStill = 0.75f;
@@ -178,6 +182,7 @@ shared::Parameters parametersFor(const Heightfield& terrain) {
   p.settleTime = 1;
   p.reaimDistance = 0.15f;
   p.reaimLatest = 0.7f;
+  p.groundTolerance = 0.02f;
   p.reachMost = 0.95f;
   p.reachLeast = 0.3f;
   p.reachComfort = 0.85f;
@@ -188,6 +193,7 @@ shared::Parameters parametersFor(const Heightfield& terrain) {
   p.stepHeight = 0.12f;
   p.stepClearance = 0.03f;
   p.stepHeightMax = 0.5f;
+  p.routeWidth = 0.08f;
   p.approachError = 0.05f;
   p.restPull = 0.05f;
   p.pullError = 2e-3f;

@@ -59,6 +59,37 @@ TEST(Swing, clearsTheStraightWayByTheWeightsOfTheGaps) {
   }
 }
 
+TEST(Swing, leavesTheGroundAndTouchesItAtRest) {
+  const reference::AgentBody body = bodyAt(1, 2);
+  const reference::Step step = someStep();
+  const auto at = [&](double tick) { return reference::swing(step, body, tick).target; };
+  const double way = glm::length(step.landing - step.liftOff);
+  EXPECT_LT(glm::length(at(10.001) - at(10)), 1e-6);
+  EXPECT_LT(glm::length(at(30) - at(29.999)), 1e-6);
+  double fastest = 0;
+  for (double t = 10; t < 30; t += 0.05)
+    fastest = std::max(fastest, glm::length(at(t + 0.05) - at(t)) / 0.05);
+  EXPECT_LT(fastest, 2.2 * way / 20);
+  // The last twentieth of its height it falls all but straight down.
+  const glm::dvec3 last = at(28.5) - at(30);
+  EXPECT_GT(last.y, 3 * std::hypot(last.x, last.z));
+}
+
+TEST(Swing, aStepAimedAnewIsUnderWay) {
+  reference::Step step = someStep();
+  step.startTangent = {0.2, 0.1, 0.3};
+  EXPECT_EQ(reference::eased(step, 0).rate, 1);
+  EXPECT_EQ(reference::eased(step, 1).rate, 0);
+  EXPECT_EQ(reference::eased(step, 0).progress, 0);
+  EXPECT_EQ(reference::eased(step, 1).progress, 1);
+  for (double u = 0.05; u < 1; u += 0.05) {
+    const double numeric =
+        (reference::eased(step, u + 1e-6).progress - reference::eased(step, u - 1e-6).progress) / 2e-6;
+    EXPECT_NEAR(numeric, reference::eased(step, u).rate, 1e-7);
+    EXPECT_GT(numeric, 0);
+  }
+}
+
 TEST(Swing, followsTheBodyAcrossTiles) {
   reference::Step step = someStep();
   step.tileX = 3;

@@ -67,8 +67,9 @@ struct HerdState {
   uint32_t agents = 0;
   std::vector<float> goal, steer, body, gait, step, foot, chain, pose, metric;
   std::vector<float> play, start, fix;  // empty where the controller has none
-  uint32_t watchEvery = 1;   // measure watches one agent of this many at a time
-  std::vector<float> watch;  // of agent g at place g / watchEvery, if it is being watched
+  uint32_t watchEvery = 1;              // measure watches one agent of this many at a time
+  std::vector<float> watch;             // of agent g at place g / watchEvery, if it is being watched
+  bool watched = false;  // the last tick's gait looked at the ground, because the heights were edited lately
 };
 
 // A foot that came down: planted at the end of this tick, in the air at the end of the one before.
@@ -115,6 +116,15 @@ class Crowd {
   // to vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in
   // order. dt must stay the same from call to call (steps are timed in ticks).
   void record(VkCommandBuffer commandBuffer, float dt);
+
+  // Replaces a rectangle of the terrain's samples while the crowd walks: columns [x0, x0 + columns), rows
+  // [z0, z0 + rows), row-major, metres relative to the terrain's mid height as made. Takes effect in the next
+  // recorded tick, which carries the samples in its command buffer; `heights` may go at once. A foot in the
+  // air whose landing or way is touched is aimed anew in the same swing, a foot whose ground moved steps
+  // anew; for two seconds after an edit gait looks at the ground under every foot for that (docs/stages.md).
+  // The picture's ground follows, its baked shadows do not. Throws Error(input) as Heightfield::edit does.
+  void editHeights(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
+  const Heightfield& terrain() const;  // as edited
 
   uint64_t tick() const;  // ticks recorded so far
   uint32_t herdCount() const;

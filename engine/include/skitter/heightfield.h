@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct Heightfield {
   float extentZ() const { return spacingZ * static_cast<float>(rows - 1); }
   // Bilinear height at world (x, z), for spawning, cameras and tools; the simulation samples on the device.
   float at(float x, float z) const;
+  // Replaces the samples of columns [x0, x0 + columns) and rows [z0, z0 + rows) by `samples`, row-major,
+  // metres. Throws Error(input) where the rectangle leaves the grid, `samples` has another size or one is not
+  // finite.
+  void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> samples);
 };
 
 // What is known of a height file beside its samples. An unset value is looked up in the sidecar (`NAME.json`

@@ -45,6 +45,7 @@ struct Herd {
   std::vector<std::string> clips;
   std::vector<ClipCut> cuts;          // clips cut out of those of the file
   std::string solver = "active-set";  // of the legs: docs/scene.md
+  std::string stepping = "gait";      // or "reach": legs step when out of reach, without a rhythm
   uint32_t agents = 1000;
   Spawn spawn;
   Goal goal;

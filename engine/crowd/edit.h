@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/image.h"
+#include "skitter/heightfield.h"
+
+namespace skitter::crowd {
+
+// Edits of the heights that wait for the next tick. Samples travel within the command buffer, so nothing of
+// the host needs to outlive the call.
+class HeightEdits {
+ public:
+  HeightEdits() = default;
+  explicit HeightEdits(const gpu::Context& context);
+
+  void add(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows) {
+    pending_.push_back({x0, z0, columns, rows});
+  }
+  bool empty() const { return pending_.empty(); }
+  // Copies the pending rectangles from `terrain` to the image, which is in state sampled before and after.
+  void record(vk::CommandBuffer cmd, const Heightfield& terrain, const gpu::Image& image);
+
+ private:
+  struct Rectangle {
+    uint32_t x, z, columns, rows;
+  };
+  std::vector<Rectangle> pending_;
+  std::vector<float> packed_;  // rows of a rectangle, close together
+  gpu::Buffer staging_;
+};
+
+}  // namespace skitter::crowd
