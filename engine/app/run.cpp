@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "footfall_log.h"
 #include "gpu/submit.h"
+#include "obstacle.h"
 #include "part_file.h"
 #include "pictures.h"
 #include "progress.h"
@@ -36,7 +37,7 @@ struct RunOptions {
   Size size{1280, 720};
   std::string view, out, json, trace, footfalls;
   bool poses = false, unmeasured = false;
-  bool headless = false, force = false, timings = false, validation = false, quiet = false;
+  bool headless = false, force = false, obstacle = false, timings = false, validation = false, quiet = false;
 };
 
 Camera cameraOf(const RunOptions& options, Camera camera) {
@@ -138,11 +139,14 @@ int run(const RunOptions& options) {
   std::optional<Trace> trace;
   if (!options.trace.empty())
     trace.emplace(options.trace, crowd, scene, static_cast<float>(options.scene.dt), ticks, options.force);
+  std::optional<Obstacle> obstacle;
+  if (options.obstacle && !scene.herds.empty()) obstacle.emplace(crowd);
   std::optional<FootfallLog> footfalls;
   if (!options.footfalls.empty()) footfalls.emplace(options.footfalls);
   const auto afterTick = [&] {
     if (trace) trace->append(crowd);
     if (footfalls) footfalls->append(crowd);
+    if (obstacle) obstacle->move(crowd, static_cast<double>(crowd.tick()) * options.scene.dt);
   };
 
   Summary summary;
@@ -246,6 +250,8 @@ void addRun(CLI::App& app, Command& chosen) {
       ->add_option("--footfalls", options->footfalls,
                    "write every touchdown: herd, agent, leg, tick, seconds, place, speed of the foot")
       ->type_name("FILE.csv");
+  command->add_flag("--obstacle", options->obstacle,
+                    "a mound wanders across the crowd's way: the terrain is edited in every tick");
   command->add_flag("--force", options->force, "allow a trace of more than 4 GiB");
   command->add_flag("--timings", options->timings,
                     "time every stage on the device's clock (software devices may lie)");
