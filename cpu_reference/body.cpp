@@ -61,18 +61,34 @@ void walk(const Tuning& tuning, const glm::dvec2& desired, BodyResult& result) {
   body.localZ -= overZ * tileSize;
 }
 
-// Least squares of y over (x, z) through the ground points, its normal matrix regularised by ridge k.
-// Heights are relative to the body's y.
-SupportPlane supportPlane(const Tuning& tuning, const AgentBody& body, std::span<const Step> steps,
-                          double tick) {
+// Where the ground points are, relative to the previous body.
+std::vector<glm::dvec3> groundPoints(const AgentBody& previous, std::span<const Step> steps, double tick) {
   std::vector<glm::dvec3> points;
-  glm::dvec3 mean{0};
   for (const Step& step : steps) {
     const double u = step.progress(tick - 1);
     const glm::dvec3 point = u >= 1 ? step.landing : glm::mix(step.liftOff, step.landing, u);
-    points.push_back(step.relative(point, body));
-    mean += points.back();
+    points.push_back(step.relative(point, previous));
   }
+  return points;
+}
+
+std::vector<glm::dvec3> groundBelowHomes(const Heights& heights, const Creature& creature,
+                                         const AgentBody& previous) {
+  std::vector<glm::dvec3> points;
+  const glm::dvec2 position = previous.world();
+  for (const Limb& limb : creature.limbs) {
+    const glm::dvec3 home = previous.orientation * limb.home;
+    const double ground = heightAt(heights, position.x + home.x, position.y + home.z);
+    points.emplace_back(home.x, ground - previous.y, home.z);
+  }
+  return points;
+}
+
+// Least squares of y over (x, z) through the ground points, its normal matrix regularised by ridge k.
+// Heights are relative to the body's y.
+SupportPlane supportPlane(const Tuning& tuning, const std::vector<glm::dvec3>& points) {
+  glm::dvec3 mean{0};
+  for (const glm::dvec3& point : points) mean += point;
   const double k = static_cast<double>(points.size());
   mean /= k;
   double sxx = tuning.ridge * k, szz = tuning.ridge * k, sxz = 0, sxy = 0, szy = 0;
@@ -114,27 +130,16 @@ glm::dvec3 leaningNormal(const Tuning& tuning, const SupportPlane& plane, const 
   return normalized(glm::dvec3(-plane.b * kept, 1, -plane.c * kept) + lean * left);
 }
 
-}  // namespace
-
-BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
-                const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
-                std::span<const double> reachErrors, double tick, double phase, const BodyChoices& choices) {
-  BodyResult result;
-  result.body = previous;
+// From the follow factor on. `points` are relative to the previous body.
+void move(const Tuning& tuning, const Heights& heights, const AgentBody& previous, const glm::dvec2& desired,
+          std::vector<glm::dvec3> points, double phase, const BodyChoices& choices, BodyResult& result) {
   AgentBody& next = result.body;
-
-  double kappa = 1;
-  for (size_t l = 0; l < creature.limbs.size(); ++l) {
-    const LegFollow follow =
-        followOf(tuning, creature.limbs[l], previous, steps[l], desired, reachErrors[l], tick);
-    if (follow.planted && follow.behind > 0) kappa = std::min(kappa, follow.factor);
-    kappa = std::min(kappa, follow.errorFactor);
-    result.follow.push_back(follow);
-  }
-  next.kappa = std::max(choices.kappa.value_or(kappa), tuning.followLeast);
   turn(tuning, desired, choices, result);
   walk(tuning, desired, result);
-  result.plane = supportPlane(tuning, next, steps, tick);
+  const glm::dvec3 way((next.tileX - previous.tileX) * tileSize + next.localX - previous.localX, 0,
+                       (next.tileZ - previous.tileZ) * tileSize + next.localZ - previous.localZ);
+  for (glm::dvec3& point : points) point -= way;
+  result.plane = supportPlane(tuning, points);
   const SupportPlane& plane = result.plane;
 
   const glm::dvec3 upBefore = previous.orientation * glm::dvec3(0, 1, 0);
@@ -163,6 +168,36 @@ BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& cr
   result.isStill = busiest < 1;
   result.stillMargin = std::abs(busiest - 1);
   next.still = result.isStill ? previous.still + tuning.dt : 0;
+}
+
+}  // namespace
+
+BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
+                const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
+                std::span<const double> reachErrors, double tick, double phase, const BodyChoices& choices) {
+  BodyResult result;
+  result.body = previous;
+  double kappa = 1;
+  for (size_t l = 0; l < creature.limbs.size(); ++l) {
+    const LegFollow follow =
+        followOf(tuning, creature.limbs[l], previous, steps[l], desired, reachErrors[l], tick);
+    if (follow.planted && follow.behind > 0) kappa = std::min(kappa, follow.factor);
+    kappa = std::min(kappa, follow.errorFactor);
+    result.follow.push_back(follow);
+  }
+  result.body.kappa = std::max(choices.kappa.value_or(kappa), tuning.followLeast);
+  move(tuning, heights, previous, desired, groundPoints(previous, steps, tick), phase, choices, result);
+  return result;
+}
+
+BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creature& creature,
+                     const AgentBody& previous, const glm::dvec2& desired, const BodyChoices& choices) {
+  BodyResult result;
+  result.body = previous;
+  result.body.kappa = 1;
+  Tuning upright = tuning;
+  upright.leanGain = upright.leanLevel = upright.breathHeight = 0;
+  move(upright, heights, previous, desired, groundBelowHomes(heights, creature, previous), 0, choices, result);
   return result;
 }
 

@@ -48,4 +48,9 @@ BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& cr
                 std::span<const double> reachErrors, double tick, double phase = 0,
                 const BodyChoices& choices = {});
 
+// A body that does not feel its feet: nothing holds it back, and the ground below the homes takes the place
+// of the ground points. Of `choices` the turn's sign counts.
+BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creature& creature,
+                     const AgentBody& previous, const glm::dvec2& desired, const BodyChoices& choices = {});
+
 }  // namespace skitter::reference

@@ -123,6 +123,22 @@ glm::dvec3 predictedRoot(const Limb& limb, const AgentBody& body, double seconds
   return Turn(body.turnRate * seconds)(limb.root) + glm::dvec3(0, 0, body.v3 * seconds);
 }
 
+Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
+                const std::optional<double>& duration) {
+  Stride stride;
+  const double pace = body.pace(tuning);
+  const double unrounded = tuning.swingStill / (1 + pace / tuning.swingSpeed) / tuning.dt + 0.5;
+  stride.duration = duration.value_or(std::max(3.0, std::floor(unrounded)));
+  stride.durationMargin = std::abs(unrounded - std::round(unrounded));
+  stride.swingTime = stride.duration * tuning.dt;
+  const double duty = std::max(tuning.dutyLeast, tuning.dutyStill - tuning.dutyGain * pace);
+  stride.cycle = std::min(tuning.cycleMax, stride.swingTime / (1 - duty));
+  stride.cycle = std::max(stride.cycle, groups * stride.swingTime * tuning.windowSlack);
+  const double stanceTime = stride.cycle - stride.swingTime;
+  stride.half = std::clamp(pace * stanceTime / 2, tuning.halfStrideStill, tuning.halfStrideMax);
+  return stride;
+}
+
 GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody& body, double phase,
                 std::span<const Step> steps, std::span<const double> reachErrors, double tick,
                 const GaitChoices& choices, WatchedGround watched) {
@@ -130,24 +146,19 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
   Gait& next = result.gait;
   const double groups = creature.groups;
 
-  const double pace = body.v3 + std::abs(body.turnRate) * tuning.homeRadius;
-  const double unrounded = tuning.swingStill / (1 + pace / tuning.swingSpeed) / tuning.dt + 0.5;
-  next.duration = choices.duration.value_or(std::max(3.0, std::floor(unrounded)));
-  result.durationMargin = std::abs(unrounded - std::round(unrounded));
-  const double swingTime = next.duration * tuning.dt;
-  const double duty = std::max(tuning.dutyLeast, tuning.dutyStill - tuning.dutyGain * pace);
-  next.cycle = std::min(tuning.cycleMax, swingTime / (1 - duty));
-  next.cycle = std::max(next.cycle, groups * swingTime * tuning.windowSlack);
-  const double stanceTime = next.cycle - swingTime;
-  next.halfStride = std::clamp(pace * stanceTime / 2, tuning.halfStrideStill, tuning.halfStrideMax);
+  const Stride stride = strideOf(tuning, creature.groups, body, choices.duration);
+  next.halfStride = stride.half;
+  next.duration = stride.duration;
+  next.cycle = stride.cycle;
+  result.durationMargin = stride.durationMargin;
   phase += tuning.dt / next.cycle;
   next.phase = phase - std::floor(phase);
 
   result.mustMargin = never;
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
     const Limb& limb = creature.limbs[l];
-    LegDecision leg = judge(tuning, limb, body, steps[l], next, stanceTime, reachErrors[l], tick, watched);
-    findWindow(tuning, creature, limb, next, swingTime, leg);
+    LegDecision leg = judge(tuning, limb, body, steps[l], next, stride.cycle - stride.swingTime, reachErrors[l], tick, watched);
+    findWindow(tuning, creature, limb, next, stride.swingTime, leg);
     if (!leg.planted) next.air |= 1u << l;
     if (!leg.planted && leg.wants) next.reaim |= 1u << l;
     if (leg.planted) result.mustMargin = std::min(result.mustMargin, leg.mustMargin);

@@ -24,6 +24,15 @@ struct LegDecision {
   double reaimProgressMargin = 0;  // of u_l against reaimLatest
 };
 
+// a, D, T and C.
+struct Stride {
+  double half = 0, duration = 0, swingTime = 0, cycle = 0;
+  double durationMargin = 0;  // ticks, of the rounding of D
+};
+// `duration`, if any, is D instead of the rule's.
+Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
+                const std::optional<double>& duration = {});
+
 struct GaitResult {
   Gait gait;
   std::vector<LegDecision> legs;

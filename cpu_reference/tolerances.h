@@ -52,20 +52,45 @@ inline double rotated(double length) { return 16 * roundoff * length; }
 // Distance of a foot from its root or home.
 inline double footDistance(double length) { return relative + rotated(length); }
 
+// What the body's bounds begin with: of kappa, and of the points that its plane goes through.
+struct BodyInputs {
+  double kappa = 0, horizontal = 0, vertical = 0;
+};
+// The legs' ground points, which are records, and kappa of them: a stretch divided by the narrow band between
+// slowing and stopping.
+inline BodyInputs feltGround(const Tuning& t, const Creature& creature, const AgentBody& previous) {
+  double shortest = t.legLength;
+  for (const Limb& limb : creature.limbs) shortest = std::min(shortest, limb.reach);
+  return {footDistance(2 * t.legLength) / shortest / (t.stretchStop - t.stretchSlow) + 4 * roundoff, relative,
+          4 * roundoff * std::abs(previous.y)};
+}
+// The ground below the homes: a home is rotated once, then the ground looked up there.
+inline BodyInputs blindGround(const Heights& heights, double extent, const Creature& creature,
+                              const AgentBody& previous) {
+  BodyInputs inputs;
+  const glm::dvec2 position = previous.world();
+  for (const Limb& limb : creature.limbs) {
+    const glm::dvec3 home = previous.orientation * limb.home;
+    const double horizontal = rotated(glm::length(limb.home));
+    const Relief relief = reliefNear(heights, position.x + home.x, position.y + home.z);
+    inputs.horizontal = std::max(inputs.horizontal, horizontal);
+    inputs.vertical = std::max(inputs.vertical, height(relief, extent, horizontal));
+  }
+  inputs.vertical += 4 * roundoff * std::abs(previous.y);
+  return inputs;
+}
+
 struct BodyBounds {
   double kappa, turnRate, heading, speed, position, slope, orientation, height, v3;
 };
 // Follows the steps of the stage in order; each bound feeds the next.
 inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, const Creature& creature,
-                       const AgentBody& previous, const BodyResult& result) {
+                       const BodyInputs& inputs, const BodyResult& result) {
   BodyBounds bound{};
   const AgentBody& next = result.body;
   const SupportPlane& plane = result.plane;
-  double shortest = t.legLength;
-  for (const Limb& limb : creature.limbs) shortest = std::min(shortest, limb.reach);
 
-  // kappa: a stretch divided by the narrow band between slowing and stopping.
-  bound.kappa = footDistance(2 * t.legLength) / shortest / (t.stretchStop - t.stretchSlow) + 4 * roundoff;
+  bound.kappa = inputs.kappa;
   // omega: turnGain e with e from two normalised vectors, scaled by kappa_turn = 1/4 + 3/4 kappa.
   bound.turnRate =
       t.turnGain * 10 * roundoff + 0.75 * t.turnRate * bound.kappa + 8 * roundoff * (t.turnRate + 1);
@@ -77,8 +102,8 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
   // the sums, and of the determinant in Cramer's rule (the condition number of M).
   const double legs = static_cast<double>(creature.limbs.size());
   const double slope = plane.unclampedSlope;
-  const double point = relative + bound.position;
-  const double vertical = 4 * roundoff * (std::abs(previous.y) + plane.heightSpread);
+  const double point = inputs.horizontal + bound.position;
+  const double vertical = inputs.vertical + 4 * roundoff * plane.heightSpread;
   const double condition = plane.largestEigenvalue / plane.leastEigenvalue;
   bound.slope =
       (2 * std::sqrt(legs) * (plane.spread * (vertical + slope * point) + plane.heightSpread * point) +
@@ -119,19 +144,39 @@ struct GaitBounds {
   double ground =
       1e-30;  // of the ground above a foot's way, where it is watched; the caller knows the relief
 };
-inline GaitBounds gait(const Tuning& t, const GaitResult& result, int groups, double longestForecast) {
+inline GaitBounds gait(const Tuning& t, const Gait& gait, int groups, double longestForecast) {
   GaitBounds bound{};
   // One addition below 2, and dt / C with C good to 16 roundoff.
   bound.phase = 6 * roundoff;
   // v_e (C - T) / 2, clamped.
   bound.halfStride = 32 * roundoff * t.halfStrideMax;
   // T / (1 - duty): duty errs by 4 roundoff, and 1 - duty is more than a fifth.
-  bound.cycle = 32 * roundoff * result.gait.cycle;
+  bound.cycle = 32 * roundoff * gait.cycle;
   bound.duration = 12 * roundoff * (t.swingStill / t.dt + 1);
   // Where a foot stands in the model, and where it is predicted to (a Cayley turn and v3 times a time).
   bound.length = footDistance(2 * t.legLength) + 16 * roundoff * longestForecast;
   // A leg's own beginning: a quotient, the spread (a share below 2 of 1 / groups - T / C) times its lag.
   bound.window = groups * (bound.phase + 24 * roundoff);
+  return bound;
+}
+
+// A foot on its loop. Its phase theta errs by 8 roundoff (a quotient, a sum below 2), so its time in the
+// cycle by 9 of the cycle, and by 3 more against the end of stance; a share of the swing by those over the
+// swing, and that quotient. What it does there is seen at its speed.
+struct LoopBounds {
+  double flown, place;
+};
+inline LoopBounds loopSwing(const Tuning& t, const Limb& limb, const AgentBody& body, const Gait& gait) {
+  LoopBounds bound{};
+  const double swingTime = gait.duration * t.dt;
+  const double time = 12 * roundoff * gait.cycle;
+  bound.flown = time / swingTime + 6 * roundoff;
+  const double speed = body.v3 + std::abs(body.turnRate) * glm::length(limb.home);
+  const double stride = speed * gait.cycle, farthest = glm::length(limb.home) + stride + t.stepHeight;
+  // A stance point is a Cayley turn and a product, the spline twelve of what it is made of; between its ends
+  // it moves at most four times as far, and as high, in a swing.
+  bound.place =
+      28 * roundoff * farthest + rotated(farthest) + speed * time + 4 * (stride + t.stepHeight) * bound.flown;
   return bound;
 }
 

@@ -35,6 +35,7 @@ struct Tuning {
   double reachMost = 0, reachLeast = 0, reachComfort = 0, slopeLeast = 0, slopeWeight = 0, reachWeight = 0;
   bool nearestOnly = false;
   double stepHeight = 0, stepClearance = 0, stepHeightMax = 0, routeWidth = 0;
+  double clipFade = 0, clipIdle = 0, clipHysteresis = 0, clipRateMost = 0, plantStray = 0, plantKeep = 0;
   double approachError = 0, restPull = 0, pullError = 0, ikTolerance = 0;
   double deadZone = 0, skateSpeed = 0, limitDeadZone = 0, jerkTicks = 24, jerkPath = 0;
 };
@@ -91,6 +92,8 @@ struct AgentBody {
   double v3 = 0;        // m/s along the ground
 
   glm::dvec2 world() const { return {tileX * tileSize + localX, tileZ * tileSize + localZ}; }
+  // v_e: how fast the feet must go, turning included.
+  double pace(const Tuning& tuning) const { return v3 + std::abs(turnRate) * tuning.homeRadius; }
 };
 
 struct Gait {
