@@ -9,6 +9,9 @@ namespace {
 
 namespace tolerance = reference::tolerance;
 
+// Cosine to straight backward below which either way round is right.
+constexpr double eitherWay = 16 * tolerance::roundoff;
+
 // Components of q and -q are the same rotation; the sign rule makes them the same numbers too, but for a dot
 // product near 0 it may fall either way.
 double difference(const glm::dquat& a, const glm::dquat& b) {
@@ -17,11 +20,11 @@ double difference(const glm::dquat& a, const glm::dquat& b) {
 }
 
 Sample compare(const Setting& setting, const Moment& moment, const reference::AgentBody& previous,
-               const reference::BodyResult& result) {
+               const tolerance::BodyInputs& inputs, const reference::BodyResult& result) {
   const reference::AgentBody got = bodyOf(moment.after, moment.agent);
   const reference::AgentBody& expected = result.body;
   const auto bound =
-      tolerance::body(setting.tuning, setting.heights, setting.extent, setting.creature, previous, result);
+      tolerance::body(setting.tuning, setting.heights, setting.extent, setting.creature, inputs, result);
   const double unit = setting.tuning.legLength;
   Sample sample;
   sample.finite("body", records(moment.after.body, moment.agent, shared::BODY_STRIDE));
@@ -77,8 +80,9 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
     return reference::body(setting.tuning, setting.heights, setting.creature, previous, desired, steps,
                            errors, static_cast<double>(moment.n), phase, choices);
   };
+  const auto inputs = tolerance::feltGround(setting.tuning, setting.creature, previous);
   const reference::BodyResult result = run({});
-  const Sample sample = compare(setting, moment, previous, result);
+  const Sample sample = compare(setting, moment, previous, inputs, result);
   if (sample.passes()) return judge.add(moment.n, moment.agent, -1, sample);
 
   // A leg square to the way counts or not; a desired velocity straight backward is turned to either way
@@ -94,11 +98,30 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
   }
   for (const double kappa : {with, without}) {
     for (const int sign : {-1, 1}) {
-      if (with == without && !(result.turnMargin < 16 * tolerance::roundoff)) continue;
+      if (with == without && !(result.turnMargin < eitherWay)) continue;
       reference::BodyChoices choices;
       if (with != without) choices.kappa = kappa;
-      if (result.turnMargin < 16 * tolerance::roundoff) choices.turnSign = sign;
-      const Sample other = compare(setting, moment, previous, run(choices));
+      if (result.turnMargin < eitherWay) choices.turnSign = sign;
+      const Sample other = compare(setting, moment, previous, inputs, run(choices));
+      if (other.passes()) return judge.add(moment.n, moment.agent, -1, other, true);
+    }
+  }
+  judge.add(moment.n, moment.agent, -1, sample);
+}
+
+void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) {
+  const reference::AgentBody previous = bodyOf(moment.before, moment.agent);
+  const glm::dvec2 desired = desiredOf(moment.after, moment.agent);
+  const auto inputs = tolerance::blindGround(setting.heights, setting.extent, setting.creature, previous);
+  const auto run = [&](int turnSign) {
+    return reference::blindBody(setting.tuning, setting.heights, setting.creature, previous, desired,
+                                {.kappa = {}, .turnSign = turnSign});
+  };
+  const reference::BodyResult result = run(0);
+  const Sample sample = compare(setting, moment, previous, inputs, result);
+  if (!sample.passes() && result.turnMargin < eitherWay) {
+    for (const int sign : {-1, 1}) {
+      const Sample other = compare(setting, moment, previous, inputs, run(sign));
       if (other.passes()) return judge.add(moment.n, moment.agent, -1, other, true);
     }
   }

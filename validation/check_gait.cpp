@@ -65,7 +65,7 @@ Verdict compare(const Setting& setting, const Moment& moment, const reference::G
   const reference::Gait& expected = result.gait;
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
   const double forecast = setting.tuning.legLength + (body.v3 + 1) * expected.cycle;
-  auto bound = tolerance::gait(setting.tuning, result, setting.creature.groups, forecast);
+  auto bound = tolerance::gait(setting.tuning, expected, setting.creature.groups, forecast);
   if (moment.after.watched) bound.ground = groundBound(setting, moment, body);
   const double settleBound = 4 * tolerance::roundoff * (1 + setting.tuning.settleTime);
 
@@ -124,7 +124,7 @@ void checkGait(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::GaitResult result = run({});
   const Verdict verdict = compare(setting, moment, result);
   if (!verdict.sample.passes()) {
-    const auto bound = tolerance::gait(setting.tuning, result, setting.creature.groups, 0);
+    const auto bound = tolerance::gait(setting.tuning, result.gait, setting.creature.groups, 0);
     const double duration = gaitOf(moment.after, moment.agent).duration;
     if (result.durationMargin < bound.duration && std::abs(duration - result.gait.duration) == 1) {
       const Verdict other = compare(setting, moment, run({duration}));

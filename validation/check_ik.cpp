@@ -4,21 +4,16 @@
 #include "shared/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/solve.h"
 
 namespace skitter::validation {
 namespace {
 
 namespace tolerance = reference::tolerance;
 
-double kinematicsOf(const Setting& setting, const reference::Limb& limb) {
-  double widest = 0;
-  for (const reference::BoneRest& bone : limb.bones) widest = std::max(widest, bone.tanHalfCone);
-  return tolerance::forwardKinematics(setting.bones, widest);
-}
-
 // What must hold of any result, whichever way the solver went.
-void checkGoals(const Setting& setting, const Moment& moment, const reference::Limb& limb,
-                const reference::AgentBody& body, const glm::dvec3& target, const reference::Chain& got,
+void checkGoals(const Setting& setting, const reference::Limb& limb, const reference::AgentBody& body,
+                const glm::dvec3& target, const reference::Chain& previous, const reference::Chain& got,
                 const reference::Posture& posture, Sample& sample) {
   for (size_t i = 0; i < limb.bones.size(); ++i) {
     const double t = limb.bones[i].tanHalfCone;
@@ -26,7 +21,7 @@ void checkGoals(const Setting& setting, const Moment& moment, const reference::L
     sample.compare("limit violation, rad", std::max(0.0, violation), tolerance::limit,
                    {t, static_cast<double>(i), 0, 0}, {got.directions[i], 0, 0});
   }
-  const double kinematics = kinematicsOf(setting, limb);
+  const double kinematics = kinematicsError(setting, limb);
   const glm::dvec3 tip = body.orientation * (limb.root + limb.reach * posture.tip());
   sample.compare("tip against its directions / reach", glm::length(tip - got.tip) / limb.reach, kinematics,
                  {tip, 0}, {got.tip, 0});
@@ -34,53 +29,61 @@ void checkGoals(const Setting& setting, const Moment& moment, const reference::L
   const double error = finite ? glm::length(target - posture.tip()) : 0;
   sample.compare("reported error / reach", std::abs(error - got.reachError / limb.reach), kinematics,
                  {error * limb.reach, 0, 0, 0}, {got.reachError, 0, 0, 0});
-  if (!finite) {
-    const size_t floats = 2 * static_cast<size_t>(setting.bones);
-    const size_t leg = static_cast<size_t>(&limb - setting.creature.limbs.data()) +
-                       moment.agent * static_cast<size_t>(setting.legs);
-    const auto before = records(moment.before.chain, leg, shared::chainStride(setting.bones));
-    const auto after = records(moment.after.chain, leg, shared::chainStride(setting.bones));
-    for (size_t i = 0; i < floats; ++i) sample.same("pose kept", before[i], after[i]);
+  for (size_t i = 0; i < limb.bones.size() && !finite; ++i) {
+    sample.compare("pose kept", glm::length(previous.directions[i] - got.directions[i]), 0,
+                   {previous.directions[i], 0, 0}, {got.directions[i], 0, 0});
   }
 }
 
 }  // namespace
 
-void checkIk(const Setting& setting, const Moment& moment, Judge& judge) {
+double kinematicsError(const Setting& setting, const reference::Limb& limb) {
+  double widest = 0;
+  for (const reference::BoneRest& bone : limb.bones) widest = std::max(widest, bone.tanHalfCone);
+  return tolerance::forwardKinematics(setting.bones, widest);
+}
+
+SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l, const reference::Limb& limb,
+                          const reference::Chain& previous) {
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
-  const size_t legs = static_cast<size_t>(setting.legs);
-  for (size_t l = 0; l < legs; ++l) {
-    const size_t leg = moment.agent * legs + l;
-    const reference::Limb& limb = setting.creature.limbs[l];
-    const reference::Foot foot = footOf(moment.after, leg);
+  const size_t leg = moment.agent * static_cast<size_t>(setting.legs) + l;
+  const reference::Foot foot = footOf(moment.after, leg);
+  const reference::Chain got = chainOf(moment.after, leg, setting.bones);
+  const reference::Chain expected = reference::ik(setting.tuning, limb, body, foot, previous, setting.ik);
+  const reference::Posture posture(limb, got.directions), wanted(limb, expected.directions);
+
+  SolveVerdict verdict;
+  Sample& sample = verdict.sample;
+  sample.finite("chain", records(moment.after.chain, leg, shared::chainStride(setting.bones)));
+  checkGoals(setting, limb, body, reference::ikTarget(limb, body, foot.target), previous, got, posture,
+             sample);
+  sample.compare("error before solving / reach",
+                 std::abs(expected.errorBefore - got.errorBefore) / limb.reach,
+                 kinematicsError(setting, limb), {expected.errorBefore, 0, 0, 0}, {got.errorBefore, 0, 0, 0});
+
+  double apart = 0;
+  for (size_t i = 1; i <= posture.bones(); ++i) {
+    apart = std::max(apart, glm::length(posture.joint(i) - wanted.joint(i)));
+  }
+  const bool sameDamping = std::abs(got.damping - expected.damping) <= 1e-5 * expected.damping;
+  verdict.tie = apart > tolerance::jointPosition || !sameDamping;
+  if (verdict.tie) {
+    sample.compare("error beyond the reference's / reach",
+                   std::max(0.0, got.reachError - expected.reachError) / limb.reach, tolerance::ikTie,
+                   {expected.reachError, expected.damping, apart, 0}, {got.reachError, got.damping, 0, 0});
+    sample.compare("damping outside [1, 4096]", got.damping >= 1 && got.damping <= 4096 ? 0 : 1, 0);
+  } else {
+    sample.compare("joint positions / reach", apart, tolerance::jointPosition);
+  }
+  return verdict;
+}
+
+void checkIk(const Setting& setting, const Moment& moment, Judge& judge) {
+  for (size_t l = 0; l < static_cast<size_t>(setting.legs); ++l) {
+    const size_t leg = moment.agent * static_cast<size_t>(setting.legs) + l;
     const reference::Chain previous = chainOf(moment.before, leg, setting.bones);
-    const reference::Chain got = chainOf(moment.after, leg, setting.bones);
-    const reference::Chain expected = reference::ik(setting.tuning, limb, body, foot, previous, setting.ik);
-    const reference::Posture posture(limb, got.directions), wanted(limb, expected.directions);
-
-    Sample sample;
-    sample.finite("chain", records(moment.after.chain, leg, shared::chainStride(setting.bones)));
-    checkGoals(setting, moment, limb, body, reference::ikTarget(limb, body, foot.target), got, posture,
-               sample);
-    sample.compare("error before solving / reach",
-                   std::abs(expected.errorBefore - got.errorBefore) / limb.reach, kinematicsOf(setting, limb),
-                   {expected.errorBefore, 0, 0, 0}, {got.errorBefore, 0, 0, 0});
-
-    double apart = 0;
-    for (size_t i = 1; i <= posture.bones(); ++i) {
-      apart = std::max(apart, glm::length(posture.joint(i) - wanted.joint(i)));
-    }
-    const bool sameDamping = std::abs(got.damping - expected.damping) <= 1e-5 * expected.damping;
-    const bool tie = apart > tolerance::jointPosition || !sameDamping;
-    if (tie) {
-      sample.compare("error beyond the reference's / reach",
-                     std::max(0.0, got.reachError - expected.reachError) / limb.reach, tolerance::ikTie,
-                     {expected.reachError, expected.damping, apart, 0}, {got.reachError, got.damping, 0, 0});
-      sample.compare("damping outside [1, 4096]", got.damping >= 1 && got.damping <= 4096 ? 0 : 1, 0);
-    } else {
-      sample.compare("joint positions / reach", apart, tolerance::jointPosition);
-    }
-    judge.add(moment.n, moment.agent, static_cast<int>(l), sample, tie);
+    const auto verdict = compareSolve(setting, moment, l, setting.creature.limbs[l], previous);
+    judge.add(moment.n, moment.agent, static_cast<int>(l), verdict.sample, verdict.tie);
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include "validation/replay.h"
 
-// One check a stage; each adds a sample an agent or a leg to its judge.
+// One check a stage and what it can be; each adds a sample an agent or a leg to its judge.
 namespace skitter::validation {
 
 // The two states around tick n, and the agent to look at.
@@ -15,11 +15,21 @@ struct Moment {
 
 void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge);
 void checkBody(const Setting& setting, const Moment& moment, Judge& judge);
+void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge);
+void checkClip(const Setting& setting, const Moment& moment, Judge& judge);
 void checkGait(const Setting& setting, const Moment& moment, Judge& judge);
+void checkLoopGait(const Setting& setting, const Moment& moment, Judge& judge);
 void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge);
 void checkSwing(const Setting& setting, const Moment& moment, Judge& judge);
+void checkLoopSwing(const Setting& setting, const Moment& moment, Judge& judge);
+void checkClipSwing(const Setting& setting, const Moment& moment, Judge& judge);
+void checkPlantedSwing(const Setting& setting, const Moment& moment, Judge& judge);
 void checkIk(const Setting& setting, const Moment& moment, Judge& judge);
+void checkPlantedIk(const Setting& setting, const Moment& moment, Judge& judge);
 void checkPose(const Setting& setting, const Moment& moment, Judge& judge);
+// A sample a joint, in place of a leg.
+void checkClipPose(const Setting& setting, const Moment& moment, Judge& judge);
+void checkPlantedPose(const Setting& setting, const Moment& moment, Judge& judge);
 void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge);
 
 // `count` records of `stride` vec4 beginning with record `index`.

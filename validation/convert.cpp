@@ -1,20 +1,10 @@
 #include "validation/convert.h"
 
 #include "shared/records.h"
+#include "validation/vec4s.h"
 
 namespace skitter::validation {
 namespace {
-
-glm::dvec4 load(const std::vector<float>& records, size_t index) {
-  const float* r = records.data() + 4 * index;
-  return {r[0], r[1], r[2], r[3]};
-}
-
-void store(std::vector<float>& records, size_t index, const glm::dvec4& value) {
-  for (int i = 0; i < 4; ++i) records[4 * index + static_cast<size_t>(i)] = static_cast<float>(value[i]);
-}
-
-size_t at(size_t record, int stride) { return record * static_cast<size_t>(stride); }
 
 // A mask of legs; nonsense, which cannot be converted, reads as none.
 uint32_t mask(double value) { return value >= 0 && value < 0x1p32 ? static_cast<uint32_t>(value) : 0; }
@@ -85,6 +75,12 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.stepClearance = p.stepClearance;
   t.stepHeightMax = p.stepHeightMax;
   t.routeWidth = p.routeWidth;
+  t.clipFade = p.clipFade;
+  t.clipIdle = p.clipIdle;
+  t.clipHysteresis = p.clipHysteresis;
+  t.clipRateMost = p.clipRateMost;
+  t.plantStray = p.plantStray;
+  t.plantKeep = p.plantKeep;
   t.approachError = p.approachError;
   t.restPull = p.restPull;
   t.pullError = p.pullError;

@@ -9,6 +9,7 @@
 #include "skitter/error.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/convert_clip.h"
 
 namespace skitter::validation {
 namespace {
@@ -17,9 +18,34 @@ struct Stage {
   const char* name;
   void (*check)(const Setting&, const Moment&, Judge&);
 };
-constexpr Stage stages[] = {{"navigate", checkNavigate}, {"body", checkBody},      {"gait", checkGait},
-                            {"foothold", checkFoothold}, {"swing", checkSwing},    {"ik", checkIk},
-                            {"pose", checkPose},         {"measure", checkMeasure}};
+using Stages = std::vector<Stage>;
+
+const Stages& stagesOf(crowd::Controller controller) {
+  static const Stages adaptive = {{"navigate", checkNavigate}, {"body", checkBody},      {"gait", checkGait},
+                                  {"foothold", checkFoothold}, {"swing", checkSwing},    {"ik", checkIk},
+                                  {"pose", checkPose},         {"measure", checkMeasure}};
+  static const Stages loop = {{"navigate", checkNavigate}, {"body", checkBlindBody}, {"gait", checkLoopGait},
+                              {"swing", checkLoopSwing},   {"ik", checkIk},          {"pose", checkPose},
+                              {"measure", checkMeasure}};
+  static const Stages clip = {{"navigate", checkNavigate}, {"body", checkBlindBody},
+                              {"clip", checkClip},         {"swing", checkClipSwing},
+                              {"pose", checkClipPose},     {"measure", checkMeasure}};
+  static const Stages planted = {{"navigate", checkNavigate}, {"body", checkBlindBody},
+                                 {"clip", checkClip},         {"swing", checkPlantedSwing},
+                                 {"ik", checkPlantedIk},      {"pose", checkPlantedPose},
+                                 {"measure", checkMeasure}};
+  switch (controller) {
+    case crowd::Controller::loop:
+      return loop;
+    case crowd::Controller::clip:
+      return clip;
+    case crowd::Controller::planted:
+      return planted;
+    case crowd::Controller::adaptive:
+      break;
+  }
+  return adaptive;
+}
 
 void expectSize(const char* what, size_t found, size_t expected) {
   if (found == expected) return;
@@ -39,7 +65,17 @@ void expectSizes(const Setting& setting, const HerdState& state, size_t agents) 
   expect("step records", state.step, legs, shared::STEP_STRIDE);
   expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
   expect("chain records", state.chain, legs, shared::chainStride(setting.bones));
-  expect("pose records", state.pose, 1 + legs * static_cast<size_t>(setting.bones), shared::POSE_STRIDE);
+  const size_t bones = static_cast<size_t>(setting.bones);
+  if (crowd::playsClips(setting.controller)) {
+    expect("pose records", state.pose, setting.clips.joints(), shared::MATRIX_STRIDE);
+    expect("play records", state.play, 1, shared::PLAY_STRIDE);
+  } else {
+    expect("pose records", state.pose, 1 + legs * bones, shared::POSE_STRIDE);
+  }
+  if (setting.controller == crowd::Controller::planted) {
+    expect("start records", state.start, legs, shared::chainStride(setting.bones));
+    expect("fix records", state.fix, legs * bones, shared::FIX_STRIDE);
+  }
   if (state.metric.empty()) return;
   expect("metric records", state.metric, 1, shared::METRIC_STRIDE);
   const size_t watched = (agents + state.watchEvery - 1) / state.watchEvery;
@@ -57,25 +93,26 @@ uint64_t scrambled(uint64_t x) {
 
 }  // namespace
 
-Replay::Replay(const Rig& rig, const Heightfield& terrain, const shared::Parameters& parameters,
-               const std::vector<float>& rigRecords, int solver, int approachIterations, int polishIterations,
-               uint64_t seed)
-    : terrain_(terrain), seed_(seed) {
+Replay::Replay(const HerdFacts& herd, uint64_t seed) : terrain_(herd.terrain), seed_(seed) {
+  const Rig& rig = herd.rig;
   size_t bones = 0;
   for (const Leg& leg : rig.legs) bones = std::max(bones, leg.bones.size());
+  setting_.controller = herd.controller;
   setting_.legs = rig.legCount();
   setting_.bones = static_cast<int>(bones);
-  expectSize("rig records", rigRecords.size(),
+  expectSize("rig records", herd.rigRecords.size(),
              4 * rig.legs.size() * static_cast<size_t>(shared::rigStride(setting_.bones)));
-  setting_.tuning = tuningOf(parameters);
-  setting_.heights = heightsOf(terrain_, parameters);
-  setting_.creature = creatureOf(rigRecords, setting_.legs, setting_.bones, rig.groupCount());
+  setting_.tuning = tuningOf(herd.parameters);
+  setting_.heights = heightsOf(terrain_, herd.parameters);
+  setting_.creature = creatureOf(herd.rigRecords, setting_.legs, setting_.bones, rig.groupCount());
   setting_.extent = std::max({std::abs(setting_.heights.originX), std::abs(setting_.heights.originZ),
                               setting_.tuning.halfExtentX, setting_.tuning.halfExtentZ});
   // The reference has no `automatic`.
-  setting_.ik = {static_cast<reference::IkSolver>(solver - shared::SOLVER_FABRIK), approachIterations,
-                 polishIterations};
-  for (const Stage& stage : stages) judges_.emplace_back(stage.name);
+  setting_.ik = {static_cast<reference::IkSolver>(herd.ik.solver - shared::SOLVER_FABRIK), herd.ik.approach,
+                 herd.ik.polish};
+  if (crowd::playsClips(herd.controller))
+    setting_.clips = clipTableOf(herd.clips, setting_.legs, setting_.bones);
+  for (const Stage& stage : stagesOf(herd.controller)) judges_.emplace_back(stage.name);
 }
 
 void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, const ReplayRange& range) {
@@ -89,10 +126,11 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
   const bool measured = !before.metric.empty() && !after.metric.empty();
   const size_t last = std::min(agents, static_cast<size_t>(range.first) + range.count);
   const size_t stride = std::max(1u, range.stride);
+  const Stages& stages = stagesOf(setting_.controller);
   const size_t offset = static_cast<size_t>(scrambled(seed_ ^ scrambled(n)) % stride);
   for (size_t agent = range.first + offset; agent < last; agent += stride) {
     const Moment moment{n, before, after, agent};
-    for (size_t s = 0; s < std::size(stages); ++s) {
+    for (size_t s = 0; s < stages.size(); ++s) {
       if (stages[s].check == checkMeasure && !measured) continue;
       stages[s].check(setting_, moment, judges_[s]);
     }

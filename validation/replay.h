@@ -4,22 +4,39 @@
 #include <string>
 #include <vector>
 
+#include "cpu_reference/clip_table.h"
 #include "cpu_reference/ik.h"
 #include "cpu_reference/types.h"
+#include "crowd/clip_records.h"
+#include "crowd/controller.h"
+#include "crowd/tuning.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
 #include "validation/judge.h"
 
 namespace skitter::validation {
 
+// What the reference is told of a herd; `herdFacts` in herd_facts.h takes it from one.
+struct HerdFacts {
+  const Rig& rig;
+  const Heightfield& terrain;
+  shared::Parameters parameters;
+  const std::vector<float>& rigRecords;  // shaders/shared/records.h
+  crowd::IkPlan ik{};
+  crowd::Controller controller = crowd::Controller::adaptive;
+  crowd::ClipRecords clips = {};  // where clips are played
+};
+
 // What every check needs to know about the herd.
 struct Setting {
+  crowd::Controller controller = crowd::Controller::adaptive;
   reference::Tuning tuning;
   reference::Heights heights;
   reference::Creature creature;
   int legs = 0, bones = 0;  // bones of the longest chain: shorter ones are padded
   double extent = 0;        // metres, how far the terrain reaches from the world's origin
   reference::IkPlan ik;
+  reference::ClipTable clips;
 };
 
 // Which agents a tick compares.
@@ -34,12 +51,9 @@ struct ReplayRange {
 // that a stage itself or a later one writes come from `before`, those of earlier stages from `after`.
 class Replay {
  public:
-  // `rigRecords` as in shaders/shared/records.h, `solver` of shaders/shared/ik_batch.h. Throws Error(input)
-  // when its size does not fit the rig. `seed` decides which agents a strided range begins with. `terrain` is
-  // copied.
-  Replay(const Rig& rig, const Heightfield& terrain, const shared::Parameters& parameters,
-         const std::vector<float>& rigRecords, int solver, int approachIterations, int polishIterations,
-         uint64_t seed);
+  // Copies what it needs. Throws Error(input) when the rig records' size does not fit the rig. `seed` decides
+  // which agents a strided range begins with.
+  Replay(const HerdFacts& herd, uint64_t seed);
   Replay(const Replay&) = delete;
   Replay& operator=(const Replay&) = delete;
 
@@ -50,7 +64,7 @@ class Replay {
   // The terrain was edited before the next tick (Crowd::editHeights).
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
 
-  // navigate, body, gait, foothold, swing, ik, pose, measure. A stage without samples passes.
+  // The controller's stages, in order. One without samples passes.
   std::vector<StageResult> results() const;
   bool pass() const;
 

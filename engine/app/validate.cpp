@@ -10,7 +10,6 @@
 
 #include "commands.h"
 #include "crowd/herd.h"
-#include "crowd/tuning.h"
 #include "gpu/submit.h"
 #include "part_file.h"
 #include "progress.h"
@@ -18,6 +17,7 @@
 #include "signals.h"
 #include "simulate.h"
 #include "skitter/error.h"
+#include "validation/herd_facts.h"
 #include "values.h"
 
 namespace skitter::app {
@@ -41,9 +41,7 @@ struct ValidateOptions {
 std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd, uint64_t seed) {
   std::vector<std::unique_ptr<Replay>> replays;
   for (const crowd::Herd& herd : crowd.impl().herds) {
-    replays.push_back(std::make_unique<Replay>(herd.rig, crowd.impl().terrain, herd.parameters,
-                                               herd.rigRecords, herd.ik.solver, herd.ik.approach,
-                                               herd.ik.polish, seed));
+    replays.push_back(std::make_unique<Replay>(validation::herdFacts(herd, crowd.impl().terrain), seed));
   }
   return replays;
 }
@@ -59,27 +57,28 @@ double ratioOf(const StageResult& result) {
   return result.maxError > 0 ? HUGE_VAL : 0;
 }
 
-// Of all herds; the worst herd gives a stage's error.
+void add(const StageResult& result, StageResult& sum) {
+  const bool worse = result.pass == sum.pass ? ratioOf(result) > ratioOf(sum) : !result.pass;
+  const uint64_t samples = sum.samples + result.samples, ties = sum.ties + result.ties;
+  if (worse) sum = result;
+  sum.samples = samples;
+  sum.ties = ties;
+}
+
+// Of all herds, by stage; the worst herd gives a stage's error.
 std::vector<StageResult> merge(const std::vector<std::unique_ptr<Replay>>& replays) {
   std::vector<StageResult> all;
-  for (size_t h = 0; h < replays.size(); ++h) {
-    std::vector<StageResult> results = replays[h]->results();
-    if (replays.size() > 1) {
-      for (StageResult& result : results) result.worst = fmt::format("herd {}: {}", h, result.worst);
-    }
-    if (all.empty()) {
-      all = results;
-      continue;
-    }
-    for (size_t s = 0; s < all.size(); ++s) {
-      StageResult& sum = all[s];
-      const StageResult& result = results[s];
-      const bool worse = result.pass == sum.pass ? ratioOf(result) > ratioOf(sum) : !result.pass;
-      const StageResult least = worse ? result : sum;
-      const uint64_t samples = sum.samples + result.samples, ties = sum.ties + result.ties;
-      sum = least;
-      sum.samples = samples;
-      sum.ties = ties;
+  for (const char* name : crowd::frame()) {
+    StageResult* sum = nullptr;
+    for (size_t h = 0; h < replays.size(); ++h) {
+      for (StageResult result : replays[h]->results()) {
+        if (result.name != name) continue;
+        if (replays.size() > 1) result.worst = fmt::format("herd {}: {}", h, result.worst);
+        if (sum != nullptr)
+          add(result, *sum);
+        else
+          sum = &all.emplace_back(result);
+      }
     }
   }
   return all;

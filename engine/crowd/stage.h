@@ -3,16 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "crowd/controller.h"
 #include "gpu/kernel.h"
 #include "skitter/crowd.h"
 
 namespace skitter::crowd {
-
-// How a herd moves; the names are those of a scene's `controller`.
-enum class Controller { clip, planted, loop, adaptive };
-// Throws Error(input) where it is unknown.
-Controller controllerNamed(const std::string& name);
-constexpr bool playsClips(Controller c) { return c == Controller::clip || c == Controller::planted; }
 
 // A stage of the frame: one compute shader, the records it binds, and what it runs over.
 struct Stage {

@@ -8,8 +8,8 @@
 
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
-#include "crowd/tuning.h"
 #include "gpu/transfer.h"
+#include "validation/herd_facts.h"
 
 namespace skitter::test {
 namespace {
@@ -103,8 +103,7 @@ void expectEveryStage(Device& device, const Rig& rig, uint64_t seeds, float fart
     Crowd crowd(device, ground, sceneOf(65), std::vector<Rig>{rig});
     crowd::Herd& herd = crowd.impl().herds[0];
     scramble(device.context(), crowd, seed, farthest);
-    validation::Replay replay(herd.rig, ground, herd.parameters, herd.rigRecords, herd.ik.solver,
-                              herd.ik.approach, herd.ik.polish, seed);
+    validation::Replay replay(validation::herdFacts(herd, ground), seed);
     HerdState before = crowd.download(0);
     for (int tick = 0; tick < 4; ++tick) {
       simulate(device, crowd, 1);

@@ -1,23 +1,29 @@
 #include "crowd/simulation.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "crowd/herd.h"
-#include "crowd/tuning.h"
 #include "gpu/submit.h"
+#include "validation/herd_facts.h"
 
 namespace skitter::test {
 
-Scene sceneOf(uint32_t agents, float speed, uint64_t seed) {
+Scene sceneOf(uint32_t agents, float speed, uint64_t seed, const std::string& controller) {
   Scene scene;
   scene.herds = {Herd{}};
   scene.herds[0].agents = agents;
+  scene.herds[0].controller = controller;
   scene.herds[0].goal.speed = speed;
   scene.seed = seed;
   return scene;
 }
 
 Heightfield rollingGround() { return generateHeightfield({}); }
+
+Heightfield smallRollingGround() {
+  return generateHeightfield({.columns = 65, .rows = 65, .amplitude = 2, .wavelength = 16});
+}
 
 Heightfield flatGround() {
   Heightfield flat = generateHeightfield({.columns = 129, .rows = 129});
@@ -42,21 +48,33 @@ void simulate(Device& device, Crowd& crowd, int ticks, float dt) {
   ring.waitAll();
 }
 
-std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
-                                            int ticks, uint64_t seed) {
+std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crowd& crowd,
+                                                            const Heightfield& terrain, int ticks,
+                                                            uint64_t seed) {
   // The first tick fixes dt, and with it the tuning that the reference is given.
   simulate(device, crowd, 1);
-  const crowd::Herd& herd = crowd.impl().herds.at(0);
-  validation::Replay replay(herd.rig, terrain, herd.parameters, herd.rigRecords, herd.ik.solver,
-                            herd.ik.approach, herd.ik.polish, seed);
-  HerdState before = crowd.download(0);
+  std::vector<std::unique_ptr<validation::Replay>> replays;
+  std::vector<HerdState> before;
+  for (const crowd::Herd& herd : crowd.impl().herds) {
+    before.push_back(crowd.download(static_cast<uint32_t>(replays.size())));
+    replays.push_back(std::make_unique<validation::Replay>(validation::herdFacts(herd, terrain), seed));
+  }
   for (int i = 0; i < ticks; ++i) {
     simulate(device, crowd, 1);
-    HerdState after = crowd.download(0);
-    replay.tick(crowd.tick(), before, after);
-    before = std::move(after);
+    for (uint32_t h = 0; h < replays.size(); ++h) {
+      HerdState after = crowd.download(h);
+      replays[h]->tick(crowd.tick(), before[h], after);
+      before[h] = std::move(after);
+    }
   }
-  return replay.results();
+  std::vector<std::vector<validation::StageResult>> results;
+  for (const auto& replay : replays) results.push_back(replay->results());
+  return results;
+}
+
+std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
+                                            int ticks, uint64_t seed) {
+  return replayAll(device, crowd, terrain, ticks, seed).front();
 }
 
 void expectAllPass(const std::vector<validation::StageResult>& results) {

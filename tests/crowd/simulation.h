@@ -13,10 +13,16 @@
 namespace skitter::test {
 
 constexpr float kTick = 1.0f / 60;
+// measure reads step records, which controllers other than adaptive use otherwise or not at all; true once it
+// judges by feet.
+constexpr bool kMeasureJudgesByFeet = false;
 
 // A scene of one herd on generated ground.
-Scene sceneOf(uint32_t agents, float speed = 1, uint64_t seed = 1);
+Scene sceneOf(uint32_t agents, float speed = 1, uint64_t seed = 1,
+              const std::string& controller = "adaptive");
 Heightfield rollingGround();
+// 32 m a side: soon crossed.
+Heightfield smallRollingGround();
 Heightfield flatGround();
 // A plateau that ends in a wall far beyond any reach, across the lanes' way.
 Heightfield cliffGround();
@@ -24,10 +30,15 @@ Heightfield cliffGround();
 // Submits `ticks` ticks and waits.
 void simulate(Device& device, Crowd& crowd, int ticks, float dt = kTick);
 
-// Runs `ticks` ticks in lock step with the reference, from the crowd's present state on.
+// Runs `ticks` ticks in lock step with the reference, from the crowd's present state on; of the first herd.
 std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
                                             int ticks, uint64_t seed = 1);
 void expectAllPass(const std::vector<validation::StageResult>& results);
+
+// The same of every herd.
+std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crowd& crowd,
+                                                            const Heightfield& terrain, int ticks,
+                                                            uint64_t seed = 1);
 
 // Of agent i: the world position and, per leg, whether it is planted.
 glm::dvec3 positionOf(const HerdState& state, size_t agent);

@@ -32,14 +32,8 @@ ReferenceHerd::ReferenceHerd(const Heightfield& terrain, uint32_t agents, int pa
 }
 
 Replay ReferenceHerd::replay() const {
-  return {rig_,
-          terrain_,
-          parameters_,
-          rigRecords_,
-          shared::SOLVER_FABRIK,
-          plan.approachIterations,
-          plan.polishIterations,
-          1};
+  const crowd::IkPlan ik{shared::SOLVER_FABRIK, plan.approachIterations, plan.polishIterations};
+  return {{rig_, terrain_, parameters_, rigRecords_, ik}, 1};
 }
 
 void ReferenceHerd::spawn(uint32_t agents) {

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "validation/checks.h"
+
+namespace skitter::validation {
+
+struct SolveVerdict {
+  Sample sample;
+  bool tie = false;
+};
+
+// What a leg was solved to, against what the reference makes of the same foot from `previous`.
+SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l, const reference::Limb& limb,
+                          const reference::Chain& previous);
+
+// Of forward kinematics along the limb, share of the reach.
+double kinematicsError(const Setting& setting, const reference::Limb& limb);
+
+}  // namespace skitter::validation

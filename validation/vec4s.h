@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <vector>
+
+// Buffers of floats as the vec4 that they are.
+namespace skitter::validation {
+
+inline glm::dvec4 load(const std::vector<float>& records, size_t index) {
+  const float* r = records.data() + 4 * index;
+  return {r[0], r[1], r[2], r[3]};
+}
+
+inline void store(std::vector<float>& records, size_t index, const glm::dvec4& value) {
+  for (int i = 0; i < 4; ++i) records[4 * index + static_cast<size_t>(i)] = static_cast<float>(value[i]);
+}
+
+// Of the vec4 that a record begins with.
+inline size_t at(size_t record, int stride) { return record * static_cast<size_t>(stride); }
+
+}  // namespace skitter::validation
