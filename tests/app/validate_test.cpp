@@ -1,3 +1,5 @@
+#include <map>
+
 #include "process.h"
 
 namespace skitter::test {
@@ -23,6 +25,46 @@ TEST_F(Validate, EveryStageAgreesWithTheReference) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"navigate", "body", "gait", "foothold", "swing", "ik", "pose",
                                              "measure"}));
+}
+
+// measure reads step records, which the other controllers use otherwise or not at all, until it judges by
+// feet.
+constexpr bool kMeasureJudgesByFeet = false;
+
+std::vector<std::string> stagesThatAgree(const nlohmann::json& validation) {
+  std::vector<std::string> names;
+  for (const nlohmann::json& stage : validation.at("stages")) {
+    names.push_back(stage.at("name"));
+    if (names.back() == "measure" && !kMeasureJudgesByFeet) continue;
+    EXPECT_TRUE(stage.at("pass")) << names.back();
+    EXPECT_GT(stage.at("samples"), 0) << names.back();
+  }
+  return names;
+}
+
+TEST_F(Validate, EveryControllerHasItsStages) {
+  const std::map<std::string, std::vector<std::string>> stages = {
+      {"loop", {"navigate", "body", "gait", "swing", "ik", "pose", "measure"}},
+      {"clip", {"navigate", "body", "clip", "swing", "pose", "measure"}},
+      {"planted", {"navigate", "body", "clip", "swing", "ik", "pose", "measure"}}};
+  for (const auto& [controller, names] : stages) {
+    SCOPED_TRACE(controller);
+    const Result result = skitter({"validate", "--controller", controller, "--agents", "8", "--frames", "20",
+                                   "--json", file("v.json")});
+    EXPECT_LE(result.code, kMeasureJudgesByFeet ? 0 : 1) << result.out << result.err;
+    EXPECT_EQ(stagesThatAgree(json("v.json")), names);
+  }
+}
+
+TEST_F(Validate, HerdsWithDifferentStagesAreOneTable) {
+  write("mixed.json", R"({"terrain": {"kind": "noise"}, "herds": [
+    {"rig": "spider", "controller": "clip", "agents": 4},
+    {"rig": "spider", "controller": "adaptive", "agents": 4}]})");
+  const Result result = skitter({"validate", file("mixed.json"), "--frames", "20", "--json", file("v.json")});
+  EXPECT_LE(result.code, kMeasureJudgesByFeet ? 0 : 1) << result.out << result.err;
+  EXPECT_EQ(stagesThatAgree(json("v.json")),
+            (std::vector<std::string>{"navigate", "body", "clip", "gait", "foothold", "swing", "ik", "pose",
+                                      "measure"}));
 }
 
 }  // namespace

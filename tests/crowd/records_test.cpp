@@ -53,9 +53,12 @@ const std::map<std::string, size_t>& parameterOffsets() {
 }
 
 std::vector<crowd::Stage> everyStage() {
-  return {crowd::navigateStage(), crowd::bodyStage(),    crowd::gaitStage(),
-          crowd::footholdStage(), crowd::swingStage(),   crowd::ikStage(),
-          crowd::poseStage(),     crowd::measureStage(), crowd::footfallStage()};
+  return {crowd::navigateStage(),  crowd::bodyStage(),       crowd::gaitStage(),
+          crowd::footholdStage(),  crowd::swingStage(),      crowd::ikStage(),
+          crowd::poseStage(),      crowd::measureStage(),    crowd::blindBodyStage(),
+          crowd::loopGaitStage(),  crowd::loopSwingStage(),  crowd::clipStage(),
+          crowd::clipSwingStage(), crowd::clipPoseStage(),   crowd::plantedSwingStage(),
+          crowd::plantedIkStage(), crowd::plantedPoseStage(), crowd::footfallStage()};
 }
 
 TEST(Records, ParametersLieWhereBothSidesThink) {
@@ -64,14 +67,15 @@ TEST(Records, ParametersLieWhereBothSidesThink) {
   for (const crowd::Stage& stage : everyStage())
     for (const auto code : {stage.code.texel, stage.code.storage}) {
       const Layout layout = layoutOf(code);
-      if (!layout.offsets.contains("Parameters")) continue;  // swing and pose need no tuning
+      if (!layout.offsets.contains("Parameters"))
+        continue;  // swing and pose need none but of loop and planted
       ++found;
       const auto& offsets = layout.offsets.at("Parameters");
       ASSERT_EQ(offsets.size(), parameterOffsets().size()) << stage.name;
       for (const auto& [member, offset] : parameterOffsets())
         EXPECT_EQ(offsets.at(member), offset) << stage.name << ": " << member;
     }
-  EXPECT_EQ(found, 14);
+  EXPECT_EQ(found, 24);
 }
 
 TEST(Records, PushConstantsAndStrides) {

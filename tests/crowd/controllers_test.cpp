@@ -1,0 +1,218 @@
+// What holds of every controller, and what loop, clip and planted promise.
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "crowd/herd.h"
+#include "crowd/simulation.h"
+
+namespace skitter::test {
+namespace {
+
+void expectPass(const std::vector<validation::StageResult>& results) {
+  for (const validation::StageResult& stage : results) {
+    if (stage.name == "measure" && !kMeasureJudgesByFeet) continue;
+    EXPECT_TRUE(stage.pass) << stage.name << ": " << stage.worst << "; " << stage.ties << " ties of "
+                            << stage.samples;
+    EXPECT_GT(stage.samples, 0u) << stage.name;
+  }
+}
+
+using Case = std::tuple<LoadPath, const char*>;
+
+class ControllersTest : public GpuTest, public ::testing::WithParamInterface<Case> {
+ protected:
+  ControllersTest() : GpuTest(std::get<0>(GetParam())) {}
+  std::string controller() const { return std::get<1>(GetParam()); }
+};
+
+TEST_P(ControllersTest, FromAStandingStart) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device(), ground, sceneOf(40, 1, 1, controller()));
+  expectPass(replay(device(), crowd, ground, 180));
+}
+
+TEST_P(ControllersTest, TurnsRoundAndStops) {
+  Scene scene = sceneOf(16, 1.5f, 3, controller());
+  scene.herds[0].spawn.kind = Spawn::Kind::grid;
+  scene.herds[0].spawn.heading = 3;  // nearly away from the target
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 2}, .speed = 1.5f};
+  const Heightfield ground = smallRollingGround();
+  Crowd crowd(device(), ground, scene);
+  expectPass(replay(device(), crowd, ground, 420));
+}
+
+TEST_P(ControllersTest, TurnsBackAtTheEdgeAndFast) {
+  const Heightfield ground = smallRollingGround();
+  Crowd crowd(device(), ground, sceneOf(16, 3, 7, controller()));
+  simulate(device(), crowd, 420);
+  expectPass(replay(device(), crowd, ground, 180, 7));
+}
+
+// Feet are wanted on a wall's far side, and the body falls past it.
+TEST_P(ControllersTest, PastACliff) {
+  const Heightfield ground = cliffGround();
+  Crowd crowd(device(), ground, sceneOf(16, 2, 1, controller()));
+  const auto atTheWall = [&] {
+    const HerdState state = crowd.download(0);
+    size_t past = 0;
+    for (size_t agent = 0; agent < state.agents; ++agent) past += positionOf(state, agent).y < -1 ? 1 : 0;
+    return past;
+  };
+  while (atTheWall() == 0 && crowd.tick() < 2000) simulate(device(), crowd, 20);
+  ASSERT_GT(atTheWall(), 0u);
+  expectPass(replay(device(), crowd, ground, 90));
+}
+
+TEST_P(ControllersTest, AnyNumberOfAgentsInAnyPages) {
+  const Heightfield ground = smallRollingGround();
+  const auto hashOf = [&](uint32_t agents, const CrowdOptions& options) {
+    Crowd crowd(device(), ground, sceneOf(agents, 1, 1, controller()), options);
+    simulate(device(), crowd, 40);
+    const HerdState state = crowd.download(0);
+    EXPECT_EQ(state.agents, agents);
+    for (const auto* records : {&state.body, &state.step, &state.foot, &state.chain, &state.pose, &state.play,
+                                &state.start, &state.fix})
+      for (const float value : *records) {
+        EXPECT_TRUE(std::isfinite(value));
+        if (!std::isfinite(value)) return uint64_t{0};
+      }
+    return crowd.stateHash();
+  };
+  for (const uint32_t agents : {0u, 1u, 63u, 64u, 65u}) {
+    SCOPED_TRACE(agents);
+    const uint64_t whole = hashOf(agents, {});
+    EXPECT_EQ(whole, hashOf(agents, {})) << "twice the same";
+    EXPECT_EQ(whole, hashOf(agents, {.pageAgents = 7})) << "pages show";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, ControllersTest,
+                         ::testing::Combine(bothLoadPaths(), ::testing::Values("loop", "clip", "planted")),
+                         [](const auto& param) {
+                           return std::string(std::get<1>(param.param)) +
+                                  (std::get<0>(param.param) == LoadPath::texel ? "Texel" : "Storage");
+                         });
+
+class ControllerTest : public GpuTest, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ControllerTest, LoadPathsAgreeToTheBit) {
+  const auto hashAfter = [&](LoadPath loads) {
+    Device device = Device::create(validatedRequest(loads));
+    uint64_t hash = 0;
+    {
+      Crowd crowd(device, rollingGround(), sceneOf(65, 1, 1, GetParam()));
+      simulate(device, crowd, 60);
+      hash = crowd.stateHash();
+    }
+    failOnMessages(*device.validationLog());
+    return hash;
+  };
+  EXPECT_EQ(hashAfter(LoadPath::texel), hashAfter(LoadPath::storage));
+}
+
+INSTANTIATE_TEST_SUITE_P(, ControllerTest, ::testing::Values("loop", "clip", "planted"),
+                         [](const auto& param) { return std::string(param.param); });
+
+using HerdsTest = GpuTest;
+
+// Herds with different stages in one crowd: each does what it does alone, and passes.
+TEST_F(HerdsTest, ControllersMix) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(12);
+  for (const char* controller : {"loop", "clip", "planted"}) {
+    Herd& herd = scene.herds.emplace_back(scene.herds[0]);
+    herd.controller = controller;
+    herd.agents += 5;
+  }
+  Crowd crowd(device(), ground, scene);
+  const auto results = replayAll(device(), crowd, ground, 90);
+  ASSERT_EQ(results.size(), 4u);
+  expectAllPass(results[0]);
+  for (size_t h = 1; h < 4; ++h) {
+    SCOPED_TRACE(scene.herds[h].controller);
+    expectPass(results[h]);
+  }
+  Crowd alone(device(), ground, sceneOf(12));
+  simulate(device(), alone, 91);
+  EXPECT_EQ(alone.download(0).body, crowd.download(0).body);
+  EXPECT_EQ(alone.download(0).step, crowd.download(0).step);
+}
+
+// How far feet slide while they stand, in leg lengths a stance. A stance that had begun before, or has not
+// ended, does not count.
+struct Slip {
+  double mean = 0, worst = 0;
+  size_t stances = 0;
+};
+
+Slip slipOver(Device& device, Crowd& crowd, int ticks) {
+  const Rig& rig = crowd.rig(0);
+  const auto legs = static_cast<size_t>(rig.legCount());
+  const auto chainFloats = static_cast<size_t>(shared::chainStride(rig.maxBones())) * 4;
+  const auto tipAt = static_cast<size_t>(shared::chainDirections(rig.maxBones())) * 4;
+  const auto feetOf = [&](const HerdState& state) {
+    std::vector<glm::dvec3> feet;
+    for (size_t leg = 0; leg < state.agents * legs; ++leg) {
+      const float* tip = &state.chain[leg * chainFloats + tipAt];
+      feet.push_back(positionOf(state, leg / legs) + glm::dvec3(tip[0], tip[1], tip[2]));
+    }
+    return feet;
+  };
+  HerdState before = crowd.download(0);
+  std::vector<glm::dvec3> last = feetOf(before);
+  std::vector<double> slid(last.size(), -1);  // -1: its beginning was not seen
+  Slip slip;
+  for (int i = 0; i < ticks; ++i) {
+    simulate(device, crowd, 1);
+    const HerdState after = crowd.download(0);
+    const std::vector<glm::dvec3> feet = feetOf(after);
+    for (size_t leg = 0; leg < feet.size(); ++leg) {
+      const bool was = plantedOf(before, leg), is = plantedOf(after, leg);
+      if (is && !was) slid[leg] = 0;
+      if (is && was && slid[leg] >= 0)
+        slid[leg] += std::hypot(feet[leg].x - last[leg].x, feet[leg].z - last[leg].z);
+      if (is || !was || slid[leg] < 0) continue;
+      const double share = slid[leg] / rig.legLength;
+      slip.mean += share;
+      slip.worst = std::max(slip.worst, share);
+      ++slip.stances;
+    }
+    before = after;
+    last = feet;
+  }
+  slip.mean /= static_cast<double>(std::max(slip.stances, size_t{1}));
+  ::testing::Test::RecordProperty("meanSlip", std::to_string(slip.mean));
+  ::testing::Test::RecordProperty("worstSlip", std::to_string(slip.worst));
+  ::testing::Test::RecordProperty("stances", static_cast<int>(slip.stances));
+  return slip;
+}
+
+using SlipTest = GpuTest;
+
+TEST_F(SlipTest, LoopsStandOnFlatGround) {
+  Crowd crowd(device(), flatGround(), sceneOf(16, 1, 1, "loop"));
+  simulate(device(), crowd, 120);  // straight on at a constant speed from then
+  const Slip slip = slipOver(device(), crowd, 180);
+  EXPECT_GT(slip.stances, 500u);
+  EXPECT_LT(slip.mean, 0.005);
+}
+
+TEST_F(SlipTest, PlantedFeetStandOnRollingGround) {
+  Crowd crowd(device(), rollingGround(), sceneOf(16, 1, 1, "planted"));
+  simulate(device(), crowd, 60);
+  const Slip slip = slipOver(device(), crowd, 240);
+  EXPECT_GT(slip.stances, 300u);
+  EXPECT_LT(slip.mean, 0.005);
+}
+
+TEST_F(SlipTest, ClipsRunAsFastAsTheGround) {
+  Crowd crowd(device(), flatGround(), sceneOf(16, 1, 1, "clip"));
+  simulate(device(), crowd, 120);
+  const Slip slip = slipOver(device(), crowd, 180);
+  EXPECT_GT(slip.stances, 300u);
+  EXPECT_LT(slip.mean, 0.05);
+}
+
+}  // namespace
+}  // namespace skitter::test
