@@ -21,6 +21,15 @@ void push(std::vector<float>& records, float a, float b, float c, float d) {
   records.insert(records.end(), {a, b, c, d});
 }
 
+// The frame that a clip shows at a time, and the fraction of the way to the next.
+glm::vec2 frameAt(const ClipRecords& clips, int clip, float time) {
+  const float* head = &clips.heads[static_cast<size_t>(clip) * 4];
+  const auto first = static_cast<size_t>(head[0]), end = first + static_cast<size_t>(head[1]);
+  size_t frame = first;
+  while (frame + 1 < end && clips.times[(frame + 1) * 4] <= time) ++frame;
+  return {static_cast<float>(frame), (time - clips.times[frame * 4]) * clips.times[frame * 4 + 1]};
+}
+
 }  // namespace
 
 Spawner::Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield& terrain, uint64_t seed)
@@ -111,7 +120,8 @@ void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
       const float time = seconds * uniform(seed_, agent, 2);
       push(state.play, clip, time, clip, time);
       push(state.play, 1, 0, 0, 0);
-      push(state.play, 0, 0, 0, 0);
+      const glm::vec2 frame = frameAt(clips_, clips_.standing, time);
+      push(state.play, frame.x, frame.y, frame.x, frame.y);
     }
 
     for (const Leg& leg : rig_.legs) {

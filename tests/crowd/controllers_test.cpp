@@ -3,8 +3,10 @@
 #include <string>
 #include <tuple>
 
+#include "cpu_reference/play.h"
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
+#include "validation/convert_clip.h"
 
 namespace skitter::test {
 namespace {
@@ -113,6 +115,29 @@ TEST_P(ControllerTest, LoadPathsAgreeToTheBit) {
 
 INSTANTIATE_TEST_SUITE_P(, ControllerTest, ::testing::Values("loop", "clip", "planted"),
                          [](const auto& param) { return std::string(param.param); });
+
+using ClipHerdTest = GpuTest;
+
+// The first picture, and the feet that are put on the ground before the first tick, are of what is played.
+TEST_F(ClipHerdTest, BeginsWithTheFramesOfItsTime) {
+  for (const char* controller : {"clip", "planted"}) {
+    Crowd crowd(device(), rollingGround(), sceneOf(20, 1, 1, controller));
+    const crowd::Herd& herd = crowd.impl().herds[0];
+    const reference::ClipTable table = validation::clipTableOf(herd.clips, herd.legs, herd.bones);
+    const HerdState state = crowd.download(0);
+    for (size_t agent = 0; agent < 20; ++agent) {
+      const reference::Play play = validation::playOf(state, agent, table);
+      for (reference::Play::Played played : {play.to, play.from}) {
+        EXPECT_EQ(played.clip, herd.clips.standing);
+        const size_t frame = played.frame;
+        const double fraction = played.fraction;
+        reference::findFrame(table, played);
+        EXPECT_EQ(frame, played.frame);
+        EXPECT_NEAR(fraction, played.fraction, 1e-5);
+      }
+    }
+  }
+}
 
 using HerdsTest = GpuTest;
 
