@@ -78,9 +78,10 @@ void main() {
   offset *= locked ? 1.0 : parameters.plantKeep;
   target = locked ? lock : wanted + offset;
   u = locked ? 1.0 : 0.5;
-  // Both tiles are the body's present one.
-  STORE4(stepsOut, stepAt, vec4(lock + body.local, body.tile.x));
-  STORE4(stepsOut, stepAt + 1, vec4(offset, body.tile.y));
+  // A lock stays as it was written, in the tile of that tick; rounded anew in every tick it would creep.
+  bool kept = locked && !locks;
+  STORE4(stepsOut, stepAt, kept ? s0 : vec4(lock + body.local, body.tile.x));
+  STORE4(stepsOut, stepAt + 1, vec4(offset, kept ? s1.w : body.tile.y));
   STORE4(stepsOut, stepAt + 2, vec4(0.0, 0.0, 0.0, locked ? 1.0 : 0.0));
   STORE4(stepsOut, stepAt + 3, vec4(0.0));
   vec3 end = joint[0];

@@ -213,6 +213,28 @@ Slip slipOver(Device& device, Crowd& crowd, int ticks) {
   return slip;
 }
 
+// A lock is a constant: a foot that stands for an hour has not crept.
+TEST_F(ClipHerdTest, LocksStayToTheBit) {
+  Crowd crowd(device(), rollingGround(), sceneOf(16, 1, 1, "planted"));
+  simulate(device(), crowd, 30);
+  HerdState before = crowd.download(0);
+  size_t kept = 0;
+  for (int tick = 0; tick < 60; ++tick) {
+    simulate(device(), crowd, 1);
+    HerdState after = crowd.download(0);
+    for (size_t leg = 0; leg < after.foot.size() / 4; ++leg) {
+      const reference::Plant was = validation::plantOf(before, leg), is = validation::plantOf(after, leg);
+      if (!was.locked || !is.locked) continue;
+      ++kept;
+      EXPECT_EQ(was.lock, is.lock);
+      EXPECT_EQ(was.tileX, is.tileX);
+      EXPECT_EQ(was.tileZ, is.tileZ);
+    }
+    before = std::move(after);
+  }
+  EXPECT_GT(kept, 1000u);
+}
+
 using SlipTest = GpuTest;
 
 TEST_F(SlipTest, LoopsStandOnFlatGround) {
