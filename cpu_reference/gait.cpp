@@ -144,7 +144,6 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
                 const GaitChoices& choices, WatchedGround watched) {
   GaitResult result;
   Gait& next = result.gait;
-  const double groups = creature.groups;
 
   const Stride stride = strideOf(tuning, creature.groups, body, choices.duration);
   next.halfStride = stride.half;

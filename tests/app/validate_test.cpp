@@ -27,15 +27,10 @@ TEST_F(Validate, EveryStageAgreesWithTheReference) {
                                              "measure"}));
 }
 
-// measure reads step records, which the other controllers use otherwise or not at all, until it judges by
-// feet.
-constexpr bool kMeasureJudgesByFeet = false;
-
 std::vector<std::string> stagesThatAgree(const nlohmann::json& validation) {
   std::vector<std::string> names;
   for (const nlohmann::json& stage : validation.at("stages")) {
     names.push_back(stage.at("name"));
-    if (names.back() == "measure" && !kMeasureJudgesByFeet) continue;
     EXPECT_TRUE(stage.at("pass")) << names.back();
     EXPECT_GT(stage.at("samples"), 0) << names.back();
   }
@@ -51,7 +46,7 @@ TEST_F(Validate, EveryControllerHasItsStages) {
     SCOPED_TRACE(controller);
     const Result result = skitter({"validate", "--controller", controller, "--agents", "8", "--frames", "20",
                                    "--json", file("v.json")});
-    EXPECT_LE(result.code, kMeasureJudgesByFeet ? 0 : 1) << result.out << result.err;
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
     EXPECT_EQ(stagesThatAgree(json("v.json")), names);
   }
 }
@@ -61,7 +56,7 @@ TEST_F(Validate, HerdsWithDifferentStagesAreOneTable) {
     {"rig": "spider", "controller": "clip", "agents": 4},
     {"rig": "spider", "controller": "adaptive", "agents": 4}]})");
   const Result result = skitter({"validate", file("mixed.json"), "--frames", "20", "--json", file("v.json")});
-  EXPECT_LE(result.code, kMeasureJudgesByFeet ? 0 : 1) << result.out << result.err;
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
   EXPECT_EQ(stagesThatAgree(json("v.json")),
             (std::vector<std::string>{"navigate", "body", "clip", "gait", "foothold", "swing", "ik", "pose",
                                       "measure"}));

@@ -25,7 +25,6 @@ TEST_P(MutantTest, IsRefused) {
   const Heightfield ground = rollingGround();
   Crowd crowd(device(), ground, sceneOf(64, 1, 1, mutant.controller), {.shaders = {mutant.shader}});
   for (const validation::StageResult& stage : replay(device(), crowd, ground, 60)) {
-    if (stage.name == "measure" && mutant.controller != "adaptive" && !kMeasureJudgesByFeet) continue;
     EXPECT_EQ(stage.pass, stage.name != mutant.shader.stage) << stage.name << ": " << stage.worst;
   }
 }

@@ -13,9 +13,6 @@
 namespace skitter::test {
 
 constexpr float kTick = 1.0f / 60;
-// measure reads step records, which controllers other than adaptive use otherwise or not at all; true once it
-// judges by feet.
-constexpr bool kMeasureJudgesByFeet = false;
 
 // A scene of one herd on generated ground.
 Scene sceneOf(uint32_t agents, float speed = 1, uint64_t seed = 1,
