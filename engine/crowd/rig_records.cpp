@@ -35,6 +35,7 @@ std::vector<float> rigRecords(const Rig& rig) {
     append(records, leg.root(), leg.reach);
     append(records, leg.home, static_cast<float>(leg.group));
     append(records, {order[l].lag, static_cast<float>(order[l].neighbours), 0}, 0);
+    glm::mat3 before(1);
     for (int i = 0; i < rig.maxBones(); ++i) {
       const bool present = i < static_cast<int>(leg.bones.size());
       const Bone& bone = present ? leg.bones[static_cast<size_t>(i)] : leg.bones.back();
@@ -42,12 +43,18 @@ std::vector<float> rigRecords(const Rig& rig) {
       glm::vec3 x = frameX(bone.direction);
       x = glm::normalize(x - bone.direction * glm::dot(x, bone.direction));
       const float half = std::min(bone.coneHalfAngle, kWidestCone) / 2;
-      append(records, x, present ? bone.length / leg.reach : 0.0f);
-      append(records, bone.direction, present ? std::tan(half) : 0.0f);
+      const float length = present ? bone.length / leg.reach : 0.0f, edge = present ? std::tan(half) : 0.0f;
+      append(records, x, length);
+      append(records, bone.direction, edge);
       // The first joint turns the whole leg, so it yields to the target more readily than the others.
       append(records, present ? bone.start : leg.home, i == 0 ? 0.2f : 1.0f);
       append(records, glm::vec3(0), 0);
       append(records, glm::vec3(shared::LIMIT_CONE, 0, 0), 0);
+      const glm::mat3 frame(x, glm::cross(bone.direction, x), bone.direction);
+      const glm::mat3 carry = glm::transpose(before) * frame;
+      append(records, carry[0], length);
+      append(records, carry[2], edge);
+      before = frame;
     }
   }
   return records;

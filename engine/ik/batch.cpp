@@ -109,6 +109,7 @@ struct Batch::Impl {
     return positional ? bones : static_cast<uint64_t>(shared::stateStride(static_cast<int>(bones), twists));
   }
   gpu::ShaderCode code() const;
+  int quickSteps() const;
   gpu::Kernel makeKernel(int pass) const;
   void makePages();
   void bind(Page&);
@@ -172,6 +173,13 @@ gpu::ShaderCode Batch::Impl::code() const {
   return {embedded::solve_limited_comp_texel(), embedded::solve_limited_comp_storage()};
 }
 
+// As many as most chains need: fewer leave more to the second dispatch, more cost all chains (and longer to compile).
+int Batch::Impl::quickSteps() const {
+  const bool tracks = options.start == Start::previous;
+  if (positional) return tracks ? 2 : 4;
+  return tracks ? 1 : 5;
+}
+
 gpu::Kernel Batch::Impl::makeKernel(int pass) const {
   using namespace shared;
   using enum gpu::BindingKind;
@@ -198,7 +206,10 @@ gpu::Kernel Batch::Impl::makeKernel(int pass) const {
                     {CONSTANT_POLE, chain.pole.has_value()},
                     {CONSTANT_REST_LEGAL, skeleton.restIsLegal()},
                     {CONSTANT_PULL, solver == Solver::activeSet && options.restPull > 0},
-                    {CONSTANT_PASS, pass}};
+                    {CONSTANT_PASS, pass},
+                    {CONSTANT_STEPS, pass == PASS_QUICK ? quickSteps() : 0},
+                    {CONSTANT_PARALLEL, parallelWord(skeleton)},
+                    {CONSTANT_PADDED, skeleton.isPadded()}};
   return {*context, info};
 }
 

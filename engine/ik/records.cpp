@@ -30,8 +30,9 @@ std::vector<float> boneRecords(const Skeleton& skeleton) {
   const std::vector<glm::dvec3> rest = skeleton.place(skeleton.rest());
   for (size_t i = 0; i < skeleton.bones(); ++i) {
     const Skeleton::Joint& joint = skeleton.joints()[i];
+    const double edge = std::tan(std::min(greatestAngle(joint.limit, 0), kWidestAngle) / 2);
     append(records, joint.frame[0], joint.length);
-    append(records, joint.frame[2], std::tan(std::min(greatestAngle(joint.limit, 0), kWidestAngle) / 2));
+    append(records, joint.frame[2], edge);
     append(records, start, joint.stiffness);
     if (const auto* ellipse = std::get_if<Ellipse>(&joint.limit)) {
       append(records, {ellipse->px, ellipse->py, ellipse->nx}, ellipse->ny);
@@ -43,6 +44,10 @@ std::vector<float> boneRecords(const Skeleton& skeleton) {
     // The dissertation asks whether there is a cone at all.
     const int kind = std::holds_alternative<Free>(joint.limit) ? 0 : kindOf(joint.limit);
     append(records, {kind, std::tan(joint.twistMin / 2), std::tan(joint.twistMax / 2)}, 0);
+    const glm::dmat3 carry =
+        i == 0 ? joint.frame : glm::transpose(skeleton.joints()[i - 1].frame) * joint.frame;
+    append(records, carry[0], joint.length);
+    append(records, carry[2], edge);
     start = rest[i];
   }
   return records;
@@ -58,6 +63,17 @@ std::pair<uint32_t, uint32_t> limitWords(const Skeleton& skeleton) {
                                              << 4 * (i % shared::LIMIT_BONES_A_WORD);
   }
   return {words[0], words[1]};
+}
+
+uint32_t parallelWord(const Skeleton& skeleton) {
+  uint32_t word = 0;
+  for (size_t i = 1; i < skeleton.bones(); ++i) {
+    const Skeleton::Joint &before = skeleton.joints()[i - 1], &joint = skeleton.joints()[i];
+    const bool parallel =
+        kindOf(joint.limit) == shared::LIMIT_HINGE && glm::length(joint.frame[0] - before.frame[0]) < 1e-7;
+    word |= static_cast<uint32_t>(parallel) << i;
+  }
+  return word;
 }
 
 void appendPose(const Skeleton& skeleton, const Skeleton::Pose& pose, std::vector<float>& records) {
@@ -76,7 +92,12 @@ std::vector<float> seedRecords(const Skeleton& skeleton, const std::vector<Skele
   std::vector<float> records;
   for (const Skeleton::Pose& pose : seeds) {
     appendPose(skeleton, pose, records);
-    for (const glm::dvec3& p : skeleton.place(pose)) append(records, p, 0);
+    const std::vector<glm::dvec3> joints = skeleton.place(pose);
+    double squares = 0;
+    for (const glm::dvec3& p : joints) squares += glm::dot(p, p);
+    const glm::dvec3& tip = joints.back();
+    const double own = glm::dot(tip, tip) + 0.1 * squares / static_cast<double>(joints.size());
+    for (const glm::dvec3& p : joints) append(records, p, &p == &tip ? own / 2 : 0);
   }
   return records;
 }

@@ -12,6 +12,8 @@ namespace skitter::ik {
 std::vector<float> boneRecords(const Skeleton&);
 // CONSTANT_LIMITS_LOW and CONSTANT_LIMITS_HIGH.
 std::pair<uint32_t, uint32_t> limitWords(const Skeleton&);
+// CONSTANT_PARALLEL.
+uint32_t parallelWord(const Skeleton&);
 // Directions and twists, whole vec4.
 void appendPose(const Skeleton&, const Skeleton::Pose&, std::vector<float>& records);
 std::vector<float> seedRecords(const Skeleton&, const std::vector<Skeleton::Pose>&);

@@ -77,6 +77,10 @@ bool Skeleton::hasTwists() const {
                      [](const Joint& joint) { return joint.twistMin != 0 || joint.twistMax != 0; });
 }
 
+bool Skeleton::isPadded() const {
+  return std::any_of(joints_.begin(), joints_.end(), [](const Joint& joint) { return joint.length == 0; });
+}
+
 bool Skeleton::restIsLegal() const {
   const Pose pose = rest();
   return std::all_of(pose.directions.begin(), pose.directions.end(),

@@ -30,6 +30,7 @@ class Skeleton {
   const std::vector<Joint>& joints() const { return joints_; }
   size_t bones() const { return joints_.size(); }
   bool hasTwists() const;
+  bool isPadded() const;        // a bone has no length
   bool restIsLegal() const;     // no limit forbids it
   bool restIsStraight() const;  // every joint within 2e-3 of the line base-tip
 

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Chains whose pose is their joints: free ones, and those of the dissertation (docs/ik.md).
 #include "ik/batch.glsl"
 #include "lib/dissertation.glsl"
@@ -72,7 +73,7 @@ void main() {
   reason = error > constants.tolerance && !open ? STOP_CAP : reason;
   // A target out of reach: straight toward it.
   vec3 toward = unit(target), p = vec3(0.0);
-  bool reachFor = open && far;
+  bool reachFor = PASS != PASS_QUICK && open && far;
   for (int i = 0; i < BONES; ++i) {
     p += bone[i] * toward;
     pose.joint[i + 1] = reachFor ? p : pose.joint[i + 1];
@@ -89,16 +90,19 @@ void main() {
   FreePose best;
   best.joint[0] = vec3(0.0);
   for (int i = 1; i <= BONES; ++i) best.joint[i] = pose.joint[i];
-  if (SOLVER == SOLVER_STRETCH_ALIGN && open) {
-    stretchAlign(bone, target, pole, constants.tolerance, pose);
+  bool aligned = true;
+  if (SOLVER == SOLVER_STRETCH_ALIGN) {
+    // Not in an `if` on `open`, which would not skip it on a device that masks lanes.
+    aligned = stretchAlign(bone, target, pole, constants.tolerance, PASS == PASS_QUICK ? STEPS : 0, pose) || !open;
     last = distance(target, pose.joint[BONES]);
-    k = 1;
-    for (int i = 1; i <= BONES; ++i) pose.joint[i] = last < error ? pose.joint[i] : best.joint[i];
-    error = last = min(error, last);
-    open = error > constants.tolerance;
+    k = open ? 1 : k;
+    bool nearer = open && last < error;
+    for (int i = 1; i <= BONES; ++i) pose.joint[i] = nearer ? pose.joint[i] : best.joint[i];
+    error = last = nearer ? last : error;
+    open = open && error > constants.tolerance;
   }
   if (PASS == PASS_QUICK) {
-    bool needsMore = open && k < iterations;
+    bool needsMore = !aligned || far || (open && k < iterations);
     enlist(needsMore, chain);
     if (needsMore) return;
   }

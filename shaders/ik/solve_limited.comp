@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Chains with limits (docs/ik.md).
 #include "ik/batch.glsl"
 #include "lib/active_set.glsl"
@@ -42,8 +43,57 @@ float foldOf(vec3 pole, Pose pose) {
 // Copies what a pose is made of, without what follows from it.
 void copyIf(bool copied, inout Pose to, Pose from) {
   for (int i = 0; i < BONES; ++i) {
-    to.d[i] = copied ? from.d[i] : to.d[i];
-    if (mayBe(i, LIMIT_TWIST)) to.twist[i] = copied ? from.twist[i] : to.twist[i];
+    to.swing[i] = copied ? from.swing[i] : to.swing[i];
+    if (isKind(i, LIMIT_TWIST)) to.twist[i] = copied ? from.twist[i] : to.twist[i];
+  }
+}
+
+// How far an attempt has come.
+struct Attempt {
+  bool running;
+  float last;  // error before the step
+  int steps, idle;
+};
+
+// One step, until the target is reached, nothing is gained any more or another attempt is worth more.
+void advance(Limb limb, vec3 target, bool follows, int most, inout Attempt attempt, inout Pose pose, inout Pose best,
+             inout float error, inout float bestError, inout float damping, inout int k) {
+  iterate(limb, target, !attempt.running, pose, error, damping);
+  k += attempt.running ? 1 : 0;
+  if (!ATTEMPTS_ALONE_IMPROVE) {
+    copyIf(error < bestError, best, pose);
+    bestError = min(error, bestError);
+  }
+  bool arrived = error <= constants.tolerance;
+  attempt.idle = error > IDLE * attempt.last ? attempt.idle + 1 : 0;
+  bool stalled = SOLVER == SOLVER_ACTIVE_SET ? !follows && attempt.idle >= IDLE_STEPS
+                                             : abs(attempt.last - error) < leastProgress();
+  bool ended = arrived ? !PULL || k > 1 : stalled || (follows && (error > SLOW * attempt.last || ++attempt.steps >= ATTEMPT));
+  attempt.last = error;
+  attempt.running = attempt.running && !ended && k < most;
+}
+
+// The nearest four, or as many as there are, of the seeds not yet tried, by |tip_s - target|^2 + 0.1 mean |p_s,i - start_i|^2
+// without what all seeds have in common, halved. One look at all seeds costs as much as several steps.
+void findSeeds(vec3 target, vec3 start[BONES], uvec2 untried, out ivec4 queue, out int queued) {
+  vec4 least = vec4(1e30);
+  queue = ivec4(0);
+  queued = 0;
+  float share = 0.1 / float(BONES);
+  for (int s = 0; s < int(constants.seeds); ++s) {
+    int at = s * seedStride(BONES, TWISTS) + stateStride(BONES, TWISTS);
+    float score = 0.0;
+    for (int i = 0; i < BONES; ++i) {
+      vec4 p = LOAD4(seeds, at + i);
+      score += p.w - dot(p.xyz, i + 1 < BONES ? share * start[i] : share * start[i] + target);
+    }
+    bool fresh = ((s < 32 ? untried.x : untried.y) >> uint(s & 31) & 1u) != 0u;
+    queued = min(queued + (fresh ? 1 : 0), 4);
+    bvec4 before = lessThan(vec4(fresh ? score : 1e31), least);
+    queue = ivec4(before.x ? s : queue.x, before.x ? queue.x : before.y ? s : queue.y,
+                  before.y ? queue.y : before.z ? s : queue.z, before.z ? queue.z : before.w ? s : queue.w);
+    least = vec4(before.x ? score : least.x, before.x ? least.x : before.y ? score : least.y,
+                 before.y ? least.y : before.z ? score : least.z, before.z ? least.z : before.w ? score : least.w);
   }
 }
 
@@ -58,7 +108,7 @@ void main() {
   float pauses = floor(memory.x / STOPS);
   float nextPause = floor(pauses / PAUSES), pause = pauses - PAUSES * nextPause;
   if (PREVIOUS) {
-    LOAD_DIRECTIONS(pose.d, states, at);
+    LOAD_SWINGS(pose.swing, states, at);
     LOAD_TWISTS(pose.twist, states, at + stateTwists(BONES));
     forwardKinematics(limb, pose);
   } else {
@@ -74,12 +124,10 @@ void main() {
 
   float error = distance(target, pose.tip), damping = memory.y;
   int k = 0, budget = int(constants.iterations), spent = budget - budget / 4;
-  bool pulls = PULL;
   bool folded = POLE && foldOf(pole, pose) < -1e-3;
-  bool open = (error > constants.tolerance || folded || pulls) && budget > 0 && !lost;
+  bool open = (error > constants.tolerance || folded || PULL) && budget > 0 && !lost;
   bool stuck = STRAIGHT && open && deadlocked(target, pose), needsMore = stuck || folded;
-  // Rare work stands in loops, which are skipped where no chain of a subgroup needs it.
-  for (; PASS != PASS_QUICK && stuck; stuck = false) {
+  if (PASS != PASS_QUICK && stuck) {
     bend(limb, pose);
     error = distance(target, pose.tip);
   }
@@ -92,56 +140,38 @@ void main() {
   copyIf(true, best, pose);
   float bestError = ATTEMPTS_ALONE_IMPROVE ? 1e30 : error;
   uvec2 untried = uvec2(0xffffffffu);
+  ivec4 queue = ivec4(0);  // the nearest seeds of those
+  int queued = 0;
   bool first = true, inVain = false;
   // A chain folded to the wrong side begins at a seed.
   bool again = open && folded && follows;
-  while (open) {
-    bool running = !again;
-    float last = error;
-    int attempt = 0, idle = 0;
-    while (running) {
-      iterate(limb, target, lost, pose, error, damping);
-      ++k;
-      if (!ATTEMPTS_ALONE_IMPROVE) {
-        copyIf(error < bestError, best, pose);
-        bestError = min(error, bestError);
-      }
-      bool arrived = error <= constants.tolerance;
-      idle = error > IDLE * last ? idle + 1 : 0;
-      bool stalled = SOLVER == SOLVER_ACTIVE_SET ? !follows && idle >= IDLE_STEPS : abs(last - error) < leastProgress();
-      bool ended = arrived ? !pulls || k > 1 : stalled || (follows && (error > SLOW * last || ++attempt >= ATTEMPT));
-      last = error;
-      running = !ended && k < (follows ? spent : budget);
-    }
-    open = follows && k < budget && (again || error > constants.tolerance);
-    needsMore = needsMore || open;
-    if (PASS == PASS_QUICK) break;
-    for (bool next = open; next; next = false) {
+  // The steps that most chains need stand in a row: on a device that masks lanes a loop's body is run once more after
+  // the last lane has left it, and what it changes is blended twice.
+  Attempt attempt = Attempt(open && !again, error, 0, 0);
+  if (PASS == PASS_QUICK) {
+    [[unroll]] for (int i = 0; i < STEPS; ++i)
+      advance(limb, target, follows, follows ? spent : budget, attempt, pose, best, error, bestError, damping, k);
+    needsMore = needsMore || again || attempt.running || (open && follows && k < budget && error > constants.tolerance);
+  }
+  while (PASS != PASS_QUICK && open) {
+    while (attempt.running)
+      advance(limb, target, follows, follows ? spent : budget, attempt, pose, best, error, bestError, damping, k);
+    open = open && follows && k < budget && (again || error > constants.tolerance);
+    if (open) {
       bool keep = !again && error < (first ? bestError : worth * bestError);
       copyIf(keep, best, pose);
       bestError = keep ? error : bestError;
       worth = keep && !first ? 1.0 : worth;
       first = first && again;
-      float least = 1e30;
-      int nearest = 0;
-      for (int s = 0; s < int(constants.seeds); ++s) {
-        int seedAt = s * seedStride(BONES, TWISTS) + stateStride(BONES, TWISTS);
-        vec3 away = LOAD4(seeds, seedAt + BONES - 1).xyz - target;
-        float score = dot(away, away), moved = 0.0;
-        for (int i = 0; i < BONES; ++i) {
-          vec3 by = LOAD4(seeds, seedAt + i).xyz - start[i];
-          moved += dot(by, by);
-        }
-        score += 0.1 * moved / float(BONES);
-        bool fresh = ((s < 32 ? untried.x : untried.y) >> uint(s & 31) & 1u) != 0u;
-        nearest = fresh && score < least ? s : nearest;
-        least = fresh ? min(score, least) : least;
-      }
+      if (queued == 0) findSeeds(target, start, untried, queue, queued);
+      int nearest = queue.x;
+      bool seeded = queued > 0 && (k < spent || bestError > 1e29);
+      queue = queue.yzww;
+      queued = max(queued - 1, 0);
       uint bit = 1u << uint(nearest & 31);
       untried &= nearest < 32 ? uvec2(~bit, 0xffffffffu) : uvec2(0xffffffffu, ~bit);
-      bool seeded = least < 1e29 && (k < spent || bestError > 1e29);
       int seedAt = nearest * seedStride(BONES, TWISTS);
-      LOAD_DIRECTIONS(pose.d, seeds, seedAt);
+      LOAD_SWINGS(pose.swing, seeds, seedAt);
       LOAD_TWISTS(pose.twist, seeds, seedAt + stateTwists(BONES));
       // No more attempts: the best pose so far has what is left.
       copyIf(!seeded, pose, best);
@@ -152,10 +182,11 @@ void main() {
       error = distance(target, pose.tip);
       damping = 1.0;
       again = false;
+      attempt = Attempt(true, error, 0, 0);
     }
   }
   bool jumped = !first && error < worth * bestError && bestError < 1e30;
-  for (bool back = PASS != PASS_QUICK && !(error < (first ? bestError : worth * bestError)); back; back = false) {
+  if (PASS != PASS_QUICK && !(error < (first ? bestError : worth * bestError))) {
     copyIf(true, pose, best);
     forwardKinematics(limb, pose);
     error = distance(target, pose.tip);
@@ -173,7 +204,7 @@ void main() {
     bool paused = inVain && !arrived && !jumped && worth < 1.0;
     pause = paused ? nextPause : max(pause - 1.0, 0.0);
     nextPause = arrived || jumped ? FIRST_PAUSE : (paused ? min(2.0 * nextPause, LONGEST_PAUSE) : nextPause);
-    STORE_DIRECTIONS(statesOut, at, pose.d);
+    STORE_SWINGS(statesOut, at, pose.swing);
     STORE_TWISTS(statesOut, at + stateTwists(BONES), pose.twist);
   }
   for (int i = 1; i <= BONES; ++i) {
@@ -181,8 +212,9 @@ void main() {
     STORE4(jointsOut, chain * BONES + i - 1, vec4(BASES ? base + rotate(orientation, p) : p, 0.0));
   }
   if (ROTATIONS) {
+    vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
     for (int i = 0; i < BONES; ++i) {
-      vec4 r = swung(limb, i, pose.parent[i], pose.d[i], pose.twist[i]);
+      r = swung(limb, i, r, pose);
       STORE4(rotationsOut, chain * BONES + i, BASES ? quaternionProduct(orientation, r) : r);
     }
   }

@@ -6,59 +6,60 @@
 
 const float UNLIMITED = 1e9;
 
-// How far bone i may go along its radial column, downward and upward; turns an ellipse's columns to its rim.
-vec2 roomOf(Limb limb, Pose pose, int i, inout Columns c, inout vec2 normal) {
-  vec3 b = pose.d[i];
-  vec2 room = vec2(-UNLIMITED, UNLIMITED);
-  if (mayBe(i, LIMIT_CONE)) {
-    float below = limb.cosLimit[i] * b.z + limb.sinLimit[i] * c.s[i];
-    room.y = below < 0.1 ? UNLIMITED : (limb.sinLimit[i] * b.z - limb.cosLimit[i] * c.s[i]) / below;
+// A way in which a bone is limited: unit, in its (X, Y); how far it may go down and up it; its column.
+struct Way {
+  vec2 along, room;
+  vec3 column;
+};
+
+Way wayOf(Limb limb, int i, vec2 s, Columns c) {
+  Way way;
+  if (isKind(i, LIMIT_HINGE)) {
+    // tan(end - q), q = -2 atan(s.y).
+    vec2 to = limb.ends[i].xy + s.y, over = 1.0 - limb.ends[i].xy * s.y;
+    vec2 sines = 2.0 * to * over, cosines = over * over - to * to, least = 0.1 * (over * over + to * to);
+    way.along = vec2(0.0, -1.0);
+    way.room = vec2(cosines.x < least.x ? -UNLIMITED : sines.x / cosines.x,
+                    cosines.y < least.y ? UNLIMITED : sines.y / cosines.y);
+    way.column = -c.y[i];
+    return way;
   }
-  if (mayBe(i, LIMIT_ELLIPSE)) {
-    float theta = 2.0 * arctangent(c.s[i] / max(1.0 + b.z, 1e-6));
-    vec2 axes = ellipseAxes(limb.ends[i], c.h[i]), n = theta * c.h[i] / (axes * axes);
-    float share = sqrt(theta * dot(c.h[i], n));
-    vec2 slope = vec2(dot(c.h[i], n), (c.h[i].x * n.y - c.h[i].y * n.x) * theta / max(c.s[i], 1e-6));
-    bool ellipse = isKind(limb, i, LIMIT_ELLIPSE), small = theta < 1e-3;
-    normal = ellipse && !small ? unit(slope) : vec2(1.0, 0.0);
-    float toRim = small ? UNLIMITED : (1.0 - share) * share * inversesqrt(max(dot(slope, slope), 1e-20));
-    room.y = ellipse ? toRim : room.y;
-    vec3 radial = c.radial[i];
-    c.radial[i] = normal.x * radial + normal.y * c.tangential[i];
-    c.tangential[i] = normal.x * c.tangential[i] - normal.y * radial;
+  float s2 = dot(s, s), inverse = inversesqrt(max(s2, 1e-20));
+  vec2 h = s2 < 1e-13 ? vec2(1.0, 0.0) : s * inverse;
+  float r = s2 * inverse;
+  if (isKind(i, LIMIT_ELLIPSE)) {
+    float theta = 2.0 * arctangent(r);
+    vec2 axes = ellipseAxes(limb.ends[i], h), n = theta * h / (axes * axes);
+    float share = sqrt(theta * dot(h, n));
+    // theta / sin(theta) turns what is across h.
+    vec2 slope = vec2(dot(h, n), (h.x * n.y - h.y * n.x) * theta * (1.0 + s2) * 0.5 / max(r, 1e-6));
+    bool small = theta < 1e-3;
+    vec2 normal = small ? vec2(1.0, 0.0) : unit(slope);
+    way.along = vec2(normal.x * h.x - normal.y * h.y, normal.x * h.y + normal.y * h.x);
+    way.room = vec2(-UNLIMITED, small ? UNLIMITED : (1.0 - share) * share * inversesqrt(max(dot(slope, slope), 1e-20)));
+  } else {
+    // tan(alpha - theta) by half tangents.
+    float to = limb.edge[i] - r, over = 1.0 + limb.edge[i] * r;
+    float cosine = over * over - to * to;
+    way.along = h;
+    way.room = vec2(-UNLIMITED, cosine < 0.1 * (over * over + to * to) ? UNLIMITED : 2.0 * to * over / cosine);
   }
-  if (mayBe(i, LIMIT_HINGE)) {
-    // tan(end - q) from the cosines and sines of the ends; q = atan(-d.y, d.z).
-    vec2 t = limb.ends[i].xy, k = 1.0 / (1.0 + t * t), cosines = (1.0 - t * t) * k, sines = 2.0 * t * k;
-    vec2 along = cosines * b.z - sines * b.y, across = sines * b.z + cosines * b.y;
-    vec2 hinged = vec2(along.x < 0.1 ? -UNLIMITED : across.x / along.x,
-                       along.y < 0.1 ? UNLIMITED : across.y / along.y);
-    room = isKind(limb, i, LIMIT_HINGE) ? hinged : room;
-  }
-  return room;
+  way.column = way.along.x * c.x[i] + way.along.y * c.y[i];
+  return way;
 }
 
 vec2 twistRoomOf(Limb limb, Pose pose, int i) {
-  vec2 ends = limb.kind[i].yz, below = 1.0 + ends * pose.twist[i], room = 2.0 * (ends - pose.twist[i]) / max(below, vec2(0.1));
+  vec2 ends = limb.twists[i], below = 1.0 + ends * pose.twist[i], room = 2.0 * (ends - pose.twist[i]) / max(below, vec2(0.1));
   return vec2(below.x < 0.1 ? -UNLIMITED : room.x, below.y < 0.1 ? UNLIMITED : room.y);
 }
 
-float pullOf(Limb limb, Pose pose, Columns c, int i, float restPull) {
-  float z = -restPull * limb.stiffness[i] * c.s[i];
-  if (mayBe(i, LIMIT_HINGE)) z = isKind(limb, i, LIMIT_HINGE) ? restPull * limb.stiffness[i] * pose.d[i].y : z;
-  return z;
-}
-
-// Holds a column whose step leaves its room at that end: x becomes final, and its share of e is done.
-void hold(float x, vec2 room, vec3 column, inout float z, inout float free, inout Symmetric m, inout vec3 e,
-          inout bool again) {
+// Holds a column whose step x leaves its room at that end: its share of e, from `z` to that end, is done.
+void hold(float x, float z, vec2 room, vec3 column, inout float end, inout float free, inout Symmetric m, inout vec3 e) {
   bool held = free > 0.0 && (x > room.y || x < room.x);
-  float end = x > room.y ? room.y : room.x;
+  end = held ? (x > room.y ? room.y : room.x) : end;
   addOuter(m, column, held ? -1.0 : 0.0);
   e -= (held ? end - z : 0.0) * column;
-  z = held ? end : z;
   free = held ? 0.0 : free;
-  again = again || held;
 }
 
 // From `pose`, whose forward kinematics are done, one step and `chords` chord steps. On return `pose` and `error`
@@ -67,77 +68,58 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, float restPull, fl
                inout float error, inout float damping) {
   Columns c;
   columnsOf(limb, pose, pose.tip, c);
-  vec2 room[BONES], normal[BONES], twistRoom[BONES];
-  float x0[BONES], x1[BONES], x2[BONES], free[BONES], twistFree[BONES];
+  vec2 pull[BONES], x[BONES];
+  float twist[BONES], end[BONES], free[BONES], twistEnd[BONES], twistFree[BONES];
   vec3 e = target - pose.tip;
   float e2 = dot(e, e);
   Symmetric m = Symmetric(vec3((0.25 * min(e2, 0.25) + 1e-5) * damping), vec3(0.0));
   e *= min(1.0, 0.5 * inversesqrt(max(e2, 1e-20)));
   for (int i = 0; i < BONES; ++i) {
-    x0[i] = pullOf(limb, pose, c, i, restPull);
-    e -= x0[i] * c.radial[i];
-    room[i] = roomOf(limb, pose, i, c, normal[i]);
-    free[i] = 1.0;
-    addOuter(m, c.radial[i], 1.0);
-    addOuter(m, c.tangential[i], 1.0);
-    if (mayBe(i, LIMIT_ELLIPSE)) {
-      // The pull is radial; in turned columns it has two parts.
-      x1[i] = -normal[i].y * x0[i];
-      x0[i] = normal[i].x * x0[i];
-    } else {
-      x1[i] = 0.0;
-    }
-    if (mayBe(i, LIMIT_TWIST)) {
-      x2[i] = 0.0;
-      twistRoom[i] = twistRoomOf(limb, pose, i);
-      twistFree[i] = 1.0;
-      addOuter(m, c.twist[i], 1.0);
-    }
+    addOuter(m, c, i);
+    pull[i] = towardRest(pose.swing[i], restPull * limb.stiffness[i]);
+    e -= pull[i].x * c.x[i] + pull[i].y * c.y[i];
+    free[i] = twistFree[i] = 1.0;
+    end[i] = twistEnd[i] = 0.0;
   }
   Symmetric inverse = inverseOf(m);
   vec3 lambda = times(inverse, e);
-  // Few chains meet a limit: where none of a subgroup does, the loop is skipped.
-  bool again = false;
-  for (int i = 0; i < BONES; ++i) {
-    float x = x0[i] + dot(c.radial[i], lambda);
-    again = again || x > room[i].y;
-    if (mayBe(i, LIMIT_HINGE)) again = again || x < room[i].x;
-    if (mayBe(i, LIMIT_TWIST)) again = again || abs(dot(c.twist[i], lambda)) > 0.0;
-  }
-  for (int pass = 1; pass < 3 && again; ++pass) {
-    again = false;
+  Way way[BONES];
+  for (int i = 0; i < BONES; ++i) way[i] = wayOf(limb, i, pose.swing[i], c);
+  [[unroll]] for (int pass = 1; pass < 3; ++pass) {
     for (int i = 0; i < BONES; ++i) {
-      hold(x0[i] + dot(c.radial[i], lambda), room[i], c.radial[i], x0[i], free[i], m, e, again);
-      if (mayBe(i, LIMIT_TWIST))
-        hold(dot(c.twist[i], lambda), twistRoom[i], c.twist[i], x2[i], twistFree[i], m, e, again);
+      float z = dot(way[i].along, pull[i]);
+      hold(z + dot(way[i].column, lambda), z, way[i].room, way[i].column, end[i], free[i], m, e);
+      if (isKind(i, LIMIT_TWIST))
+        hold(dot(c.twist[i], lambda), 0.0, twistRoomOf(limb, pose, i), c.twist[i], twistEnd[i], twistFree[i], m, e);
     }
-    if (again) {
-      inverse = inverseOf(m);
-      lambda = times(inverse, e);
-    }
+    inverse = inverseOf(m);
+    lambda = times(inverse, e);
   }
   Pose trial;
-  for (int step = 0; step <= chords; ++step) {
-    if (step > 0) lambda = times(inverse, target - trial.tip);
-    vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
-    vec3 p = vec3(0.0);
-    for (int i = 0; i < BONES; ++i) {
-      x0[i] += free[i] * dot(c.radial[i], lambda);
-      x1[i] += dot(c.tangential[i], lambda);
-      float along = x0[i], around = x1[i];
-      if (mayBe(i, LIMIT_ELLIPSE)) {
-        along = normal[i].x * x0[i] - normal[i].y * x1[i];
-        around = normal[i].y * x0[i] + normal[i].x * x1[i];
-      }
-      trial.d[i] = turned(limb, c, i, pose.d[i], along, around);
-      trial.twist[i] = pose.twist[i];
-      if (mayBe(i, LIMIT_TWIST)) {
-        x2[i] += twistFree[i] * dot(c.twist[i], lambda);
-        turnTwist(limb, i, x2[i], trial.twist[i]);
-      }
-      place(limb, i, r, p, trial);
+  for (int i = 0; i < BONES; ++i) {
+    trial.twist[i] = pose.twist[i];
+    x[i] = pull[i] + stepOf(c, i, lambda);
+    x[i] += (free[i] > 0.0 ? 0.0 : end[i] - dot(way[i].along, x[i])) * way[i].along;
+    trial.swing[i] = turned(limb, i, pose.swing[i], x[i]);
+    if (isKind(i, LIMIT_TWIST)) {
+      twist[i] = twistFree[i] > 0.0 ? dot(c.twist[i], lambda) : twistEnd[i];
+      turnTwist(limb, i, twist[i], trial.twist[i]);
     }
-    trial.tip = p;
+  }
+  forwardKinematics(limb, trial);
+  for (int chord = 0; chord < chords; ++chord) {
+    lambda = times(inverse, target - trial.tip);
+    for (int i = 0; i < BONES; ++i) {
+      vec2 more = stepOf(c, i, lambda);
+      x[i] += more - (free[i] > 0.0 ? 0.0 : dot(way[i].along, more)) * way[i].along;
+      trial.swing[i] = turned(limb, i, pose.swing[i], x[i]);
+      if (isKind(i, LIMIT_TWIST)) {
+        twist[i] += twistFree[i] * dot(c.twist[i], lambda);
+        trial.twist[i] = pose.twist[i];
+        turnTwist(limb, i, twist[i], trial.twist[i]);
+      }
+    }
+    forwardKinematics(limb, trial);
   }
   float after = distance(target, trial.tip);
   // At rest out of reach, rounding alone must not decide; an error that is not a number is no better.

@@ -2,23 +2,43 @@
 #define CHAIN_GLSL
 #include "limits.glsl"
 // A limited chain as the solvers see it (docs/ik.md): lengths in units of the reach, base at the origin. The
-// including shader defines BONES, a specialization constant; every loop over it unrolls.
+// including shader defines BONES, a specialization constant; every loop over it unrolls. What a solver does not
+// use of these structures costs it nothing.
 
-struct Limb {
-  vec3 x[BONES], y[BONES], z[BONES];  // bone frames B_i
-  float bone[BONES];                  // lengths; 0 pads a shorter limb
-  float cosLimit[BONES], sinLimit[BONES];  // of cones
-  float stiffness[BONES];
-  vec4 ends[BONES];  // an ellipse's half-angles; a hinge's ends and its bone's x and z in its frame
-  vec4 kind[BONES];  // kind of limit, twist's ends
+#ifdef ONLY_CONES
+const uint PARALLEL = 0u;
+#else
+layout(constant_id = CONSTANT_PARALLEL) const uint PARALLEL = 0u;
+#endif
+
+// Columns of a rotation.
+struct Frame {
+  vec3 x, y, z;
 };
 
-// A pose: local directions d_i and twists tan(tau_i / 2), and what forward kinematics makes of them.
+Frame noTurn() { return Frame(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0)); }
+Frame frameOf(vec4 q) { return Frame(rotate(q, vec3(1.0, 0.0, 0.0)), rotate(q, vec3(0.0, 1.0, 0.0)), rotate(q, vec3(0.0, 0.0, 1.0))); }
+vec3 rotate(Frame f, vec3 v) { return f.x * v.x + f.y * v.y + f.z * v.z; }
+vec3 rotateBack(Frame f, vec3 v) { return vec3(dot(f.x, v), dot(f.y, v), dot(f.z, v)); }
+
+struct Limb {
+  Frame rest[BONES];    // B_i
+  Frame carry[BONES];   // B_(i-1)^T B_i, of the first bone B_0
+  float bone[BONES];    // lengths; 0 pads a shorter limb
+  float edge[BONES];    // of cones: tan(alpha / 2)
+  float stiffness[BONES];
+  vec4 ends[BONES];     // an ellipse's half-angles; a hinge's ends and its bone's x and z in its frame
+  vec2 twists[BONES];   // tan(tau / 2) at both ends
+};
+
+// A pose: stereographic directions (X, Y) and twists tan(tau_i / 2), and what forward kinematics makes of them.
 struct Pose {
-  vec3 d[BONES];
+  vec2 swing[BONES];
   float twist[BONES];
-  vec3 joint[BONES];   // p_i, where bone i starts
-  vec4 parent[BONES];  // R_(i-1), without R_0
+  vec3 joint[BONES];                  // p_i, where bone i starts
+  Frame frame[BONES];                 // A_i
+  vec3 aboutX[BONES], aboutY[BONES];  // what bone i turns about as its direction goes the way of X, and of Y
+  vec3 aboutBone[BONES];
   vec3 tip;
 };
 
@@ -26,76 +46,90 @@ vec3 fromStereographic(vec2 s) {
   float k = 2.0 / (1.0 + dot(s, s));
   return vec3(k * s, k - 1.0);
 }
-vec2 toStereographic(vec3 d) { return d.xy / (1.0 + max(d.z, -0.999999)); }
 
-bool isKind(Limb limb, int i, int kind) {
-  return mustBe(i, kind) || (mayBe(i, kind) && limb.kind[i].x == float(kind));
+// (X, Y) within the limit of the direction n (d.x, d.y), n (1 + d.z).
+vec2 clampSwing(Limb limb, int i, vec2 xy, float below, float n) {
+  if (isKind(i, LIMIT_HINGE)) return clampHinge(xy.y, below, limb.ends[i].xy);
+  vec2 lean = leanOf(xy, below, n);
+  return clampBall(xy, below, lean, isKind(i, LIMIT_ELLIPSE) ? ellipseEdge(limb.ends[i], lean) : limb.edge[i]);
+}
+vec2 clampSwing(Limb limb, int i, vec3 d) { return clampSwing(limb, i, d.xy, 1.0 + d.z, 1.0); }
+
+// A bone's direction, in its turned frame.
+vec3 alongBone(Limb limb, int i, Frame f) {
+  return isKind(i, LIMIT_HINGE) ? limb.ends[i].z * f.x + limb.ends[i].w * f.z : f.z;
 }
 
-vec3 clampLimit(Limb limb, int i, vec3 d) {
-  vec3 c = d;
-  if (mayBe(i, LIMIT_CONE)) c = clampCone(d, limb.cosLimit[i], limb.sinLimit[i]);
-  if (mayBe(i, LIMIT_ELLIPSE)) c = isKind(limb, i, LIMIT_ELLIPSE) ? clampEllipse(d, limb.ends[i]) : c;
-  if (mayBe(i, LIMIT_HINGE)) c = isKind(limb, i, LIMIT_HINGE) ? clampHinge(d, limb.ends[i].xy) : c;
-  return c;
+// A_i from F_(i-1). From one hinge to another about the same axis it is a turn about that.
+Frame carried(Limb limb, int i, Frame f) {
+  Frame c = limb.carry[i];
+  if ((PARALLEL >> uint(i) & 1u) != 0u) return Frame(f.x, c.y.y * f.y + c.y.z * f.z, c.z.y * f.y + c.z.z * f.z);
+  return Frame(rotate(f, c.x), rotate(f, c.y), rotate(f, c.z));
 }
 
-// A bone's direction in the axes that R_i turns.
-vec3 boneAxis(Limb limb, int i) {
-  if (!mayBe(i, LIMIT_HINGE)) return limb.z[i];
-  vec3 hinged = limb.ends[i].z * limb.x[i] + limb.ends[i].w * limb.z[i];
-  return isKind(limb, i, LIMIT_HINGE) ? hinged : limb.z[i];
+// F_i from A_i: the shortest rotation of the rest direction onto the bone, then its twist.
+Frame turnedFrame(int i, Frame a, vec2 s, float twist) {
+  vec3 w = (s.x * a.x + s.y * a.y + a.z) * (2.0 / (1.0 + dot(s, s)));
+  Frame f = Frame(a.x - s.x * w, a.y - s.y * w, w - a.z);
+  if (isKind(i, LIMIT_TWIST)) {
+    float k = 2.0 / (1.0 + twist * twist), c = k - 1.0, sine = k * twist;
+    f = Frame(c * f.x + sine * f.y, c * f.y - sine * f.x, f.z);
+  }
+  return f;
 }
 
-// R_i from R_(i-1) and d_i: the shortest rotation of the rest direction onto the bone, then its twist.
-vec4 swung(Limb limb, int i, vec4 parent, vec3 d, float twist) {
-  vec3 axis = limb.y[i] * d.x - limb.x[i] * d.y;
-  vec4 q = vec4(axis, 1.0 + d.z);
-  vec4 r = quaternionProduct(parent, q * inversesqrt(max(dot(q, q), 1e-12)));
-  if (mayBe(i, LIMIT_TWIST))
-    r = quaternionProduct(r, vec4(twist * limb.z[i], 1.0) * inversesqrt(1.0 + twist * twist));
-  return r;
-}
-
-// FK of bone i: where it starts, and what the next one starts from.
-void place(Limb limb, int i, inout vec4 r, inout vec3 p, inout Pose pose) {
+// FK of bone i: `f` goes from F_(i-1) to F_i, p from p_i to p_(i+1).
+void place(Limb limb, int i, inout Frame f, inout vec3 p, inout Pose pose) {
+  vec2 s = pose.swing[i];
+  Frame a = carried(limb, i, f);
+  f = turnedFrame(i, a, s, pose.twist[i]);
   pose.joint[i] = p;
-  pose.parent[i] = r;
-  r = swung(limb, i, r, pose.d[i], pose.twist[i]);
-  p += limb.bone[i] * rotate(r, boneAxis(limb, i));
+  pose.frame[i] = a;
+  pose.aboutX[i] = a.y - s.y * a.z;
+  pose.aboutY[i] = s.x * a.z - a.x;
+  pose.aboutBone[i] = f.z;
+  p += limb.bone[i] * alongBone(limb, i, f);
 }
 
 void forwardKinematics(Limb limb, inout Pose pose) {
-  vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
+  Frame f = noTurn();
   vec3 p = vec3(0.0);
-  for (int i = 0; i < BONES; ++i) place(limb, i, r, p, pose);
+  for (int i = 0; i < BONES; ++i) place(limb, i, f, p, pose);
   pose.tip = p;
 }
 
 void keepIf(bool keep, inout Pose best, Pose candidate) {
   for (int i = 0; i < BONES; ++i) {
-    best.d[i] = keep ? candidate.d[i] : best.d[i];
+    best.swing[i] = keep ? candidate.swing[i] : best.swing[i];
     best.twist[i] = keep ? candidate.twist[i] : best.twist[i];
     best.joint[i] = keep ? candidate.joint[i] : best.joint[i];
-    best.parent[i] = keep ? candidate.parent[i] : best.parent[i];
+    best.frame[i].x = keep ? candidate.frame[i].x : best.frame[i].x;
+    best.frame[i].y = keep ? candidate.frame[i].y : best.frame[i].y;
+    best.frame[i].z = keep ? candidate.frame[i].z : best.frame[i].z;
+    best.aboutX[i] = keep ? candidate.aboutX[i] : best.aboutX[i];
+    best.aboutY[i] = keep ? candidate.aboutY[i] : best.aboutY[i];
+    best.aboutBone[i] = keep ? candidate.aboutBone[i] : best.aboutBone[i];
   }
   best.tip = keep ? candidate.tip : best.tip;
 }
 
 // The rest pose, within the limits; where they do not forbid it nothing is turned.
 void restPose(Limb limb, bool legal, inout Pose pose) {
-  vec3 p = vec3(0.0);
   for (int i = 0; i < BONES; ++i) {
-    pose.d[i] = vec3(0.0, 0.0, 1.0);
-    pose.twist[i] = 0.0;
-    pose.joint[i] = p;
-    pose.parent[i] = vec4(0.0, 0.0, 0.0, 1.0);
-    p += limb.bone[i] * boneAxis(limb, i);
-    if (!legal) pose.d[i] = clampLimit(limb, i, pose.d[i]);
-    if (!legal && mayBe(i, LIMIT_TWIST)) pose.twist[i] = clamp(0.0, limb.kind[i].y, limb.kind[i].z);
+    pose.swing[i] = legal ? vec2(0.0) : clampSwing(limb, i, vec3(0.0, 0.0, 1.0));
+    pose.twist[i] = legal || !isKind(i, LIMIT_TWIST) ? 0.0 : clamp(0.0, limb.twists[i].x, limb.twists[i].y);
   }
-  pose.tip = p;
-  if (!legal) forwardKinematics(limb, pose);
+  forwardKinematics(limb, pose);
+}
+
+// R_i from R_(i-1), as quaternions.
+vec4 swung(Limb limb, int i, vec4 parent, Pose pose) {
+  Frame b = limb.rest[i];
+  vec2 s = pose.swing[i];
+  vec4 r = quaternionProduct(parent, vec4(b.y * s.x - b.x * s.y, 1.0) * inversesqrt(1.0 + dot(s, s)));
+  if (isKind(i, LIMIT_TWIST))
+    r = quaternionProduct(r, vec4(pose.twist[i] * b.z, 1.0) * inversesqrt(1.0 + pose.twist[i] * pose.twist[i]));
+  return r;
 }
 
 // A straight chain with its target nearer on the same line would never bend: bend it first.
@@ -111,10 +145,9 @@ bool deadlocked(vec3 target, Pose pose) {
 
 void bend(Limb limb, inout Pose pose) {
   for (int i = 0; i < BONES; ++i) {
-    vec2 s = toStereographic(pose.d[i]);
     float by = limb.bone[i] == 0.0 ? 0.0 : i == 0 ? -0.025 * float(BONES - 1) : 0.05;
-    s += isKind(limb, i, LIMIT_HINGE) ? vec2(0.0, by) : vec2(by, 0.0);
-    pose.d[i] = clampLimit(limb, i, fromStereographic(s));
+    vec2 s = pose.swing[i] + (isKind(i, LIMIT_HINGE) ? vec2(0.0, by) : vec2(by, 0.0));
+    pose.swing[i] = clampSwing(limb, i, fromStereographic(s));
   }
   forwardKinematics(limb, pose);
 }

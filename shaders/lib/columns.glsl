@@ -4,52 +4,54 @@
 #include "symmetric.glsl"
 // How a limited chain's tip moves with its joints, and how joints are moved (docs/ik.md, Jacobian family).
 
-// Movement of the tip a radian. Balls: away from rest, around rest, twist. Hinges: the turn alone.
+layout(constant_id = CONSTANT_PADDED) const bool PADDED = true;
+
+// Movement of the tip a radian: as a bone's direction goes the ways of X and of Y, and with its twist. A hinge has
+// the second alone. Stereographic coordinates keep angles, so the two ways are perpendicular, and no sine or
+// cosine of how far and to where the bone leans is needed.
 struct Columns {
-  vec3 radial[BONES], tangential[BONES], twist[BONES];
-  vec2 h[BONES];  // the way each bone leans from rest
-  float s[BONES];  // the sine of its angle
+  vec3 x[BONES], y[BONES], twist[BONES];
 };
 
 // `end` is the tip, or what stands for it.
 void columnsOf(Limb limb, Pose pose, vec3 end, inout Columns c) {
   for (int i = 0; i < BONES; ++i) {
-    vec3 b = pose.d[i];
-    float s2 = dot(b.xy, b.xy), inverse = inversesqrt(max(s2, 1e-12));
-    c.s[i] = s2 * inverse;
-    c.h[i] = s2 < 1e-12 ? vec2(1.0, 0.0) : b.xy * inverse;
-    vec3 u = rotate(pose.parent[i], c.h[i].x * limb.y[i] - c.h[i].y * limb.x[i]);
-    vec3 w = rotate(pose.parent[i], c.h[i].x * limb.x[i] + c.h[i].y * limb.y[i]);
     vec3 r = end - pose.joint[i];
-    float present = limb.bone[i] == 0.0 ? 0.0 : 1.0;
-    c.radial[i] = present * cross(u, r);
-    c.tangential[i] = present * cross(cross(w, u) * (c.s[i] / max(1.0 + b.z, 1e-6)) - w, r);
-    if (mayBe(i, LIMIT_HINGE)) {
-      bool hinge = isKind(limb, i, LIMIT_HINGE);
-      c.radial[i] = hinge ? present * cross(rotate(pose.parent[i], limb.x[i]), r) : c.radial[i];
-      c.tangential[i] = hinge ? vec3(0.0) : c.tangential[i];
-    }
-    if (mayBe(i, LIMIT_TWIST)) {
-      vec3 z = rotate(swung(limb, i, pose.parent[i], b, pose.twist[i]), limb.z[i]);
-      bool free = limb.kind[i].z > limb.kind[i].y;
-      c.twist[i] = free ? present * cross(z, r) : vec3(0.0);
-    }
+    if (PADDED) r = limb.bone[i] == 0.0 ? vec3(0.0) : r;
+    c.x[i] = isKind(i, LIMIT_HINGE) ? vec3(0.0) : cross(pose.aboutX[i], r);
+    c.y[i] = cross(pose.aboutY[i], r);
+    c.twist[i] = isKind(i, LIMIT_TWIST) && limb.twists[i].y > limb.twists[i].x ? cross(pose.aboutBone[i], r) : vec3(0.0);
   }
+}
+
+void addOuter(inout Symmetric m, Columns c, int i) {
+  if (!isKind(i, LIMIT_HINGE)) addOuter(m, c.x[i], 1.0);
+  addOuter(m, c.y[i], 1.0);
+  if (isKind(i, LIMIT_TWIST)) addOuter(m, c.twist[i], 1.0);
+}
+
+vec2 stepOf(Columns c, int i, vec3 lambda) {
+  return vec2(isKind(i, LIMIT_HINGE) ? 0.0 : dot(c.x[i], lambda), dot(c.y[i], lambda));
+}
+
+// The step toward rest of a bone at `s`, as far as `share` of its sine.
+vec2 towardRest(vec2 s, float share) { return s * (-2.0 * share / (1.0 + dot(s, s))); }
+
+// A bone's direction after a step along the columns, not yet divided: n (d.x, d.y), n (1 + d.z), n.
+vec4 stepped(vec2 s, vec2 x) {
+  float k = 2.0 / (1.0 + dot(s, s)), m = k - k * dot(s, x), n = sqrt(1.0 + dot(x, x));
+  return vec4(m * s + x, n + m - 1.0, n);
+}
+
+vec2 turned(Limb limb, int i, vec2 s, vec2 x) {
+  vec4 to = stepped(s, x);
+  return clampSwing(limb, i, to.xy, to.z, to.w);
 }
 
 void turnTwist(Limb limb, int i, float x, inout float twist) {
   float t = 0.5 * clamp(x, -1.0, 1.0), below = 1.0 - twist * t;
-  float turned = below < 0.1 ? (t > 0.0 ? limb.kind[i].z : limb.kind[i].y) : (twist + t) / max(below, 0.1);
-  twist = clamp(turned, limb.kind[i].y, limb.kind[i].z);
-}
-
-// Bone i turned by its steps x0, x1, x2 along the columns, and back within its limit. `d` and the columns are
-// those of the pose that the step started from.
-vec3 turned(Limb limb, Columns c, int i, vec3 d, float x0, float x1) {
-  vec3 to = d + x0 * vec3(c.h[i] * d.z, -c.s[i]) + x1 * vec3(-c.h[i].y, c.h[i].x, 0.0);
-  if (mayBe(i, LIMIT_HINGE))
-    to = isKind(limb, i, LIMIT_HINGE) ? vec3(0.0, d.y - x0 * d.z, d.z + x0 * d.y) : to;
-  return clampLimit(limb, i, unit(to));
+  float turned = below < 0.1 ? (t > 0.0 ? limb.twists[i].y : limb.twists[i].x) : (twist + t) / max(below, 0.1);
+  twist = clamp(turned, limb.twists[i].x, limb.twists[i].y);
 }
 
 #endif

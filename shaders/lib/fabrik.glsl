@@ -11,22 +11,18 @@ void fabrikIteration(Limb limb, vec3 target, inout Pose pose) {
     q[i] = end;
     end += limb.bone[i] * unit(pose.joint[i] - end);
   }
-  vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
+  Frame f = noTurn();
   vec3 p = vec3(0.0);
   for (int i = 0; i < BONES; ++i) {
-    vec3 v = q[i] - p;
-    float distance = length(v);
-    vec3 w = rotateBack(r, v);
-    // Unit again at each bone: R grows from d, and what d lacks of length would double along the chain.
-    vec3 d = unit(vec3(dot(limb.x[i], w), dot(limb.y[i], w), dot(limb.z[i], w)));
-    bool aimed = distance >= 1e-6 && limb.bone[i] > 0.0;
-    if (mayBe(i, LIMIT_HINGE) && isKind(limb, i, LIMIT_HINGE)) {
+    vec3 v = q[i] - p, d = unit(rotateBack(carried(limb, i, f), v));
+    bool aimed = length(v) >= 1e-6 && limb.bone[i] > 0.0;
+    if (isKind(i, LIMIT_HINGE)) {
       aimed = aimed && dot(d.yz, d.yz) > 1e-12;
       d = vec3(0.0, unit(d.yz));
     }
-    d = clampLimit(limb, i, d);
-    pose.d[i] = aimed ? d : pose.d[i];
-    place(limb, i, r, p, pose);
+    vec2 s = clampSwing(limb, i, d);
+    pose.swing[i] = aimed ? s : pose.swing[i];
+    place(limb, i, f, p, pose);
   }
   pose.tip = p;
 }

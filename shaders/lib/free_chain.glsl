@@ -140,58 +140,82 @@ void twoBone(float bone[BONES], vec3 target, vec3 pole, inout FreePose pose) {
   pose.joint[BONES] = pose.joint[1] + l1 * unit(reach * line - pose.joint[1]);
 }
 
+// What stretch-align knows: bone directions along the line and across it, and the search for lambda.
+struct Stretch {
+  float along[BONES];  // a_i
+  vec3 across[BONES];  // b_i
+  float lambda, low, high, g;
+  vec3 h;
+  bool done;
+};
+
+// One step of Newton, from lambda = 0 where it is the `first`.
+void stretchStep(float bone[BONES], float wanted, float goal, float enough, bool first, inout Stretch at) {
+  float g = 0.0, dg = 0.0;
+  vec3 h = vec3(0.0), dh = vec3(0.0);
+  for (int i = 0; i < BONES; ++i) {
+    float v = first ? at.along[i] : at.along[i] + at.lambda, b2 = dot(at.across[i], at.across[i]);
+    float rho = first ? 1.0 : inversesqrt(max(v * v + b2, 1e-12)), l = bone[i] * rho, l3 = l * rho * rho;
+    g += l * v;
+    h += l * at.across[i];
+    dg += l3 * b2;
+    dh -= l3 * v * at.across[i];
+  }
+  float s = sqrt(g * g + dot(h, h));
+  at.g = g;
+  at.h = h;
+  at.done = abs(s - wanted) < enough;
+  float slope = (g * dg + dot(h, dh)) / max(s, 1e-6), f = inversesqrt(max(1.0 - s, 1e-9));
+  at.low = s < wanted ? at.lambda : at.low;
+  at.high = s < wanted ? at.high : at.lambda;
+  float next = at.lambda - (f - goal) / (0.5 * f * f * f * slope);
+  bool inside = next > at.low && next < at.high;
+  float middle = at.low < -1e8 ? at.high - 1.0 : (at.high > 1e8 ? at.low + 1.0 : 0.5 * (at.low + at.high));
+  at.lambda = at.done ? at.lambda : max(inside ? next : middle, -3.0);
+}
+
 // The bends keep their directions; how far the chain must be stretched or folded along its own line for its tip
-// to be as far as the target is one number, found by Newton (docs/ik.md, Stretch-align).
-void stretchAlign(float bone[BONES], vec3 target, vec3 pole, float tolerance, inout FreePose pose) {
-  vec3 u[BONES], b[BONES];
-  float a[BONES];
+// to be as far as the target is one number, found by Newton (docs/ik.md, Stretch-align). With `steps` those are made
+// in a row, and a chain that needs more, or is straight, is given up: false. Without, as many as it takes.
+bool stretchAlign(float bone[BONES], vec3 target, vec3 pole, float tolerance, int steps, inout FreePose pose) {
+  vec3 u[BONES];
+  Stretch at;
   toDirections(bone, pose, u);
   vec3 tip = pose.joint[BONES], line = dot(tip, tip) > 1e-12 ? unit(tip) : u[0];
-  float wanted = min(length(target), 0.99999), spread = 0.0;
+  float wanted = min(length(target), 0.99999), spread = 0.0, enough = 0.9 * tolerance, goal = inversesqrt(1.0 - wanted);
   for (int i = 0; i < BONES; ++i) {
-    a[i] = dot(u[i], line);
-    b[i] = u[i] - line * a[i];
-    spread += dot(b[i], b[i]);
+    at.along[i] = dot(u[i], line);
+    at.across[i] = u[i] - line * at.along[i];
+    spread += dot(at.across[i], at.across[i]);
   }
   bool straight = BONES > 1 && spread < float(BONES) * 0.0004;
-  vec3 w = acrossLine(line, pole);
-  for (int i = 0; i < BONES; ++i) {
-    vec3 bowed = b[i] + bow(i) * w;
-    b[i] = straight ? bowed : b[i];
-    a[i] = straight ? (a[i] < 0.0 ? -1.0 : 1.0) * sqrt(max(1.0 - dot(b[i], b[i]), 0.0)) : a[i];
-  }
-  float lambda = 0.0, low = -1e9, high = 1e9, enough = 0.9 * tolerance, g = 0.0;
-  float goal = inversesqrt(1.0 - wanted);
-  vec3 h = vec3(0.0);
-  bool done = false;
-  for (int k = 0; k <= 8 && !done; ++k) {
-    g = 0.0;
-    h = vec3(0.0);
-    float dg = 0.0;
-    vec3 dh = vec3(0.0);
+  at.lambda = 0.0;
+  at.low = -1e9;
+  at.high = 1e9;
+  at.done = false;
+  if (steps > 0) {
+    [[unroll]] for (int k = 0; k < steps; ++k) stretchStep(bone, wanted, goal, enough, k == 0, at);
+  } else {
+    vec3 w = acrossLine(line, pole);
     for (int i = 0; i < BONES; ++i) {
-      float v = a[i] + lambda, b2 = dot(b[i], b[i]), rho = inversesqrt(max(v * v + b2, 1e-12)), l = bone[i] * rho;
-      g += l * v;
-      h += l * b[i];
-      float l3 = l * rho * rho;
-      dg += l3 * b2;
-      dh -= l3 * v * b[i];
+      vec3 bowed = at.across[i] + bow(i) * w;
+      at.across[i] = straight ? bowed : at.across[i];
+      at.along[i] = straight ? (at.along[i] < 0.0 ? -1.0 : 1.0) * sqrt(max(1.0 - dot(bowed, bowed), 0.0)) : at.along[i];
     }
-    float s = sqrt(g * g + dot(h, h));
-    done = abs(s - wanted) < enough || k == 8;
-    float slope = (g * dg + dot(h, dh)) / max(s, 1e-6), f = inversesqrt(max(1.0 - s, 1e-9));
-    if (s < wanted) low = lambda; else high = lambda;
-    float next = lambda - (f - goal) / (0.5 * f * f * f * slope);
-    bool inside = next > low && next < high;
-    float middle = low < -1e8 ? high - 1.0 : (high > 1e8 ? low + 1.0 : 0.5 * (low + high));
-    lambda = done ? lambda : max(inside ? next : middle, -3.0);
+    // The ninth only measures.
+    for (int k = 0; k <= 8 && !at.done; ++k) {
+      float lambda = at.lambda;
+      stretchStep(bone, wanted, goal, enough, false, at);
+      at.lambda = k == 8 ? lambda : at.lambda;
+    }
   }
-  vec4 align = shortestArc(unit(line * g + h), unit(target));
+  Frame align = frameOf(shortestArc(unit(line * at.g + at.h), unit(target)));
   for (int i = 0; i < BONES; ++i) {
-    vec3 v = b[i] + line * (a[i] + lambda);
+    vec3 v = at.across[i] + line * (at.along[i] + at.lambda);
     u[i] = rotate(align, dot(v, v) < 1e-12 ? u[i] : unit(v));
   }
   fromDirections(bone, u, pose);
+  return steps == 0 || (at.done && !straight);
 }
 
 #endif

@@ -8,29 +8,28 @@
   for (int i_ = 0; i_ < BONES; ++i_) {                                      \
     int bone_ = (at) + RIG_BONE_STRIDE * i_;                                \
     vec4 a_ = LOAD4(rig, bone_), b_ = LOAD4(rig, bone_ + 1);                \
-    limb.x[i_] = a_.xyz;                                                    \
-    limb.bone[i_] = a_.w;                                                   \
-    limb.z[i_] = b_.xyz;                                                    \
-    limb.y[i_] = cross(b_.xyz, a_.xyz);                                     \
-    float k_ = 1.0 / (1.0 + b_.w * b_.w);                                   \
-    limb.cosLimit[i_] = (1.0 - b_.w * b_.w) * k_;                           \
-    limb.sinLimit[i_] = 2.0 * b_.w * k_;                                    \
+    vec4 c_ = LOAD4(rig, bone_ + 5), d_ = LOAD4(rig, bone_ + 6);            \
+    limb.rest[i_] = Frame(a_.xyz, cross(b_.xyz, a_.xyz), b_.xyz);           \
+    limb.carry[i_] = Frame(c_.xyz, cross(d_.xyz, c_.xyz), d_.xyz);          \
+    limb.bone[i_] = c_.w;                                                   \
+    limb.edge[i_] = d_.w;                                                   \
     limb.stiffness[i_] = LOAD4(rig, bone_ + 2).w;                           \
-    if (mayBe(i_, LIMIT_ELLIPSE | LIMIT_HINGE)) limb.ends[i_] = LOAD4(rig, bone_ + 3); \
-    if (!mustBe(i_, LIMIT_CONE) || mayBe(i_, LIMIT_TWIST)) limb.kind[i_] = LOAD4(rig, bone_ + 4); \
+    if (isKind(i_, LIMIT_ELLIPSE | LIMIT_HINGE)) limb.ends[i_] = LOAD4(rig, bone_ + 3); \
+    if (isKind(i_, LIMIT_TWIST)) limb.twists[i_] = LOAD4(rig, bone_ + 4).yz; \
   }
 
-#define LOAD_DIRECTIONS(d, chains, at)                                      \
+#define LOAD_SWINGS(swing, chains, at)                                      \
   for (int i_ = 0; i_ < BONES; i_ += 2) {                                   \
     vec4 a_ = LOAD4(chains, (at) + i_ / 2);                                 \
-    d[i_] = fromStereographic(a_.xy);                                       \
-    if (i_ + 1 < BONES) d[min(i_ + 1, BONES - 1)] = fromStereographic(a_.zw); \
+    swing[i_] = vec2(isKind(i_, LIMIT_HINGE) ? 0.0 : a_.x, a_.y);           \
+    if (i_ + 1 < BONES)                                                     \
+      swing[min(i_ + 1, BONES - 1)] = vec2(isKind(i_ + 1, LIMIT_HINGE) ? 0.0 : a_.z, a_.w); \
   }
 
-#define STORE_DIRECTIONS(chains, at, d)                                     \
+#define STORE_SWINGS(chains, at, swing)                                     \
   for (int i_ = 0; i_ < BONES; i_ += 2) {                                   \
-    vec2 second_ = i_ + 1 < BONES ? toStereographic(d[min(i_ + 1, BONES - 1)]) : vec2(0.0); \
-    STORE4(chains, (at) + i_ / 2, vec4(toStereographic(d[i_]), second_));   \
+    vec2 second_ = i_ + 1 < BONES ? swing[min(i_ + 1, BONES - 1)] : vec2(0.0); \
+    STORE4(chains, (at) + i_ / 2, vec4(swing[i_], second_));                \
   }
 
 #define LOAD_TWISTS(twist, chains, at)                                      \

@@ -9,17 +9,12 @@ layout(constant_id = CONSTANT_LIMITS_HIGH) const uint LIMITS_HIGH = 0x11111111u;
 
 #ifdef ONLY_CONES
 // Known to every compiler, where specialization alone leaves the other kinds' code to drivers that do not unroll.
-bool mayBe(int bone, int kind) { return (kind & LIMIT_CONE) != 0; }
-bool mustBe(int bone, int kind) { return kind == LIMIT_CONE; }
+bool isKind(int bone, int kind) { return kind == LIMIT_CONE; }
 #else
-// Whether a kind may occur at a bone: known when the pipeline is made, so what cannot occur costs nothing.
-bool mayBe(int bone, int kind) {
+// A bone's kind of limit, or whether it has a twist: known when the pipeline is made, so what a bone has not costs nothing.
+bool isKind(int bone, int kind) {
   return (((bone < 8 ? LIMITS_LOW : LIMITS_HIGH) >> uint(4 * (bone & 7))) & uint(kind)) != 0u;
 }
-bool mustBe(int bone, int kind) {
-  return (((bone < 8 ? LIMITS_LOW : LIMITS_HIGH) >> uint(4 * (bone & 7))) & 7u) == uint(kind);
-}
-
 #endif
 
 // Abramowitz & Stegun 4.4.49, error 2e-8 within [0, 1].
@@ -45,32 +40,31 @@ vec2 cosineSine(float x) {
   return vec2(c + 1.0, (s + 1.0) * x);
 }
 
-// The way a direction leans; straight against the rest direction every way is as good: one of them, not what
-// rounding says.
-vec2 leanOf(vec3 d) {
-  float s2 = dot(d.xy, d.xy);
-  return s2 < 1e-6 ? vec2(1.0, 0.0) : d.xy * inversesqrt(max(s2, 1e-6));
-}
-
-vec3 clampCone(vec3 d, float cosLimit, float sinLimit) {
-  return d.z < cosLimit ? vec3(leanOf(d) * sinLimit, cosLimit) : d;
-}
-
 vec2 ellipseAxes(vec4 ellipse, vec2 lean) {
   return vec2(lean.x < 0.0 ? ellipse.z : ellipse.x, lean.y < 0.0 ? ellipse.w : ellipse.y);
 }
 
-vec3 clampEllipse(vec3 d, vec4 ellipse) {
-  vec2 lean = leanOf(d), n = lean / ellipseAxes(ellipse, lean);
-  vec2 half_ = cosineSine(0.5 * inversesqrt(dot(n, n)));
-  vec2 limit = vec2(half_.x * half_.x - half_.y * half_.y, 2.0 * half_.x * half_.y);
-  return clampCone(d, limit.x, limit.y);
+// tan(theta_max / 2) toward `lean`.
+float ellipseEdge(vec4 ellipse, vec2 lean) {
+  vec2 n = lean / ellipseAxes(ellipse, lean), half_ = cosineSine(0.5 * inversesqrt(max(dot(n, n), 0.1)));
+  return half_.y / half_.x;
+}
+
+// Directions are divided into (X, Y) here: `xy` and `below` are n (d.x, d.y) and n (1 + d.z), n not 0. The way a
+// direction leans; straight against the rest direction every way is as good: one of them, not what rounding says.
+vec2 leanOf(vec2 xy, float below, float n) {
+  float s2 = dot(xy, xy);
+  return s2 < 1e-6 * n * n && below < n ? vec2(1.0, 0.0) : xy * inversesqrt(max(s2, 1e-20));
+}
+
+// `edge`: tan(theta_max / 2) toward `lean`.
+vec2 clampBall(vec2 xy, float below, vec2 lean, float edge) {
+  return dot(xy, xy) > edge * edge * below * below ? edge * lean : xy / max(below, 1e-6);
 }
 
 // `range`: tangents of half the least and the greatest angle.
-vec3 clampHinge(vec3 d, vec2 range) {
-  float t = clamp(-d.y / (1.0 + max(d.z, -0.999999)), range.x, range.y), k = 1.0 / (1.0 + t * t);
-  return vec3(0.0, -2.0 * t * k, (1.0 - t * t) * k);
+vec2 clampHinge(float y, float below, vec2 range) {
+  return vec2(0.0, clamp(y / max(below, 1e-6), -range.y, -range.x));
 }
 
 #endif

@@ -126,8 +126,10 @@ SKITTER_CONST int METRIC_STRIDE = 7;
 //        [2] rest start p_i x, y, z (model), stiffness
 //        [3] ellipse: half-angles toward +x, +y, -x, -y; hinge: tan(lo/2), tan(hi/2), c_i, sqrt(1 - c_i^2)
 //        [4] kind of limit (LIMIT_), twist: tan(lo/2), tan(hi/2), unused
+//        [5] x axis of B_(i-1)^T B_i (of the first bone: B_0), length / reach
+//        [6] z axis of the same, tan(half-angle / 2)
 SKITTER_CONST int RIG_LEG_STRIDE = 3;
-SKITTER_CONST int RIG_BONE_STRIDE = 5;
+SKITTER_CONST int RIG_BONE_STRIDE = 7;
 // Kinds of limit. A kernel is specialised by those that may occur at each bone: four bits a bone, eight bones
 // a word, LIMIT_TWIST beside the others.
 SKITTER_CONST int LIMIT_CONE = 1;

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #define ONLY_CONES  // are what rigs have
 #include "stages/stage.glsl"
 #include "shared/ik_batch.h"
@@ -37,9 +38,6 @@ void approach(Limb limb, vec3 target, inout Pose pose) {
 }
 
 #ifdef PLANTED
-// Of bone i, in model space.
-vec3 boneDirection(Limb limb, int i, Pose pose) { return rotate(swung(limb, i, pose.parent[i], pose.d[i], 0.0), limb.z[i]); }
-
 vec4 shortestArc(vec3 from, vec3 to) {
   vec4 q = vec4(cross(from, to), 1.0 + dot(from, to));
   return q * inversesqrt(max(dot(q, q), 1e-12));
@@ -57,7 +55,7 @@ void main() {
   vec4 root = LOAD4(rig, rigAt);
   float reach = root.w;
   Pose pose;
-  LOAD_DIRECTIONS(pose.d, chains, at);
+  LOAD_SWINGS(pose.swing, chains, at);
   forwardKinematics(limb, pose);
 #ifdef PLANTED
   // The clip's pose, which what is solved is held against, and its root.
@@ -65,10 +63,9 @@ void main() {
   vec3 clipJoint[BONES], clipBone[BONES];
   for (int i = 0; i < BONES; ++i) {
     clipJoint[i] = pose.joint[i];
-    clipBone[i] = boneDirection(limb, i, pose);
+    clipBone[i] = pose.aboutBone[i];
     // What was animated is allowed, whatever the rig's limits are.
-    limb.cosLimit[i] = min(limb.cosLimit[i], pose.d[i].z);
-    limb.sinLimit[i] = sqrt(1.0 - limb.cosLimit[i] * limb.cosLimit[i]);
+    limb.edge[i] = max(limb.edge[i], length(pose.swing[i]));
   }
 #endif
 
@@ -101,13 +98,13 @@ void main() {
     activeSet(limb, target, lost, POLISH_ITERATIONS - 1, pull, parameters.ikTolerance, pose, error, damping);
   }
 
-  STORE_DIRECTIONS(chainsOut, at, pose.d);
+  STORE_SWINGS(chainsOut, at, pose.swing);
   vec3 tip = rotate(orientation, root.xyz + reach * pose.tip);
   STORE4(chainsOut, at + chainDirections(BONES), vec4(tip, error * reach));
   STORE4(chainsOut, at + chainDirections(BONES) + 1, vec4(damping, before * reach, 0.0, 0.0));
 #ifdef PLANTED
   for (int i = 0; i < BONES; ++i) {
-    vec4 q = shortestArc(clipBone[i], boneDirection(limb, i, pose));
+    vec4 q = shortestArc(clipBone[i], pose.aboutBone[i]);
     vec3 move = root.xyz + reach * pose.joint[i] - rotate(q, root.xyz + reach * clipJoint[i]);
     STORE4(fixesOut, (record * BONES + i) * FIX_STRIDE, q);
     STORE4(fixesOut, (record * BONES + i) * FIX_STRIDE + 1, vec4(move, 0.0));

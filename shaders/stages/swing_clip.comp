@@ -50,14 +50,14 @@ void main() {
   }
   Limb limb;
   LOAD_LIMB(limb, rig, leg * rigStride(BONES) + RIG_LEG_STRIDE);
-  vec3 d[BONES];
-  vec4 r = vec4(0.0, 0.0, 0.0, 1.0);
+  vec2 swings[BONES];
+  Frame f = noTurn();
   for (int i = 0; i < BONES; ++i) {
     vec3 along = joint[i + 1] - joint[i];
-    vec3 v = rotateBack(r, unit(along));
-    d[i] = dot(along, along) > 1e-16 ? vec3(dot(limb.x[i], v), dot(limb.y[i], v), max(dot(limb.z[i], v), -0.999))
-                                     : vec3(0.0, 0.0, 1.0);
-    r = swung(limb, i, r, d[i], 0.0);
+    Frame a = carried(limb, i, f);
+    vec3 d = rotateBack(a, unit(along));
+    swings[i] = dot(along, along) > 1e-16 ? d.xy / (1.0 + max(d.z, -0.999)) : vec2(0.0);
+    f = turnedFrame(i, a, swings[i], 0.0);
   }
   vec3 foot = joint[BONES], target = rotate(body.orientation, foot);
   float u = stands ? 1.0 : 0.5;
@@ -89,7 +89,7 @@ void main() {
   vec3 end = target;
 #endif
   STORE4(feetOut, record, vec4(target, u));
-  STORE_DIRECTIONS(chainsOut, at, d);
+  STORE_SWINGS(chainsOut, at, swings);
   STORE4(chainsOut, at + chainDirections(BONES), vec4(end, 0.0));
   STORE4(chainsOut, at + chainDirections(BONES) + 1, vec4(1.0, 0.0, 0.0, 0.0));
 }

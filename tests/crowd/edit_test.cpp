@@ -4,6 +4,7 @@
 
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
+#include "validation/herd_facts.h"
 #include "skitter/error.h"
 
 namespace skitter::test {
