@@ -15,6 +15,7 @@ using Command = std::function<int()>;
 void addIk(CLI::App&, Command& chosen);
 void addInfo(CLI::App&, Command& chosen);
 void addInspect(CLI::App&, Command& chosen);
+void addReproduce(CLI::App&, Command& chosen);  // where the experiments are built
 void addRig(CLI::App&, Command& chosen);
 void addRun(CLI::App&, Command& chosen);
 void addValidate(CLI::App&, Command& chosen);

@@ -22,7 +22,14 @@ constexpr const char* footer =
     "  skitter rig crab.glb && skitter run --rig crab.glb\n"
     "  skitter run --agents 200 --frames 240 --out walk.mp4\n"
     "  skitter ik --joints 5 --limits cone:60\n"
-    "  skitter validate --device llvmpipe";
+    "  skitter validate --device llvmpipe\n"
+    "  skitter reproduce --quick --out figures";
+
+#if defined(SKITTER_REPRODUCE)
+constexpr const char* subcommands = "ik, info, inspect, reproduce, rig, run or validate";
+#else
+constexpr const char* subcommands = "ik, info, inspect, rig, run or validate";
+#endif
 
 int fail(int code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
@@ -40,6 +47,9 @@ int runCommand(int argc, char** argv) {
   skitter::app::addIk(app, command);
   skitter::app::addInfo(app, command);
   skitter::app::addInspect(app, command);
+#if defined(SKITTER_REPRODUCE)
+  skitter::app::addReproduce(app, command);
+#endif
   skitter::app::addRig(app, command);
   skitter::app::addRun(app, command);
   skitter::app::addValidate(app, command);
@@ -51,7 +61,7 @@ int runCommand(int argc, char** argv) {
     return fail(2, fmt::format("{} (skitter --help lists what there is)", error.what()));
   }
   if (!command)
-    return fail(2, "no subcommand, expected ik, info, inspect, rig, run or validate (skitter --help)");
+    return fail(2, fmt::format("no subcommand, expected {} (skitter --help)", subcommands));
   return command();
 }
 
