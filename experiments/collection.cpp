@@ -45,7 +45,8 @@ class Stage {
   }
 
   bench::Seconds run(int times) {
-    const shared::TickConstants constants{0, tick()};
+    const shared::TickConstants constants{
+        .count = 0, .tick = tick(), .first = 0, .every = 1, .watched = 0, .room = 0};
     return bench::timed([&] {
       const vk::CommandBuffer cmd = walk_.ring().begin();
       for (int i = 0; i < times; ++i) {

@@ -57,10 +57,18 @@ const std::vector<FidelityColumn>& fidelityColumns() {
   // A field of Fidelity is a line here.
   static const std::vector<FidelityColumn> columns = {
       {"slip", "slip a stance, %", 100, [](const Fidelity& f) { return f.slip; }},
+      {"skating", "skating, % of stance", 100, [](const Fidelity& f) { return f.skating; }},
       {"penetration", "penetration, %", 100, [](const Fidelity& f) { return f.penetration; }},
       {"float", "float, %", 100, [](const Fidelity& f) { return f.floating; }},
+      {"segment_penetration", "legs below ground, %", 100,
+       [](const Fidelity& f) { return f.segmentPenetration; }},
+      {"crossing", "legs crossing, % of time", 100, [](const Fidelity& f) { return f.crossing; }},
       {"reach_error_p99", "reach error p99, %", 100, [](const Fidelity& f) { return f.reachErrorP99; }},
       {"limit_violation", "limit violation, rad", 1, [](const Fidelity& f) { return f.limitViolation; }},
+      {"foot_jerk", "foot jerk", 1, [](const Fidelity& f) { return f.footJerk; }},
+      {"body_jerk", "body jerk", 1, [](const Fidelity& f) { return f.bodyJerk; }},
+      {"margin_least", "least stability margin, %", 100, [](const Fidelity& f) { return f.marginLeast; }},
+      {"unstable", "unstable, % of time", 100, [](const Fidelity& f) { return f.unstable; }},
       {"last_resorts", "last resorts", 1,
        [](const Fidelity& f) { return static_cast<double>(f.lastResorts); }},
   };

@@ -173,7 +173,8 @@ gpu::ShaderCode Batch::Impl::code() const {
   return {embedded::solve_limited_comp_texel(), embedded::solve_limited_comp_storage()};
 }
 
-// As many as most chains need: fewer leave more to the second dispatch, more cost all chains (and longer to compile).
+// As many as most chains need: fewer leave more to the second dispatch, more cost all chains (and longer to
+// compile).
 int Batch::Impl::quickSteps() const {
   const bool tracks = options.start == Start::previous;
   if (positional) return tracks ? 2 : 4;

@@ -4,8 +4,8 @@
 
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
-#include "validation/herd_facts.h"
 #include "skitter/error.h"
+#include "validation/herd_facts.h"
 
 namespace skitter::test {
 namespace {
