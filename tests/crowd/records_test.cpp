@@ -75,7 +75,7 @@ TEST(Records, ParametersLieWhereBothSidesThink) {
       for (const auto& [member, offset] : parameterOffsets())
         EXPECT_EQ(offsets.at(member), offset) << stage.name << ": " << member;
     }
-  EXPECT_EQ(found, 24);
+  EXPECT_EQ(found, 26);
 }
 
 TEST(Records, PushConstantsAndStrides) {

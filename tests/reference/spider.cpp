@@ -77,14 +77,24 @@ std::vector<float> rigRecordsOf(const Rig& rig, int padding) {
     if (pair < 3) mask += std::ldexp(1.0, static_cast<int>(l) + 1);
     push({(3 - static_cast<double>(pair)) / 3, mask, 0}, 0);
     glm::dvec3 x{0}, z{0}, end{0};
+    glm::dmat3 before(1);
+    const auto pushCarry = [&](double length, double edge) {
+      const glm::dmat3 frame(x, glm::cross(z, x), z), carry = glm::transpose(before) * frame;
+      push(carry[0], length);
+      push(carry[2], edge);
+      before = frame;
+    };
     for (const Bone& bone : leg.bones) {
       z = glm::normalize(glm::dvec3(bone.direction));
       x = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), z));
-      push(x, bone.length / leg.reach);
-      push(z, std::tan(static_cast<double>(bone.coneHalfAngle) / 2));
+      const double length = bone.length / leg.reach,
+                   edge = std::tan(static_cast<double>(bone.coneHalfAngle) / 2);
+      push(x, length);
+      push(z, edge);
       push(bone.start, 1);
       push(glm::dvec3(0), 0);
       push(glm::dvec3(shared::LIMIT_CONE, 0, 0), 0);
+      pushCarry(length, edge);
       end = glm::dvec3(bone.start) + z * static_cast<double>(bone.length);
     }
     for (int i = 0; i < padding; ++i) {
@@ -93,6 +103,7 @@ std::vector<float> rigRecordsOf(const Rig& rig, int padding) {
       push(end, 0);
       push(glm::dvec3(0), 0);
       push(glm::dvec3(shared::LIMIT_CONE, 0, 0), 0);
+      pushCarry(0, 1);
     }
   }
   return records;
