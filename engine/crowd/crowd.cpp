@@ -103,7 +103,7 @@ void dispatch(const Impl& crowd, const crowd::Herd& herd, const Page& page, size
 
 // Zero listed legs and footfalls; the counts since the start stay.
 void clearLists(const Impl& crowd, vk::CommandBuffer cmd) {
-  constexpr std::array<uint32_t, 5> none = {0, 1, 1, 0, 0};
+  constexpr std::array<uint32_t, shared::COUNTER_LAST_RESORTS> none = {0, 1, 1, 0, 0, 0, 1, 1, 0};
   for (const crowd::Herd& herd : crowd.herds)
     for (const Page& page : herd.pages) cmd.updateBuffer(page.counters.handle(), 0, sizeof none, none.data());
 }
@@ -117,15 +117,28 @@ bool hasStage(const Impl& crowd, std::string_view name) {
 
 // Of every herd whose controller has it.
 void recordStage(const Impl& crowd, std::string_view name, uint64_t tick, vk::CommandBuffer cmd) {
-  for (const crowd::Herd& herd : crowd.herds) {
-    // Of a clip as it is, feet are looked at by measure alone.
-    const bool judged = crowd.options.measure || crowd.options.footfalls > 0;
-    if (name == "swing" && herd.controller == crowd::Controller::clip && !judged) continue;
-    const std::vector<Stage>& stages = crowd::stagesOf(herd.controller);
-    for (size_t i = 0; i < stages.size(); ++i)
-      if (stages[i].name == name)
-        for (const Page& page : herd.pages) dispatch(crowd, herd, page, i, tick, cmd);
-  }
+  const auto eachPage = [&](const auto& record) {
+    for (const crowd::Herd& herd : crowd.herds) {
+      // Of a clip as it is, feet are looked at by measure alone.
+      const bool judged = crowd.options.measure || crowd.options.footfalls > 0;
+      if (name == "swing" && herd.controller == crowd::Controller::clip && !judged) continue;
+      const std::vector<Stage>& stages = crowd::stagesOf(herd.controller);
+      for (size_t i = 0; i < stages.size(); ++i)
+        if (stages[i].name == name)
+          for (const Page& page : herd.pages) record(herd, page, i);
+    }
+  };
+  eachPage([&](const crowd::Herd& herd, const Page& page, size_t index) {
+    dispatch(crowd, herd, page, index, tick, cmd);
+  });
+  if (name != "ik") return;
+  // The legs that the quick dispatches listed.
+  gpu::computeToIndirectAndCompute(cmd);
+  eachPage([&](const crowd::Herd& herd, const Page& page, size_t index) {
+    if (herd.listedIk)
+      herd.listedIk.dispatchIndirect(cmd, page.bindings[index], gpu::bytesOf(shared::TickConstants{}),
+                                     page.counters, shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
+  });
 }
 
 // Every pipeline runs once with nothing to do, so that no tick pays for its translation to machine code, and
@@ -142,13 +155,17 @@ void settle(Impl& crowd) {
     };
     for (const crowd::Herd& herd : crowd.herds)
       for (size_t i = 0; i < herd.kernels.size(); ++i) {
+        const std::string_view name = crowd::stagesOf(herd.controller)[i].name;
         warmUp(herd.kernels[i], herd, i);
-        if (herd.watchingGait && crowd::stagesOf(herd.controller)[i].name == std::string_view("gait"))
-          warmUp(herd.watchingGait, herd, i);
+        if (herd.watchingGait && name == "gait") warmUp(herd.watchingGait, herd, i);
+        if (herd.listedIk && name == "ik") warmUp(herd.listedIk, herd, i);
       }
     recordStage(crowd, "swing", 0, cmd);
     for (int i = 0; i < kSettleIterations; ++i) {
       gpu::computeToCompute(cmd);
+      gpu::computeToTransfer(cmd);
+      clearLists(crowd, cmd);  // ik lists legs each time
+      gpu::transferToCompute(cmd);
       recordStage(crowd, "ik", 0, cmd);
     }
     gpu::computeToCompute(cmd);

@@ -50,6 +50,7 @@ struct Herd {
   gpu::Buffer rigBuffer;
   std::vector<gpu::Kernel> kernels;  // one a stage of the controller, specialised
   gpu::Kernel watchingGait;          // gait in the ticks after an edit of the heights
+  gpu::Kernel listedIk;              // ik of the legs that its kernel lists; none if that solves all
   std::vector<Page> pages;
 };
 

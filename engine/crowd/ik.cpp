@@ -20,6 +20,7 @@ Stage ikStage() {
            {BINDING_FOOT, load4},
            {BINDING_CHAIN, load4},
            {BINDING_CHAIN_OUT, store},
+           {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::legs};
 }
@@ -36,6 +37,7 @@ Stage plantedIkStage() {
            {BINDING_START, load4},
            {BINDING_CHAIN_OUT, store},
            {BINDING_FIX_OUT, store},
+           {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::legs};
 }

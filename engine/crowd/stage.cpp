@@ -76,6 +76,13 @@ void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd&
       info.constants.emplace_back(CONSTANT_APPROACH_ITERATIONS, herd.ik.approach);
       info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, herd.ik.polish);
       info.constants.emplace_back(CONSTANT_SOLVER, herd.ik.solver);
+      // Without a polish every leg would be listed.
+      if (herd.ik.polish > 0) {
+        gpu::KernelInfo listed = info;
+        listed.constants.emplace_back(CONSTANT_PASS, PASS_LISTED);
+        herd.listedIk = gpu::Kernel(context, listed);
+        info.constants.emplace_back(CONSTANT_PASS, PASS_QUICK);
+      }
     }
     herd.kernels.emplace_back(context, info);
     if (herd.controller == Controller::adaptive && std::strcmp(stage.name, "gait") == 0) {

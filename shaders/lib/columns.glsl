@@ -16,7 +16,9 @@ struct Columns {
 // `end` is the tip, or what stands for it.
 void columnsOf(Limb limb, Pose pose, vec3 end, inout Columns c) {
   for (int i = 0; i < BONES; ++i) {
-    vec3 r = end - pose.joint[i];
+    // Some compilers would cancel the joint where they see how the tip came about, and solve a chain otherwise in
+    // one kernel than in another.
+    precise vec3 r = end - pose.joint[i];
     if (PADDED) r = limb.bone[i] == 0.0 ? vec3(0.0) : r;
     c.x[i] = isKind(i, LIMIT_HINGE) ? vec3(0.0) : cross(pose.aboutX[i], r);
     c.y[i] = cross(pose.aboutY[i], r);

@@ -12,7 +12,9 @@ namespace skitter::shared {
 BINDING BINDING_PARAMETERS = 0;  // uniform block Parameters
 BINDING BINDING_HEIGHTS = 1;     // R32F image, sampled by texelFetch
 BINDING BINDING_RIG = 2;
-BINDING BINDING_LIST = 3;  // legs that begin a step: uint, leg record * 2 + (1 if aimed anew)
+// Legs that begin a step: uint, leg record * 2 + (1 if aimed anew); later in the tick, legs that ik's first
+// dispatch leaves: uint, leg record.
+BINDING BINDING_LIST = 3;
 BINDING BINDING_COUNTERS = 4;
 BINDING BINDING_HISTOGRAM = 5;
 // Records: read at the even number, written at the odd one.

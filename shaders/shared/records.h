@@ -150,16 +150,18 @@ SKITTER_CONST int FLIGHT_STRIDE = 1;
 //   [1] agent of the herd, leg, tick, unused
 SKITTER_CONST int FOOTFALL_STRIDE = 2;
 
-// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] listed legs, [4] footfalls
-// of the tick; since the start: [5] last resorts, [6] targets that were not finite, [7] footfalls without
-// room.
+// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] legs listed for it, [4]
+// footfalls of the tick, [5..7] indirect dispatch of ik, [8] legs listed for it; since the start: [9] last
+// resorts, [10] targets that were not finite, [11] footfalls without room.
 SKITTER_CONST int COUNTER_DISPATCH_X = 0;
 SKITTER_CONST int COUNTER_LISTED = 3;
 SKITTER_CONST int COUNTER_FOOTFALLS = 4;
-SKITTER_CONST int COUNTER_LAST_RESORTS = 5;
-SKITTER_CONST int COUNTER_NOT_FINITE = 6;
-SKITTER_CONST int COUNTER_FOOTFALLS_DROPPED = 7;
-SKITTER_CONST int COUNTERS = 8;
+SKITTER_CONST int COUNTER_IK_DISPATCH_X = 5;
+SKITTER_CONST int COUNTER_IK_LISTED = 8;
+SKITTER_CONST int COUNTER_LAST_RESORTS = 9;
+SKITTER_CONST int COUNTER_NOT_FINITE = 10;
+SKITTER_CONST int COUNTER_FOOTFALLS_DROPPED = 11;
+SKITTER_CONST int COUNTERS = 12;
 // reach errors, per page: counts per bucket of a leg length; bucket k holds errors of 2^(k/4 - 20) and more.
 SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
 

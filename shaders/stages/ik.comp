@@ -16,6 +16,7 @@
 layout(constant_id = CONSTANT_APPROACH_ITERATIONS) const int APPROACH_ITERATIONS = 4;
 layout(constant_id = CONSTANT_SOLVER) const int SOLVER = SOLVER_FABRIK;
 layout(constant_id = CONSTANT_POLISH_ITERATIONS) const int POLISH_ITERATIONS = 2;
+layout(constant_id = CONSTANT_PASS) const int PASS = PASS_WHOLE;
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -28,6 +29,7 @@ LOAD4_BUFFER(BINDING_CHAIN, chains);
 #endif
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+layout(set = 0, binding = BINDING_LIST, std430) buffer ListBlock { uint list[]; };
 
 void approach(Limb limb, vec3 target, inout Pose pose) {
   if (SOLVER == SOLVER_FABRIK) fabrikIteration(limb, target, pose);
@@ -35,6 +37,12 @@ void approach(Limb limb, vec3 target, inout Pose pose) {
   if (SOLVER == SOLVER_CCD) ccdIteration(limb, target, pose);
   if (SOLVER >= SOLVER_TRANSPOSE && SOLVER <= SOLVER_TARGET_ATTACHED) jacobianIteration(limb, target, SOLVER, pose);
 #endif
+}
+
+void enlist(int record) {
+  uint place = atomicAdd(counters[COUNTER_IK_LISTED], 1u);
+  list[place] = uint(record);
+  atomicMax(counters[COUNTER_IK_DISPATCH_X], place / uint(WORK_GROUP) + 1u);
 }
 
 #ifdef PLANTED
@@ -46,7 +54,12 @@ vec4 shortestArc(vec3 from, vec3 to) {
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
-  if (record >= int(constants.count)) return;
+  if (PASS == PASS_LISTED) {
+    if (record >= int(counters[COUNTER_IK_LISTED])) return;
+    record = int(list[record]);
+  } else if (record >= int(constants.count)) {
+    return;
+  }
   int agent = record / LEGS, leg = record - agent * LEGS;
   int at = record * chainStride(BONES), rigAt = leg * rigStride(BONES);
 
@@ -72,26 +85,35 @@ void main() {
   vec4 orientation = LOAD4(bodies, agent * BODY_STRIDE + 2);
   vec3 target = (rotateBack(orientation, LOAD4(feet, record).xyz) - root.xyz) / reach;
   bool lost = !finite(target);
-  if (lost) {
-    atomicAdd(counters[COUNTER_NOT_FINITE], 1u);
-    target = pose.tip;
-  }
+  target = lost ? pose.tip : target;
   float damping = LOAD4(chains, at + chainDirections(BONES) + 1).x;
-  float before = distance(target, pose.tip);
+  float before = distance(target, pose.tip), error = before;
+  bool stuck = deadlocked(target, pose);
 
-  // What few chains need stands in loops: where no chain of a subgroup needs it the loop is skipped, while an
-  // `if` would be paid for by all.
-  for (bool stuck = deadlocked(target, pose); stuck; stuck = false) bend(limb, pose);
-  float error = distance(target, pose.tip);
-  // FABRIK, or the solver that the herd names, brings a chain near that is far from its target (a start, a jump).
-  Pose trial;
-  keepIf(true, trial, pose);
-  for (int i = 0; i < APPROACH_ITERATIONS && error > parameters.approachError; ++i) {
-    approach(limb, target, trial);
-    float e = distance(target, trial.tip);
-    bool better = e < error;
-    keepIf(better, pose, trial);
-    error = better ? e : error;
+  if (PASS == PASS_QUICK) {
+    // What few chains need is left to the second dispatch, which begins anew: on a device that masks lanes a loop's
+    // body is run once even if no lane enters it.
+    if (lost || stuck || error > parameters.approachError) {
+      enlist(record);
+      return;
+    }
+    lost = false;
+  } else {
+    if (lost) atomicAdd(counters[COUNTER_NOT_FINITE], 1u);
+    for (; stuck; stuck = false) {
+      bend(limb, pose);
+      error = distance(target, pose.tip);
+    }
+    // FABRIK, or the solver that the herd names, brings a chain near that is far from its target (a start, a jump).
+    Pose trial;
+    keepIf(true, trial, pose);
+    for (int i = 0; i < APPROACH_ITERATIONS && error > parameters.approachError; ++i) {
+      approach(limb, target, trial);
+      float e = distance(target, trial.tip);
+      bool better = e < error;
+      keepIf(better, pose, trial);
+      error = better ? e : error;
+    }
   }
   if (POLISH_ITERATIONS > 0) {
     float pull = POLISH_ITERATIONS > 1 && error < parameters.pullError ? parameters.restPull : 0.0;
