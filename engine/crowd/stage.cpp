@@ -84,8 +84,10 @@ void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd&
         info.constants.emplace_back(CONSTANT_PASS, PASS_QUICK);
       }
     }
+    const bool isGait = herd.controller == Controller::adaptive && std::strcmp(stage.name, "gait") == 0;
+    if (isGait) info.constants.emplace_back(CONSTANT_REACH, herd.reachTriggered ? 1 : 0);
     herd.kernels.emplace_back(context, info);
-    if (herd.controller == Controller::adaptive && std::strcmp(stage.name, "gait") == 0) {
+    if (isGait) {
       info.constants.emplace_back(CONSTANT_WATCH, 1);
       herd.watchingGait = gpu::Kernel(context, info);
     }

@@ -68,6 +68,7 @@ BINDING CONSTANT_CLIPS = 20;
 BINDING CONSTANT_JOINTS = 21;        // of the clips' palette
 BINDING CONSTANT_SEARCH_STEPS = 22;  // 2 to their power is more than a clip has frames
 BINDING CONSTANT_WATCH = 17;  // gait looks at the ground under every foot: the heights were edited lately
+BINDING CONSTANT_REACH = 23;  // gait steps when out of reach, without a rhythm
 #undef BINDING
 
 // Push constants of every stage.

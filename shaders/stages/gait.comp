@@ -7,6 +7,8 @@
 
 // In the ticks after an edit of the heights; else no height is looked up here.
 layout(constant_id = CONSTANT_WATCH) const int WATCH = 0;
+// Not a uniform: branched on by itself, lavapipe inlines its value and rebuilds the kernel in every dispatch.
+layout(constant_id = CONSTANT_REACH) const int REACH = 0;
 layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
 
 LOAD4_BUFFER(BINDING_RIG, rig);
@@ -40,7 +42,7 @@ void main() {
   // The leg that must lift and has stood longest goes first, and its neighbours wait for it.
   uint first = 0u, yields = 0u;
   float stoodSince = 3e38;
-  bool settled = body.still >= parameters.settleTime, reachTriggered = parameters.reachTriggered != 0.0;
+  bool settled = body.still >= parameters.settleTime;
   for (int leg = 0; leg < LEGS; ++leg) {
     int stepAt = (agent * LEGS + leg) * STEP_STRIDE;
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
@@ -58,11 +60,11 @@ void main() {
       float error = LOAD4(chains, (agent * LEGS + leg) * chainStride(BONES) + chainDirections(BONES)).w;
       bool must = stretch < parameters.rootShare || stretch > parameters.stretchLift ||
                   off > parameters.strayShare * stride.halfStride || error > parameters.errorLift * root.w;
-      bool far = off > (reachTriggered ? REACH_SHARE : parameters.liftShare) * stride.halfStride;
-      bool open = reachTriggered || windowOpen(parameters, phase, home.w, order.x, stride, float(GROUPS));
+      bool far = off > (REACH != 0 ? REACH_SHARE : parameters.liftShare) * stride.halfStride;
+      bool open = REACH != 0 || windowOpen(parameters, phase, home.w, order.x, stride, float(GROUPS));
       wants |= !settled && open && (far || must || s.lastResort) ? 1u << leg : 0u;
       // Who stands still steps only off ground that moves.
-      must = moved || (!settled && (must || (reachTriggered && far)));
+      must = moved || (!settled && (must || (REACH != 0 && far)));
       if (must && s.firstTick + s.ticks < stoodSince) {
         stoodSince = s.firstTick + s.ticks;
         first = 1u << leg;
