@@ -93,25 +93,31 @@ uint64_t scrambled(uint64_t x) {
 
 }  // namespace
 
-Replay::Replay(const HerdFacts& herd, uint64_t seed) : terrain_(herd.terrain), seed_(seed) {
+Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   const Rig& rig = herd.rig;
   size_t bones = 0;
   for (const Leg& leg : rig.legs) bones = std::max(bones, leg.bones.size());
-  setting_.controller = herd.controller;
-  setting_.legs = rig.legCount();
-  setting_.bones = static_cast<int>(bones);
+  Setting setting;
+  setting.controller = herd.controller;
+  setting.legs = rig.legCount();
+  setting.bones = static_cast<int>(bones);
   expectSize("rig records", herd.rigRecords.size(),
-             4 * rig.legs.size() * static_cast<size_t>(shared::rigStride(setting_.bones)));
-  setting_.tuning = tuningOf(herd.parameters);
-  setting_.heights = heightsOf(terrain_, herd.parameters);
-  setting_.creature = creatureOf(herd.rigRecords, setting_.legs, setting_.bones, rig.groupCount());
-  setting_.extent = std::max({std::abs(setting_.heights.originX), std::abs(setting_.heights.originZ),
-                              setting_.tuning.halfExtentX, setting_.tuning.halfExtentZ});
+             4 * rig.legs.size() * static_cast<size_t>(shared::rigStride(setting.bones)));
+  setting.tuning = tuningOf(herd.parameters);
+  setting.heights = heightsOf(terrain, herd.parameters);
+  setting.creature = creatureOf(herd.rigRecords, setting.legs, setting.bones, rig.groupCount());
+  setting.extent = std::max({std::abs(setting.heights.originX), std::abs(setting.heights.originZ),
+                             setting.tuning.halfExtentX, setting.tuning.halfExtentZ});
   // The reference has no `automatic`.
-  setting_.ik = {static_cast<reference::IkSolver>(herd.ik.solver - shared::SOLVER_FABRIK), herd.ik.approach,
-                 herd.ik.polish};
+  setting.ik = {static_cast<reference::IkSolver>(herd.ik.solver - shared::SOLVER_FABRIK), herd.ik.approach,
+                herd.ik.polish};
   if (crowd::playsClips(herd.controller))
-    setting_.clips = clipTableOf(herd.clips, setting_.legs, setting_.bones);
+    setting.clips = clipTableOf(herd.clips, setting.legs, setting.bones);
+  return setting;
+}
+
+Replay::Replay(const HerdFacts& herd, uint64_t seed)
+    : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)), seed_(seed) {
   for (const Stage& stage : stagesOf(herd.controller)) judges_.emplace_back(stage.name);
 }
 

@@ -39,6 +39,10 @@ struct Setting {
   reference::ClipTable clips;
 };
 
+// `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit
+// the rig.
+Setting settingOf(const HerdFacts& herd, const Heightfield& terrain);
+
 // Which agents a tick compares.
 struct ReplayRange {
   uint32_t first = 0;

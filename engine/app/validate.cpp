@@ -1,4 +1,5 @@
-#include "validation/replay.h"
+#include "validation/free_run.h"
+#include "validation/herd_facts.h"
 
 #include <fmt/format.h>
 
@@ -35,7 +36,34 @@ struct ValidateOptions {
   SceneOptions scene;
   uint64_t frames = defaultFrames;
   std::string json;
-  bool quiet = false;
+  bool freeRun = false, quiet = false;
+};
+
+// Of a leg length: where an agent stands, after so long, is the same place to whoever looks.
+constexpr double freeRunTolerance = 0.01;
+
+// Beside the device's crowd: the same herds walked by the reference alone, from the same first state.
+class FreeRuns {
+ public:
+  FreeRuns(const Crowd& crowd, const std::vector<HerdState>& first) {
+    for (size_t h = 0; h < first.size(); ++h)
+      runs_.push_back(std::make_unique<validation::FreeRun>(
+          validation::herdFacts(crowd.impl().herds[h], crowd.impl().terrain), first[h]));
+  }
+  void tick() {
+    for (const auto& run : runs_) run->tick();
+  }
+  double shareWithin(const std::vector<HerdState>& device) const {
+    double agents = 0, within = 0;
+    for (size_t h = 0; h < runs_.size(); ++h) {
+      agents += device[h].agents;
+      within += runs_[h]->shareWithin(device[h], freeRunTolerance) * device[h].agents;
+    }
+    return agents > 0 ? within / agents : 1;
+  }
+
+ private:
+  std::vector<std::unique_ptr<validation::FreeRun>> runs_;
 };
 
 std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd, uint64_t seed) {
@@ -96,7 +124,8 @@ void print(const Device& device, const Scene& scene, uint64_t ticks,
   }
 }
 
-nlohmann::ordered_json describe(const Device& device, const std::vector<StageResult>& results, bool pass) {
+nlohmann::ordered_json describe(const Device& device, const std::vector<StageResult>& results,
+                                const std::optional<double>& freeRunShare, bool pass) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::array();
   for (const StageResult& result : results) {
     stages.push_back({{"name", result.name},
@@ -106,7 +135,10 @@ nlohmann::ordered_json describe(const Device& device, const std::vector<StageRes
                       {"ties", result.ties},
                       {"pass", result.pass}});
   }
-  return {{"device", device.report().name}, {"stages", stages}, {"pass", pass}};
+  nlohmann::ordered_json json = {{"device", device.report().name}, {"stages", stages}};
+  if (freeRunShare) json["freeRunShare"] = *freeRunShare;
+  json["pass"] = pass;
+  return json;
 }
 
 int validate(const ValidateOptions& options) {
@@ -123,11 +155,14 @@ int validate(const ValidateOptions& options) {
   TickTimes times;
   std::vector<std::unique_ptr<Replay>> replays;
   std::vector<HerdState> before = download(crowd);
+  std::optional<FreeRuns> freeRuns;
   Progress progress("ticks", options.frames, options.quiet);
   while (crowd.tick() < options.frames && !stopRequested()) {
     runTick(ring, crowd, static_cast<float>(options.scene.dt), times);
     // A herd's parameters are complete only once the length of a tick is known.
     if (replays.empty()) replays = replaysOf(crowd, scene.seed);
+    if (options.freeRun && !freeRuns) freeRuns.emplace(crowd, before);
+    if (freeRuns) freeRuns->tick();
     std::vector<HerdState> after = download(crowd);
     for (size_t h = 0; h < replays.size(); ++h) {
       validation::ReplayRange range;
@@ -145,8 +180,16 @@ int validate(const ValidateOptions& options) {
     if (!result.pass) failed += (failed.empty() ? "" : ", ") + result.name;
   }
   print(device, scene, crowd.tick(), results);
+  std::optional<double> share;
+  if (freeRuns) {
+    share = freeRuns->shareWithin(before);
+    fmt::print(
+        "free run: {:.1f} % of the agents within {:g} % of leg length of where the reference alone has "
+        "them\n",
+        100 * *share, 100 * freeRunTolerance);
+  }
   if (!options.json.empty())
-    writeText(options.json, describe(device, results, failed.empty()).dump(2) + "\n");
+    writeText(options.json, describe(device, results, share, failed.empty()).dump(2) + "\n");
   if (!failed.empty())
     throw Error(Error::Kind::check, fmt::format("stages differ from the reference: {}", failed));
   return 0;
@@ -169,6 +212,8 @@ void addValidate(CLI::App& app, Command& chosen) {
           fmt::format("ticks to compare [{}]", defaultFrames))
       ->type_name("N");
   command->add_option("--json", options->json, "write the table to a file")->type_name("FILE");
+  command->add_flag("--free-run", options->freeRun,
+                    "also walk adaptive herds by the reference alone, and say what share stays together");
   command->add_flag("--quiet", options->quiet, "no progress on stderr");
   command->footer(
       fmt::format("Of herds of more than {} agents a part is compared, another one in each tick.\n"

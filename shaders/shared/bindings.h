@@ -63,12 +63,12 @@ BINDING CONSTANT_POLISH_ITERATIONS = 4;
 BINDING CONSTANT_LIMITS_LOW = 5;
 BINDING CONSTANT_LIMITS_HIGH = 6;
 BINDING CONSTANT_SOLVER = 7;
-// 8 to 16: ik_batch.h
+// 8 to 19: ik_batch.h
 BINDING CONSTANT_CLIPS = 20;
 BINDING CONSTANT_JOINTS = 21;        // of the clips' palette
 BINDING CONSTANT_SEARCH_STEPS = 22;  // 2 to their power is more than a clip has frames
-BINDING CONSTANT_WATCH = 17;  // gait looks at the ground under every foot: the heights were edited lately
-BINDING CONSTANT_REACH = 23;  // gait steps when out of reach, without a rhythm
+BINDING CONSTANT_REACH = 23;         // gait steps when out of reach, without a rhythm
+BINDING CONSTANT_WATCH = 24;  // gait looks at the ground under every foot: the heights were edited lately
 #undef BINDING
 
 // Push constants of every stage.

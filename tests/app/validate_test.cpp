@@ -62,5 +62,19 @@ TEST_F(Validate, HerdsWithDifferentStagesAreOneTable) {
                                       "measure"}));
 }
 
+TEST_F(Validate, AFreeRunStaysTogether) {
+  const Result result =
+      skitter({"validate", "--agents", "8", "--frames", "120", "--free-run", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("free run: "), std::string::npos) << result.out;
+  EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
+}
+
+TEST_F(Validate, AFreeRunIsOfAdaptiveHerds) {
+  const Result result = skitter({"validate", "--controller", "loop", "--frames", "2", "--free-run"});
+  EXPECT_EQ(result.code, 2) << result.out;
+  EXPECT_NE(result.err.find("adaptive"), std::string::npos) << result.err;
+}
+
 }  // namespace
 }  // namespace skitter::test

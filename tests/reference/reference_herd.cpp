@@ -4,17 +4,11 @@
 
 #include <cmath>
 
-#include "cpu_reference/body.h"
-#include "cpu_reference/foothold.h"
-#include "cpu_reference/gait.h"
 #include "cpu_reference/heightfield.h"
-#include "cpu_reference/ik.h"
 #include "cpu_reference/measure.h"
-#include "cpu_reference/navigate.h"
-#include "cpu_reference/pose.h"
-#include "cpu_reference/swing.h"
 #include "shared/records.h"
 #include "validation/convert.h"
+#include "validation/free_run.h"
 
 namespace skitter::test {
 
@@ -31,10 +25,12 @@ ReferenceHerd::ReferenceHerd(const Heightfield& terrain, uint32_t agents, int pa
   spawn(agents);
 }
 
-Replay ReferenceHerd::replay() const {
+HerdFacts ReferenceHerd::facts() const {
   const crowd::IkPlan ik{shared::SOLVER_FABRIK, plan.approachIterations, plan.polishIterations};
-  return {{rig_, terrain_, parameters_, rigRecords_, ik}, 1};
+  return {rig_, terrain_, parameters_, rigRecords_, ik};
 }
+
+Replay ReferenceHerd::replay() const { return {facts(), 1}; }
 
 void ReferenceHerd::spawn(uint32_t agents) {
   const size_t count = agents, legCount = static_cast<size_t>(legs());
@@ -90,53 +86,18 @@ void ReferenceHerd::tick() {
 }
 
 void ReferenceHerd::tickAgent(size_t agent) {
-  const reference::Tuning tuning = tuningOf(parameters_);
-  const reference::Heights heights = heightsOf(terrain_, parameters_);
-  const reference::Creature creature = creatureOf(rigRecords_, legs(), bones_, rig_.groupCount());
-  const double n = static_cast<double>(n_);
-  const size_t legCount = static_cast<size_t>(legs()), first = agent * legCount;
-
-  const auto way = reference::navigate(tuning, bodyOf(state_, agent), goalOf(state_, agent));
-  putGoal(state_, agent, way.goal);
-  putDesired(state_, agent, way.desired);
-
-  std::vector<reference::Step> steps;
-  std::vector<double> errors;
-  for (size_t l = 0; l < legCount; ++l) {
-    steps.push_back(stepOf(state_, first + l));
-    errors.push_back(chainOf(state_, first + l, bones_).reachError);
-  }
-  putBody(state_, agent,
-          reference::body(tuning, heights, creature, bodyOf(state_, agent), desiredOf(state_, agent), steps,
-                          errors, n, gaitOf(state_, agent).phase)
-              .body);
-  const reference::AgentBody body = bodyOf(state_, agent);
-  putGait(state_, agent,
-          reference::gait(tuning, creature, body, gaitOf(state_, agent).phase, steps, errors, n).gait);
-  const reference::Gait gait = gaitOf(state_, agent);
-
-  const size_t bones = static_cast<size_t>(bones_), entry = agent * (1 + legCount * bones);
-  putBone(state_, entry, reference::bodyPose(body));
+  const Setting setting = settingOf(facts(), terrain_);
+  walkAgent(setting, n_, agent, state_);
   std::vector<reference::Foot> feet;
   std::vector<reference::Chain> chains;
-  for (size_t l = 0; l < legCount; ++l) {
-    const reference::Limb& limb = creature.limbs[l];
-    const size_t leg = first + l;
-    const bool lifts = (gait.lift >> l & 1u) != 0;
-    if (lifts || (gait.reaim >> l & 1u) != 0) {
-      putStep(state_, leg, reference::foothold(tuning, heights, limb, body, gait, steps[l], lifts, n).step);
-    }
-    putFoot(state_, leg, reference::swing(stepOf(state_, leg), body, n));
-    putChain(state_, leg, bones_,
-             reference::ik(tuning, limb, body, footOf(state_, leg), chainOf(state_, leg, bones_), plan));
-    const reference::Chain chain = chainOf(state_, leg, bones_);
-    const auto posed = reference::pose(limb, body, chain.directions);
-    for (size_t b = 0; b < bones; ++b) putBone(state_, entry + 1 + l * bones + b, posed[b]);
+  for (size_t l = 0; l < static_cast<size_t>(legs()); ++l) {
+    const size_t leg = agent * static_cast<size_t>(legs()) + l;
     feet.push_back(footOf(state_, leg));
-    chains.push_back(chain);
+    chains.push_back(chainOf(state_, leg, bones_));
   }
-  const auto measured = reference::measure(tuning, heights, creature, body, feet, chains, n_ - 1,
-                                           watchedOf(state_, agent, legs()), metricOf(state_, agent));
+  const auto measured =
+      reference::measure(setting.tuning, setting.heights, setting.creature, bodyOf(state_, agent), feet,
+                         chains, n_ - 1, watchedOf(state_, agent, legs()), metricOf(state_, agent));
   putMetric(state_, agent, measured.metric);
   putWatched(state_, agent, measured.watched);
 }

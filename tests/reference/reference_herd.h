@@ -20,6 +20,7 @@ class ReferenceHerd {
   shared::Parameters& parameters() { return parameters_; }
   int legs() const { return rig_.legCount(); }
   int bones() const { return bones_; }
+  validation::HerdFacts facts() const;
   validation::Replay replay() const;
 
   static constexpr reference::IkPlan plan = {reference::IkSolver::fabrik, 1, 2};
