@@ -197,7 +197,8 @@ BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creatur
   result.body.kappa = 1;
   Tuning upright = tuning;
   upright.leanGain = upright.leanLevel = upright.breathHeight = 0;
-  move(upright, heights, previous, desired, groundBelowHomes(heights, creature, previous), 0, choices, result);
+  move(upright, heights, previous, desired, groundBelowHomes(heights, creature, previous), 0, choices,
+       result);
   return result;
 }
 

@@ -156,7 +156,8 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
   result.mustMargin = never;
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
     const Limb& limb = creature.limbs[l];
-    LegDecision leg = judge(tuning, limb, body, steps[l], next, stride.cycle - stride.swingTime, reachErrors[l], tick, watched);
+    LegDecision leg = judge(tuning, limb, body, steps[l], next, stride.cycle - stride.swingTime,
+                            reachErrors[l], tick, watched);
     findWindow(tuning, creature, limb, next, stride.swingTime, leg);
     if (!leg.planted) next.air |= 1u << l;
     if (!leg.planted && leg.wants) next.reaim |= 1u << l;

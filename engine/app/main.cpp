@@ -60,8 +60,7 @@ int runCommand(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return fail(2, fmt::format("{} (skitter --help lists what there is)", error.what()));
   }
-  if (!command)
-    return fail(2, fmt::format("no subcommand, expected {} (skitter --help)", subcommands));
+  if (!command) return fail(2, fmt::format("no subcommand, expected {} (skitter --help)", subcommands));
   return command();
 }
 

@@ -130,7 +130,8 @@ int run(const RunOptions& options) {
   crowdOptions.measure = !options.unmeasured;
   crowdOptions.watchEvery = options.watchEvery;
   if (!options.footfalls.empty()) crowdOptions.footfalls = UINT32_MAX;  // all that can be
-  crowdOptions.pose = options.poses || windowed || target.kind != OutTarget::Kind::none || !options.trace.empty();
+  crowdOptions.pose =
+      options.poses || windowed || target.kind != OutTarget::Kind::none || !options.trace.empty();
   Crowd crowd(device, terrain, scene, crowdOptions);
 
   const uint64_t ticks = windowed && !options.frames
@@ -255,8 +256,10 @@ void addRun(CLI::App& app, Command& chosen) {
   command->add_flag("--force", options->force, "allow a trace of more than 4 GiB");
   command->add_flag("--timings", options->timings,
                     "time every stage on the device's clock (software devices may lie)");
-  command->add_flag("--poses", options->poses, "pose every agent though nobody draws it, for what that costs");
-  command->add_flag("--no-measure", options->unmeasured, "leave the fidelity figures out, for what they cost");
+  command->add_flag("--poses", options->poses,
+                    "pose every agent though nobody draws it, for what that costs");
+  command->add_flag("--no-measure", options->unmeasured,
+                    "leave the fidelity figures out, for what they cost");
   command->add_flag("--validation", options->validation,
                     "run under Vulkan's validation layer; a complaint fails");
   command->add_flag("--quiet", options->quiet, "no progress on stderr");

@@ -54,9 +54,9 @@ BATCH int CONSTANT_POLE = 13;        // there is a pole
 BATCH int CONSTANT_REST_LEGAL = 14;  // no limit forbids the rest pose
 BATCH int CONSTANT_PULL = 15;        // the rest pull acts
 BATCH int CONSTANT_PASS = 16;
-BATCH int CONSTANT_PADDED = 17;      // a bone may have no length
-BATCH int CONSTANT_STEPS = 18;       // made in a row, before any in a loop
-BATCH int CONSTANT_PARALLEL = 19;    // a bit a bone: a hinge about the x axis of the bone before
+BATCH int CONSTANT_PADDED = 17;    // a bone may have no length
+BATCH int CONSTANT_STEPS = 18;     // made in a row, before any in a loop
+BATCH int CONSTANT_PARALLEL = 19;  // a bit a bone: a hinge about the x axis of the bone before
 
 // One dispatch solves all, or a quick one does what most chains need and lists those that need more, which a
 // second one then solves from the start: on devices that mask lanes, rare code is paid for by all.
@@ -72,7 +72,8 @@ BATCH_FUNCTION int stateTwists(int bones) { return (bones + 1) / 2; }
 BATCH_FUNCTION int stateStride(int bones, bool twists) {
   return (bones + 1) / 2 + (twists ? (bones + 3) / 4 : 0);
 }
-// seed: directions and twists as in the state, then p_1 .. p_n, lengths in units of the reach; beside the last one
+// seed: directions and twists as in the state, then p_1 .. p_n, lengths in units of the reach; beside the
+// last one
 // (|p_n|^2 + 0.1 mean |p_i|^2) / 2.
 BATCH_FUNCTION int seedStride(int bones, bool twists) { return stateStride(bones, twists) + bones; }
 // report: error, iterations, stop + STOPS * (solves to come without restarts + PAUSES * the next pause),
