@@ -62,7 +62,7 @@ void loadClips(const gpu::Context& context, const Herd& from, crowd::Herd& herd)
 uint32_t invocations(const crowd::Herd& herd, const Page& page, Stage::Over over) {
   switch (over) {
     case Stage::Over::joints:
-      return page.agents * gpu::groupsFor(static_cast<uint32_t>(herd.clips.joints), shared::JOINTS_EACH);
+      return page.agents * static_cast<uint32_t>(herd.clips.joints);
     case Stage::Over::legs:
     case Stage::Over::listed:
       return page.agents * static_cast<uint32_t>(herd.legs);
@@ -232,6 +232,8 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     herd.bones = herd.rig.maxBones();
     herd.groups = herd.rig.groupCount();
     herd.ik = crowd::ikPlanFor(from.solver);
+    if (herd.controller == crowd::Controller::planted && from.solver != "active-set")
+      throw inputError("solver '" + from.solver + "': controller planted has active-set alone");
     if (from.stepping != "gait" && from.stepping != "reach")
       throw inputError("stepping '" + from.stepping + "' is unknown; there are: gait, reach");
     herd.reachTriggered = from.stepping == "reach";

@@ -60,8 +60,7 @@ void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd&
   for (const Stage& stage : stagesOf(herd.controller)) {
     gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
     const bool isIk = std::strcmp(stage.name, "ik") == 0;
-    if (isIk && herd.ik.solver != SOLVER_FABRIK && herd.controller != Controller::planted)
-      info.code = comparedIkCode();
+    if (isIk && herd.ik.solver != SOLVER_FABRIK) info.code = comparedIkCode();
     for (const StageShader& other : options.shaders)
       if (other.stage == stage.name) info.code = {other.texel, other.storage};
     info.constants = {

@@ -12,8 +12,8 @@ struct Play {
 
 Play unpackPlay(vec4 a, vec4 b, vec4 c) { return Play(a.x, a.y, a.z, a.w, b.x, b.y, b.z, c); }
 
-// Rows of a joint's matrix: between frames, then between clips. In a loop, because an `if` would not skip the
-// other clip's loads on a device that masks lanes.
+// Rows of a joint's matrix: between frames, then between clips. In a loop: a device that masks lanes may at least
+// leave it early, while it always pays for an `if`.
 #define LOAD_MATRIX(m, rows, play, joint)                                                           \
   {                                                                                                 \
     int a_ = (int((play).frames.x) * JOINTS + (joint)) * MATRIX_STRIDE, next_ = JOINTS * MATRIX_STRIDE; \

@@ -83,8 +83,6 @@ SKITTER_CONST int FIX_STRIDE = 2;
 // pose, per agent, of clip and planted, written by pose: an entry a joint of
 //   [0..2] rows of the matrix from the clips' skin to world axes about the body's position
 SKITTER_CONST int MATRIX_STRIDE = 3;
-// Joints that one invocation poses: the agent's records are loaded once for them.
-SKITTER_CONST int JOINTS_EACH = 1;
 
 // The clips of a herd, constant.
 //   clip, each  [0] first frame, frames, seconds, speed (m/s; 0: standing)

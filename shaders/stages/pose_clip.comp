@@ -15,24 +15,18 @@ STORE4_BUFFER(BINDING_POSE_OUT, posesOut);
 void main() {
   int record = int(gl_GlobalInvocationID.x);
   if (record >= int(constants.count)) return;
-  int parts = (JOINTS + JOINTS_EACH - 1) / JOINTS_EACH, agent = record / parts, first = (record - agent * parts) * JOINTS_EACH;
-  int playAt = agent * PLAY_STRIDE;
+  int agent = record / JOINTS, joint = record - agent * JOINTS, playAt = agent * PLAY_STRIDE;
   Play play = unpackPlay(LOAD4(plays, playAt), LOAD4(plays, playAt + 1), LOAD4(plays, playAt + 2));
   mat3 turned = matrixOf(LOAD4(bodies, agent * BODY_STRIDE + 2));
-  for (int i = 0; i < JOINTS_EACH; ++i) {
-    // The last invocation of an agent does its last joint more than once: the same value.
-    int joint = min(first + i, JOINTS - 1);
-    vec4 m[3];
-    LOAD_MATRIX(m, rows, play, joint);
-    mat4x3 column = transpose(mat3x4(m[0], m[1], m[2]));
+  vec4 m[3];
+  LOAD_MATRIX(m, rows, play, joint);
+  mat4x3 column = transpose(mat3x4(m[0], m[1], m[2]));
 #ifdef PLANTED
-    int bone = int(LOAD4(joints, joint).x), fixAt = (agent * LEGS * BONES + max(bone, 0)) * FIX_STRIDE;
-    mat3 fix = matrixOf(bone >= 0 ? LOAD4(fixes, fixAt) : vec4(0.0, 0.0, 0.0, 1.0));
-    column = fix * column;
-    column[3] += bone >= 0 ? LOAD4(fixes, fixAt + 1).xyz : vec3(0.0);
+  int bone = int(LOAD4(joints, joint).x), fixAt = (agent * LEGS * BONES + max(bone, 0)) * FIX_STRIDE;
+  mat3 fix = matrixOf(bone >= 0 ? LOAD4(fixes, fixAt) : vec4(0.0, 0.0, 0.0, 1.0));
+  column = fix * column;
+  column[3] += bone >= 0 ? LOAD4(fixes, fixAt + 1).xyz : vec3(0.0);
 #endif
-    mat3x4 row = transpose(turned * column);
-    int at = (agent * JOINTS + joint) * MATRIX_STRIDE;
-    for (int r = 0; r < 3; ++r) STORE4(posesOut, at + r, row[r]);
-  }
+  mat3x4 row = transpose(turned * column);
+  for (int r = 0; r < 3; ++r) STORE4(posesOut, record * MATRIX_STRIDE + r, row[r]);
 }

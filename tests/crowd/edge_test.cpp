@@ -76,6 +76,9 @@ TEST_F(InputTest, RefusesWhatItDoesNotKnow) {
   Scene scene = sceneOf(1);
   scene.herds[0].controller = "magic";
   EXPECT_THROW(Crowd(device(), flatGround(), scene), Error);
+  scene.herds[0].controller = "planted";
+  scene.herds[0].solver = "ccd";
+  EXPECT_THROW(Crowd(device(), flatGround(), scene), Error);
   Crowd crowd(device(), flatGround(), sceneOf(1));
   EXPECT_THROW(simulate(device(), crowd, 1, 0), Error);
   EXPECT_THROW(simulate(device(), crowd, 1, std::numeric_limits<float>::quiet_NaN()), Error);
