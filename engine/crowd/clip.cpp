@@ -15,7 +15,9 @@ Stage clipStage() {
            {BINDING_PLAY, load4},
            {BINDING_PLAY_OUT, store},
            {BINDING_CLIP, load4},
-           {BINDING_CLIP_FRAME, load4}},
+           {BINDING_CLIP_FRAME, load4},
+           {BINDING_LIST, store},
+           {BINDING_COUNTERS, store}},
           Stage::Over::agents};
 }
 

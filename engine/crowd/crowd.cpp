@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "crowd/herd.h"
 #include "crowd/page.h"
@@ -131,13 +132,14 @@ void recordStage(const Impl& crowd, std::string_view name, uint64_t tick, vk::Co
   eachPage([&](const crowd::Herd& herd, const Page& page, size_t index) {
     dispatch(crowd, herd, page, index, tick, cmd);
   });
-  if (name != "ik") return;
-  // The legs that the quick dispatches listed.
-  gpu::computeToIndirectAndCompute(cmd);
+  // What the first dispatches left out.
+  bool listed = false;
   eachPage([&](const crowd::Herd& herd, const Page& page, size_t index) {
-    if (herd.listedIk)
-      herd.listedIk.dispatchIndirect(cmd, page.bindings[index], gpu::bytesOf(shared::TickConstants{}),
-                                     page.counters, shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
+    if (!herd.restKernels[index]) return;
+    if (!std::exchange(listed, true)) gpu::computeToIndirectAndCompute(cmd);
+    const auto at = static_cast<uint64_t>(crowd::stagesOf(herd.controller)[index].rest);
+    herd.restKernels[index].dispatchIndirect(cmd, page.bindings[index], gpu::bytesOf(shared::TickConstants{}),
+                                             page.counters, at * sizeof(uint32_t));
   });
 }
 
@@ -158,7 +160,7 @@ void settle(Impl& crowd) {
         const std::string_view name = crowd::stagesOf(herd.controller)[i].name;
         warmUp(herd.kernels[i], herd, i);
         if (herd.watchingGait && name == "gait") warmUp(herd.watchingGait, herd, i);
-        if (herd.listedIk && name == "ik") warmUp(herd.listedIk, herd, i);
+        if (herd.restKernels[i]) warmUp(herd.restKernels[i], herd, i);
       }
     recordStage(crowd, "swing", 0, cmd);
     for (int i = 0; i < kSettleIterations; ++i) {

@@ -48,9 +48,9 @@ struct Herd {
   gpu::HostBuffer parameterBlock;  // uniform; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
   gpu::Buffer rigBuffer;
-  std::vector<gpu::Kernel> kernels;  // one a stage of the controller, specialised
-  gpu::Kernel watchingGait;          // gait in the ticks after an edit of the heights
-  gpu::Kernel listedIk;              // ik of the legs that its kernel lists; none if that solves all
+  std::vector<gpu::Kernel> kernels;      // one a stage of the controller, specialised
+  std::vector<gpu::Kernel> restKernels;  // one a stage: for what that leaves out (Stage::rest), mostly none
+  gpu::Kernel watchingGait;              // gait in the ticks after an edit of the heights
   std::vector<Page> pages;
 };
 

@@ -6,6 +6,7 @@
 #include "embedded/ik_planted_comp_storage.h"
 #include "embedded/ik_planted_comp_texel.h"
 #include "shared/bindings.h"
+#include "shared/records.h"
 
 namespace skitter::crowd {
 
@@ -22,7 +23,8 @@ Stage ikStage() {
            {BINDING_CHAIN_OUT, store},
            {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
-          Stage::Over::legs};
+          Stage::Over::legs,
+          COUNTER_IK_DISPATCH_X};
 }
 
 Stage plantedIkStage() {
@@ -39,7 +41,8 @@ Stage plantedIkStage() {
            {BINDING_FIX_OUT, store},
            {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
-          Stage::Over::legs};
+          Stage::Over::legs,
+          COUNTER_IK_DISPATCH_X};
 }
 
 gpu::ShaderCode comparedIkCode() {

@@ -6,6 +6,7 @@
 #include "embedded/pose_planted_comp_storage.h"
 #include "embedded/pose_planted_comp_texel.h"
 #include "shared/bindings.h"
+#include "shared/records.h"
 
 namespace skitter::crowd {
 
@@ -31,8 +32,11 @@ Stage clipPoseStage() {
            {BINDING_BODY, load4},
            {BINDING_PLAY, load4},
            {BINDING_CLIP_ROW, load4},
+           {BINDING_LIST, store},
+           {BINDING_COUNTERS, store},
            {BINDING_POSE_OUT, store}},
-          Stage::Over::joints};
+          Stage::Over::joints,
+          COUNTER_DISPATCH_X};
 }
 
 Stage plantedPoseStage() {
@@ -46,6 +50,8 @@ Stage plantedPoseStage() {
            {BINDING_CLIP_ROW, load4},
            {BINDING_CLIP_JOINT, load4},
            {BINDING_FIX, load4},
+           {BINDING_LIST, store},
+           {BINDING_COUNTERS, store},
            {BINDING_POSE_OUT, store}},
           Stage::Over::joints};
 }

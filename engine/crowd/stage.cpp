@@ -75,13 +75,14 @@ void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd&
       info.constants.emplace_back(CONSTANT_APPROACH_ITERATIONS, herd.ik.approach);
       info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, herd.ik.polish);
       info.constants.emplace_back(CONSTANT_SOLVER, herd.ik.solver);
-      // Without a polish every leg would be listed.
-      if (herd.ik.polish > 0) {
-        gpu::KernelInfo listed = info;
-        listed.constants.emplace_back(CONSTANT_PASS, PASS_LISTED);
-        herd.listedIk = gpu::Kernel(context, listed);
-        info.constants.emplace_back(CONSTANT_PASS, PASS_QUICK);
-      }
+    }
+    // Without a polish ik would list every leg.
+    gpu::Kernel& rest = herd.restKernels.emplace_back();
+    if (stage.rest >= 0 && !(isIk && herd.ik.polish == 0)) {
+      gpu::KernelInfo listed = info;
+      listed.constants.emplace_back(CONSTANT_PASS, PASS_LISTED);
+      rest = gpu::Kernel(context, listed);
+      info.constants.emplace_back(CONSTANT_PASS, PASS_QUICK);
     }
     const bool isGait = herd.controller == Controller::adaptive && std::strcmp(stage.name, "gait") == 0;
     if (isGait) info.constants.emplace_back(CONSTANT_REACH, herd.reachTriggered ? 1 : 0);

@@ -19,6 +19,9 @@ struct Stage {
   gpu::ShaderCode code;
   std::vector<gpu::BindingDecl> bindings;
   Over over;
+  // Where the counters have the indirect dispatch over what few agents or legs need and the first dispatch
+  // leaves out; -1: it leaves out nothing.
+  int rest = -1;
 };
 
 // Every stage's name in the order in which they are recorded; a controller has those that it needs.

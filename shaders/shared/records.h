@@ -148,8 +148,8 @@ SKITTER_CONST int FLIGHT_STRIDE = 1;
 //   [1] agent of the herd, leg, tick, unused
 SKITTER_CONST int FOOTFALL_STRIDE = 2;
 
-// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] legs listed for it, [4]
-// footfalls of the tick, [5..7] indirect dispatch of ik, [8] legs listed for it; since the start: [9] last
+// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] legs listed for it (where clips
+// are played: of pose, and the agents that fade), [4] footfalls of the tick, [5..7] indirect dispatch of ik, [8] legs listed for it; since the start: [9] last
 // resorts, [10] targets that were not finite, [11] footfalls without room.
 SKITTER_CONST int COUNTER_DISPATCH_X = 0;
 SKITTER_CONST int COUNTER_LISTED = 3;

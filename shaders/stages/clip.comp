@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/stage.glsl"
+#include "shared/ik_batch.h"
 #include "lib/clip.glsl"
 
 layout(constant_id = CONSTANT_CLIPS) const int CLIPS = 1;
@@ -11,6 +12,8 @@ LOAD4_BUFFER(BINDING_PLAY, plays);
 STORE4_BUFFER(BINDING_PLAY_OUT, playsOut);
 LOAD4_BUFFER(BINDING_CLIP, clips);
 LOAD4_BUFFER(BINDING_CLIP_FRAME, frames);
+layout(set = 0, binding = BINDING_LIST, std430) writeonly buffer ListBlock { uint list[]; };
+layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
 
 // Of a clip at a time: frame and fraction to the next one.
 vec2 frameAt(vec4 clip, float time) {
@@ -59,6 +62,13 @@ void main() {
     play.weight = 0.0;
     from = to;
     to = next;
+  }
+
+  // Few agents fade from one clip to another in a tick: they are listed for pose.
+  if (play.weight < 1.0) {
+    uint place = atomicAdd(counters[COUNTER_LISTED], 1u);
+    list[place] = uint(agent);
+    atomicMax(counters[COUNTER_DISPATCH_X], (place + 1u) * uint(JOINTS) / uint(WORK_GROUP) + 1u);
   }
 
   STORE4(playsOut, playAt, vec4(play.to, play.toTime, play.from, play.fromTime));

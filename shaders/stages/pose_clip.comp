@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/stage.glsl"
+#include "shared/ik_batch.h"
 #include "lib/clip.glsl"
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -12,12 +13,22 @@ LOAD4_BUFFER(BINDING_FIX, fixes);
 #endif
 STORE4_BUFFER(BINDING_POSE_OUT, posesOut);
 
+layout(set = 0, binding = BINDING_COUNTERS, std430) readonly buffer CountersBlock { uint counters[]; };
+layout(set = 0, binding = BINDING_LIST, std430) readonly buffer ListBlock { uint list[]; };
+
 void main() {
   int record = int(gl_GlobalInvocationID.x);
-  if (record >= int(constants.count)) return;
-  int agent = record / JOINTS, joint = record - agent * JOINTS, playAt = agent * PLAY_STRIDE;
+  int agent = record / JOINTS, joint = record - agent * JOINTS;
+  if (PASS == PASS_LISTED) {
+    if (agent >= int(counters[COUNTER_LISTED])) return;
+    agent = int(list[agent]);
+  } else if (record >= int(constants.count)) {
+    return;
+  }
+  int playAt = agent * PLAY_STRIDE;
   Play play = unpackPlay(LOAD4(plays, playAt), LOAD4(plays, playAt + 1), LOAD4(plays, playAt + 2));
   mat3 turned = matrixOf(LOAD4(bodies, agent * BODY_STRIDE + 2));
+  if (PASS == PASS_QUICK && play.weight < 1.0) return;
   vec4 m[3];
   LOAD_MATRIX(m, rows, play, joint);
   mat4x3 column = transpose(mat3x4(m[0], m[1], m[2]));
@@ -28,5 +39,5 @@ void main() {
   column[3] += bone >= 0 ? LOAD4(fixes, fixAt + 1).xyz : vec3(0.0);
 #endif
   mat3x4 row = transpose(turned * column);
-  for (int r = 0; r < 3; ++r) STORE4(posesOut, record * MATRIX_STRIDE + r, row[r]);
+  for (int r = 0; r < 3; ++r) STORE4(posesOut, (agent * JOINTS + joint) * MATRIX_STRIDE + r, row[r]);
 }

@@ -140,9 +140,9 @@ void solveListed(const gpu::Context& context, const crowd::Herd& herd) {
     return stage.name == std::string_view("ik");
   });
   gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
-    herd.listedIk.dispatchIndirect(cmd, page.bindings[static_cast<size_t>(ik - stages.begin())],
-                                   gpu::bytesOf(shared::TickConstants{}), page.counters,
-                                   shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
+    herd.restKernels[static_cast<size_t>(ik - stages.begin())].dispatchIndirect(
+        cmd, page.bindings[static_cast<size_t>(ik - stages.begin())], gpu::bytesOf(shared::TickConstants{}),
+        page.counters, shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
   });
 }
 
