@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 namespace skitter::baseline {
 
 template <class F>
@@ -16,7 +18,7 @@ Vec3<F> operator-(const Vec3<F>& a, const Vec3<F>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class F>
-Vec3<F> operator*(const Vec3<F>& a, F s) {
+Vec3<F> operator*(const Vec3<F>& a, std::type_identity_t<F> s) {
   return {a.x * s, a.y * s, a.z * s};
 }
 template <class F>

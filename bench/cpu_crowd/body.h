@@ -1,0 +1,148 @@
+#pragma once
+
+#include "bench/cpu_crowd/ground.h"
+#include "shared/records.h"
+
+namespace skitter::cpu_crowd {
+
+// 4. Sums over ground points for the plane y = mean + b (x - mean.x) + c (z - mean.z).
+template <class F>
+class PlaneSums {
+ public:
+  void add(const Vec3<F>& g) {
+    sum_ = sum_ + g;
+    xx_ = xx_ + g.x * g.x;
+    xz_ = xz_ + g.x * g.z;
+    zz_ = zz_ + g.z * g.z;
+    xy_ = xy_ + g.x * g.y;
+    zy_ = zy_ + g.z * g.y;
+  }
+
+  struct Plane {
+    F slopeX, slopeZ, height;  // the latter at x = z = 0
+  };
+  Plane fit(const shared::Parameters& q, float count) const {
+    const Vec3<F> mean = sum_ * (1 / count);
+    const F ridge(q.ridge * count);
+    const F xx = xx_ - sum_.x * mean.x + ridge, zz = zz_ - sum_.z * mean.z + ridge,
+            xz = xz_ - sum_.x * mean.z;
+    const F xy = xy_ - sum_.x * mean.y, zy = zy_ - sum_.z * mean.y;
+    const F inverse = reciprocal(xx * zz - xz * xz);
+    F b = (xy * zz - zy * xz) * inverse, c = (zy * xx - xy * xz) * inverse;
+    const F share = smaller(F(1), rsqrt(larger(b * b + c * c, 1e-20f)) * q.maxSlope);
+    b = b * share;
+    c = c * share;
+    return {b, c, mean.y - b * mean.x - c * mean.z};
+  }
+
+ private:
+  Vec3<F> sum_{F(0), F(0), F(0)};
+  F xx_ = F(0), xz_ = F(0), zz_ = F(0), xy_ = F(0), zy_ = F(0);
+};
+
+// What the legs tell the body: how far it may follow its desired velocity, and the ground they stand on.
+template <class F>
+struct Footing {
+  F follow = F(1);
+  PlaneSums<F> ground;
+};
+
+template <class F, int N>
+Footing<F> footingOf(const World& world, float tick, const Agent<F>& a, const Leg<F, N>* legs) {
+  const shared::Parameters& q = world.q;
+  const Mat3<F> r = matrixOf(a.orientation);
+  Footing<F> footing;
+  for (size_t l = 0; l < world.legs.size(); ++l) {
+    const LegModel& model = world.legs[l];
+    const Step<F>& step = legs[l].step;
+    const F flown = F(tick - 1) - step.firstTick, ticks = absolute(step.ticks);
+    const auto planted = ticks <= flown;
+    const Vec3<F> landing = relative(step.landing, step, a), liftOff = relative(step.liftOff, step, a);
+    const Vec3<F> d = landing - r * broadcast<F>(model.root);
+    const auto stretching = d.x * a.velocityX + d.z * a.velocityZ < F(0);
+    const float slack = 1 / (q.stretchStop - q.stretchSlow);
+    const F room = clamp(F(q.stretchStop * slack) - length(d) * (slack / model.reach), 0, 1);
+    const F error = clamp(F(1) - legs[l].chain.error * (1 / (q.errorStop * model.reach)), 0, 1);
+    const F slow = smaller(select(stretching, room, F(1)), error);
+    footing.follow = select(planted, smaller(footing.follow, slow), footing.follow);
+    const F u = clamp(flown * reciprocal(ticks), 0, 1);
+    footing.ground.add(select(planted, landing, mix(liftOff, landing, u)));
+  }
+  footing.follow = larger(footing.follow, q.followLeast);
+  return footing;
+}
+
+template <class F>
+Vec3<F> leaningNormal(const shared::Parameters& q, const typename PlaneSums<F>::Plane& plane,
+                      const Agent<F>& a) {
+  const F lean = clamp(a.speed * a.turnRate * q.leanGain, -q.leanMost, q.leanMost);
+  const float level = 1 - q.leanLevel;
+  return normalized(
+      Vec3<F>{a.headingZ * lean - plane.slopeX * level, F(1), -a.headingX * lean - plane.slopeZ * level});
+}
+
+template <class F, int N>
+[[gnu::flatten]] void body(const World& world, float tick, Agent<F>& a, const Leg<F, N>* legs) {
+  const shared::Parameters& q = world.q;
+  const Footing<F> footing = footingOf(world, tick, a, legs);
+  const F follow = footing.follow;
+
+  const F commanded = squareRoot(a.velocityX * a.velocityX + a.velocityZ * a.velocityZ);
+  const auto going = F(1e-4f * q.legLength) < commanded;
+  const F inverse = reciprocal(larger(commanded, 1e-20f));
+  const F wx = select(going, a.velocityX * inverse, a.headingX),
+          wz = select(going, a.velocityZ * inverse, a.headingZ);
+  const F c = wx * a.headingZ - wz * a.headingX, d = wx * a.headingX + wz * a.headingZ;
+  const F e = select(F(0) < d, c, select(F(0) <= c, F(1), F(-1)));
+  const F rate = clamp(e * q.turnGain, -q.turnRate, q.turnRate) * (follow * 0.75f + 0.25f);
+  const float change = q.turnAcceleration * q.dt;
+  a.turnRate = a.turnRate + clamp(rate - a.turnRate, -change, change);
+  const Vec3<F> turned = Turn<F>(a.turnRate * q.dt)(Vec3<F>{a.headingX, F(0), a.headingZ});
+  const F size = rsqrt(turned.x * turned.x + turned.z * turned.z);
+  a.headingX = turned.x * size;
+  a.headingZ = turned.z * size;
+  const F speed = follow * commanded * larger(F(0), wx * a.headingX + wz * a.headingZ);
+  a.speed = a.speed + clamp(speed - a.speed, -q.braking * q.dt, q.acceleration * q.dt);
+  const F movedX = a.headingX * (a.speed * q.dt), movedZ = a.headingZ * (a.speed * q.dt);
+
+  const auto plane = footing.ground.fit(q, float(world.legs.size()));
+  const F rise = plane.slopeX * movedX + plane.slopeZ * movedZ;
+  const F planeHeight = a.local.y + plane.height + rise;
+
+  const F swell = a.phase * (F(1) - a.phase) * 4.0f;
+  const F breath = swell * swell * smaller(F(1), a.still * (1 / q.settleTime));
+  const Quaternion<F>& o = a.orientation;
+  const Vec3<F> up{(o.x * o.y - o.z * o.w) * 2.0f, F(1) - (o.x * o.x + o.z * o.z) * 2.0f,
+                   (o.y * o.z + o.x * o.w) * 2.0f};
+  const Vec3<F> normal = normalized(mix(up, leaningNormal(q, plane, a), F(q.tiltBlend)));
+  const F climb = -(normal.x * a.headingX + normal.z * a.headingZ) * reciprocal(normal.y);
+  const Vec3<F> forward = normalized(Vec3<F>{a.headingX, climb, a.headingZ});
+  const Quaternion<F> orientation = quaternionOf(Mat3<F>{cross(normal, forward), normal, forward});
+  const Quaternion<F> opposite{-orientation.x, -orientation.y, -orientation.z, -orientation.w};
+  a.orientation = select(dot(orientation, a.orientation) < F(0), opposite, orientation);
+
+  const auto advance = [](F& local, F& tile, const F& by) {
+    const F to = local + by, crossed = roundDown(to * (1 / shared::TILE_SIZE));
+    tile = tile + crossed;
+    local = to - crossed * shared::TILE_SIZE;
+  };
+  advance(a.local.x, a.tileX, movedX);
+  advance(a.local.z, a.tileZ, movedZ);
+
+  const F x = a.tileX * shared::TILE_SIZE + a.local.x, z = a.tileZ * shared::TILE_SIZE + a.local.z;
+  F height = planeHeight + breath * q.breathHeight;
+  for (int k = -1; k <= 1; ++k) {
+    const Vec3<F> belly = normal * q.bodyHeight + forward * (float(k) * q.bodyRadius);
+    height =
+        larger(height, groundAt(world.terrain, x + belly.x, z + belly.z).height + q.bellyClearance - belly.y);
+  }
+  a.local.y = mix(a.local.y + rise, height, F(q.heightBlend));
+
+  a.surfaceSpeed = a.speed * rsqrt(larger(forward.x * forward.x + forward.z * forward.z, 1e-20f));
+  const F slow(1e-2f * q.legLength);
+  const auto still = (commanded < slow) & (a.speed < slow) & (absolute(a.turnRate) < F(1e-2f));
+  a.still = select(still, a.still + q.dt, F(0));
+  a.follow = follow;
+}
+
+}  // namespace skitter::cpu_crowd

@@ -1,0 +1,95 @@
+#include "bench/cpu_crowd/crowd.h"
+
+#include "bench/cpu_crowd/kernel.h"
+#include "bench/cpu_crowd/pool.h"
+#include "shared/ik_batch.h"
+#include "shared/records.h"
+#include "skitter/error.h"
+
+namespace skitter::cpu_crowd {
+namespace {
+
+void expectSize(const char* what, const std::vector<float>& records, size_t count, int stride) {
+  const size_t expected = 4 * count * size_t(stride);
+  if (records.size() == expected) return;
+  throw inputError("CPU crowd: " + std::string(what) + " records: found " + std::to_string(records.size()) +
+                   " floats, expected " + std::to_string(expected));
+}
+
+void check(const validation::HerdFacts& facts, const HerdState& start, const Options& options) {
+  if (facts.controller != crowd::Controller::adaptive)
+    throw inputError("CPU crowd: walks adaptive herds alone; set the herd's controller to adaptive");
+  if (facts.ik.solver != shared::SOLVER_FABRIK || facts.ik.polish < 1)
+    throw inputError("CPU crowd: solves by active-set alone; set the herd's solver to it");
+  if (options.threads < 1)
+    throw inputError("CPU crowd: found " + std::to_string(options.threads) + " threads, expected at least 1");
+  if (start.agents == 0) throw inputError("CPU crowd: found no agents, expected at least 1");
+  const size_t agents = start.agents, legs = facts.rig.legs.size();
+  expectSize("goal", start.goal, agents, shared::GOAL_STRIDE);
+  expectSize("steer", start.steer, agents, shared::STEER_STRIDE);
+  expectSize("body", start.body, agents, shared::BODY_STRIDE);
+  expectSize("gait", start.gait, agents, shared::GAIT_STRIDE);
+  expectSize("step", start.step, agents * legs, shared::STEP_STRIDE);
+  expectSize("foot", start.foot, agents * legs, shared::FOOT_STRIDE);
+  expectSize("chain", start.chain, agents * legs, shared::chainStride(facts.rig.maxBones()));
+}
+
+}  // namespace
+
+struct CpuCrowd::Impl {
+  World world;
+  Options options;
+  uint32_t agents;
+  std::unique_ptr<Kernel> kernel;
+  Pool pool;
+
+  Impl(const validation::HerdFacts& facts, const HerdState& start, const Options& chosen)
+      : world(worldOf(facts)), options(chosen), agents(start.agents), pool(chosen.threads) {
+    kernel = options.width == Width::simd ? simdKernel(world, start, options)
+                                          : scalarKernel(world, start, options);
+  }
+};
+
+CpuCrowd::CpuCrowd(const validation::HerdFacts& facts, const HerdState& start, const Options& options) {
+  check(facts, start, options);
+  impl_ = std::make_unique<Impl>(facts, start, options);
+}
+
+CpuCrowd::~CpuCrowd() = default;
+
+void CpuCrowd::tick(uint64_t n) {
+  Kernel& kernel = *impl_->kernel;
+  impl_->pool.run(kernel.parts(), [&](size_t part, int thread) { kernel.tick(n, part, thread); });
+}
+
+HerdState CpuCrowd::state() const {
+  const size_t agents = impl_->agents, legs = impl_->world.legs.size(), bones = size_t(impl_->world.bones);
+  HerdState state;
+  state.agents = impl_->agents;
+  const auto make = [](std::vector<float>& records, size_t count, int stride) {
+    records.resize(4 * count * size_t(stride));
+  };
+  make(state.goal, agents, shared::GOAL_STRIDE);
+  make(state.steer, agents, shared::STEER_STRIDE);
+  make(state.body, agents, shared::BODY_STRIDE);
+  make(state.gait, agents, shared::GAIT_STRIDE);
+  make(state.step, agents * legs, shared::STEP_STRIDE);
+  make(state.foot, agents * legs, shared::FOOT_STRIDE);
+  make(state.chain, agents * legs, shared::chainStride(int(bones)));
+  if (impl_->options.poses) make(state.pose, agents * (1 + legs * bones), shared::POSE_STRIDE);
+  impl_->kernel->read(state);
+  return state;
+}
+
+std::vector<StageSeconds> CpuCrowd::stageSeconds() const {
+  if (!impl_->options.timings) return {};
+  static constexpr const char* kNames[] = {"navigate", "body", "gait", "foothold", "swing", "ik", "pose"};
+  const Seconds seconds = impl_->kernel->seconds();
+  std::vector<StageSeconds> all;
+  for (int s = 0; s < kStages; ++s) all.push_back({kNames[s], seconds[s]});
+  return all;
+}
+
+size_t CpuCrowd::bytesAnAgent() const { return impl_->kernel->bytes(); }
+
+}  // namespace skitter::cpu_crowd

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "skitter/crowd.h"
+#include "validation/replay.h"
+
+// The opponent of the engine's crowd: the same tick (docs/stages.md) in single precision on the CPU, as fast
+// as can be written. validation::Replay judges it as it judges a device.
+namespace skitter::cpu_crowd {
+
+// Agents to an instruction. Both are the same source: what it does to a register of floats it does to one.
+enum class Width { scalar, simd };
+
+struct Options {
+  int threads = 1;  // at least 1, the caller's among them
+  Width width = Width::simd;
+  bool poses = false;    // bone rotations and positions, as CrowdOptions::pose
+  bool timings = false;  // keep what each stage takes; reading clocks costs some nanoseconds an agent
+};
+
+struct StageSeconds {
+  std::string stage;
+  double seconds = 0;  // of all threads together, since the start
+};
+
+// One herd on ground that stays as it is: no edits, no measure, no footfalls. Not thread-safe.
+class CpuCrowd {
+ public:
+  // Copies what it needs of `facts` and `start`, a state read back from a device (or from another CpuCrowd).
+  // Throws Error(input) where the records' sizes do not fit the rig, for a controller other than adaptive,
+  // and for an ik plan other than the active set's.
+  CpuCrowd(const validation::HerdFacts& facts, const HerdState& start, const Options& options);
+  ~CpuCrowd();
+  CpuCrowd(const CpuCrowd&) = delete;
+  CpuCrowd& operator=(const CpuCrowd&) = delete;
+
+  // Tick `n`, counted from 1 as Crowd::tick is after it: one more than the tick that the state is of.
+  // Allocates nothing. The number of threads does not change a bit of the result.
+  void tick(uint64_t n);
+
+  // Records in the device's layout, without metrics, and without poses unless Options::poses.
+  HerdState state() const;
+  std::vector<StageSeconds> stageSeconds() const;  // in the tick's order; empty without Options::timings
+  size_t bytesAnAgent() const;                     // of state that a tick reads and writes, poses among it
+
+  struct Impl;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skitter::cpu_crowd

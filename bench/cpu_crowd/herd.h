@@ -1,0 +1,244 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+
+#include "bench/cpu_crowd/body.h"
+#include "bench/cpu_crowd/foothold.h"
+#include "bench/cpu_crowd/ik.h"
+#include "bench/cpu_crowd/kernel.h"
+#include "bench/cpu_crowd/navigate.h"
+#include "bench/cpu_crowd/pose.h"
+#include "bench/cpu_crowd/records.h"
+
+namespace skitter::cpu_crowd {
+
+// Clocks the stages of a part as they follow each other.
+class Laps {
+ public:
+  explicit Laps(Seconds* sums) : sums_(sums) {
+    if (sums_ != nullptr) last_ = Clock::now();
+  }
+  void end(Stage stage) {
+    if (sums_ == nullptr) return;
+    const auto now = Clock::now();
+    (*sums_)[stage] += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Seconds* sums_;
+  Clock::time_point last_;
+};
+
+// The stages of a block follow each other while it is in the nearest cache; only foothold, which few legs
+// need, waits for enough of them to fill its lanes: a part is as many agents as that takes and the second
+// cache holds.
+template <class F, int N>
+class HerdKernel final : public Kernel {
+ public:
+  HerdKernel(const World& world, const HerdState& start, const Options& options)
+      : world_(world),
+        agents_(start.agents),
+        legs_(world.legs.size()),
+        blocks_((agents_ + kAgents - 1) / kAgents),
+        timings_(options.timings),
+        agentBlocks_(blocks_),
+        legBlocks_(blocks_ * legs_),
+        poses_(options.poses ? blocks_ * poseCount() : 0),
+        scratch_(size_t(options.threads)) {
+    for (Scratch& scratch : scratch_) {
+      scratch.begins.resize(kPartBlocks * kAgents * legs_);
+      scratch.rare.resize(kPartBlocks * kAgents * legs_);
+    }
+    // Idle lanes of the last block repeat its last agent.
+    for (size_t i = 0; i < blocks_ * kAgents; ++i) {
+      const size_t agent = std::min(i, agents_ - 1), block = i / kAgents;
+      const int at = int(i % kAgents);
+      copyLane<float, F>(readAgent(start, agent), 0, agentBlocks_[block], at);
+      for (size_t l = 0; l < legs_; ++l)
+        copyLane<float, F>(readLeg<kBones<N>>(start, agent * legs_ + l, world_.bones), 0, legsOf(block)[l],
+                           at);
+    }
+  }
+
+  size_t parts() const override { return (blocks_ + kPartBlocks - 1) / kPartBlocks; }
+
+  void tick(uint64_t n, size_t part, int thread) override {
+    Scratch& scratch = scratch_[size_t(thread)];
+    const size_t first = part * kPartBlocks, last = std::min(first + kPartBlocks, blocks_);
+    const float tick = float(n);
+    Laps laps(timings_ ? &scratch.seconds : nullptr);
+    scratch.begun = scratch.listed = 0;
+    for (size_t block = first; block < last; ++block) {
+      Agent<F>& a = agentBlocks_[block];
+      navigate(world_, a);
+      laps.end(kNavigate);
+      body(world_, tick, a, legsOf(block));
+      laps.end(kBody);
+      Begun begun;
+      gait(world_, tick, a, legsOf(block), begun);
+      list(block, begun, scratch);
+      laps.end(kGait);
+    }
+    beginSteps(tick, scratch);
+    laps.end(kFoothold);
+    for (size_t block = first; block < last; ++block) {
+      const Agent<F>& a = agentBlocks_[block];
+      Leg<F, kBones<N>>* legs = legsOf(block);
+      for (size_t l = 0; l < legs_; ++l) swing(tick, a, legs[l].step, legs[l].foot);
+      laps.end(kSwing);
+      const Mat3<F> r = matrixOf(a.orientation);
+      for (size_t l = 0; l < legs_; ++l) {
+        const auto rare = [&](uint64_t lanes) { listRare(block, l, lanes, scratch); };
+        ikQuick<F, N>(world_, world_.legs[l], r, legs[l].foot, legs[l].chain, rare);
+      }
+      if (scratch.listed > 0) solveRare(block, scratch);
+      laps.end(kIk);
+      if (!poses_.empty()) poseBlock(block, r);
+      laps.end(kPose);
+    }
+  }
+
+  void read(HerdState& state) const override {
+    for (size_t agent = 0; agent < agents_; ++agent) {
+      const size_t block = agent / kAgents;
+      const int at = int(agent % kAgents);
+      Agent<float> a;
+      copyLane<F, float>(agentBlocks_[block], at, a, 0);
+      writeAgent(a, agent, state);
+      for (size_t l = 0; l < legs_; ++l) {
+        Leg<float, kBones<N>> leg;
+        copyLane<F, float>(legBlocks_[block * legs_ + l], at, leg, 0);
+        writeLeg(leg, agent * legs_ + l, world_.bones, state);
+      }
+      if (poses_.empty()) continue;
+      for (size_t i = 0; i < poseCount(); ++i) {
+        BonePose<float> pose;
+        copyLane<F, float>(poses_[block * poseCount() + i], at, pose, 0);
+        writePose(pose, agent * poseCount() + i, state);
+      }
+    }
+  }
+
+  size_t bytes() const override {
+    return (agentBlocks_.size() * sizeof(agentBlocks_[0]) + legBlocks_.size() * sizeof(legBlocks_[0]) +
+            poses_.size() * sizeof(BonePose<F>)) /
+           (blocks_ * kAgents);
+  }
+
+  Seconds seconds() const override {
+    Seconds sums{};
+    for (const Scratch& scratch : scratch_)
+      for (int s = 0; s < kStages; ++s) sums[s] += scratch.seconds[s];
+    return sums;
+  }
+
+ private:
+  static constexpr size_t kAgents = kWidth<F>;
+  static constexpr size_t kPartBlocks = 128 / kAgents;
+
+  // A leg of an agent.
+  struct Place {
+    size_t block;
+    uint16_t leg, lane;
+    bool again;
+  };
+  struct Rare {
+    Place place;
+    Chain<float, kBones<N>> chain;  // as it was
+  };
+  struct alignas(64) Scratch {
+    std::vector<Place> begins;
+    std::vector<Rare> rare;
+    size_t begun = 0, listed = 0;
+    Seconds seconds{};
+  };
+
+  Leg<F, kBones<N>>* legsOf(size_t block) { return &legBlocks_[block * legs_]; }
+  size_t poseCount() const { return 1 + legs_ * size_t(world_.bones); }
+
+  void list(size_t block, const Begun& begun, Scratch& scratch) const {
+    for (size_t l = 0; l < legs_; ++l) {
+      for (uint64_t all = begun.lift[l] | begun.again[l]; all != 0; all &= all - 1) {
+        const int at = std::countr_zero(all);
+        scratch.begins[scratch.begun++] = {block, uint16_t(l), uint16_t(at), (begun.again[l] >> at & 1) != 0};
+      }
+    }
+  }
+
+  void beginSteps(float tick, Scratch& scratch) {
+    Beginning<F> b;
+    for (size_t i = 0; i < scratch.begun; i += kAgents) {
+      const size_t count = std::min(kAgents, scratch.begun - i);
+      for (size_t k = 0; k < kAgents; ++k) {
+        const Place& place = scratch.begins[i + std::min(k, count - 1)];
+        const LegModel& leg = world_.legs[place.leg];
+        copyLane<F, F>(agentBlocks_[place.block], place.lane, b.agent, int(k));
+        copyLane<F, F>(legsOf(place.block)[place.leg].step, place.lane, b.step, int(k));
+        copyLane<float, F>(leg.root, 0, b.root, int(k));
+        copyLane<float, F>(leg.home, 0, b.home, int(k));
+        lane(b.reach, int(k)) = leg.reach;
+        lane(b.again, int(k)) = place.again ? 1 : 0;
+      }
+      foothold(world_, tick, b);
+      for (size_t k = 0; k < count; ++k) {
+        const Place& place = scratch.begins[i + k];
+        copyLane<F, F>(b.step, int(k), legsOf(place.block)[place.leg].step, place.lane);
+      }
+    }
+  }
+
+  void listRare(size_t block, size_t l, uint64_t lanes, Scratch& scratch) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int at = std::countr_zero(lanes);
+      Rare& rare = scratch.rare[scratch.listed++];
+      rare.place = {block, uint16_t(l), uint16_t(at), false};
+      copyLane<F, float>(legsOf(block)[l].chain, at, rare.chain, 0);
+    }
+  }
+
+  void solveRare(size_t block, Scratch& scratch) {
+    for (; scratch.listed > 0; --scratch.listed) {
+      auto& [place, chain] = scratch.rare[scratch.listed - 1];
+      Quaternion<float> orientation;
+      copyLane<F, float>(agentBlocks_[block].orientation, place.lane, orientation, 0);
+      Foot<float> foot;
+      copyLane<F, float>(legsOf(block)[place.leg].foot, place.lane, foot, 0);
+      ikWhole<N>(world_, world_.legs[place.leg], matrixOf(orientation), foot, chain);
+      copyLane<float, F>(chain, 0, legsOf(block)[place.leg].chain, place.lane);
+    }
+  }
+
+  void poseBlock(size_t block, const Mat3<F>& r) {
+    const Agent<F>& a = agentBlocks_[block];
+    BonePose<F>* poses = &poses_[block * poseCount()];
+    *poses++ = {a.orientation, {F(0), F(0), F(0)}};
+    for (size_t l = 0; l < legs_; ++l, poses += world_.bones)
+      pose<F, N>(world_.legs[l], world_.bones, a, r, legsOf(block)[l].chain, poses);
+  }
+
+  const World& world_;
+  size_t agents_, legs_, blocks_;
+  bool timings_;
+  std::vector<Agent<F>> agentBlocks_;
+  std::vector<Leg<F, kBones<N>>> legBlocks_;
+  std::vector<BonePose<F>> poses_;
+  std::vector<Scratch> scratch_;
+};
+
+// With the number of bones compiled in where all legs have it and rigs are made so, else 0.
+template <class F>
+std::unique_ptr<Kernel> kernelOf(const World& world, const HerdState& start, const Options& options) {
+  const auto all = [&](int n) {
+    return std::all_of(world.legs.begin(), world.legs.end(),
+                       [n](const LegModel& leg) { return int(leg.bones.size()) == n; });
+  };
+  if (all(3)) return std::make_unique<HerdKernel<F, 3>>(world, start, options);
+  if (all(4)) return std::make_unique<HerdKernel<F, 4>>(world, start, options);
+  return std::make_unique<HerdKernel<F, 0>>(world, start, options);
+}
+
+}  // namespace skitter::cpu_crowd

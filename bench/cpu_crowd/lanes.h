@@ -1,0 +1,62 @@
+#pragma once
+
+#include "bench/cpu_baseline/lane_vector.h"
+
+namespace skitter::cpu_crowd {
+
+// The lane types and their operations: F is float, Lanes or a Pair.
+using namespace baseline;
+using baseline::broadcast, baseline::dot, baseline::select;  // which have more overloads here
+
+template <class F>
+F clamp(const F& x, float low, float high) {
+  return smaller(larger(x, low), high);
+}
+template <class F>
+F mix(const F& a, const F& b, const F& share) {
+  return a + (b - a) * share;
+}
+template <class F>
+Vec3<F> mix(const Vec3<F>& a, const Vec3<F>& b, const F& share) {
+  return a + (b - a) * share;
+}
+
+// 1 in the lanes of the set, else 0.
+template <class F>
+struct Flags {
+  static F of(uint64_t set) {
+    F flag;
+    for (int i = 0; i < kWidth<F>; ++i) lane(flag, i) = float(set >> i & 1);
+    return flag;
+  }
+};
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+template <>
+struct Flags<Lanes> {
+  static Lanes of(uint64_t set) { return _mm512_maskz_mov_ps(__mmask16(set), Lanes(1).v); }
+};
+#endif
+template <>
+struct Flags<float> {
+  static float of(uint64_t set) { return float(int(set & 1)); }
+};
+template <class V>
+struct Flags<Pair<V>> {
+  static Pair<V> of(uint64_t set) { return {Flags<V>::of(set), Flags<V>::of(set >> kWidth<V>)}; }
+};
+template <class F>
+F flags(uint64_t set) {
+  return Flags<F>::of(set);
+}
+
+// What lane i of `from` holds goes into lane j of `to`: structures of F alone, or of as many floats.
+template <class F, class G, class From, class To>
+void copyLane(const From& from, int i, To& to, int j) {
+  constexpr size_t kRows = sizeof(From) / sizeof(F);
+  static_assert(kRows == sizeof(To) / sizeof(G));
+  const float* source = reinterpret_cast<const float*>(&from) + i;
+  float* target = reinterpret_cast<float*>(&to) + j;
+  for (size_t row = 0; row < kRows; ++row) target[row * kWidth<G>] = source[row * kWidth<F>];
+}
+
+}  // namespace skitter::cpu_crowd

@@ -1,0 +1,97 @@
+#pragma once
+
+#include "bench/cpu_crowd/ik.h"
+#include "shared/records.h"
+#include "skitter/crowd.h"
+
+// One agent's records in the device's layout (shaders/shared/records.h), to and from the herd's own.
+namespace skitter::cpu_crowd {
+
+inline float* recordAt(std::vector<float>& buffer, size_t index, int stride) {
+  return buffer.data() + 4 * index * size_t(stride);
+}
+inline const float* recordAt(const std::vector<float>& buffer, size_t index, int stride) {
+  return buffer.data() + 4 * index * size_t(stride);
+}
+
+inline Agent<float> readAgent(const HerdState& state, size_t agent) {
+  const float* goal = recordAt(state.goal, agent, shared::GOAL_STRIDE);
+  const float* steer = recordAt(state.steer, agent, shared::STEER_STRIDE);
+  const float* b = recordAt(state.body, agent, shared::BODY_STRIDE);
+  const float* gait = recordAt(state.gait, agent, shared::GAIT_STRIDE);
+  Agent<float> a;
+  a.targetX = goal[0], a.targetZ = goal[1], a.otherX = goal[2], a.otherZ = goal[3];
+  a.wantedSpeed = goal[4], a.arrival = goal[5], a.kind = goal[6];
+  a.velocityX = steer[0], a.velocityZ = steer[1];
+  a.local = {b[0], b[1], b[2]};
+  a.headingX = b[3], a.tileX = b[4], a.tileZ = b[5], a.headingZ = b[6], a.speed = b[7];
+  a.orientation = {b[8], b[9], b[10], b[11]};
+  a.turnRate = b[12], a.still = b[13], a.follow = b[14], a.surfaceSpeed = b[15];
+  a.phase = gait[0], a.lift = gait[1], a.again = gait[2], a.stepTicks = gait[3];
+  a.halfStride = gait[4], a.cycle = gait[5], a.air = gait[6];
+  return a;
+}
+
+inline void writeAgent(const Agent<float>& a, size_t agent, HerdState& state) {
+  const auto put = [&](std::vector<float>& buffer, int stride, std::initializer_list<float> values) {
+    std::copy(values.begin(), values.end(), recordAt(buffer, agent, stride));
+  };
+  put(state.goal, shared::GOAL_STRIDE,
+      {a.targetX, a.targetZ, a.otherX, a.otherZ, a.wantedSpeed, a.arrival, a.kind, 0});
+  put(state.steer, shared::STEER_STRIDE, {a.velocityX, a.velocityZ, 0, 0});
+  put(state.body, shared::BODY_STRIDE,
+      {a.local.x, a.local.y, a.local.z, a.headingX, a.tileX, a.tileZ, a.headingZ, a.speed, a.orientation.x,
+       a.orientation.y, a.orientation.z, a.orientation.w, a.turnRate, a.still, a.follow, a.surfaceSpeed});
+  put(state.gait, shared::GAIT_STRIDE,
+      {a.phase, a.lift, a.again, a.stepTicks, a.halfStride, a.cycle, a.air, 0});
+}
+
+template <int N>
+Leg<float, N> readLeg(const HerdState& state, size_t leg, int bones) {
+  const float* s = recordAt(state.step, leg, shared::STEP_STRIDE);
+  const float* foot = recordAt(state.foot, leg, shared::FOOT_STRIDE);
+  const float* directions = recordAt(state.chain, leg, shared::chainStride(bones));
+  const float* tip = directions + 4 * shared::chainDirections(bones);
+  Leg<float, N> to{};
+  to.step = {{s[0], s[1], s[2]},  s[3],  {s[4], s[5], s[6]},    s[7],
+             {s[8], s[9], s[10]}, s[11], {s[12], s[13], s[14]}, s[15]};
+  to.foot = {{foot[0], foot[1], foot[2]}, foot[3]};
+  for (int b = 0; b < bones; ++b) {
+    to.chain.x[b] = directions[2 * b];
+    to.chain.y[b] = directions[2 * b + 1];
+  }
+  to.chain.tip = {tip[0], tip[1], tip[2]};
+  to.chain.error = tip[3];
+  to.chain.damping = tip[4];
+  to.chain.before = tip[5];
+  return to;
+}
+
+template <int N>
+void writeLeg(const Leg<float, N>& from, size_t leg, int bones, HerdState& state) {
+  const Step<float>& s = from.step;
+  const float step[] = {s.landing.x,      s.landing.y,      s.landing.z,      s.tileX,
+                        s.liftOff.x,      s.liftOff.y,      s.liftOff.z,      s.tileZ,
+                        s.lift.x,         s.lift.y,         s.lift.z,         s.firstTick,
+                        s.startTangent.x, s.startTangent.y, s.startTangent.z, s.ticks};
+  std::copy(std::begin(step), std::end(step), recordAt(state.step, leg, shared::STEP_STRIDE));
+  const Foot<float>& f = from.foot;
+  const float foot[] = {f.target.x, f.target.y, f.target.z, f.progress};
+  std::copy(std::begin(foot), std::end(foot), recordAt(state.foot, leg, shared::FOOT_STRIDE));
+  float* directions = recordAt(state.chain, leg, shared::chainStride(bones));
+  for (int b = 0; b < bones; ++b) {
+    directions[2 * b] = from.chain.x[b];
+    directions[2 * b + 1] = from.chain.y[b];
+  }
+  const float tip[] = {from.chain.tip.x, from.chain.tip.y,   from.chain.tip.z,
+                       from.chain.error, from.chain.damping, from.chain.before};
+  std::copy(std::begin(tip), std::end(tip), directions + 4 * shared::chainDirections(bones));
+}
+
+inline void writePose(const BonePose<float>& pose, size_t entry, HerdState& state) {
+  const float record[] = {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w,
+                          pose.position.x, pose.position.y, pose.position.z, 0};
+  std::copy(std::begin(record), std::end(record), recordAt(state.pose, entry, shared::POSE_STRIDE));
+}
+
+}  // namespace skitter::cpu_crowd

@@ -1,0 +1,207 @@
+// The CPU opponent before the judge that the devices stand before: lock-step replay against the reference.
+#include "bench/cpu_crowd/crowd.h"
+
+#include "crowd/herd.h"
+#include "crowd/simulation.h"
+#include "skitter/error.h"
+#include "skitter/rig.h"
+#include "validation/herd_facts.h"
+
+namespace skitter::test {
+namespace {
+
+using cpu_crowd::CpuCrowd;
+using cpu_crowd::Options;
+using cpu_crowd::Width;
+
+// A herd that a device has walked for some ticks.
+struct Start {
+  Start(Device& device, const Heightfield& ground, uint32_t agents, int ticks, float speed = 1)
+      : terrain(ground), crowd(device, terrain, sceneOf(agents, speed)) {
+    simulate(device, crowd, ticks);
+    state = crowd.download(0);
+  }
+  Start(Device& device, const Heightfield& ground, uint32_t agents, int ticks, Rig rig)
+      : terrain(ground), crowd(device, terrain, sceneOf(agents), std::vector<Rig>{std::move(rig)}) {
+    simulate(device, crowd, ticks);
+    state = crowd.download(0);
+  }
+  validation::HerdFacts facts() { return validation::herdFacts(crowd.impl().herds[0], terrain); }
+
+  Heightfield terrain;
+  Crowd crowd;
+  HerdState state;
+};
+
+// `ticks` ticks of `opponent`, which began at `start`, as the reference that knows `facts` sees them.
+std::vector<validation::StageResult> replay(CpuCrowd& opponent, Start& start, int ticks,
+                                            uint32_t stride = 1) {
+  validation::Replay replay(start.facts(), 1);
+  HerdState before = start.state;
+  before.metric.clear();
+  for (uint64_t n = start.crowd.tick() + 1; ticks-- > 0; ++n) {
+    opponent.tick(n);
+    HerdState after = opponent.state();
+    replay.tick(n, before, after, {.stride = stride});
+    before = std::move(after);
+  }
+  return replay.results();
+}
+
+void expectSamples(const std::vector<validation::StageResult>& results) {
+  for (const validation::StageResult& stage : results) {
+    if (stage.name == "measure") continue;
+    EXPECT_GT(stage.samples, 0u) << stage.name;
+  }
+}
+
+Heightfield steepGround() {
+  return generateHeightfield({.columns = 257, .rows = 257, .amplitude = 12, .wavelength = 24});
+}
+
+class CpuCrowdTest : public GpuTest, public ::testing::WithParamInterface<Width> {
+ protected:
+  Options options(int threads = 1) const { return {.threads = threads, .width = GetParam(), .poses = true}; }
+};
+
+TEST_P(CpuCrowdTest, WalksAsTheReferenceDoes) {
+  for (const uint32_t agents : {1u, 15u, 16u, 17u}) {
+    Start start(device(), rollingGround(), agents, 90);
+    CpuCrowd opponent(start.facts(), start.state, options());
+    const auto results = replay(opponent, start, 60);
+    SCOPED_TRACE(agents);
+    expectAllPass(results);
+    expectSamples(results);
+  }
+}
+
+TEST_P(CpuCrowdTest, WalksAThousandAsTheReferenceDoes) {
+  Start start(device(), rollingGround(), 1000, 120);
+  CpuCrowd opponent(start.facts(), start.state, options(3));
+  const auto results = replay(opponent, start, 40, 20);
+  expectAllPass(results);
+  expectSamples(results);
+}
+
+TEST_P(CpuCrowdTest, WalksFastOnSteepGround) {
+  Start start(device(), steepGround(), 40, 60, 2);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  const auto results = replay(opponent, start, 60);
+  expectAllPass(results);
+  expectSamples(results);
+}
+
+// Beyond the wall no foothold fits, and legs hang in deadlocks that few other places have.
+TEST_P(CpuCrowdTest, WalksOverACliff) {
+  Start start(device(), cliffGround(), 64, 400);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  expectAllPass(replay(opponent, start, 40));
+}
+
+TEST_P(CpuCrowdTest, WalksFromTheFirstStep) {
+  Start start(device(), rollingGround(), 16, 1);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  expectAllPass(replay(opponent, start, 40));
+}
+
+// Legs that are far from where their feet should be take all of ik's steps.
+TEST_P(CpuCrowdTest, SolvesLegsThatAreFarOff) {
+  Start start(device(), rollingGround(), 17, 30);
+  std::vector<float>& chain = start.state.chain;
+  for (size_t leg = 0; leg < chain.size() / 16; leg += 3)
+    for (size_t i = 0; i < 8; ++i) chain[16 * leg + i] = 0;
+  CpuCrowd opponent(start.facts(), start.state, options());
+  expectAllPass(replay(opponent, start, 5));
+}
+
+TEST_P(CpuCrowdTest, WalksOnFourLegs) {
+  Start start(device(), rollingGround(), 16, 60, loadRig(SKITTER_ASSETS "/quadruped.rig.json"));
+  CpuCrowd opponent(start.facts(), start.state, options());
+  const auto results = replay(opponent, start, 60);
+  expectAllPass(results);
+  expectSamples(results);
+}
+
+TEST_P(CpuCrowdTest, WalksOnLegsOfUnequalLength) {
+  Rig rig = spiderRig();
+  Leg& leg = rig.legs[1];
+  leg.bones.pop_back();
+  leg.reach = 0;
+  for (const Bone& bone : leg.bones) leg.reach += bone.length;
+  Start start(device(), rollingGround(), 16, 60, rig);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  const auto results = replay(opponent, start, 60);
+  expectAllPass(results);
+  expectSamples(results);
+}
+
+TEST_P(CpuCrowdTest, ThreadsChangeNoBit) {
+  Start start(device(), rollingGround(), 700, 60);
+  CpuCrowd one(start.facts(), start.state, options(1)), three(start.facts(), start.state, options(3));
+  for (uint64_t n = start.crowd.tick() + 1, i = 0; i < 60; ++n, ++i) {
+    one.tick(n);
+    three.tick(n);
+  }
+  const HerdState a = one.state(), b = three.state();
+  EXPECT_EQ(a.body, b.body);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.chain, b.chain);
+  EXPECT_EQ(a.pose, b.pose);
+  EXPECT_NE(a.body, start.state.body);
+}
+
+TEST_P(CpuCrowdTest, ABrokenOneIsRefused) {
+  Start start(device(), rollingGround(), 16, 90);
+  const auto refusedStages = [&](const validation::HerdFacts& broken) {
+    CpuCrowd opponent(broken, start.state, options());
+    std::string names;
+    for (const validation::StageResult& stage : replay(opponent, start, 20))
+      if (!stage.pass) names += stage.name + " ";
+    return names;
+  };
+  validation::HerdFacts slower = start.facts();
+  slower.parameters.heightBlend *= 1.02f;
+  EXPECT_EQ(refusedStages(slower), "body ");
+  std::vector<float> records = start.crowd.impl().herds[0].rigRecords;
+  records[0] += 1e-3f;  // a root
+  const validation::HerdFacts crooked{start.facts().rig, start.terrain, start.facts().parameters, records,
+                                      start.facts().ik};
+  EXPECT_EQ(refusedStages(crooked), "ik pose ");
+}
+
+TEST_P(CpuCrowdTest, RefusesWhatItCannotWalk) {
+  Start start(device(), rollingGround(), 4, 1);
+  HerdState torn = start.state;
+  torn.step.pop_back();
+  EXPECT_THROW(CpuCrowd(start.facts(), torn, options()), Error);
+  EXPECT_THROW(CpuCrowd(start.facts(), start.state, options(0)), Error);
+  validation::HerdFacts looping = start.facts();
+  looping.controller = crowd::Controller::loop;
+  EXPECT_THROW(CpuCrowd(looping, start.state, options()), Error);
+  validation::HerdFacts compared = start.facts();
+  compared.ik = crowd::ikPlanFor("fabrik");
+  EXPECT_THROW(CpuCrowd(compared, start.state, options()), Error);
+}
+
+TEST_P(CpuCrowdTest, TellsWhatStagesTake) {
+  Start start(device(), rollingGround(), 16, 1);
+  Options timed = options();
+  CpuCrowd untimed(start.facts(), start.state, timed);
+  EXPECT_TRUE(untimed.stageSeconds().empty());
+  timed.timings = true;
+  CpuCrowd opponent(start.facts(), start.state, timed);
+  opponent.tick(start.crowd.tick() + 1);
+  std::string names;
+  for (const cpu_crowd::StageSeconds& stage : opponent.stageSeconds()) {
+    names += stage.stage + " ";
+    EXPECT_GT(stage.seconds, 0) << stage.stage;
+  }
+  EXPECT_EQ(names, "navigate body gait foothold swing ik pose ");
+  EXPECT_GT(opponent.bytesAnAgent(), 4u * 16 * 8);
+}
+
+INSTANTIATE_TEST_SUITE_P(, CpuCrowdTest, ::testing::Values(Width::scalar, Width::simd),
+                         [](const auto& tested) { return tested.param == Width::simd ? "simd" : "scalar"; });
+
+}  // namespace
+}  // namespace skitter::test
