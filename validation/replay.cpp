@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 #include "shared/ik_batch.h"
 #include "shared/records.h"
@@ -66,12 +67,12 @@ void expectSizes(const Setting& setting, const HerdState& state, size_t agents) 
   expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
   expect("chain records", state.chain, legs, shared::chainStride(setting.bones));
   const size_t bones = static_cast<size_t>(setting.bones);
-  if (crowd::playsClips(setting.controller)) {
+  const bool clips = crowd::playsClips(setting.controller);
+  if (clips) expect("play records", state.play, 1, shared::PLAY_STRIDE);
+  if (clips && !state.pose.empty())
     expect("pose records", state.pose, setting.clips.joints(), shared::MATRIX_STRIDE);
-    expect("play records", state.play, 1, shared::PLAY_STRIDE);
-  } else {
+  else if (!state.pose.empty())
     expect("pose records", state.pose, 1 + legs * bones, shared::POSE_STRIDE);
-  }
   if (setting.controller == crowd::Controller::planted) {
     expect("start records", state.start, legs, shared::chainStride(setting.bones));
     expect("fix records", state.fix, legs * bones, shared::FIX_STRIDE);
@@ -129,7 +130,7 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
   const size_t agents = before.agents;
   expectSizes(setting_, before, agents);
   expectSizes(setting_, after, agents);
-  const bool measured = !before.metric.empty() && !after.metric.empty();
+  const bool measured = !before.metric.empty() && !after.metric.empty(), posed = !after.pose.empty();
   const size_t last = std::min(agents, static_cast<size_t>(range.first) + range.count);
   const size_t stride = std::max(1u, range.stride);
   const Stages& stages = stagesOf(setting_.controller);
@@ -138,6 +139,7 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
     const Moment moment{n, before, after, agent};
     for (size_t s = 0; s < stages.size(); ++s) {
       if (stages[s].check == checkMeasure && !measured) continue;
+      if (stages[s].name == std::string_view("pose") && !posed) continue;
       stages[s].check(setting_, moment, judges_[s]);
     }
   }

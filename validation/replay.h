@@ -61,7 +61,7 @@ class Replay {
   Replay(const Replay&) = delete;
   Replay& operator=(const Replay&) = delete;
 
-  // `n` is the tick that led from `before` to `after`. A state without metrics leaves the last stage out.
+  // `n` is the tick that led from `before` to `after`. A state without metrics leaves measure out, one without poses pose.
   // Throws Error(input) when a record buffer's size does not fit the number of agents.
   void tick(uint64_t n, const HerdState& before, const HerdState& after, const ReplayRange& range = {});
 

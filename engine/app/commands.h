@@ -12,10 +12,11 @@ namespace skitter::app {
 using Command = std::function<int()>;
 
 // Each adds its subcommand, which on being named sets `chosen`.
+void addBench(CLI::App&, Command& chosen);  // where the opponents are built, as reproduce
 void addIk(CLI::App&, Command& chosen);
 void addInfo(CLI::App&, Command& chosen);
 void addInspect(CLI::App&, Command& chosen);
-void addReproduce(CLI::App&, Command& chosen);  // where the experiments are built
+void addReproduce(CLI::App&, Command& chosen);
 void addRig(CLI::App&, Command& chosen);
 void addRun(CLI::App&, Command& chosen);
 void addValidate(CLI::App&, Command& chosen);

@@ -25,8 +25,8 @@ constexpr const char* footer =
     "  skitter validate --device llvmpipe\n"
     "  skitter reproduce --quick --out figures";
 
-#if defined(SKITTER_REPRODUCE)
-constexpr const char* subcommands = "ik, info, inspect, reproduce, rig, run or validate";
+#if defined(SKITTER_BENCH)
+constexpr const char* subcommands = "bench, ik, info, inspect, reproduce, rig, run or validate";
 #else
 constexpr const char* subcommands = "ik, info, inspect, rig, run or validate";
 #endif
@@ -44,10 +44,13 @@ int runCommand(int argc, char** argv) {
   app.footer(footer);
   app.require_subcommand(0, 1);
   skitter::app::Command command;
+#if defined(SKITTER_BENCH)
+  skitter::app::addBench(app, command);
+#endif
   skitter::app::addIk(app, command);
   skitter::app::addInfo(app, command);
   skitter::app::addInspect(app, command);
-#if defined(SKITTER_REPRODUCE)
+#if defined(SKITTER_BENCH)
   skitter::app::addReproduce(app, command);
 #endif
   skitter::app::addRig(app, command);

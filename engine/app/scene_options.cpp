@@ -49,21 +49,12 @@ void scaleHerds(Scene& scene, uint64_t agents) {
 void SceneOptions::addTo(CLI::App& command, const char* agentsHelp) {
   command.add_option("scene", scene, "a scene file (JSON, docs/scene.md); without one, the built-in scene")
       ->type_name("SCENE");
-  command
-      .add_option_function<std::string>(
-          "--agents",
-          [this](const std::string& text) { agents = parseWhole("--agents", text, 0, maxAgents); },
-          fmt::format("agents of the first herd; other herds keep their proportion to it [{}]", agentsHelp))
-      ->type_name("N");
+  if (agentsHelp != nullptr) addCountTo(command, agentsHelp);
   command
       .add_option(
           "--rig", rig,
           "the first herd's rig: spider, a model with its sidecar beside it, or a sidecar (docs/rig.md)")
       ->type_name("FILE");
-  command
-      .add_option("--controller", controller,
-                  "how every herd's legs move: adaptive, loop, clip, planted (docs/scene.md) [the scene's]")
-      ->type_name("NAME");
   command
       .add_option("--solver", solver,
                   "every herd's inverse kinematics: active-set, fabrik, ccd, transpose, pseudoinverse, dls, "
@@ -89,6 +80,19 @@ void SceneOptions::addTo(CLI::App& command, const char* agentsHelp) {
           "--device", [this](const std::string& text) { device = text; },
           "number or part of the name of the device (skitter info) [the best suitable]")
       ->type_name("NAME|INDEX");
+}
+
+void SceneOptions::addCountTo(CLI::App& command, const char* agentsHelp) {
+  command
+      .add_option_function<std::string>(
+          "--agents",
+          [this](const std::string& text) { agents = parseWhole("--agents", text, 0, maxAgents); },
+          fmt::format("agents of the first herd; other herds keep their proportion to it [{}]", agentsHelp))
+      ->type_name("N");
+  command
+      .add_option("--controller", controller,
+                  "how every herd's legs move: adaptive, loop, clip, planted (docs/scene.md) [the scene's]")
+      ->type_name("NAME");
 }
 
 void SceneOptions::addTerrainTo(CLI::App& command) {

@@ -30,12 +30,14 @@ struct SceneOptions {
   double dt = 1.0 / 60;
   std::optional<std::string> device;
 
-  // `agentsHelp` says what happens without --agents.
+  // `agentsHelp` says what happens without --agents; null: neither --agents nor --controller, of which the
+  // command has lists.
   void addTo(CLI::App& command, const char* agentsHelp);
   // The scene as the flags leave it. Throws Error(input).
   Scene load() const;
 
  private:
+  void addCountTo(CLI::App& command, const char* agentsHelp);
   void addTerrainTo(CLI::App& command);
   void applyTerrain(Scene& scene) const;
 };

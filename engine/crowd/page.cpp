@@ -13,6 +13,8 @@ namespace {
 
 constexpr uint32_t kMostPageAgents = 65536;
 
+}  // namespace
+
 gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& page, uint32_t binding) {
   using namespace shared;
   switch (binding) {
@@ -83,8 +85,6 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
       return {binding, &page.metric};
   }
 }
-
-}  // namespace
 
 RecordBytes recordBytes(const Herd& herd) {
   using namespace shared;

@@ -19,6 +19,9 @@ struct RecordBytes {
 
 RecordBytes recordBytes(const Herd& herd);
 
+// What a stage's binding of that number (shaders/shared/bindings.h) is bound to.
+gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& page, uint32_t binding);
+
 // The most agents whose records fit the device's bindings. Throws Error(device) when not even one does.
 uint32_t agentsPerPage(const gpu::Context& context, const CrowdOptions& options, const RecordBytes& bytes);
 

@@ -55,42 +55,49 @@ const std::vector<Stage>& stagesOf(Controller controller) {
   return adaptive;
 }
 
-void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd) {
+StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const Herd& herd) {
   using namespace shared;
+  gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
+  const bool isIk = std::strcmp(stage.name, "ik") == 0;
+  const bool isGait = herd.controller == Controller::adaptive && std::strcmp(stage.name, "gait") == 0;
+  if (isIk && herd.ik.solver != SOLVER_FABRIK) info.code = comparedIkCode();
+  for (const StageShader& other : options.shaders)
+    if (other.stage == stage.name) info.code = {other.texel, other.storage};
+  info.constants = {{CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
+  if (playsClips(herd.controller)) {
+    info.constants.emplace_back(CONSTANT_CLIPS, herd.clips.clips);
+    info.constants.emplace_back(CONSTANT_JOINTS, herd.clips.joints);
+    info.constants.emplace_back(CONSTANT_SEARCH_STEPS,
+                                static_cast<int>(std::bit_width(static_cast<uint32_t>(herd.clips.frames))));
+  }
+  if (isIk) {
+    info.constants.emplace_back(CONSTANT_APPROACH_ITERATIONS, herd.ik.approach);
+    info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, herd.ik.polish);
+    info.constants.emplace_back(CONSTANT_SOLVER, herd.ik.solver);
+  }
+  if (isGait) info.constants.emplace_back(CONSTANT_REACH, herd.reachTriggered ? 1 : 0);
+
+  StageKernels kernels{info, {}, {}};
+  // Without a polish ik would list every leg.
+  if (stage.rest >= 0 && !(isIk && herd.ik.polish == 0)) {
+    kernels.first.constants.emplace_back(CONSTANT_PASS, PASS_QUICK);
+    kernels.rest = info;
+    kernels.rest->constants.emplace_back(CONSTANT_PASS, PASS_LISTED);
+  }
+  if (isGait) {
+    kernels.watching = info;
+    kernels.watching->constants.emplace_back(CONSTANT_WATCH, 1);
+  }
+  return kernels;
+}
+
+void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd) {
   for (const Stage& stage : stagesOf(herd.controller)) {
-    gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
-    const bool isIk = std::strcmp(stage.name, "ik") == 0;
-    if (isIk && herd.ik.solver != SOLVER_FABRIK) info.code = comparedIkCode();
-    for (const StageShader& other : options.shaders)
-      if (other.stage == stage.name) info.code = {other.texel, other.storage};
-    info.constants = {
-        {CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
-    if (playsClips(herd.controller)) {
-      info.constants.emplace_back(CONSTANT_CLIPS, herd.clips.clips);
-      info.constants.emplace_back(CONSTANT_JOINTS, herd.clips.joints);
-      info.constants.emplace_back(CONSTANT_SEARCH_STEPS,
-                                  static_cast<int>(std::bit_width(static_cast<uint32_t>(herd.clips.frames))));
-    }
-    if (isIk) {
-      info.constants.emplace_back(CONSTANT_APPROACH_ITERATIONS, herd.ik.approach);
-      info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, herd.ik.polish);
-      info.constants.emplace_back(CONSTANT_SOLVER, herd.ik.solver);
-    }
-    // Without a polish ik would list every leg.
+    const StageKernels kernels = kernelsOf(stage, options, herd);
+    herd.kernels.emplace_back(context, kernels.first);
     gpu::Kernel& rest = herd.restKernels.emplace_back();
-    if (stage.rest >= 0 && !(isIk && herd.ik.polish == 0)) {
-      gpu::KernelInfo listed = info;
-      listed.constants.emplace_back(CONSTANT_PASS, PASS_LISTED);
-      rest = gpu::Kernel(context, listed);
-      info.constants.emplace_back(CONSTANT_PASS, PASS_QUICK);
-    }
-    const bool isGait = herd.controller == Controller::adaptive && std::strcmp(stage.name, "gait") == 0;
-    if (isGait) info.constants.emplace_back(CONSTANT_REACH, herd.reachTriggered ? 1 : 0);
-    herd.kernels.emplace_back(context, info);
-    if (isGait) {
-      info.constants.emplace_back(CONSTANT_WATCH, 1);
-      herd.watchingGait = gpu::Kernel(context, info);
-    }
+    if (kernels.rest) rest = gpu::Kernel(context, *kernels.rest);
+    if (kernels.watching) herd.watchingGait = gpu::Kernel(context, *kernels.watching);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,15 @@ const std::vector<const char*>& frame();
 const std::vector<Stage>& stagesOf(Controller controller);
 
 struct Herd;
-// A pipeline a stage, specialised by the herd's legs, bones and groups.
+
+// A stage's shader, specialised by the herd's legs, bones and groups: for its first dispatch, for what that
+// leaves out (Stage::rest) and, of gait, for the ticks after an edit of the heights.
+struct StageKernels {
+  gpu::KernelInfo first;
+  std::optional<gpu::KernelInfo> rest, watching;
+};
+StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const Herd& herd);
+// The pipelines of all stages of the controller.
 void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd);
 
 // Each in a file of its own name.

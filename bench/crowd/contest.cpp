@@ -1,0 +1,153 @@
+#include "bench/crowd/contest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <thread>
+
+#include "bench/crowd/contestant.h"
+#include "bench/ik/clock.h"
+#include "crowd/herd.h"
+#include "validation/herd_facts.h"
+#include "validation/replay.h"
+
+namespace skitter::bench {
+namespace {
+
+constexpr uint32_t kMostTicksATurn = 500;
+// The reference takes about a millisecond for one of them.
+constexpr uint32_t kAgentsChecked = 1024;
+
+// One contestant and what its turns took, a tick.
+struct Corner {
+  std::unique_ptr<Contestant> contestant;
+  std::vector<double> wall, cpu;
+  std::vector<StageTime> before;
+};
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  const double at = share * static_cast<double>(values.size() - 1);
+  const auto i = static_cast<size_t>(at);
+  return values[i] + (at - static_cast<double>(i)) * (values[std::min(i + 1, values.size() - 1)] - values[i]);
+}
+
+Spread spreadOf(const std::vector<double>& values) {
+  return {quantile(values, 0.5), quantile(values, 0.25), quantile(values, 0.75)};
+}
+
+std::vector<Corner> cornersOf(Device& device, Crowd& crowd, const ContestOptions& options) {
+  std::vector<Corner> corners;
+  const auto enter = [&](std::unique_ptr<Contestant> contestant) {
+    corners.push_back({std::move(contestant), {}, {}, {}});
+    corners.back().before = corners.back().contestant->stageTimes();
+  };
+  enter(deviceContestant(device, crowd, static_cast<float>(options.dt)));
+  if (!hasCpuContestant(crowd)) return corners;
+  const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  if (threads > 1) enter(cpuContestant(crowd, false, threads, options.crowd.pose));
+  enter(cpuContestant(crowd, false, 1, options.crowd.pose));
+  if (options.scalar) enter(cpuContestant(crowd, true, 1, options.crowd.pose));
+  return corners;
+}
+
+std::vector<StageTime> difference(const std::vector<StageTime>& after, const std::vector<StageTime>& before,
+                                  double ticks) {
+  std::vector<StageTime> times = after;
+  for (StageTime& time : times) {
+    for (const StageTime& earlier : before)
+      if (earlier.stage == time.stage) time.milliseconds -= earlier.milliseconds;
+    time.milliseconds /= ticks;
+  }
+  return times;
+}
+
+// Without what is not computed here.
+std::vector<HerdState> statesOf(const Contestant& contestant, bool poses) {
+  std::vector<HerdState> states = contestant.states();
+  for (HerdState& state : states) {
+    state.metric.clear();
+    if (!poses) state.pose.clear();
+  }
+  return states;
+}
+
+// A tick of the contestant in lock-step against the reference, herd after herd: the stages that are timed.
+std::vector<validation::StageResult> check(const Crowd& crowd, Contestant& contestant, uint64_t tick,
+                                           const std::vector<StageDemand>& timed,
+                                           const ContestOptions& options) {
+  const std::vector<HerdState> before = statesOf(contestant, options.crowd.pose);
+  contestant.tick();
+  const std::vector<HerdState> after = statesOf(contestant, options.crowd.pose);
+  std::vector<validation::StageResult> results;
+  for (size_t h = 0; h < before.size(); ++h) {
+    validation::Replay replay(validation::herdFacts(crowd.impl().herds[h], crowd.impl().terrain),
+                              options.seed);
+    validation::ReplayRange range;
+    range.stride = before[h].agents / kAgentsChecked + 1;
+    replay.tick(tick, before[h], after[h], range);
+    for (const validation::StageResult& result : replay.results())
+      if (std::any_of(timed.begin(), timed.end(),
+                      [&](const StageDemand& d) { return d.stage == result.name; }))
+        results.push_back(result);
+  }
+  return results;
+}
+
+}  // namespace
+
+Match contest(Device& device, const Heightfield& terrain, const Scene& scene, const ContestOptions& options,
+              const std::function<void(double)>& step, const std::function<bool()>& stopped) {
+  Crowd crowd(device, terrain, scene, options.crowd);
+  Match match;
+  match.agents = crowd.agentCount();
+  match.memoryBytes = crowd.memoryBytes();
+  double tickSeconds = 0;
+  {
+    const std::unique_ptr<Contestant> warm = deviceContestant(device, crowd, static_cast<float>(options.dt));
+    for (uint32_t i = 0; i < options.warmUp; ++i) {
+      if (stopped()) return {};
+      const double seconds = timed([&] { warm->tick(); }).wall;
+      tickSeconds = i == 0 ? seconds : std::min(tickSeconds, seconds);
+      step(0.2 * (i + 1) / options.warmUp);
+    }
+  }
+  match.ticks = static_cast<uint32_t>(std::clamp(
+      std::round(options.turnSeconds / std::max(tickSeconds, 1e-6)), 1.0, double{kMostTicksATurn}));
+
+  const uint64_t first = crowd.tick();
+  std::vector<Corner> corners = cornersOf(device, crowd, options);
+  for (uint32_t round = 0; round < options.rounds; ++round)
+    for (size_t i = 0; i < corners.size(); ++i) {
+      if (stopped()) return {};
+      // Another one begins each round, so that nobody always follows the same one.
+      Corner& corner = corners[(i + round) % corners.size()];
+      const Seconds spent = timed([&] {
+        for (uint32_t t = 0; t < match.ticks; ++t) corner.contestant->tick();
+      });
+      corner.wall.push_back(1e3 * spent.wall / match.ticks);
+      corner.cpu.push_back(1e3 * spent.cpu / match.ticks);
+      step(0.2 +
+           0.7 * (round + static_cast<double>(i + 1) / static_cast<double>(corners.size())) / options.rounds);
+    }
+  match.demands = demandOf(crowd, options.crowd);
+
+  const uint64_t ticks = uint64_t{match.ticks} * options.rounds;
+  for (Corner& corner : corners) {
+    if (stopped()) return {};
+    Result& result = match.results.emplace_back();
+    result.name = corner.contestant->name();
+    result.threads = corner.contestant->threads();
+    result.wall = spreadOf(corner.wall);
+    result.cpu = spreadOf(corner.cpu);
+    result.stages = difference(corner.contestant->stageTimes(), corner.before, static_cast<double>(ticks));
+    result.checks = check(crowd, *corner.contestant, first + ticks + 1, match.demands, options);
+    result.pass = std::all_of(result.checks.begin(), result.checks.end(),
+                              [](const validation::StageResult& c) { return c.pass; });
+    corner.contestant.reset();
+    step(0.9 + 0.1 * static_cast<double>(match.results.size()) / static_cast<double>(corners.size()));
+  }
+  return match;
+}
+
+}  // namespace skitter::bench

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/crowd/demand.h"
+#include "skitter/crowd.h"
+#include "validation/judge.h"
+
+namespace skitter::bench {
+
+struct ContestOptions {
+  CrowdOptions crowd;         // of the device's; poses for all contestants
+  double dt = 1.0 / 60;       // seconds a tick
+  uint32_t warmUp = 60;       // ticks on the device before anybody starts, from the state that they lead to
+  uint32_t rounds = 7;        // in each of which everybody has a turn
+  double turnSeconds = 0.25;  // about what a turn of the device takes
+  bool scalar = true;         // with the scalar opponent
+  uint64_t seed = 1;          // decides which agents are checked
+};
+
+// Over the rounds, milliseconds a tick.
+struct Spread {
+  double median = 0, low = 0, high = 0;  // quartiles
+};
+
+struct Result {
+  std::string name;
+  int threads = 0;                // of the CPU that it may use; 0: the device
+  Spread wall, cpu;               // cpu: of all threads of the process
+  std::vector<StageTime> stages;  // a tick: the device's clock, or CPU time
+  std::vector<validation::StageResult>
+      checks;  // of the first tick after the last round, against the reference
+  bool pass = false;
+};
+
+struct Match {
+  uint32_t ticks = 0;  // a turn
+  uint64_t agents = 0;
+  uint64_t memoryBytes = 0;  // of the device's records
+  std::vector<Result>
+      results;  // the device's first; CPU opponents where there are any for the scene's controllers
+  std::vector<StageDemand> demands;
+};
+
+// Lets the device and the CPU animate the same crowd from the same state, turn by turn in one run, then
+// checks a tick of each in lock-step against the reference. `step` is called with the share that is done;
+// `stopped` ends it early with an empty match.
+Match contest(Device&, const Heightfield&, const Scene&, const ContestOptions&,
+              const std::function<void(double)>& step, const std::function<bool()>& stopped);
+
+}  // namespace skitter::bench

@@ -1,0 +1,111 @@
+#include "bench/crowd/contestant.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/cpu_crowd/crowd.h"
+#include "crowd/herd.h"
+#include "shared/ik_batch.h"
+#include "validation/herd_facts.h"
+
+namespace skitter::bench {
+namespace {
+
+std::vector<HerdState> statesOf(const Crowd& crowd) {
+  std::vector<HerdState> states;
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) states.push_back(crowd.download(h));
+  return states;
+}
+
+void add(std::vector<StageTime>& sums, const std::string& stage, double milliseconds) {
+  const auto known =
+      std::find_if(sums.begin(), sums.end(), [&](const StageTime& t) { return t.stage == stage; });
+  if (known == sums.end())
+    sums.push_back({stage, milliseconds});
+  else
+    known->milliseconds += milliseconds;
+}
+
+class DeviceContestant : public Contestant {
+ public:
+  DeviceContestant(Device& device, Crowd& crowd, float dt)
+      : crowd_(crowd), ring_(device.context()), dt_(dt) {}
+
+  std::string name() const override { return "device"; }
+  int threads() const override { return 0; }
+  void tick() override {
+    crowd_.record(ring_.begin(), dt_);
+    ring_.wait(ring_.submit());
+    for (const StageTime& time : crowd_.stageTimes()) add(times_, time.stage, time.milliseconds);
+  }
+  std::vector<HerdState> states() const override { return statesOf(crowd_); }
+  std::vector<StageTime> stageTimes() const override { return times_; }
+
+ private:
+  Crowd& crowd_;
+  gpu::CommandRing ring_;
+  float dt_;
+  std::vector<StageTime> times_;
+};
+
+class CpuContestant : public Contestant {
+ public:
+  CpuContestant(const Crowd& crowd, const cpu_crowd::Options& options)
+      : options_(options), tick_(crowd.tick()) {
+    for (uint32_t h = 0; h < crowd.herdCount(); ++h)
+      herds_.push_back(std::make_unique<cpu_crowd::CpuCrowd>(
+          validation::herdFacts(crowd.impl().herds[h], crowd.impl().terrain), crowd.download(h), options));
+  }
+
+  std::string name() const override {
+    return fmt::format("CPU {}, {} thread{}", options_.width == cpu_crowd::Width::simd ? "SIMD" : "scalar",
+                       options_.threads, options_.threads == 1 ? "" : "s");
+  }
+  int threads() const override { return options_.threads; }
+  void tick() override {
+    ++tick_;
+    for (const auto& herd : herds_) herd->tick(tick_);
+  }
+  std::vector<HerdState> states() const override {
+    std::vector<HerdState> states;
+    for (const auto& herd : herds_) states.push_back(herd->state());
+    return states;
+  }
+  std::vector<StageTime> stageTimes() const override {
+    std::vector<StageTime> times;
+    for (const auto& herd : herds_)
+      for (const cpu_crowd::StageSeconds& stage : herd->stageSeconds())
+        add(times, stage.stage, 1e3 * stage.seconds);
+    return times;
+  }
+
+ private:
+  cpu_crowd::Options options_;
+  uint64_t tick_;
+  std::vector<std::unique_ptr<cpu_crowd::CpuCrowd>> herds_;
+};
+
+}  // namespace
+
+std::unique_ptr<Contestant> deviceContestant(Device& device, Crowd& crowd, float dt) {
+  return std::make_unique<DeviceContestant>(device, crowd, dt);
+}
+
+std::unique_ptr<Contestant> cpuContestant(const Crowd& crowd, bool scalar, int threads, bool poses) {
+  cpu_crowd::Options options;
+  options.width = scalar ? cpu_crowd::Width::scalar : cpu_crowd::Width::simd;
+  options.threads = threads;
+  options.poses = poses;
+  options.timings = true;
+  return std::make_unique<CpuContestant>(crowd, options);
+}
+
+bool hasCpuContestant(const Crowd& crowd) {
+  return std::all_of(crowd.impl().herds.begin(), crowd.impl().herds.end(), [](const crowd::Herd& herd) {
+    return herd.controller == crowd::Controller::adaptive && herd.ik.solver == shared::SOLVER_FABRIK &&
+           herd.ik.polish > 0;
+  });
+}
+
+}  // namespace skitter::bench

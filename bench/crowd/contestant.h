@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gpu/submit.h"
+#include "skitter/crowd.h"
+
+namespace skitter::bench {
+
+// Who animates a crowd tick by tick: the device, or an opponent on the CPU.
+class Contestant {
+ public:
+  virtual ~Contestant() = default;
+  virtual std::string name() const = 0;
+  virtual int threads() const = 0;                    // of the CPU that it may use; 0: the device's own
+  virtual void tick() = 0;                            // one, to its end
+  virtual std::vector<HerdState> states() const = 0;  // of every herd
+  // Milliseconds of all ticks so far by stage: the device's clock, or CPU time of all threads.
+  virtual std::vector<StageTime> stageTimes() const = 0;
+};
+
+std::unique_ptr<Contestant> deviceContestant(Device&, Crowd&, float dt);
+// From the crowd's present state on. `scalar` does with one float what it else does with a register of them.
+std::unique_ptr<Contestant> cpuContestant(const Crowd&, bool scalar, int threads, bool poses);
+// Whether there is one for every herd of the crowd.
+bool hasCpuContestant(const Crowd&);
+
+}  // namespace skitter::bench

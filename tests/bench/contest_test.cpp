@@ -1,0 +1,102 @@
+// What `skitter bench` rests on: the counts, the peaks, and that nobody is timed who is wrong.
+#include "bench/crowd/contest.h"
+
+#include "bench/crowd/operations.h"
+#include "bench/crowd/peaks.h"
+#include "crowd/simulation.h"
+#include "embedded/broken_swing_comp_storage.h"
+#include "embedded/broken_swing_comp_texel.h"
+#include "embedded/counted_comp.h"
+#include "skitter/error.h"
+
+namespace skitter::test {
+namespace {
+
+TEST(Operations, AreCountedAfterSpecialisation) {
+  const auto count = [](int turns, bool more) {
+    return bench::operationsAnInvocation(embedded::counted_comp(), {{3, turns}, {4, more}});
+  };
+  EXPECT_EQ(count(1, false), 7);
+  EXPECT_EQ(count(5, false), 35);
+  EXPECT_EQ(count(5, true), 37);
+  EXPECT_EQ(count(0, true), 2);
+}
+
+TEST(Operations, RefuseWhatIsNoShader) {
+  const std::vector<uint8_t> noise(64, 7);
+  EXPECT_THROW(bench::operationsAnInvocation(noise, {}), Error);
+}
+
+class ContestTest : public GpuTest {
+ protected:
+  bench::Match contest(const Scene& scene, const CrowdOptions& crowd) {
+    bench::ContestOptions options;
+    options.crowd = crowd;
+    options.warmUp = 30;  // feet are in the air by then
+    options.rounds = 2;
+    options.turnSeconds = 0;
+    return bench::contest(
+        device(), rollingGround(), scene, options, [](double) {}, [] { return false; });
+  }
+  static CrowdOptions unmeasured() {
+    CrowdOptions options;
+    options.measure = false;
+    options.timestamps = true;
+    return options;
+  }
+};
+
+TEST_F(ContestTest, PeaksAreFinite) {
+  const bench::Peaks peaks = bench::measurePeaks(context());
+  EXPECT_GT(peaks.bytesPerSecond, 1e6);
+  EXPECT_GT(peaks.operationsPerSecond, 1e6);
+  EXPECT_LT(peaks.bytesPerSecond, 1e15);
+  EXPECT_LT(peaks.operationsPerSecond, 1e16);
+}
+
+TEST_F(ContestTest, EverybodyIsCheckedAndTimed) {
+  const bench::Match match = contest(sceneOf(33), unmeasured());
+  ASSERT_GE(match.results.size(), 3u);
+  EXPECT_EQ(match.agents, 33u);
+  for (const bench::Result& result : match.results) {
+    SCOPED_TRACE(result.name);
+    EXPECT_TRUE(result.pass);
+    EXPECT_EQ(result.checks.size(), 7u);  // navigate to pose
+    for (const validation::StageResult& check : result.checks) {
+      // That no leg begins a step in a tick can be.
+      EXPECT_TRUE(check.samples > 0 || check.name == "foothold") << check.name;
+    }
+    EXPECT_GT(result.wall.median, 0);
+    EXPECT_LE(result.wall.low, result.wall.high);
+    EXPECT_FALSE(result.stages.empty());
+  }
+}
+
+// Bytes of swing by shaders/shared/records.h: the body, eight steps in, eight feet out.
+TEST_F(ContestTest, BytesAreThoseOfTheRecords) {
+  const bench::Match match = contest(sceneOf(10), unmeasured());
+  const auto swing = std::find_if(match.demands.begin(), match.demands.end(),
+                                  [](const bench::StageDemand& d) { return d.stage == "swing"; });
+  ASSERT_NE(swing, match.demands.end());
+  EXPECT_EQ(swing->bytes, 10 * 16 * (4 + 8 * (4 + 1)));
+  EXPECT_GT(swing->operations, 10 * 8 * 20);
+}
+
+TEST_F(ContestTest, ABrokenShaderIsFoundOut) {
+  CrowdOptions options = unmeasured();
+  options.shaders.push_back(
+      {"swing", embedded::broken_swing_comp_texel(), embedded::broken_swing_comp_storage()});
+  const bench::Match match = contest(sceneOf(33), options);
+  EXPECT_FALSE(match.results.front().pass);
+  for (size_t i = 1; i < match.results.size(); ++i)
+    EXPECT_TRUE(match.results[i].pass) << match.results[i].name;
+}
+
+TEST_F(ContestTest, WhoStopsGetsNothing) {
+  const bench::Match match = bench::contest(
+      device(), rollingGround(), sceneOf(2), {}, [](double) {}, [] { return true; });
+  EXPECT_TRUE(match.results.empty());
+}
+
+}  // namespace
+}  // namespace skitter::test
