@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "stages/stage.glsl"
 #include "lib/body.glsl"
 #include "lib/heightfield.glsl"
@@ -33,12 +34,12 @@ void main() {
   PlaneSums sums = PlaneSums(vec3(0.0), vec3(0.0), vec2(0.0));
 #ifdef BLIND
   // Legs that do not know where they stand: the body lies on the ground below their homes.
-  for (int leg = 0; leg < LEGS; ++leg) {
+  [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
     vec3 home = rotate(body.orientation, LOAD4(rig, leg * rigStride(BONES) + 1).xyz);
     addPoint(sums, vec3(home.x, ground(worldOf(body.local, body.tile) + home.xz) - body.local.y, home.z));
   }
 #else
-  for (int leg = 0; leg < LEGS; ++leg) {
+  [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
     int stepAt = (agent * LEGS + leg) * STEP_STRIDE;
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
                         LOAD4(steps, stepAt + 3));
@@ -88,7 +89,7 @@ void main() {
 
   vec2 world = worldOf(body.local, body.tile);
   float height = planeHeight + parameters.breathHeight * breath;
-  for (int k = -1; k <= 1; ++k) {
+  [[unroll]] for (int k = -1; k <= 1; ++k) {
     vec3 belly = parameters.bodyHeight * normal + float(k) * parameters.bodyRadius * forward;
     height = max(height, ground(world + belly.xz) + parameters.bellyClearance - belly.y);
   }

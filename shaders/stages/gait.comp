@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "stages/stage.glsl"
 #include "lib/gait.glsl"
 #include "lib/heightfield.glsl"
@@ -43,7 +44,7 @@ void main() {
   uint first = 0u, yields = 0u;
   float stoodSince = 3e38;
   bool settled = body.still >= parameters.settleTime;
-  for (int leg = 0; leg < LEGS; ++leg) {
+  [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
     int stepAt = (agent * LEGS + leg) * STEP_STRIDE;
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
                         LOAD4(steps, stepAt + 3));
@@ -89,7 +90,7 @@ void main() {
 
   uint lift = (yields & air) == 0u ? first : 0u;
   wants &= ~yields;
-  for (int leg = 0; leg < LEGS; ++leg) {
+  [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
     uint neighbours = uint(LOAD4(rig, leg * rigStride(BONES) + 2).y);
     lift |= (neighbours & (air | lift)) == 0u ? wants & (1u << leg) : 0u;
   }
