@@ -72,17 +72,17 @@ std::vector<HerdState> statesOf(const Contestant& contestant, bool poses) {
   return states;
 }
 
-// A tick of the contestant in lock-step against the reference, herd after herd: the stages that are timed.
-std::vector<validation::StageResult> check(const Crowd& crowd, Contestant& contestant, uint64_t tick,
-                                           const std::vector<StageDemand>& timed,
-                                           const ContestOptions& options) {
-  const std::vector<HerdState> before = statesOf(contestant, options.crowd.pose);
+}  // namespace
+
+std::vector<validation::StageResult> checkTick(const Crowd& crowd, Contestant& contestant, uint64_t tick,
+                                               const std::vector<StageDemand>& timed, bool poses,
+                                               uint64_t seed) {
+  const std::vector<HerdState> before = statesOf(contestant, poses);
   contestant.tick();
-  const std::vector<HerdState> after = statesOf(contestant, options.crowd.pose);
+  const std::vector<HerdState> after = statesOf(contestant, poses);
   std::vector<validation::StageResult> results;
   for (size_t h = 0; h < before.size(); ++h) {
-    validation::Replay replay(validation::herdFacts(crowd.impl().herds[h], crowd.impl().terrain),
-                              options.seed);
+    validation::Replay replay(validation::herdFacts(crowd.impl().herds[h], crowd.impl().terrain), seed);
     validation::ReplayRange range;
     range.stride = before[h].agents / kAgentsChecked + 1;
     replay.tick(tick, before[h], after[h], range);
@@ -93,8 +93,6 @@ std::vector<validation::StageResult> check(const Crowd& crowd, Contestant& conte
   }
   return results;
 }
-
-}  // namespace
 
 Match contest(Device& device, const Heightfield& terrain, const Scene& scene, const ContestOptions& options,
               const std::function<void(double)>& step, const std::function<bool()>& stopped) {
@@ -141,7 +139,8 @@ Match contest(Device& device, const Heightfield& terrain, const Scene& scene, co
     result.wall = spreadOf(corner.wall);
     result.cpu = spreadOf(corner.cpu);
     result.stages = difference(corner.contestant->stageTimes(), corner.before, static_cast<double>(ticks));
-    result.checks = check(crowd, *corner.contestant, first + ticks + 1, match.demands, options);
+    result.checks = checkTick(crowd, *corner.contestant, first + ticks + 1, match.demands, options.crowd.pose,
+                              options.seed);
     result.pass = std::all_of(result.checks.begin(), result.checks.end(),
                               [](const validation::StageResult& c) { return c.pass; });
     corner.contestant.reset();

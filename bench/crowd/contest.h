@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/crowd/contestant.h"
 #include "bench/crowd/demand.h"
 #include "skitter/crowd.h"
 #include "validation/judge.h"
@@ -43,6 +44,12 @@ struct Match {
       results;  // the device's first; CPU opponents where there are any for the scene's controllers
   std::vector<StageDemand> demands;
 };
+
+// One more tick of the contestant, `tick`, in lock-step against the reference: of every herd the stages that
+// `timed` names, of large herds about a thousand agents.
+std::vector<validation::StageResult> checkTick(const Crowd&, Contestant&, uint64_t tick,
+                                               const std::vector<StageDemand>& timed, bool poses,
+                                               uint64_t seed);
 
 // Lets the device and the CPU animate the same crowd from the same state, turn by turn in one run, then
 // checks a tick of each in lock-step against the reference. `step` is called with the share that is done;

@@ -1,0 +1,151 @@
+// Each stage of a crowd's tick by itself, on the device and on the CPU: CONTROLLER/STAGE/CONTESTANT/AGENTS.
+// An iteration is a whole tick; its time is the stage's share of the tick's CPU time, or of the wall clock's
+// for a device that is no CPU. A tick of each is checked against the reference before anything is timed.
+// --agents=N takes N of them, not 10,000. scripts/compare-builds holds two builds against each other with it.
+#include <benchmark/benchmark.h>
+
+#include <cinttypes>
+#include <cstdio>
+#include <memory>
+
+#include "bench/crowd/contest.h"
+#include "bench/ik/clock.h"
+#include "bench/ik/machine.h"
+#include "crowd/stage.h"
+#include "skitter/error.h"
+
+namespace {
+
+using namespace skitter;
+
+constexpr float kDt = 1.0f / 60;
+constexpr int kWarmUp = 60, kTicks = 40;
+constexpr int64_t kAgents = 10000;
+
+enum class Who { device, simd, scalar };
+constexpr const char* whoNames[] = {"device", "cpu-simd", "cpu-scalar"};
+
+Device& device() {
+  static Device made = [] {
+    DeviceRequest request;
+    if (const char* wanted = std::getenv("SKITTER_BENCH_DEVICE")) request.device = wanted;
+    return Device::create(request);
+  }();
+  return made;
+}
+
+// A crowd that has walked for a second, and one who animates it further.
+struct Run {
+  std::string key;
+  std::unique_ptr<Crowd> crowd;
+  std::unique_ptr<bench::Contestant> contestant;
+  std::string fault;  // empty if its tick agrees with the reference
+};
+
+CrowdOptions options() {
+  CrowdOptions made;
+  made.measure = false;
+  made.timestamps = true;
+  return made;
+}
+
+Run makeRun(const std::string& key, const std::string& controller, Who who, uint32_t agents) {
+  Scene scene = builtinScene();
+  scene.herds.front().controller = controller;
+  scene.herds.front().agents = agents;
+  Run run{key, std::make_unique<Crowd>(device(), scene.loadTerrain(), scene, options()), nullptr, {}};
+  const auto walk = bench::deviceContestant(device(), *run.crowd, kDt);
+  for (int i = 0; i < kWarmUp; ++i) walk->tick();
+  const uint64_t next = run.crowd->tick() + 1;
+  run.contestant = who == Who::device ? bench::deviceContestant(device(), *run.crowd, kDt)
+                                      : bench::cpuContestant(*run.crowd, who == Who::scalar, 1, true);
+  for (const validation::StageResult& check : bench::checkTick(
+           *run.crowd, *run.contestant, next, bench::demandOf(*run.crowd, options()), true, scene.seed))
+    if (!check.pass) run.fault += check.name + ": " + check.worst + "; ";
+  return run;
+}
+
+// The last one is kept: the stages of a tick are timed one after the other.
+Run& runOf(const std::string& controller, Who who, uint32_t agents) {
+  static Run run;
+  const std::string key = controller + whoNames[int(who)] + std::to_string(agents);
+  if (run.key != key) {
+    run = {};
+    run = makeRun(key, controller, who, agents);
+  }
+  return run;
+}
+
+double millisecondsOf(const std::vector<StageTime>& times, const std::string& stage) {
+  double sum = 0;
+  for (const StageTime& time : times)
+    if (stage.empty() || time.stage == stage) sum += time.milliseconds;
+  return sum;
+}
+
+void timeStage(benchmark::State& state, const std::string& controller, const std::string& stage, Who who) {
+  const auto agents = static_cast<uint32_t>(state.range(0));
+  Run& run = runOf(controller, who, agents);
+  if (!run.fault.empty()) {
+    state.SkipWithError(("differs from the reference: " + run.fault).c_str());
+    return;
+  }
+  const bool cpu = who != Who::device || bench::isCpu(device().report());
+  double seconds = 0;
+  for (auto _ : state) {
+    const std::vector<StageTime> before = run.contestant->stageTimes();
+    const bench::Seconds spent = bench::timed([&] { run.contestant->tick(); });
+    const std::vector<StageTime> after = run.contestant->stageTimes();
+    const double whole = millisecondsOf(after, "") - millisecondsOf(before, "");
+    const double mine = millisecondsOf(after, stage) - millisecondsOf(before, stage);
+    const double each = (cpu ? spent.cpu : 1e-3 * whole) * mine / std::max(whole, 1e-12);
+    state.SetIterationTime(each);
+    seconds += each;
+  }
+  state.counters["an_agent_ns"] = 1e9 * seconds / (static_cast<double>(state.iterations()) * agents);
+}
+
+void add(const std::string& controller, const std::string& stage, Who who, int64_t agents) {
+  benchmark::RegisterBenchmark((controller + "/" + stage + "/" + whoNames[int(who)]).c_str(),
+                               [=](benchmark::State& state) { timeStage(state, controller, stage, who); })
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(kTicks)
+      ->Arg(agents);
+}
+
+void addAll(int64_t agents) {
+  for (const std::string controller : {"adaptive", "clip"})
+    for (const Who who : {Who::device, Who::simd, Who::scalar}) {
+      if (who != Who::device && controller != "adaptive") continue;
+      for (const crowd::Stage& stage : crowd::stagesOf(crowd::controllerNamed(controller))) {
+        const std::string name = stage.name;
+        if (name == "measure" || name == "footfall" || (name == "swing" && controller == "clip")) continue;
+        add(controller, name, who, agents);
+      }
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+#if defined(SKITTER_DEBUG_BUILD)
+  std::fprintf(stderr, "crowd_bench: this is a debug build; configure with --preset release\n");
+  return 2;
+#endif
+  benchmark::Initialize(&argc, argv);
+  int64_t agents = kAgents;
+  if (argc == 2 && std::sscanf(argv[1], "--agents=%" SCNd64, &agents) == 1 && agents > 0 && agents <= 1 << 24)
+    argc = 1;
+  addAll(agents);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  try {
+    std::fprintf(stderr, "%s", bench::machineLines(device().report()).c_str());
+    benchmark::RunSpecifiedBenchmarks();
+  } catch (const Error& error) {
+    std::fprintf(stderr, "crowd_bench: %s\n", error.what());
+    return static_cast<int>(error.kind());
+  }
+  benchmark::Shutdown();
+  return 0;
+}
