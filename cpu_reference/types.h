@@ -36,6 +36,7 @@ struct Tuning {
   bool nearestOnly = false;
   double stepHeight = 0, stepClearance = 0, stepHeightMax = 0, routeWidth = 0;
   double clipFade = 0, clipIdle = 0, clipHysteresis = 0, clipRateMost = 0, plantStray = 0, plantKeep = 0;
+  double poseWalk = 0, springFrequency = 0, springDamping = 0;
   double approachError = 0, restPull = 0, pullError = 0, ikTolerance = 0;
   double deadZone = 0, skateSpeed = 0, limitDeadZone = 0, jerkTicks = 24, jerkPath = 0;
 };

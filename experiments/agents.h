@@ -17,9 +17,10 @@ struct Controller {
   int dissertationAgents;  // before performance problems were visible; 0: it had none such
   const char* colour;
 };
-inline constexpr std::array<Controller, 4> allControllers = {{
+inline constexpr std::array<Controller, 5> allControllers = {{
     {"clip", "clip (pre-animated)", 20, "#0072b2"},
     {"planted", "planted (clip, feet put down by IK)", 0, "#c98a00"},
+    {"pose", "pose (a few key poses, springs)", 0, "#cc79a7"},
     {"loop", "loop (procedural, fixed foot loops)", 9, "#009e73"},
     {"adaptive", "adaptive (procedural, footholds on terrain)", 4, "#d55e00"},
 }};

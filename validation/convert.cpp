@@ -10,6 +10,16 @@ namespace {
 uint32_t mask(double value) { return value >= 0 && value < 0x1p32 ? static_cast<uint32_t>(value) : 0; }
 
 glm::dquat quaternion(const glm::dvec4& v) { return {v.w, v.x, v.y, v.z}; }
+// Of pairs of bones, from that vec4 on.
+std::vector<glm::dvec2> pairsOf(const std::vector<float>& records, size_t base, int bones) {
+  std::vector<glm::dvec2> pairs;
+  for (int b = 0; b < bones; ++b) {
+    const glm::dvec4 pair = load(records, base + static_cast<size_t>(b) / 2);
+    pairs.push_back(b % 2 == 0 ? glm::dvec2(pair.x, pair.y) : glm::dvec2(pair.z, pair.w));
+  }
+  return pairs;
+}
+
 glm::dvec4 components(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
 
 }  // namespace
@@ -81,6 +91,9 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.clipRateMost = p.clipRateMost;
   t.plantStray = p.plantStray;
   t.plantKeep = p.plantKeep;
+  t.poseWalk = p.poseWalk;
+  t.springFrequency = p.springFrequency;
+  t.springDamping = p.springDamping;
   t.approachError = p.approachError;
   t.restPull = p.restPull;
   t.pullError = p.pullError;
@@ -133,6 +146,28 @@ reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, i
     creature.limbs.push_back(limb);
   }
   return creature;
+}
+
+reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones) {
+  reference::KeyPoses result;
+  result.stride = poses.stride;
+  for (int l = 0; l < legs; ++l) {
+    const size_t base = at(static_cast<size_t>(l), shared::keyStride(bones, poses.keys));
+    const auto directions = [&](int pose) {
+      return pairsOf(poses.records, base + 1 + at(static_cast<size_t>(pose), shared::chainDirections(bones)),
+                     bones);
+    };
+    const glm::dvec4 contact = load(poses.records, base);
+    auto& leg = result.legs.emplace_back();
+    leg.land = contact.x;
+    leg.stand = contact.y;
+    leg.standing = directions(0);
+    for (int k = 0; k < poses.keys; ++k) {
+      leg.keys.push_back(directions(1 + 2 * k));
+      leg.tangents.push_back(directions(2 + 2 * k));
+    }
+  }
+  return result;
 }
 
 reference::Goal goalOf(const HerdState& state, size_t agent) {
@@ -237,10 +272,7 @@ void putFoot(HerdState& state, size_t leg, const reference::Foot& foot) {
 reference::Chain chainOf(const HerdState& state, size_t leg, int bones) {
   const size_t base = at(leg, shared::chainStride(bones));
   reference::Chain chain;
-  for (int b = 0; b < bones; ++b) {
-    const glm::dvec4 pair = load(state.chain, base + static_cast<size_t>(b) / 2);
-    chain.directions.push_back(b % 2 == 0 ? glm::dvec2(pair.x, pair.y) : glm::dvec2(pair.z, pair.w));
-  }
+  chain.directions = pairsOf(state.chain, base, bones);
   const size_t end = base + static_cast<size_t>(shared::chainDirections(bones));
   const glm::dvec4 tip = load(state.chain, end), solve = load(state.chain, end + 1);
   chain.tip = tip;
@@ -260,6 +292,10 @@ void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& c
   const size_t end = base + static_cast<size_t>(shared::chainDirections(bones));
   store(state.chain, end, {chain.tip, chain.reachError});
   store(state.chain, end + 1, {chain.damping, chain.errorBefore, 0, 0});
+}
+
+reference::KeyPoses::Directions springOf(const HerdState& state, size_t leg, int bones) {
+  return pairsOf(state.spring, at(leg, shared::chainDirections(bones)), bones);
 }
 
 reference::BonePose boneOf(const HerdState& state, size_t entry) {

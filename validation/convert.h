@@ -3,7 +3,9 @@
 #include <vector>
 
 #include "cpu_reference/measure.h"
+#include "cpu_reference/swing_pose.h"
 #include "cpu_reference/types.h"
+#include "crowd/key_poses.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
 
@@ -15,6 +17,7 @@ reference::Tuning tuningOf(const shared::Parameters& parameters);
 // Heights stay owned by the field.
 reference::Heights heightsOf(const Heightfield& field, const shared::Parameters& parameters);
 reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, int bones, int groups);
+reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones);
 
 reference::Goal goalOf(const HerdState& state, size_t agent);
 glm::dvec2 desiredOf(const HerdState& state, size_t agent);
@@ -23,6 +26,7 @@ reference::Gait gaitOf(const HerdState& state, size_t agent);
 reference::Step stepOf(const HerdState& state, size_t leg);
 reference::Foot footOf(const HerdState& state, size_t leg);
 reference::Chain chainOf(const HerdState& state, size_t leg, int bones);
+reference::KeyPoses::Directions springOf(const HerdState& state, size_t leg, int bones);
 reference::BonePose boneOf(const HerdState& state, size_t entry);
 reference::Metric metricOf(const HerdState& state, size_t agent);
 // `slot`: the agent's number over HerdState::watchEvery.

@@ -8,7 +8,8 @@ namespace skitter::validation {
 
 // Of a herd whose tick length is known: its parameters are complete only then. Refers to the herd's rig.
 inline HerdFacts herdFacts(const crowd::Herd& herd, const Heightfield& terrain) {
-  return {herd.rig, terrain, herd.parameters, herd.rigRecords, herd.ik, herd.controller, herd.clips};
+  return {herd.rig, terrain,         herd.parameters, herd.rigRecords,
+          herd.ik,  herd.controller, herd.clips,      herd.keyPoses};
 }
 
 }  // namespace skitter::validation

@@ -35,6 +35,9 @@ const Stages& stagesOf(crowd::Controller controller) {
                                  {"clip", checkClip},         {"swing", checkPlantedSwing},
                                  {"ik", checkPlantedIk},      {"pose", checkPlantedPose},
                                  {"measure", checkMeasure}};
+  static const Stages pose = {{"navigate", checkNavigate}, {"body", checkBlindBody},
+                              {"gait", checkPoseGait},     {"swing", checkPoseSwing},
+                              {"pose", checkPose},         {"measure", checkMeasure}};
   switch (controller) {
     case crowd::Controller::loop:
       return loop;
@@ -42,6 +45,8 @@ const Stages& stagesOf(crowd::Controller controller) {
       return clip;
     case crowd::Controller::planted:
       return planted;
+    case crowd::Controller::pose:
+      return pose;
     case crowd::Controller::adaptive:
       break;
   }
@@ -77,6 +82,8 @@ void expectSizes(const Setting& setting, const HerdState& state, size_t agents) 
     expect("start records", state.start, legs, shared::chainStride(setting.bones));
     expect("fix records", state.fix, legs * bones, shared::FIX_STRIDE);
   }
+  if (setting.controller == crowd::Controller::pose)
+    expect("spring records", state.spring, legs, shared::chainDirections(setting.bones));
   if (state.metric.empty()) return;
   expect("metric records", state.metric, 1, shared::METRIC_STRIDE);
   const size_t watched = (agents + state.watchEvery - 1) / state.watchEvery;
@@ -114,6 +121,8 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
                 herd.ik.polish};
   if (crowd::playsClips(herd.controller))
     setting.clips = clipTableOf(herd.clips, setting.legs, setting.bones);
+  if (herd.controller == crowd::Controller::pose)
+    setting.keyPoses = keyPosesOf(herd.keyPoses, setting.legs, setting.bones);
   return setting;
 }
 

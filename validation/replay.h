@@ -6,9 +6,11 @@
 
 #include "cpu_reference/clip_table.h"
 #include "cpu_reference/ik.h"
+#include "cpu_reference/swing_pose.h"
 #include "cpu_reference/types.h"
 #include "crowd/clip_records.h"
 #include "crowd/controller.h"
+#include "crowd/key_poses.h"
 #include "crowd/tuning.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
@@ -25,6 +27,7 @@ struct HerdFacts {
   crowd::IkPlan ik{};
   crowd::Controller controller = crowd::Controller::adaptive;
   crowd::ClipRecords clips = {};  // where clips are played
+  crowd::KeyPoses keyPoses = {};  // of controller pose
 };
 
 // What every check needs to know about the herd.
@@ -37,6 +40,7 @@ struct Setting {
   double extent = 0;        // metres, how far the terrain reaches from the world's origin
   reference::IkPlan ik;
   reference::ClipTable clips;
+  reference::KeyPoses keyPoses;
 };
 
 // `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit

@@ -90,8 +90,9 @@ void SceneOptions::addCountTo(CLI::App& command, const char* agentsHelp) {
           fmt::format("agents of the first herd; other herds keep their proportion to it [{}]", agentsHelp))
       ->type_name("N");
   command
-      .add_option("--controller", controller,
-                  "how every herd's legs move: adaptive, loop, clip, planted (docs/scene.md) [the scene's]")
+      .add_option(
+          "--controller", controller,
+          "how every herd's legs move: adaptive, loop, clip, planted, pose (docs/scene.md) [the scene's]")
       ->type_name("NAME");
 }
 

@@ -234,10 +234,11 @@ class SceneReader {
     fields.read("rig", herd.rig);
     if (herd.rig != "spider") herd.rig = (folder_ / herd.rig).string();
     enum class Controller { first } controller = Controller::first;
-    fields.readKind("controller", controller, {"adaptive", "loop", "clip", "planted"});
+    fields.readKind("controller", controller, {"adaptive", "loop", "clip", "planted", "pose"});
     fields.read("controller", herd.controller);
     fields.read("clips", herd.clips);
     if (const auto* cuts = fields.find("cuts")) herd.cuts = readCuts(*cuts, path + ".cuts");
+    fields.readInteger("keys", herd.keys, 2, 8);
     enum class Solver { first } solver = Solver::first;
     fields.readKind("solver", solver,
                     {"active-set", "fabrik", "ccd", "transpose", "pseudoinverse", "dls", "target-attached"});

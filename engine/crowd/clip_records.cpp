@@ -11,24 +11,6 @@ void push(std::vector<float>& records, float a, float b, float c, float d) {
   records.insert(records.end(), {a, b, c, d});
 }
 
-// Without names what does not move is played only to stand, and the first of that is enough.
-std::vector<const Clip*> chosen(const ClipSet& set, const std::vector<std::string>& names) {
-  std::vector<const Clip*> clips;
-  for (const std::string& name : names) clips.push_back(&set.clip(name));
-  bool stands = false;
-  for (const Clip& clip : set.clips) {
-    if (!names.empty() || clip.speed < 0 || (clip.speed == 0 && stands)) continue;
-    stands = stands || clip.speed == 0;
-    clips.push_back(&clip);
-  }
-  if (clips.empty()) {
-    std::string message = set.name + ": no clip that can be played";
-    for (const std::string& note : set.notes) message += "; " + note;
-    throw inputError(message);
-  }
-  return clips;
-}
-
 void appendFrames(const Clip& clip, size_t joints, size_t legs, ClipRecords& records) {
   for (size_t f = 0; f < clip.frames(); ++f) {
     const float to = f + 1 < clip.frames() ? clip.times[f + 1] - clip.times[f] : 0;
@@ -45,11 +27,29 @@ void appendFrames(const Clip& clip, size_t joints, size_t legs, ClipRecords& rec
 
 }  // namespace
 
+std::vector<const Clip*> chosenClips(const ClipSet& set, const std::vector<std::string>& names) {
+  std::vector<const Clip*> clips;
+  for (const std::string& name : names) clips.push_back(&set.clip(name));
+  // What does not move is only to stand, and the first of that is enough.
+  bool stands = false;
+  for (const Clip& clip : set.clips) {
+    if (!names.empty() || clip.speed < 0 || (clip.speed == 0 && stands)) continue;
+    stands = stands || clip.speed == 0;
+    clips.push_back(&clip);
+  }
+  if (clips.empty()) {
+    std::string message = set.name + ": no clip that can be played";
+    for (const std::string& note : set.notes) message += "; " + note;
+    throw inputError(message);
+  }
+  return clips;
+}
+
 ClipRecords clipRecords(const ClipSet& set, const std::vector<std::string>& names, int maxBones) {
   ClipRecords records;
   records.joints = static_cast<int>(set.joints.size());
   int first = 0;
-  for (const Clip* clip : chosen(set, names)) {
+  for (const Clip* clip : chosenClips(set, names)) {
     const auto frames = static_cast<int>(clip->frames());
     if (clip->speed == 0 && records.heads.empty()) records.standing = records.clips;
     push(records.heads, static_cast<float>(first), static_cast<float>(frames),

@@ -14,8 +14,11 @@ struct ClipRecords {
   std::vector<float> heads, times, rows, legs, bones;
 };
 
-// Of the clips that are named or, without names, of all. Throws Error(input) that names the file where there
-// is none, or none of that name.
+// Those that are named or, without names, all that move forward and the first that stands. Throws
+// Error(input) that names the file where there is none, or none of that name.
+std::vector<const Clip*> chosenClips(const ClipSet& set, const std::vector<std::string>& names);
+
+// Of those.
 ClipRecords clipRecords(const ClipSet& set, const std::vector<std::string>& names, int maxBones);
 
 }  // namespace skitter::crowd

@@ -5,9 +5,11 @@
 namespace skitter::crowd {
 
 // How a herd moves; the names are those of a scene's `controller`.
-enum class Controller { clip, planted, loop, adaptive };
+enum class Controller { clip, planted, pose, loop, adaptive };
 // Throws Error(input) where it is unknown.
 Controller controllerNamed(const std::string& name);
 constexpr bool playsClips(Controller c) { return c == Controller::clip || c == Controller::planted; }
+// Played, or sampled for key poses.
+constexpr bool needsClips(Controller c) { return playsClips(c) || c == Controller::pose; }
 
 }  // namespace skitter::crowd

@@ -36,23 +36,29 @@ constexpr float kFarthest = 4096;
 std::vector<Rig> loadRigs(const Scene& scene) {
   std::vector<Rig> rigs;
   for (const Herd& herd : scene.herds) {
-    const bool clips = crowd::playsClips(crowd::controllerNamed(herd.controller));
+    const bool clips = crowd::needsClips(crowd::controllerNamed(herd.controller));
     rigs.push_back(herd.rig == "spider" ? spiderRig() : clips ? proposedRig(herd.rig) : loadRig(herd.rig));
   }
   return rigs;
 }
 
 void loadClips(const gpu::Context& context, const Herd& from, crowd::Herd& herd) {
-  herd.clipSet = from.rig == "spider" ? spiderClips() : skitter::loadClips(from.rig, herd.rig, from.cuts);
+  ClipSet set = from.rig == "spider" ? spiderClips() : skitter::loadClips(from.rig, herd.rig, from.cuts);
   std::vector<std::string> names = from.clips;
   if (names.empty())
     for (const ClipCut& cut : from.cuts) names.push_back(cut.name);
-  herd.clips = crowd::clipRecords(herd.clipSet, names, herd.bones);
-  for (Clip& clip : herd.clipSet.clips) clip.rows = {};
   const auto upload = [&](gpu::Buffer& buffer, const std::vector<float>& records, const char* name) {
     buffer = gpu::Buffer(context, records.size() * sizeof(float), name);
     gpu::upload(context, buffer, records);
   };
+  if (herd.controller == crowd::Controller::pose) {
+    herd.keyPoses = crowd::keyPoses(set, names, from.keys, herd.rig, herd.rigRecords);
+    upload(herd.keyBuffer, herd.keyPoses.records, "key poses");
+    return;
+  }
+  herd.clipSet = std::move(set);
+  herd.clips = crowd::clipRecords(herd.clipSet, names, herd.bones);
+  for (Clip& clip : herd.clipSet.clips) clip.rows = {};
   upload(herd.clipHeads, herd.clips.heads, "clips");
   upload(herd.clipTimes, herd.clips.times, "clip frames");
   upload(herd.clipRows, herd.clips.rows, "clip rows");
@@ -177,6 +183,8 @@ void settle(Impl& crowd) {
 
 shared::Parameters parametersOf(const Impl& crowd, const crowd::Herd& herd, float dt) {
   shared::Parameters parameters = crowd::tuningFor(herd.rig, herd.ik, crowd.terrain, dt);
+  parameters.poseKeys = static_cast<float>(herd.keyPoses.keys);
+  parameters.poseStride = herd.keyPoses.stride;
   parameters.reachTriggered = parameters.nearestOnly = herd.reachTriggered ? 1.0f : 0.0f;
   return parameters;
 }
@@ -239,14 +247,14 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     if (from.stepping != "gait" && from.stepping != "reach")
       throw inputError("stepping '" + from.stepping + "' is unknown; there are: gait, reach");
     herd.reachTriggered = from.stepping == "reach";
+    herd.rigRecords = crowd::rigRecords(herd.rig);
+    herd.rigBuffer = gpu::Buffer(context, herd.rigRecords.size() * sizeof(float), "rig");
+    gpu::upload(context, herd.rigBuffer, herd.rigRecords);
+    if (crowd::needsClips(herd.controller)) loadClips(context, from, herd);
     herd.parameters = parametersOf(crowd, herd, 1.0f / 60);
     herd.parameterBlock =
         gpu::HostBuffer(context, sizeof herd.parameters, gpu::HostUse::upload, "parameters");
     std::memcpy(herd.parameterBlock.bytes().data(), &herd.parameters, sizeof herd.parameters);
-    herd.rigRecords = crowd::rigRecords(herd.rig);
-    herd.rigBuffer = gpu::Buffer(context, herd.rigRecords.size() * sizeof(float), "rig");
-    gpu::upload(context, herd.rigBuffer, herd.rigRecords);
-    if (crowd::playsClips(herd.controller)) loadClips(context, from, herd);
     crowd::makeKernels(context, options, herd);
 
     const crowd::RecordBytes bytes = crowd::recordBytes(herd);

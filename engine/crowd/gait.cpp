@@ -3,6 +3,8 @@
 #include "embedded/gait_comp_texel.h"
 #include "embedded/gait_loop_comp_storage.h"
 #include "embedded/gait_loop_comp_texel.h"
+#include "embedded/gait_pose_comp_storage.h"
+#include "embedded/gait_pose_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -30,6 +32,18 @@ Stage loopGaitStage() {
   using enum gpu::BindingKind;
   return {"gait",
           {embedded::gait_loop_comp_texel(), embedded::gait_loop_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_BODY, load4},
+           {BINDING_GAIT, load4},
+           {BINDING_GAIT_OUT, store}},
+          Stage::Over::agents};
+}
+
+Stage keyPoseGaitStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"gait",
+          {embedded::gait_pose_comp_texel(), embedded::gait_pose_comp_storage()},
           {{BINDING_PARAMETERS, uniform},
            {BINDING_BODY, load4},
            {BINDING_GAIT, load4},

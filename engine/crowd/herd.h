@@ -7,6 +7,7 @@
 
 #include "crowd/clip_records.h"
 #include "crowd/edit.h"
+#include "crowd/key_poses.h"
 #include "crowd/stage.h"
 #include "crowd/tuning.h"
 #include "gpu/buffer.h"
@@ -27,6 +28,7 @@ struct Page {
   uint32_t agents = 0;
   gpu::Buffer goal, steer, body, gait, step, foot, chain, pose, metric, watch;
   gpu::Buffer play, start, fix;  // where clips are played, the latter two where they are planted
+  gpu::Buffer spring;            // of controller pose
   gpu::Buffer flight, footfall;  // empty unless footfalls are kept
   uint32_t footfallRoom = 0;
   gpu::Buffer list;                     // legs that begin a step this tick
@@ -43,6 +45,8 @@ struct Herd {
   ClipSet clipSet;  // without its frames: what a picture and a tool need
   ClipRecords clips;
   gpu::Buffer clipHeads, clipTimes, clipRows, clipLegs, clipBones;
+  KeyPoses keyPoses;  // of controller pose
+  gpu::Buffer keyBuffer;
   bool reachTriggered = false;  // legs step when out of reach, without a rhythm
   shared::Parameters parameters{};
   gpu::HostBuffer parameterBlock;  // uniform; written once, before the first tick

@@ -63,6 +63,11 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
     case BINDING_FIX:
     case BINDING_FIX_OUT:
       return {binding, &page.fix};
+    case BINDING_SPRING:
+    case BINDING_SPRING_OUT:
+      return {binding, &page.spring};
+    case BINDING_KEY:
+      return {binding, &herd.keyBuffer};
     case BINDING_CLIP:
       return {binding, &herd.clipHeads};
     case BINDING_CLIP_FRAME:
@@ -106,7 +111,8 @@ RecordBytes recordBytes(const Herd& herd) {
           .watch = vec4s(1, watchStride(rig.legCount())),
           .play = clips ? vec4s(1, PLAY_STRIDE) : 0,
           .start = planted ? vec4s(legs, chainStride(rig.maxBones())) : 0,
-          .fix = planted ? vec4s(legs * static_cast<uint64_t>(rig.maxBones()), FIX_STRIDE) : 0};
+          .fix = planted ? vec4s(legs * static_cast<uint64_t>(rig.maxBones()), FIX_STRIDE) : 0,
+          .spring = herd.controller == Controller::pose ? vec4s(legs, chainDirections(rig.maxBones())) : 0};
 }
 
 uint32_t agentsPerPage(const gpu::Context& context, const CrowdOptions& options, const RecordBytes& bytes) {
@@ -145,6 +151,7 @@ Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner
   if (bytes.play > 0) make(page.play, bytes.play, "play");
   if (bytes.start > 0) make(page.start, bytes.start, "start");
   if (bytes.fix > 0) make(page.fix, bytes.fix, "fix");
+  if (bytes.spring > 0) make(page.spring, bytes.spring, "spring");
   const uint64_t watched = (uint64_t{agents} + crowd.watchEvery - 1) / crowd.watchEvery;
   page.watch = gpu::Buffer(context, bytes.watch * watched, "watch");
   const auto legs = static_cast<uint64_t>(herd.legs) * agents;
@@ -164,6 +171,7 @@ Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner
   if (bytes.play > 0) gpu::upload(context, page.play, spawned.play);
   if (bytes.start > 0) gpu::clear(context, page.start);
   if (bytes.fix > 0) gpu::clear(context, page.fix);
+  if (bytes.spring > 0) gpu::clear(context, page.spring);
   gpu::clear(context, page.pose);
   gpu::clear(context, page.metric);
   gpu::clear(context, page.watch);

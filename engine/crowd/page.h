@@ -9,11 +9,11 @@ namespace skitter::crowd {
 
 // Bytes an agent in each of the page's record buffers; of `watch`, bytes a watched agent.
 struct RecordBytes {
-  uint64_t goal, steer, body, gait, step, foot, chain, pose, metric, list, watch, play, start, fix;
+  uint64_t goal, steer, body, gait, step, foot, chain, pose, metric, list, watch, play, start, fix, spring;
   uint64_t largest() const { return std::max({body, step, foot, chain, pose, metric, list, watch, fix}); }
   uint64_t sum(uint32_t watchEvery) const {
     return goal + steer + body + gait + step + foot + chain + pose + metric + list + watch / watchEvery +
-           play + start + fix;
+           play + start + fix + spring;
   }
 };
 

@@ -51,6 +51,7 @@ HerdState Crowd::download(uint32_t herdIndex) const {
     if (page.play) appendRecords(context, page.play, state.play);
     if (page.start) appendRecords(context, page.start, state.start);
     if (page.fix) appendRecords(context, page.fix, state.fix);
+    if (page.spring) appendRecords(context, page.spring, state.spring);
     appendWatch(*impl_, herd, page, state.watch);
   }
   return state;
@@ -98,7 +99,8 @@ uint64_t Crowd::stateHash() const {
   uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, a word at a time
   for (const crowd::Herd& herd : impl_->herds) {
     // Record by record over the herd, not page by page: how agents are paged must not show.
-    for (const auto buffer : {&Page::goal, &Page::body, &Page::gait, &Page::step, &Page::chain, &Page::play})
+    for (const auto buffer :
+         {&Page::goal, &Page::body, &Page::gait, &Page::step, &Page::chain, &Page::play, &Page::spring})
       for (const Page& page : herd.pages) {
         if (!(page.*buffer)) continue;
         for (const uint32_t word : gpu::download<uint32_t>(context, page.*buffer)) {

@@ -36,6 +36,7 @@ Spawner::Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield&
     : herd_(from),
       rig_(herd.rig),
       clips_(herd.clips),
+      keyPoses_(herd.keyPoses),
       terrain_(terrain),
       tuning_(herd.parameters),
       seed_(seed) {
@@ -84,8 +85,20 @@ Spawner::Placement Spawner::place(uint32_t agent) const {
   return p;
 }
 
-void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
+// At rest, or as the standing pose has them.
+void Spawner::pushDirections(size_t leg, std::vector<float>& chain) const {
   const int bones = rig_.maxBones();
+  const auto floats = 4 * static_cast<size_t>(shared::chainDirections(bones));
+  if (keyPoses_.keys == 0) {
+    chain.resize(chain.size() + floats);
+    return;
+  }
+  const auto stride = 4 * static_cast<size_t>(shared::keyStride(bones, keyPoses_.keys));
+  const auto standing = keyPoses_.records.begin() + static_cast<ptrdiff_t>(leg * stride + 4);
+  chain.insert(chain.end(), standing, standing + static_cast<ptrdiff_t>(floats));
+}
+
+void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
   for (uint32_t agent = first; agent < first + count; ++agent) {
     const Placement p = place(agent);
     const float kind = herd_.goal.kind == Goal::Kind::cross   ? shared::GOAL_CROSS
@@ -124,7 +137,8 @@ void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
       push(state.play, frame.x, frame.y, frame.x, frame.y);
     }
 
-    for (const Leg& leg : rig_.legs) {
+    for (size_t l = 0; l < rig_.legs.size(); ++l) {
+      const Leg& leg = rig_.legs[l];
       const glm::vec3 home = q * leg.home;
       const glm::vec3 foot(localX + home.x, terrain_.at(p.x + home.x, p.z + home.z), localZ + home.z);
       push(state.step, foot.x, foot.y, foot.z, tileX);
@@ -134,7 +148,7 @@ void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
       push(state.step, 0, 0, 0, -1000);
       push(state.step, 0, 0, 0, 1);
       push(state.foot, home.x, foot.y - height, home.z, 1);
-      for (int i = 0; i < shared::chainDirections(bones); ++i) push(state.chain, 0, 0, 0, 0);
+      pushDirections(l, state.chain);
       push(state.chain, home.x, home.y, home.z, 0);
       push(state.chain, 1, 0, 0, 0);
     }

@@ -23,10 +23,12 @@ class Spawner {
     float targetX, targetZ, otherX, otherZ;
   };
   Placement place(uint32_t agent) const;
+  void pushDirections(size_t leg, std::vector<float>& chain) const;
 
   const skitter::Herd& herd_;
   const Rig& rig_;
   const ClipRecords& clips_;
+  const KeyPoses& keyPoses_;
   const Heightfield& terrain_;
   const shared::Parameters& tuning_;
   uint64_t seed_;

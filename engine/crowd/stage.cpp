@@ -16,7 +16,8 @@ Controller controllerNamed(const std::string& name) {
   if (name == "loop") return Controller::loop;
   if (name == "clip") return Controller::clip;
   if (name == "planted") return Controller::planted;
-  throw inputError("controller '" + name + "' is unknown; there are: adaptive, loop, clip, planted");
+  if (name == "pose") return Controller::pose;
+  throw inputError("controller '" + name + "' is unknown; there are: adaptive, loop, clip, planted, pose");
 }
 
 const std::vector<const char*>& frame() {
@@ -42,11 +43,17 @@ const std::vector<Stage>& stagesOf(Controller controller) {
       navigateStage(),  blindBodyStage(),   clipStage(),    plantedSwingStage(),
       plantedIkStage(), plantedPoseStage(), measureStage(), footfallStage(),
   };
+  static const std::vector<Stage> pose = {
+      navigateStage(), blindBodyStage(), keyPoseGaitStage(), keyPoseSwingStage(),
+      poseStage(),     measureStage(),   footfallStage(),
+  };
   switch (controller) {
     case Controller::clip:
       return clip;
     case Controller::planted:
       return planted;
+    case Controller::pose:
+      return pose;
     case Controller::loop:
       return loop;
     case Controller::adaptive:

@@ -49,11 +49,13 @@ Stage blindBodyStage();
 Stage clipStage();
 Stage gaitStage();
 Stage loopGaitStage();
+Stage keyPoseGaitStage();
 Stage footholdStage();
 Stage swingStage();
 Stage loopSwingStage();
 Stage clipSwingStage();
 Stage plantedSwingStage();
+Stage keyPoseSwingStage();
 Stage ikStage();
 Stage plantedIkStage();
 // Of the ik stage with the solvers that are there to be compared.

@@ -7,6 +7,8 @@
 #include "embedded/swing_loop_comp_texel.h"
 #include "embedded/swing_planted_comp_storage.h"
 #include "embedded/swing_planted_comp_texel.h"
+#include "embedded/swing_pose_comp_storage.h"
+#include "embedded/swing_pose_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -70,6 +72,24 @@ Stage plantedSwingStage() {
            {BINDING_CLIP_LEG, load4},
            {BINDING_FOOT_OUT, store},
            {BINDING_START_OUT, store}},
+          Stage::Over::legs};
+}
+
+Stage keyPoseSwingStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"swing",
+          {embedded::swing_pose_comp_texel(), embedded::swing_pose_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_RIG, load4},
+           {BINDING_BODY, load4},
+           {BINDING_GAIT, load4},
+           {BINDING_KEY, load4},
+           {BINDING_CHAIN, load4},
+           {BINDING_SPRING, load4},
+           {BINDING_FOOT_OUT, store},
+           {BINDING_CHAIN_OUT, store},
+           {BINDING_SPRING_OUT, store}},
           Stage::Over::legs};
 }
 

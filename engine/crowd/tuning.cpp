@@ -23,6 +23,20 @@ constexpr std::pair<const char*, int> kCompared[] = {
     {"target-attached", shared::SOLVER_TARGET_ATTACHED},
 };
 
+// E of a tick; damping below 1.
+void setSpring(shared::Parameters& p, float frequency, float damping) {
+  p.springFrequency = frequency;
+  p.springDamping = damping;
+  const double decay = double{damping} * frequency;
+  const double swing = std::sqrt(double{frequency} * frequency - decay * decay);
+  const double fade = std::exp(-decay * p.dt);
+  const double c = fade * std::cos(swing * p.dt), s = fade * std::sin(swing * p.dt) / swing;
+  p.springKeep = static_cast<float>(c + decay * s);
+  p.springDrift = static_cast<float>(s);
+  p.springPull = static_cast<float>(-double{frequency} * frequency * s);
+  p.springCarry = static_cast<float>(c - decay * s);
+}
+
 }  // namespace
 
 IkPlan ikPlanFor(const std::string& solver) {
@@ -113,6 +127,11 @@ shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield
   p.clipRateMost = 2.5f;  // more, and legs blur
   p.plantStray = 0.35f * length;
   p.plantKeep = std::exp(-dt / 0.08f);  // seconds; less snaps, more lands off the clip's place
+
+  p.poseWalk = 0.1f * length;  // m/s; more, and the first steps are too short for the way
+  // rad/s, and the damping that leaves slow movements as large as they are (Butterworth); slower softens the
+  // poses, faster shows the keys.
+  setSpring(p, 45, std::sqrt(0.5f));
 
   p.approachError = 0.25f;  // of the reach; less, and FABRIK bends a tracked leg more than it need be
   p.restPull = 0.05f;       // a step; more, and it fights the target near the limits

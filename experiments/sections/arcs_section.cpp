@@ -64,13 +64,13 @@ void showArcs(const std::vector<FootArcs>& all, Report& report) {
       "without "
       "perspective: where its feet are, tick by tick, over two cycles of its first leg, above or in the "
       "ground.");
-  const char* numbers[] = {"Figure 9", "Beside figure 9", "Figure 10", "Figure 11"};
+  const char* numbers[] = {"Figure 9", "Beside figure 9", "Beside figure 9", "Figure 10", "Figure 11"};
   for (size_t i = 0; i < all.size(); ++i) {
     page.drawings(
         {drawing(all[i])},
         fmt::format("{}. {}: feet {:.2f} % of the leg length deep in the ground in the mean (all feet, all "
                     "ticks), planted ones {:.2f} % above it.",
-                    numbers[std::min<size_t>(i, 3)], all[i].controller, 100 * all[i].depth(),
+                    numbers[std::min<size_t>(i, 4)], all[i].controller, 100 * all[i].depth(),
                     100 * all[i].height()));
   }
   report.raw("figures9-11.csv", tableOf(all).csv());

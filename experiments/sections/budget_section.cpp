@@ -105,8 +105,8 @@ void showBudget(const Budget& simulated, const Budget& drawn, const Settings& se
   page.drawings(
       {costPlot(simulated, settings, "simulation alone", "a tick, milliseconds (median)"),
        costPlot(drawn, settings, drawing.c_str(), "a frame, milliseconds (median)")},
-      "Figures 6 to 8. Time against agents, all three agents of the dissertation and the clip with planted "
-      "feet beside them.");
+      "Figures 6 to 8. Time against agents, all three agents of the dissertation and, beside them, the clip "
+      "with planted feet and the key poses.");
   page.heading("Simulation alone");
   page.table(limitTable(simulated, settings));
   page.heading(fmt::format("With drawing {}x{}", settings.width, settings.height));

@@ -12,7 +12,7 @@ void showPlacement(const std::vector<PlacementPicture>& pictures, Report& report
       "The same agent of the same herd on steep ground after the same number of ticks, under each "
       "controller, where "
       "the adaptive one stands the roughest.");
-  const char* numbers[] = {"Figure 12", "Beside figure 12", "Figure 13", "Figure 14"};
+  const char* numbers[] = {"Figure 12", "Beside figure 12", "Beside figure 12", "Figure 13", "Figure 14"};
   Table table{{"controller", "roughness", "deepest", "highest"}};
   for (size_t i = 0; i < pictures.size(); ++i) {
     const PlacementPicture& picture = pictures[i];
@@ -22,7 +22,7 @@ void showPlacement(const std::vector<PlacementPicture>& pictures, Report& report
         fmt::format(
             "{}. {}: the ground under its feet is {:.1f} % of a leg length rough; its deepest foot is "
             "{:.1f} % in the ground, its highest planted one {:.1f} % above it.",
-            numbers[std::min<size_t>(i, 3)], picture.controller, 100 * picture.roughness,
+            numbers[std::min<size_t>(i, 4)], picture.controller, 100 * picture.roughness,
             100 * picture.penetration, 100 * picture.floating));
     report.files.push_back({fmt::format("placement-{}.png", picture.controller), png});
     table.rows.push_back({picture.controller, fmt::format("{:.5f}", picture.roughness),

@@ -22,12 +22,18 @@ void swingSegment(Swing w, float u, out vec3 a, out vec3 ma, out vec3 b, out vec
   mb = first ? mm : -w.lift;
 }
 
+// Weights of A, mA, B, mB at s.
+vec4 hermiteBasis(float s) {
+  float s2 = s * s, s3 = s2 * s;
+  return vec4(2.0 * s3 - 3.0 * s2 + 1.0, s3 - 2.0 * s2 + s, 3.0 * s2 - 2.0 * s3, s3 - s2);
+}
+
 vec3 swingPoint(Swing w, float u) {
   vec3 a, ma, b, mb;
   float s;
   swingSegment(w, u, a, ma, b, mb, s);
-  float s2 = s * s, s3 = s2 * s;
-  return (2.0 * s3 - 3.0 * s2 + 1.0) * a + (s3 - 2.0 * s2 + s) * ma + (3.0 * s2 - 2.0 * s3) * b + (s3 - s2) * mb;
+  vec4 h = hermiteBasis(s);
+  return h.x * a + h.y * ma + h.z * b + h.w * mb;
 }
 
 vec3 swingTangent(Swing w, float u) {

@@ -86,6 +86,16 @@ struct Parameters {
   float clipRateMost;
   float plantStray;  // m that a locked foot may be from where the clip wants it
   float plantKeep;   // share of an unlocked foot's offset that is left after a tick
+  // controller pose
+  float poseKeys;         // K
+  float poseStride;       // metres a cycle
+  float poseWalk;         // m/s from which the key poses are reached in full
+  float springFrequency;  // omega_s, rad/s
+  float springDamping;    // zeta; 1: critical
+  float springKeep;       // E of one tick: x of x
+  float springDrift;      // x of V, s
+  float springPull;       // V of x, 1/s
+  float springCarry;      // V of V
   // ik
   float approachError;  // share of the reach beyond which the approach iterates
   float restPull;       // share of the angle from rest taken back a step once on target

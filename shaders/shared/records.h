@@ -78,6 +78,8 @@ SKITTER_CONST int PLAY_STRIDE = 3;
 //   [0] q, quaternion xyzw, model
 //   [1] move x, y, z (model), unused
 SKITTER_CONST int FIX_STRIDE = 2;
+// spring, per leg, of controller pose, written by swing, which writes its chain too.
+//   [0 .. ceil(bones/2)-1] rates of the directions X, Y of two bones each (1/s)
 // step, of planted, written by swing.
 //   [0] lock x, y, z, tile x   [1] offset o x, y, z, tile z   [2] 0, 0, 0, 1 if locked   [3] unused
 // pose, per agent, of clip and planted, written by pose: an entry a joint of
@@ -90,6 +92,11 @@ SKITTER_CONST int MATRIX_STRIDE = 3;
 //   row, a frame and joint: three rows of its matrix, model space, less the clip's ground; a frame more
 //   leg, a leg and joint 0 .. bones: place before skinning x, y, z, palette entry
 //   joint, each [0] place of its bone among an agent's (leg * bones + bone), or -1, unused
+
+// key, per leg, of controller pose, constant.
+//   [0] phase at which the foot begins to stand, share of the cycle for which it does, unused x 2
+//   then directions as in a chain record: of the standing pose, and of each key pose followed by its tangents
+SKITTER_FUNCTION int keyStride(int bones, int keys) { return 1 + (1 + 2 * keys) * chainDirections(bones); }
 
 // Ticks in a row for which an agent is watched.
 SKITTER_CONST int WATCH_TICKS = 128;

@@ -41,7 +41,8 @@ TEST_F(Validate, EveryControllerHasItsStages) {
   const std::map<std::string, std::vector<std::string>> stages = {
       {"loop", {"navigate", "body", "gait", "swing", "ik", "pose", "measure"}},
       {"clip", {"navigate", "body", "clip", "swing", "pose", "measure"}},
-      {"planted", {"navigate", "body", "clip", "swing", "ik", "pose", "measure"}}};
+      {"planted", {"navigate", "body", "clip", "swing", "ik", "pose", "measure"}},
+      {"pose", {"navigate", "body", "gait", "swing", "pose", "measure"}}};
   for (const auto& [controller, names] : stages) {
     SCOPED_TRACE(controller);
     const Result result = skitter({"validate", "--controller", controller, "--agents", "8", "--frames", "20",

@@ -38,7 +38,7 @@ TEST(Scene, EveryKey) {
     "name": "all", "seed": 18446744073709551615,
     "terrain": {"kind": "file", "file": "hill.png", "spacingX": 1, "spacingZ": 2, "minHeight": -3, "maxHeight": 4.5,
                 "scale": 0.5, "exaggeration": 2, "columns": 3, "rows": 4, "voidValue": -9999},
-    "herds": [{"rig": "crab.glb", "controller": "loop", "agents": 7,
+    "herds": [{"rig": "crab.glb", "controller": "loop", "agents": 7, "keys": 6,
                "spawn": {"kind": "grid", "spacing": 3, "centre": [1, -2], "heading": 1.5},
                "goal": {"kind": "point", "target": [5, 6], "speed": 0}},
               {"agents": 0, "goal": {"kind": "none"}}],
@@ -62,6 +62,7 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(std::filesystem::path(herd.rig), std::filesystem::path("folder/crab.glb"));
   EXPECT_EQ(herd.controller, "loop");
   EXPECT_EQ(herd.agents, 7u);
+  EXPECT_EQ(herd.keys, 6u);
   EXPECT_EQ(herd.spawn.kind, Spawn::Kind::grid);
   EXPECT_EQ(herd.spawn.centre, glm::vec2(1, -2));
   EXPECT_EQ(herd.spawn.heading, 1.5f);

@@ -1,4 +1,4 @@
-// What holds of every controller, and what loop, clip and planted promise.
+// What holds of every controller, and what loop, clip, planted and pose promise.
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -73,7 +73,7 @@ TEST_P(ControllersTest, AnyNumberOfAgentsInAnyPages) {
     const HerdState state = crowd.download(0);
     EXPECT_EQ(state.agents, agents);
     for (const auto* records : {&state.body, &state.step, &state.foot, &state.chain, &state.pose, &state.play,
-                                &state.start, &state.fix})
+                                &state.start, &state.fix, &state.spring})
       for (const float value : *records) {
         EXPECT_TRUE(std::isfinite(value));
         if (!std::isfinite(value)) return uint64_t{0};
@@ -89,7 +89,8 @@ TEST_P(ControllersTest, AnyNumberOfAgentsInAnyPages) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, ControllersTest,
-                         ::testing::Combine(bothLoadPaths(), ::testing::Values("loop", "clip", "planted")),
+                         ::testing::Combine(bothLoadPaths(),
+                                            ::testing::Values("loop", "clip", "planted", "pose")),
                          [](const auto& param) {
                            return std::string(std::get<1>(param.param)) +
                                   (std::get<0>(param.param) == LoadPath::texel ? "Texel" : "Storage");
@@ -112,7 +113,7 @@ TEST_P(ControllerTest, LoadPathsAgreeToTheBit) {
   EXPECT_EQ(hashAfter(LoadPath::texel), hashAfter(LoadPath::storage));
 }
 
-INSTANTIATE_TEST_SUITE_P(, ControllerTest, ::testing::Values("loop", "clip", "planted"),
+INSTANTIATE_TEST_SUITE_P(, ControllerTest, ::testing::Values("loop", "clip", "planted", "pose"),
                          [](const auto& param) { return std::string(param.param); });
 
 using ClipHerdTest = GpuTest;
@@ -144,16 +145,16 @@ using HerdsTest = GpuTest;
 TEST_F(HerdsTest, ControllersMix) {
   const Heightfield ground = smallRollingGround();
   Scene scene = sceneOf(12);
-  for (const char* controller : {"loop", "clip", "planted"}) {
+  for (const char* controller : {"loop", "clip", "planted", "pose"}) {
     Herd& herd = scene.herds.emplace_back(scene.herds[0]);
     herd.controller = controller;
     herd.agents += 5;
   }
   Crowd crowd(device(), ground, scene);
   const auto results = replayAll(device(), crowd, ground, 90);
-  ASSERT_EQ(results.size(), 4u);
+  ASSERT_EQ(results.size(), 5u);
   expectAllPass(results[0]);
-  for (size_t h = 1; h < 4; ++h) {
+  for (size_t h = 1; h < 5; ++h) {
     SCOPED_TRACE(scene.herds[h].controller);
     expectPass(results[h]);
   }
@@ -258,6 +259,14 @@ TEST_F(SlipTest, ClipsRunAsFastAsTheGround) {
   const Slip slip = slipOver(device(), crowd, 180);
   EXPECT_GT(slip.stances, 300u);
   EXPECT_LT(slip.mean, 0.05);
+}
+
+TEST_F(SlipTest, KeyPosesGoAsFastAsTheGround) {
+  Crowd crowd(device(), flatGround(), sceneOf(16, 1, 1, "pose"));
+  simulate(device(), crowd, 120);
+  const Slip slip = slipOver(device(), crowd, 180);
+  EXPECT_GT(slip.stances, 300u);
+  EXPECT_LT(slip.mean, 0.1);
 }
 
 }  // namespace

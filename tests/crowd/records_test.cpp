@@ -53,12 +53,13 @@ const std::map<std::string, size_t>& parameterOffsets() {
 }
 
 std::vector<crowd::Stage> everyStage() {
-  return {crowd::navigateStage(),  crowd::bodyStage(),        crowd::gaitStage(),
-          crowd::footholdStage(),  crowd::swingStage(),       crowd::ikStage(),
-          crowd::poseStage(),      crowd::measureStage(),     crowd::blindBodyStage(),
-          crowd::loopGaitStage(),  crowd::loopSwingStage(),   crowd::clipStage(),
-          crowd::clipSwingStage(), crowd::clipPoseStage(),    crowd::plantedSwingStage(),
-          crowd::plantedIkStage(), crowd::plantedPoseStage(), crowd::footfallStage()};
+  return {crowd::navigateStage(),    crowd::bodyStage(),        crowd::gaitStage(),
+          crowd::footholdStage(),    crowd::swingStage(),       crowd::ikStage(),
+          crowd::poseStage(),        crowd::measureStage(),     crowd::blindBodyStage(),
+          crowd::loopGaitStage(),    crowd::loopSwingStage(),   crowd::clipStage(),
+          crowd::clipSwingStage(),   crowd::clipPoseStage(),    crowd::plantedSwingStage(),
+          crowd::plantedIkStage(),   crowd::plantedPoseStage(), crowd::footfallStage(),
+          crowd::keyPoseGaitStage(), crowd::keyPoseSwingStage()};
 }
 
 TEST(Records, ParametersLieWhereBothSidesThink) {
@@ -75,7 +76,7 @@ TEST(Records, ParametersLieWhereBothSidesThink) {
       for (const auto& [member, offset] : parameterOffsets())
         EXPECT_EQ(offsets.at(member), offset) << stage.name << ": " << member;
     }
-  EXPECT_EQ(found, 26);
+  EXPECT_EQ(found, 30);
 }
 
 TEST(Records, PushConstantsAndStrides) {

@@ -66,9 +66,9 @@ struct Fidelity {
 struct HerdState {
   uint32_t agents = 0;
   std::vector<float> goal, steer, body, gait, step, foot, chain, pose, metric;
-  std::vector<float> play, start, fix;  // empty where the controller has none
-  uint32_t watchEvery = 1;              // measure watches one agent of this many at a time
-  std::vector<float> watch;             // of agent g at place g / watchEvery, if it is being watched
+  std::vector<float> play, start, fix, spring;  // empty where the controller has none
+  uint32_t watchEvery = 1;                      // measure watches one agent of this many at a time
+  std::vector<float> watch;                     // of agent g at place g / watchEvery, if it is being watched
   bool watched = false;  // the last tick's gait looked at the ground, because the heights were edited lately
 };
 

@@ -41,9 +41,11 @@ struct Herd {
   std::string rig =
       "spider";  // "spider", a model (.glb, .gltf) or a sidecar (.rig.json), relative to the scene
   std::string controller = "adaptive";
-  // That clip and planted play (docs/clip.md); empty: the cuts or, without any, all that suit.
+  // That clip and planted play and pose samples (docs/clip.md); empty: the cuts or, without any, all that
+  // suit.
   std::vector<std::string> clips;
   std::vector<ClipCut> cuts;          // clips cut out of those of the file
+  uint32_t keys = 4;                  // key poses of controller pose, 2 to 8
   std::string solver = "active-set";  // of the legs: docs/scene.md
   std::string stepping = "gait";      // or "reach": legs step when out of reach, without a rhythm
   uint32_t agents = 1000;

@@ -1,0 +1,18 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stages/stage.glsl"
+
+LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_GAIT, gaits);
+STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
+
+void main() {
+  int agent = int(gl_GlobalInvocationID.x);
+  if (agent >= int(constants.count)) return;
+  int at = agent * BODY_STRIDE, gaitAt = agent * GAIT_STRIDE;
+  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  float speed = body.surfaceSpeed + abs(body.turnRate) * parameters.homeRadius;
+  float phase = LOAD4(gaits, gaitAt).x + speed * parameters.dt / parameters.poseStride;
+  STORE4(gaitsOut, gaitAt, vec4(phase - floor(phase), 0.0, 0.0, 0.0));
+  STORE4(gaitsOut, gaitAt + 1, vec4(0.0));
+}
