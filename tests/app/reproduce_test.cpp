@@ -71,7 +71,7 @@ TEST_F(Reproduce, WritesOnePageAndItsRawFigures) {
     EXPECT_EQ(html.find(wrong), std::string::npos) << wrong;
   EXPECT_EQ(count(html, "<svg"), count(html, "</svg>"));
   EXPECT_GT(count(html, "<svg"), 20u);
-  EXPECT_EQ(count(html, "<img"), 4u);
+  EXPECT_EQ(count(html, "<img"), 5u);
   EXPECT_GT(count(html, "hold"), 5u);
 
   size_t tables = 0;
