@@ -29,6 +29,14 @@ struct Symmetric {
     yz = yz + c.y * c.z;
     zz = zz + c.z * c.z;
   }
+  void remove(const Vec3<F>& a, const Vec3<F>& c) {
+    xx = xx - a.x * c.x;
+    xy = xy - a.x * c.y;
+    xz = xz - a.x * c.z;
+    yy = yy - a.y * c.y;
+    yz = yz - a.y * c.z;
+    zz = zz - a.z * c.z;
+  }
   Symmetric inverse() const {
     const F a = yy * zz - yz * yz, b = yz * xz - xy * zz, c = xy * yz - xz * yy;
     const F k = reciprocal(xx * a + xy * b + xz * c);
@@ -60,6 +68,7 @@ Mat3<F> broadcast(const Mat3<float>& m) {
 template <class F, int N>
 Vec3<F> tipOf(const LegModel& leg, const Directions<F, N>& d) {
   Vec3<F> v{F(0), F(0), F(0)};
+#pragma GCC unroll 4
   for (int i = boneCountOf<N>(leg) - 1; i >= 0; --i) {
     const BoneModel& bone = leg.bones[i];
     v.z = v.z + bone.length;
@@ -81,6 +90,7 @@ void forward(const LegModel& leg, const Directions<F, N>& d, Kinematics<F, N>& k
   Mat3<F> a = broadcast<F>(leg.bones[0].carry);
   Vec3<F> p{F(0), F(0), F(0)};
   const int n = boneCountOf<N>(leg);
+#pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
     kinematics.joint[i] = p;
     kinematics.aboutX[i] = a.y - a.z * d.y[i];
@@ -95,18 +105,21 @@ void forward(const LegModel& leg, const Directions<F, N>& d, Kinematics<F, N>& k
   kinematics.tip = p;
 }
 
-// (X, Y) within a cone, of a direction given as n (d.x, d.y), n (1 + d.z).
+// (X, Y) within a cone, of a direction given as n (d.x, d.y), n (1 + d.z), n > 0.
 template <class F, int N>
-void setClamped(const BoneModel& bone, const F& x, const F& y, const F& below, const F& n, int i,
+void setClamped(const BoneModel& bone, const F& x, const F& y, const F& below, const F& inverseN, int i,
                 Directions<F, N>& to) {
+  // Beyond the cone |(x, y)| / edge is more than what is below.
   const F s2 = x * x + y * y;
-  const auto outside = below * below * (bone.edge * bone.edge) < s2;
-  const F inside = reciprocal(larger(below, 1e-6f));
-  if (!any(outside)) return to.set(i, x * inside, y * inside);
-  const F scale = select(outside, rsqrt(larger(s2, 1e-20f)) * bone.edge, inside);
+  const F scale = rsqrt(larger(larger(below * below, s2 * bone.inverseEdgeSquared), 1e-12f));
+  to.x[i] = x * scale;
+  to.y[i] = y * scale;
+  to.k[i] = larger(below * inverseN, bone.leastK);
   // Straight against the rest direction every way is as good.
-  const auto against = outside & (s2 < n * n * 1e-6f) & (below < n);
-  to.set(i, select(against, F(bone.edge), x * scale), select(against, F(0), y * scale));
+  const auto against = (s2 * (inverseN * inverseN) < F(1e-6f)) & (below * inverseN < F(1));
+  if (!any(against)) return;
+  to.x[i] = select(against, F(bone.edge), to.x[i]);
+  to.y[i] = select(against, F(0), to.y[i]);
 }
 
 // The chart of a step (x, y) from bone i's direction in `from`.
@@ -114,8 +127,82 @@ template <class F, int N>
 void turn(const BoneModel& bone, const Directions<F, N>& from, int i, const F& x, const F& y,
           Directions<F, N>& to) {
   const F m = from.k[i] - from.k[i] * (from.x[i] * x + from.y[i] * y);
-  const F n2 = x * x + y * y + 1.0f, n = n2 * rsqrt(n2);
-  setClamped(bone, m * from.x[i] + x, m * from.y[i] + y, n + m - 1.0f, n, i, to);
+  const F n2 = x * x + y * y + 1.0f, inverseN = rsqrt(n2);
+  setClamped(bone, m * from.x[i] + x, m * from.y[i] + y, n2 * inverseN + (m - 1.0f), inverseN, i, to);
+}
+
+// What a step is made of, a bone: its columns, the step, and the share of the direction by which it is pulled
+// to rest.
+template <class F, int N>
+struct Steps {
+  Vec3<F> columnX[kBones<N>], columnY[kBones<N>];
+  F x[kBones<N>], y[kBones<N>], pull[kBones<N>];
+};
+
+// Bones held at their cone: the way out of it, a unit vector.
+template <class F, int N>
+struct Held {
+  Mask<F> held[kBones<N>];
+  F outX[kBones<N>], outY[kBones<N>];
+
+  // What a held bone may not do of a step.
+  F blocked(int i, const F& x, const F& y) const { return select(held[i], outX[i] * x + outY[i] * y, F(0)); }
+};
+
+// The lanes in which a step may end at its cone. Half the angle left has a tangent of at least (edge - t) /
+// (1 + edge^2), t that of half the angle from rest, and (edge - t)^2 is at least what its tangent (as a
+// function of t^2) at 0.95 edge is.
+template <class F>
+Mask<F> mayMeetLimit(const BoneModel& bone, const F& dx, const F& dy, const F& x, const F& y) {
+  constexpr float kNear = 0.95f;
+  const float edge2 = bone.edge * bone.edge, scale = 1 / (bone.leastK * bone.leastK);
+  return F(edge2 * (1 - kNear)) <= (x * x + y * y) * scale + (dx * dx + dy * dy) * (1 / kNear - 1);
+}
+
+// Holds the bones that leave their room and hands what they cannot do to the others. Of the damped system
+// `m`, its inverse and `e` what is left of them are returned.
+template <class F, int N>
+void holdAtLimits(const LegModel& leg, const Directions<F, N>& d, Symmetric<F> m, Vec3<F> e,
+                  Steps<F, N>& steps, Symmetric<F>& inverse, Held<F, N>& held) {
+  constexpr int kMost = kBones<N>;
+  const int n = boneCountOf<N>(leg);
+  F room[kMost];
+  Mask<F> limited[kMost];
+  for (int i = 0; i < n; ++i) {
+    const F s2 = d.x[i] * d.x[i] + d.y[i] * d.y[i], size = rsqrt(larger(s2, 1e-20f)), edge(leg.bones[i].edge);
+    const auto atRest = s2 < F(1e-13f);
+    held.outX[i] = select(atRest, F(1), d.x[i] * size);
+    held.outY[i] = select(atRest, F(0), d.y[i] * size);
+    held.held[i] = F(1) < F(0);
+    // tan(alpha - theta) by half tangents; unlimited near a right angle and beyond.
+    const F s = s2 * size, to = edge - s, over = edge * s + 1.0f, cosine = over * over - to * to;
+    limited[i] = (over * over + to * to) * 0.1f <= cosine;
+    room[i] = to * over * 2.0f * reciprocal(cosine);
+  }
+  for (int pass = 1; pass < 3; ++pass) {
+    auto more = F(1) < F(0);
+    for (int i = 0; i < n; ++i) {
+      const F across = held.outX[i] * steps.x[i] + held.outY[i] * steps.y[i];
+      const auto leaves = (!held.held[i]) & limited[i] & (room[i] < across);
+      if (!any(leaves)) continue;
+      const Vec3<F> column = steps.columnX[i] * held.outX[i] + steps.columnY[i] * held.outY[i];
+      const Vec3<F> gone = column * select(leaves, F(1), F(0));
+      m.remove(gone, column);
+      e = e - gone * (room[i] - steps.pull[i] * (held.outX[i] * d.x[i] + held.outY[i] * d.y[i]));
+      held.held[i] = held.held[i] | leaves;
+      more = more | leaves;
+    }
+    if (!any(more)) return;
+    inverse = m.inverse();
+    const Vec3<F> lambda = inverse * e;
+    for (int i = 0; i < n; ++i) {
+      const F x = steps.pull[i] * d.x[i] + dot(steps.columnX[i], lambda);
+      const F y = steps.pull[i] * d.y[i] + dot(steps.columnY[i], lambda);
+      const F back = held.blocked(i, x, y) - select(held.held[i], room[i], F(0));
+      steps.x[i] = x - back * held.outX[i];
+      steps.y[i] = y - back * held.outY[i];
+    }
+  }
 }
 
 template <class F>
@@ -131,95 +218,59 @@ template <class F, int N>
 [[gnu::flatten]] void activeSet(const LegModel& leg, const Vec3<F>& target, const Tuning<F>& tuning,
                                 const Kinematics<F, N>& at, Directions<F, N>& d, Vec3<F>& tip, F& error,
                                 F& damping) {
-  constexpr int kMost = kBones<N>;
   const int n = boneCountOf<N>(leg);
-  Vec3<F> columnX[kMost], columnY[kMost], e = target - at.tip;
+  Steps<F, N> steps;
+  Vec3<F> e = target - at.tip;
   const F e2 = dot(e, e), mu = (smaller(e2, 0.25f) * 0.25f + 1e-5f) * damping;
   Symmetric<F> m{mu, F(0), F(0), mu, F(0), mu};
   e = e * smaller(F(1), rsqrt(larger(e2, 1e-20f)) * 0.5f);
-  F pull[kMost];  // a share of the direction
+#pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
-    const BoneModel& bone = leg.bones[i];
     const Vec3<F> r = at.tip - at.joint[i];
-    columnX[i] = cross(at.aboutX[i], r);
-    columnY[i] = cross(at.aboutY[i], r);
-    m.add(columnX[i]);
-    m.add(columnY[i]);
-    pull[i] = d.k[i] * (tuning.pull * -bone.stiffness);
-    e = e - (columnX[i] * d.x[i] + columnY[i] * d.y[i]) * pull[i];
+    steps.columnX[i] = cross(at.aboutX[i], r);
+    steps.columnY[i] = cross(at.aboutY[i], r);
+    m.add(steps.columnX[i]);
+    m.add(steps.columnY[i]);
+    steps.pull[i] = d.k[i] * (tuning.pull * -leg.bones[i].stiffness);
+    e = e - (steps.columnX[i] * d.x[i] + steps.columnY[i] * d.y[i]) * steps.pull[i];
   }
   Symmetric<F> inverse = m.inverse();
-  Vec3<F> lambda = inverse * e;
-
-  // Radially outward a bone has so much room; what is held there leaves the others to do the rest.
-  F outX[kMost], outY[kMost], sine[kMost], end[kMost];
-  Mask<F> held[kMost];
-  F over[kMost], cosine[kMost];
+  const Vec3<F> lambda = inverse * e;
+  auto near = F(1) < F(0);
+#pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
-    const F s2 = d.x[i] * d.x[i] + d.y[i] * d.y[i], size = rsqrt(larger(s2, 1e-20f)), edge(leg.bones[i].edge);
-    const auto atRest = s2 < F(1e-13f);
-    outX[i] = select(atRest, F(1), d.x[i] * size);
-    outY[i] = select(atRest, F(0), d.y[i] * size);
-    // tan(alpha - theta) = sine / cosine by half tangents; unlimited near a right angle and beyond.
-    const F s = s2 * size, to = edge - s, rest = edge * s + 1.0f;
-    sine[i] = to * rest * 2.0f;
-    cosine[i] = rest * rest - to * to;
-    over[i] = (rest * rest + to * to) * 0.1f;
-    held[i] = F(1) < F(0);
-    end[i] = F(0);
+    steps.x[i] = steps.pull[i] * d.x[i] + dot(steps.columnX[i], lambda);
+    steps.y[i] = steps.pull[i] * d.y[i] + dot(steps.columnY[i], lambda);
+    near = near | mayMeetLimit(leg.bones[i], d.x[i], d.y[i], steps.x[i], steps.y[i]);
   }
-  for (int pass = 1; pass < 3; ++pass) {
-    auto more = F(1) < F(0);
-    for (int i = 0; i < n; ++i) {
-      const F across = outX[i] * dot(columnX[i], lambda) + outY[i] * dot(columnY[i], lambda);
-      const F z = pull[i] * (outX[i] * d.x[i] + outY[i] * d.y[i]);
-      const auto leaves = (!held[i]) & (over[i] <= cosine[i]) & (sine[i] < (z + across) * cosine[i]);
-      if (!any(leaves)) continue;
-      const F room = sine[i] * reciprocal(cosine[i]);
-      const Vec3<F> column = columnX[i] * outX[i] + columnY[i] * outY[i];
-      const F taken = select(leaves, F(1), F(0));
-      const Vec3<F> gone = column * taken;
-      m.xx = m.xx - gone.x * column.x;
-      m.xy = m.xy - gone.x * column.y;
-      m.xz = m.xz - gone.x * column.z;
-      m.yy = m.yy - gone.y * column.y;
-      m.yz = m.yz - gone.y * column.z;
-      m.zz = m.zz - gone.z * column.z;
-      e = e - gone * (room - z);
-      end[i] = select(leaves, room, end[i]);
-      held[i] = held[i] | leaves;
-      more = more | leaves;
-    }
-    if (!any(more)) break;
-    inverse = m.inverse();
-    lambda = inverse * e;
-  }
+  const bool holds = any(near);
+  Held<F, N> held;
+  if (holds) holdAtLimits(leg, d, m, e, steps, inverse, held);
 
-  F x[kMost], y[kMost];
   Directions<F, N> trial;
-  for (int i = 0; i < n; ++i) {
-    x[i] = pull[i] * d.x[i] + dot(columnX[i], lambda);
-    y[i] = pull[i] * d.y[i] + dot(columnY[i], lambda);
-    const F back = select(held[i], end[i] - (outX[i] * x[i] + outY[i] * y[i]), F(0));
-    x[i] = x[i] + back * outX[i];
-    y[i] = y[i] + back * outY[i];
-    turn(leg.bones[i], d, i, x[i], y[i], trial);
-  }
+#pragma GCC unroll 4
+  for (int i = 0; i < n; ++i) turn(leg.bones[i], d, i, steps.x[i], steps.y[i], trial);
   Vec3<F> reached = tipOf(leg, trial);
   for (int chord = 0; chord < tuning.chords; ++chord) {
-    lambda = inverse * (target - reached);
+    const Vec3<F> left = inverse * (target - reached);
+#pragma GCC unroll 4
     for (int i = 0; i < n; ++i) {
-      const F moreX = dot(columnX[i], lambda), moreY = dot(columnY[i], lambda);
-      const F back = select(held[i], outX[i] * moreX + outY[i] * moreY, F(0));
-      x[i] = x[i] + moreX - back * outX[i];
-      y[i] = y[i] + moreY - back * outY[i];
-      turn(leg.bones[i], d, i, x[i], y[i], trial);
+      F x = dot(steps.columnX[i], left), y = dot(steps.columnY[i], left);
+      if (holds) {
+        const F back = held.blocked(i, x, y);
+        x = x - back * held.outX[i];
+        y = y - back * held.outY[i];
+      }
+      steps.x[i] = steps.x[i] + x;
+      steps.y[i] = steps.y[i] + y;
+      turn(leg.bones[i], d, i, steps.x[i], steps.y[i], trial);
     }
     reached = tipOf(leg, trial);
   }
 
   const F after = length(target - reached);
   const auto kept = (after <= error * 1.0001f) | (after <= F(tuning.tolerance));
+#pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
     d.x[i] = select(kept, trial.x[i], d.x[i]);
     d.y[i] = select(kept, trial.y[i], d.y[i]);
@@ -232,7 +283,9 @@ template <class F, int N>
 template <class F, int N>
 Directions<F, N> directionsOf(const LegModel& leg, const Chain<F, kBones<N>>& chain) {
   Directions<F, N> d;
-  for (int i = 0; i < boneCountOf<N>(leg); ++i) d.set(i, chain.x[i], chain.y[i]);
+  const int n = boneCountOf<N>(leg);
+#pragma GCC unroll 4
+  for (int i = 0; i < n; ++i) d.set(i, chain.x[i], chain.y[i]);
   return d;
 }
 
@@ -244,7 +297,9 @@ Vec3<F> targetOf(const LegModel& leg, const Mat3<F>& r, const Foot<F>& foot) {
 template <class F, int N>
 void store(const LegModel& leg, const Mat3<F>& r, const Directions<F, N>& d, const Vec3<F>& tip,
            const F& error, Chain<F, kBones<N>>& chain) {
-  for (int i = 0; i < boneCountOf<N>(leg); ++i) {
+  const int n = boneCountOf<N>(leg);
+#pragma GCC unroll 4
+  for (int i = 0; i < n; ++i) {
     chain.x[i] = d.x[i];
     chain.y[i] = d.y[i];
   }
@@ -256,12 +311,12 @@ void store(const LegModel& leg, const Mat3<F>& r, const Directions<F, N>& d, con
 template <class F, int N>
 Mask<F> deadlocked(const LegModel& leg, const Vec3<F>& target, const Kinematics<F, N>& at) {
   const F tip2 = dot(at.tip, at.tip);
-  F off(0);
-  for (int i = 1; i < boneCountOf<N>(leg); ++i) {
+  auto stuck = dot(target, target) < tip2 * (0.999f * 0.999f);
+  for (int i = 1; i < boneCountOf<N>(leg) && any(stuck); ++i) {
     const Vec3<F> away = cross(at.tip, at.joint[i]);
-    off = larger(off, dot(away, away));
+    stuck = stuck & (dot(away, away) < tip2 * 1e-6f);
   }
-  return (off < tip2 * 1e-6f) & (dot(target, target) < tip2 * (0.999f * 0.999f));
+  return stuck;
 }
 
 template <class F>
@@ -294,6 +349,7 @@ template <class F, int N, class Rare>
 template <int N>
 void bend(const LegModel& leg, Directions<float, N>& d) {
   const int n = boneCountOf<N>(leg);
+#pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
     const float x = d.x[i] + (i == 0 ? -0.025f * float(n - 1) : 0.05f), y = d.y[i],
                 k = 2 / (1 + x * x + y * y);
@@ -312,6 +368,7 @@ void fabrik(const LegModel& leg, const Vec3<float>& target, Directions<float, N>
   }
   Mat3<float> f{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   Vec3<float> p{0, 0, 0};
+#pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
     const BoneModel& bone = leg.bones[i];
     const Mat3<float> a{f * bone.carry.x, f * bone.carry.y, f * bone.carry.z};

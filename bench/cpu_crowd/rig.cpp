@@ -19,6 +19,8 @@ BoneModel boneOf(const float* records) {
   bone.carry = {x, cross(z, x), z};
   bone.length = record(5)[3];
   bone.edge = record(6)[3];
+  bone.inverseEdgeSquared = 1 / (bone.edge * bone.edge);
+  bone.leastK = 2 / (1 + bone.edge * bone.edge);
   return bone;
 }
 

@@ -13,9 +13,10 @@ using baseline::Vec3;
 
 // Lengths are shares of the leg's reach.
 struct BoneModel {
-  Mat3<float> carry;               // B_(i-1)^T B_i, of the first bone B_0
-  Vec3<float> restX, restY, rest;  // columns of B_i
-  float length, edge, stiffness;   // edge: tan(half-angle / 2)
+  Mat3<float> carry;                 // B_(i-1)^T B_i, of the first bone B_0
+  Vec3<float> restX, restY, rest;    // columns of B_i
+  float length, edge, stiffness;     // edge: tan(half-angle / 2)
+  float inverseEdgeSquared, leastK;  // 1 / edge^2; 2 / (1 + edge^2), what k of a direction is at the edge
 };
 
 struct LegModel {
