@@ -22,7 +22,6 @@ namespace skitter::baseline {
 
 inline float rsqrt(float x) { return 1 / std::sqrt(x); }
 inline float squareRoot(float x) { return std::sqrt(x); }
-inline float reciprocal(float x) { return 1 / x; }
 inline float roundDown(float x) { return std::floor(x); }
 inline float absolute(float x) { return std::fabs(x); }
 inline float smaller(float a, float b) { return a < b ? a : b; }
@@ -59,7 +58,6 @@ inline Lanes absolute(Lanes a) { return (RawFloats)((RawInts)a.v & 0x7fffffff); 
 
 // The estimate has 11 to 14 bits; Newton's step doubles them.
 inline Lanes refineRsqrt(Lanes x, Lanes y) { return y * (Lanes(1.5f) - (x * Lanes(0.5f)) * (y * y)); }
-inline Lanes refineReciprocal(Lanes x, Lanes y) { return y + y * (Lanes(1.0f) - x * y); }
 
 #if defined(__AVX512F__) && defined(__AVX512VL__)
 struct LaneMask {
@@ -75,7 +73,6 @@ inline uint64_t bits(LaneMask m) { return m.m; }
 inline Lanes smaller(Lanes a, Lanes b) { return _mm512_min_ps(a.v, b.v); }
 inline Lanes larger(Lanes a, Lanes b) { return _mm512_max_ps(a.v, b.v); }
 inline Lanes rsqrt(Lanes x) { return refineRsqrt(x, _mm512_rsqrt14_ps(x.v)); }
-inline Lanes reciprocal(Lanes x) { return refineReciprocal(x, _mm512_rcp14_ps(x.v)); }
 inline Lanes roundDown(Lanes x) {
   return _mm512_roundscale_ps(x.v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
 }
@@ -94,7 +91,6 @@ inline uint64_t bits(LaneMask m) { return unsigned(_mm256_movemask_ps((__m256)m.
 inline Lanes smaller(Lanes a, Lanes b) { return _mm256_min_ps(a.v, b.v); }
 inline Lanes larger(Lanes a, Lanes b) { return _mm256_max_ps(a.v, b.v); }
 inline Lanes rsqrt(Lanes x) { return refineRsqrt(x, _mm256_rsqrt_ps(x.v)); }
-inline Lanes reciprocal(Lanes x) { return Lanes(1.0f) / x; }
 inline Lanes roundDown(Lanes x) { return _mm256_floor_ps(x.v); }
 #else
 inline Lanes select(LaneMask m, Lanes yes, Lanes no) { return m.m ? yes.v : no.v; }
@@ -110,7 +106,6 @@ inline Lanes rsqrt(Lanes x) {
   for (int i = 0; i < kLanes; ++i) y[i] = 1 / std::sqrt(x.v[i]);
   return y;
 }
-inline Lanes reciprocal(Lanes x) { return Lanes(1.0f) / x; }
 inline Lanes roundDown(Lanes x) {
   RawFloats y;
   for (int i = 0; i < kLanes; ++i) y[i] = std::floor(x.v[i]);
@@ -175,7 +170,6 @@ struct Pair {
   friend Pair absolute(Pair x) { return {absolute(x.a), absolute(x.b)}; }
   friend Pair rsqrt(Pair x) { return {rsqrt(x.a), rsqrt(x.b)}; }
   friend Pair squareRoot(Pair x) { return {squareRoot(x.a), squareRoot(x.b)}; }
-  friend Pair reciprocal(Pair x) { return {reciprocal(x.a), reciprocal(x.b)}; }
   friend Pair roundDown(Pair x) { return {roundDown(x.a), roundDown(x.b)}; }
   friend Pair smaller(Pair x, Pair y) { return {smaller(x.a, y.a), smaller(x.b, y.b)}; }
   friend Pair larger(Pair x, Pair y) { return {larger(x.a, y.a), larger(x.b, y.b)}; }

@@ -78,31 +78,21 @@ Vec3<F> tipOf(const LegModel& leg, const Directions<F, N>& d) {
   return v;
 }
 
-// What forward kinematics leave for the columns: where each bone starts, and what it turns about as its
-// direction goes the way of X, and of Y.
-template <class F, int N>
-struct Kinematics {
-  Vec3<F> joint[kBones<N>], aboutX[kBones<N>], aboutY[kBones<N>], tip;
-};
-
-template <class F, int N>
-void forward(const LegModel& leg, const Directions<F, N>& d, Kinematics<F, N>& kinematics) {
+// Forward kinematics: visit(i, A_i, p_i) for each bone from the root.
+template <int N, class F, class Visit>
+void walk(const LegModel& leg, const Directions<F, N>& d, const Visit& visit) {
   Mat3<F> a = broadcast<F>(leg.bones[0].carry);
   Vec3<F> p{F(0), F(0), F(0)};
   const int n = boneCountOf<N>(leg);
 #pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
-    kinematics.joint[i] = p;
-    kinematics.aboutX[i] = a.y - a.z * d.y[i];
-    kinematics.aboutY[i] = a.z * d.x[i] - a.x;
-    const Vec3<F> w = (a.x * d.x[i] + a.y * d.y[i] + a.z) * d.k[i];
-    const Mat3<F> f{a.x - w * d.x[i], a.y - w * d.y[i], w - a.z};
-    p = p + f.z * leg.bones[i].length;
+    visit(i, a, p);
     if (i + 1 == n) break;
-    const Mat3<F> c = broadcast<F>(leg.bones[i + 1].carry);
+    const Vec3<F> w = (a.x * d.x[i] + a.y * d.y[i] + a.z) * d.k[i];
+    const Mat3<F> f{a.x - w * d.x[i], a.y - w * d.y[i], w - a.z}, c = broadcast<F>(leg.bones[i + 1].carry);
+    p = p + f.z * leg.bones[i].length;
     a = {f * c.x, f * c.y, f * c.z};
   }
-  kinematics.tip = p;
 }
 
 // (X, Y) within a cone, of a direction given as n (d.x, d.y), n (1 + d.z), n > 0.
@@ -212,28 +202,27 @@ struct Tuning {
   int chords;
 };
 
-// One damped step with an active set of limits, and its chord steps, from `d`. On return `d`, `tip` and
-// `error` are the new ones where they are better.
+// One damped step with an active set of limits, and its chord steps, from `d`, whose tip and error are given.
+// On return all are the new ones where they are better.
 template <class F, int N>
 [[gnu::flatten]] void activeSet(const LegModel& leg, const Vec3<F>& target, const Tuning<F>& tuning,
-                                const Kinematics<F, N>& at, Directions<F, N>& d, Vec3<F>& tip, F& error,
-                                F& damping) {
+                                Directions<F, N>& d, Vec3<F>& tip, F& error, F& damping) {
   const int n = boneCountOf<N>(leg);
   Steps<F, N> steps;
-  Vec3<F> e = target - at.tip;
+  Vec3<F> e = target - tip;
   const F e2 = dot(e, e), mu = (smaller(e2, 0.25f) * 0.25f + 1e-5f) * damping;
   Symmetric<F> m{mu, F(0), F(0), mu, F(0), mu};
   e = e * smaller(F(1), rsqrt(larger(e2, 1e-20f)) * 0.5f);
-#pragma GCC unroll 4
-  for (int i = 0; i < n; ++i) {
-    const Vec3<F> r = at.tip - at.joint[i];
-    steps.columnX[i] = cross(at.aboutX[i], r);
-    steps.columnY[i] = cross(at.aboutY[i], r);
+  walk<N>(leg, d, [&](int i, const Mat3<F>& a, const Vec3<F>& p) {
+    // What the bone turns about as its direction goes the ways of X and of Y.
+    const Vec3<F> aboutX = a.y - a.z * d.y[i], aboutY = a.z * d.x[i] - a.x, r = tip - p;
+    steps.columnX[i] = cross(aboutX, r);
+    steps.columnY[i] = cross(aboutY, r);
     m.add(steps.columnX[i]);
     m.add(steps.columnY[i]);
     steps.pull[i] = d.k[i] * (tuning.pull * -leg.bones[i].stiffness);
     e = e - (steps.columnX[i] * d.x[i] + steps.columnY[i] * d.y[i]) * steps.pull[i];
-  }
+  });
   Symmetric<F> inverse = m.inverse();
   const Vec3<F> lambda = inverse * e;
   auto near = F(1) < F(0);
@@ -275,7 +264,7 @@ template <class F, int N>
     d.x[i] = select(kept, trial.x[i], d.x[i]);
     d.y[i] = select(kept, trial.y[i], d.y[i]);
   }
-  tip = select(kept, reached, at.tip);
+  tip = select(kept, reached, tip);
   error = select(kept, after, error);
   damping = select(kept, larger(damping * 0.1f, 1), smaller(damping * 16.0f, 4096));
 }
@@ -295,27 +284,36 @@ Vec3<F> targetOf(const LegModel& leg, const Mat3<F>& r, const Foot<F>& foot) {
 }
 
 template <class F, int N>
-void store(const LegModel& leg, const Mat3<F>& r, const Directions<F, N>& d, const Vec3<F>& tip,
-           const F& error, Chain<F, kBones<N>>& chain) {
+void store(const LegModel& leg, const Directions<F, N>& d, const Vec3<F>& tip, const F& error,
+           Chain<F, kBones<N>>& chain) {
   const int n = boneCountOf<N>(leg);
 #pragma GCC unroll 4
   for (int i = 0; i < n; ++i) {
     chain.x[i] = d.x[i];
     chain.y[i] = d.y[i];
   }
-  chain.tip = r * (broadcast<F>(leg.root) + tip * leg.reach);
+  chain.tip = tip;
   chain.error = error * leg.reach;
 }
 
-// A straight chain with its target nearer on the same line would never bend.
+// A straight chain with its target nearer on the same line would never bend. Few are straight, and their
+// first joint tells.
 template <class F, int N>
-Mask<F> deadlocked(const LegModel& leg, const Vec3<F>& target, const Kinematics<F, N>& at) {
-  const F tip2 = dot(at.tip, at.tip);
+Mask<F> deadlocked(const LegModel& leg, const Vec3<F>& target, const Directions<F, N>& d,
+                   const Vec3<F>& tip) {
+  const F tip2 = dot(tip, tip);
+  const auto onLine = [&](const Vec3<F>& joint) {
+    const Vec3<F> away = cross(tip, joint);
+    return dot(away, away) < tip2 * 1e-6f;
+  };
+  const Vec3<F> first =
+      broadcast<F>(leg.bones[0].carry) * Vec3<F>{d.k[0] * d.x[0], d.k[0] * d.y[0], d.k[0] - 1.0f};
   auto stuck = dot(target, target) < tip2 * (0.999f * 0.999f);
-  for (int i = 1; i < boneCountOf<N>(leg) && any(stuck); ++i) {
-    const Vec3<F> away = cross(at.tip, at.joint[i]);
-    stuck = stuck & (dot(away, away) < tip2 * 1e-6f);
-  }
+  if (boneCountOf<N>(leg) > 1) stuck = stuck & onLine(first * leg.bones[0].length);
+  if (!any(stuck)) return stuck;
+  walk<N>(leg, d, [&](int i, const Mat3<F>&, const Vec3<F>& p) {
+    if (i > 1) stuck = stuck & onLine(p);
+  });
   return stuck;
 }
 
@@ -331,17 +329,15 @@ template <class F, int N, class Rare>
 [[gnu::flatten]] void ikQuick(const World& world, const LegModel& leg, const Mat3<F>& r, const Foot<F>& foot,
                               Chain<F, kBones<N>>& chain, const Rare& rare) {
   Directions<F, N> d = directionsOf<F, N>(leg, chain);
-  Kinematics<F, N> at;
-  forward(leg, d, at);
   const Vec3<F> target = targetOf(leg, r, foot);
-  F error = length(target - at.tip);
-  const auto usual = finite(target) & !deadlocked(leg, target, at) & (error <= F(world.q.approachError));
+  Vec3<F> tip = chain.tip;
+  F error = length(target - tip);
+  const auto usual = finite(target) & !deadlocked(leg, target, d, tip) & (error <= F(world.q.approachError));
   if (any(!usual)) rare(bits(!usual));
   chain.before = error * leg.reach;
   const F pull = select(error < F(world.q.pullError), F(world.chords > 0 ? world.q.restPull : 0), F(0));
-  Vec3<F> tip;
-  activeSet(leg, target, {pull, world.q.ikTolerance, world.chords}, at, d, tip, error, chain.damping);
-  store(leg, r, d, tip, error, chain);
+  activeSet(leg, target, {pull, world.q.ikTolerance, world.chords}, d, tip, error, chain.damping);
+  store(leg, d, tip, error, chain);
 }
 
 // ---- the rare legs, all steps
@@ -358,27 +354,19 @@ void bend(const LegModel& leg, Directions<float, N>& d) {
 }
 
 template <int N>
-void fabrik(const LegModel& leg, const Vec3<float>& target, Directions<float, N>& d,
-            Kinematics<float, N>& at) {
-  const int n = boneCountOf<N>(leg);
-  Vec3<float> q[kBones<N>], end = target;
-  for (int i = n - 1; i >= 0; --i) {
+void fabrik(const LegModel& leg, const Vec3<float>& target, Directions<float, N>& d) {
+  Vec3<float> q[kBones<N>], end = target;  // q: where bone i should end
+  walk<N>(leg, d, [&](int i, const Mat3<float>&, const Vec3<float>& p) { q[i] = p; });
+  for (int i = boneCountOf<N>(leg) - 1; i >= 0; --i) {
+    const Vec3<float> joint = q[i];
     q[i] = end;
-    end = placeToward(end, at.joint[i], leg.bones[i].length);
+    end = placeToward(end, joint, leg.bones[i].length);
   }
-  Mat3<float> f{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  Vec3<float> p{0, 0, 0};
-#pragma GCC unroll 4
-  for (int i = 0; i < n; ++i) {
-    const BoneModel& bone = leg.bones[i];
-    const Mat3<float> a{f * bone.carry.x, f * bone.carry.y, f * bone.carry.z};
+  // Each bone is turned before the walk goes on along it.
+  walk<N>(leg, d, [&](int i, const Mat3<float>& a, const Vec3<float>& p) {
     const Vec3<float> v = q[i] - p, u = transposedTimes(a, normalized(v));
-    if (length(v) >= 1e-6f) setClamped(bone, u.x, u.y, 1 + u.z, 1.0f, i, d);
-    const Vec3<float> w = (a.x * d.x[i] + a.y * d.y[i] + a.z) * d.k[i];
-    f = {a.x - w * d.x[i], a.y - w * d.y[i], w - a.z};
-    p = p + f.z * bone.length;
-  }
-  forward(leg, d, at);
+    if (length(v) >= 1e-6f) setClamped(leg.bones[i], u.x, u.y, 1 + u.z, 1.0f, i, d);
+  });
 }
 
 // A target that is not finite leaves the pose as it is.
@@ -386,32 +374,30 @@ template <int N>
 void ikWhole(const World& world, const LegModel& leg, const Mat3<float>& r, const Foot<float>& foot,
              Chain<float, kBones<N>>& chain) {
   Directions<float, N> d = directionsOf<float, N>(leg, chain);
-  Kinematics<float, N> at;
-  forward(leg, d, at);
+  Vec3<float> tip = chain.tip;
   const Vec3<float> target = targetOf(leg, r, foot);
   chain.before = 0;
-  if (!finite(target)) return store(leg, r, d, at.tip, 0.0f, chain);
-  float error = length(target - at.tip);
+  if (!finite(target)) return store(leg, d, tip, 0.0f, chain);
+  float error = length(target - tip);
   chain.before = error * leg.reach;
-  if (deadlocked(leg, target, at)) {
+  if (deadlocked(leg, target, d, tip)) {
     bend(leg, d);
-    forward(leg, d, at);
-    error = length(target - at.tip);
+    tip = tipOf(leg, d);
+    error = length(target - tip);
   }
   Directions<float, N> trial = d;
-  Kinematics<float, N> trialAt = at;
   for (int i = 0; i < world.approach && error > world.q.approachError; ++i) {
-    fabrik(leg, target, trial, trialAt);
-    const float e = length(target - trialAt.tip);
+    fabrik(leg, target, trial);
+    const Vec3<float> reached = tipOf(leg, trial);
+    const float e = length(target - reached);
     if (!(e < error)) continue;
     d = trial;
-    at = trialAt;
+    tip = reached;
     error = e;
   }
   const float pull = world.chords > 0 && error < world.q.pullError ? world.q.restPull : 0;
-  Vec3<float> tip;
-  activeSet(leg, target, {pull, world.q.ikTolerance, world.chords}, at, d, tip, error, chain.damping);
-  store(leg, r, d, tip, error, chain);
+  activeSet(leg, target, {pull, world.q.ikTolerance, world.chords}, d, tip, error, chain.damping);
+  store(leg, d, tip, error, chain);
 }
 
 }  // namespace skitter::cpu_crowd

@@ -9,6 +9,10 @@ using namespace baseline;
 using baseline::broadcast, baseline::dot, baseline::select;  // which have more overloads here
 
 template <class F>
+F reciprocal(const F& x) {
+  return F(1) / x;
+}
+template <class F>
 F clamp(const F& x, float low, float high) {
   return smaller(larger(x, low), high);
 }

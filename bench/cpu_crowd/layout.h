@@ -45,7 +45,7 @@ struct Foot {
 template <class F, int N>
 struct Chain {
   F x[N], y[N];  // directions
-  Vec3<F> tip;
+  Vec3<F> tip;   // from the root, in model space, a share of the reach
   F error, damping, before;
 };
 

@@ -46,6 +46,12 @@ inline void writeAgent(const Agent<float>& a, size_t agent, HerdState& state) {
       {a.phase, a.lift, a.again, a.stepTicks, a.halfStride, a.cycle, a.air, 0});
 }
 
+// Where a tip is in the device's records: relative to the agent, world axes.
+inline Vec3<float> tipInWorld(const LegModel& leg, const Quaternion<float>& orientation,
+                              const Vec3<float>& tip) {
+  return matrixOf(orientation) * (leg.root + tip * leg.reach);
+}
+
 template <int N>
 Leg<float, N> readLeg(const HerdState& state, size_t leg, int bones) {
   const float* s = recordAt(state.step, leg, shared::STEP_STRIDE);
