@@ -72,6 +72,20 @@ Footing<F> footingOf(const World& world, float tick, const Agent<F>& a, const Le
   return footing;
 }
 
+// Of a body that follows whatever its legs do: the ground below their homes.
+template <class F>
+Footing<F> blindFootingOf(const World& world, const Agent<F>& a) {
+  const Mat3<F> r = matrixOf(a.orientation);
+  const F x = a.tileX * shared::TILE_SIZE + a.local.x, z = a.tileZ * shared::TILE_SIZE + a.local.z;
+  Footing<F> footing;
+  for (const LegModel& leg : world.legs) {
+    const Vec3<F> home = r * broadcast<F>(leg.home);
+    const F height = groundAt(world.terrain, x + home.x, z + home.z).height;
+    footing.ground.add({home.x, height - a.local.y, home.z});
+  }
+  return footing;
+}
+
 template <class F>
 Vec3<F> leaningNormal(const shared::Parameters& q, const typename PlaneSums<F>::Plane& plane,
                       const Agent<F>& a) {
@@ -81,10 +95,9 @@ Vec3<F> leaningNormal(const shared::Parameters& q, const typename PlaneSums<F>::
       Vec3<F>{a.headingZ * lean - plane.slopeX * level, F(1), -a.headingX * lean - plane.slopeZ * level});
 }
 
-template <class F, int N>
-[[gnu::flatten]] void body(const World& world, float tick, Agent<F>& a, const Leg<F, N>* legs) {
+template <class F>
+void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
   const shared::Parameters& q = world.q;
-  const Footing<F> footing = footingOf(world, tick, a, legs);
   const F follow = footing.follow;
 
   const F commanded = squareRoot(a.velocityX * a.velocityX + a.velocityZ * a.velocityZ);
@@ -143,6 +156,16 @@ template <class F, int N>
   const auto still = (commanded < slow) & (a.speed < slow) & (absolute(a.turnRate) < F(1e-2f));
   a.still = select(still, a.still + q.dt, F(0));
   a.follow = follow;
+}
+
+template <class F, int N>
+[[gnu::flatten]] void body(const World& world, float tick, Agent<F>& a, const Leg<F, N>* legs) {
+  move(world, footingOf(world, tick, a, legs), a);
+}
+
+template <class F>
+[[gnu::flatten]] void blindBody(const World& world, Agent<F>& a) {
+  move(world, blindFootingOf(world, a), a);
 }
 
 }  // namespace skitter::cpu_crowd

@@ -17,9 +17,11 @@ void expectSize(const char* what, const std::vector<float>& records, size_t coun
 }
 
 void check(const validation::HerdFacts& facts, const HerdState& start, const Options& options) {
-  if (facts.controller != crowd::Controller::adaptive)
-    throw inputError("CPU crowd: walks adaptive herds alone; set the herd's controller to adaptive");
-  if (facts.ik.solver != shared::SOLVER_FABRIK || facts.ik.polish < 1)
+  const bool clips = facts.controller == crowd::Controller::clip;
+  if (!clips && facts.controller != crowd::Controller::adaptive)
+    throw inputError(
+        "CPU crowd: moves adaptive and clip herds alone; set the herd's controller to one of these");
+  if (!clips && (facts.ik.solver != shared::SOLVER_FABRIK || facts.ik.polish < 1))
     throw inputError("CPU crowd: solves by active-set alone; set the herd's solver to it");
   if (options.threads < 1)
     throw inputError("CPU crowd: found " + std::to_string(options.threads) + " threads, expected at least 1");
@@ -29,6 +31,7 @@ void check(const validation::HerdFacts& facts, const HerdState& start, const Opt
   expectSize("steer", start.steer, agents, shared::STEER_STRIDE);
   expectSize("body", start.body, agents, shared::BODY_STRIDE);
   expectSize("gait", start.gait, agents, shared::GAIT_STRIDE);
+  if (clips) return expectSize("play", start.play, agents, shared::PLAY_STRIDE);
   expectSize("step", start.step, agents * legs, shared::STEP_STRIDE);
   expectSize("foot", start.foot, agents * legs, shared::FOOT_STRIDE);
   expectSize("chain", start.chain, agents * legs, shared::chainStride(facts.rig.maxBones()));
@@ -76,18 +79,18 @@ HerdState CpuCrowd::state() const {
   make(state.step, agents * legs, shared::STEP_STRIDE);
   make(state.foot, agents * legs, shared::FOOT_STRIDE);
   make(state.chain, agents * legs, shared::chainStride(int(bones)));
-  if (impl_->options.poses) make(state.pose, agents * (1 + legs * bones), shared::POSE_STRIDE);
+  const ClipTable& clips = impl_->world.clips;
+  if (!clips.clips.empty()) make(state.play, agents, shared::PLAY_STRIDE);
+  if (impl_->options.poses && clips.clips.empty())
+    make(state.pose, agents * (1 + legs * bones), shared::POSE_STRIDE);
+  if (impl_->options.poses && !clips.clips.empty())
+    make(state.pose, agents * size_t(clips.joints), shared::MATRIX_STRIDE);
   impl_->kernel->read(state);
   return state;
 }
 
 std::vector<StageSeconds> CpuCrowd::stageSeconds() const {
-  if (!impl_->options.timings) return {};
-  static constexpr const char* kNames[] = {"navigate", "body", "gait", "foothold", "swing", "ik", "pose"};
-  const Seconds seconds = impl_->kernel->seconds();
-  std::vector<StageSeconds> all;
-  for (int s = 0; s < kStages; ++s) all.push_back({kNames[s], seconds[s]});
-  return all;
+  return impl_->options.timings ? impl_->kernel->stageSeconds() : std::vector<StageSeconds>{};
 }
 
 size_t CpuCrowd::bytesAnAgent() const { return impl_->kernel->bytes(); }

@@ -28,7 +28,8 @@ struct StageSeconds {
   double seconds = 0;  // of all threads together, since the start
 };
 
-// One herd on ground that stays as it is: no edits, no measure, no footfalls. Not thread-safe.
+// One herd, adaptive or clip, on ground that stays as it is: no edits, no measure, no footfalls. Not
+// thread-safe.
 class CpuCrowd {
  public:
   // Copies what it needs of `facts` and `start`, a state read back from a device (or from another CpuCrowd).
@@ -43,7 +44,8 @@ class CpuCrowd {
   // Allocates nothing. The number of threads does not change a bit of the result.
   void tick(uint64_t n);
 
-  // Records in the device's layout, without metrics, and without poses unless Options::poses.
+  // Records in the device's layout, without metrics, and without poses unless Options::poses. Those of stages
+  // that are not run are 0: of clip, all of the legs'.
   HerdState state() const;
   std::vector<StageSeconds> stageSeconds() const;  // in the tick's order; empty without Options::timings
   size_t bytesAnAgent() const;                     // of state that a tick reads and writes, poses among it

@@ -2,36 +2,18 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 
 #include "bench/cpu_crowd/body.h"
+#include "bench/cpu_crowd/clip_herd.h"
 #include "bench/cpu_crowd/foothold.h"
 #include "bench/cpu_crowd/ik.h"
 #include "bench/cpu_crowd/kernel.h"
+#include "bench/cpu_crowd/laps.h"
 #include "bench/cpu_crowd/navigate.h"
 #include "bench/cpu_crowd/pose.h"
 #include "bench/cpu_crowd/records.h"
 
 namespace skitter::cpu_crowd {
-
-// Clocks the stages of a part as they follow each other.
-class Laps {
- public:
-  explicit Laps(Seconds* sums) : sums_(sums) {
-    if (sums_ != nullptr) last_ = Clock::now();
-  }
-  void end(Stage stage) {
-    if (sums_ == nullptr) return;
-    const auto now = Clock::now();
-    (*sums_)[stage] += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Seconds* sums_;
-  Clock::time_point last_;
-};
 
 // The stages of a block follow each other while it is in the nearest cache; only foothold, which few legs
 // need, waits for enough of them to fill its lanes: a part is as many agents as that takes and the second
@@ -132,14 +114,12 @@ class HerdKernel final : public Kernel {
            (blocks_ * kAgents);
   }
 
-  Seconds seconds() const override {
-    Seconds sums{};
-    for (const Scratch& scratch : scratch_)
-      for (int s = 0; s < kStages; ++s) sums[s] += scratch.seconds[s];
-    return sums;
+  std::vector<StageSeconds> stageSeconds() const override {
+    return sumOf(scratch_, {"navigate", "body", "gait", "foothold", "swing", "ik", "pose"});
   }
 
  private:
+  enum { kNavigate, kBody, kGait, kFoothold, kSwing, kIk, kPose };
   static constexpr size_t kAgents = kWidth<F>;
   static constexpr size_t kPartBlocks = 128 / kAgents;
 
@@ -235,6 +215,7 @@ class HerdKernel final : public Kernel {
 // With the number of bones compiled in where all legs have it and rigs are made so, else 0.
 template <class F>
 std::unique_ptr<Kernel> kernelOf(const World& world, const HerdState& start, const Options& options) {
+  if (!world.clips.clips.empty()) return std::make_unique<ClipKernel<F>>(world, start, options);
   const auto all = [&](int n) {
     return std::all_of(world.legs.begin(), world.legs.end(),
                        [n](const LegModel& leg) { return int(leg.bones.size()) == n; });

@@ -59,11 +59,6 @@ struct Directions {
   }
 };
 
-template <class F>
-Mat3<F> broadcast(const Mat3<float>& m) {
-  return {broadcast<F>(m.x), broadcast<F>(m.y), broadcast<F>(m.z)};
-}
-
 // The tip from the directions alone.
 template <class F, int N>
 Vec3<F> tipOf(const LegModel& leg, const Directions<F, N>& d) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 
 #include "bench/cpu_crowd/crowd.h"
@@ -8,10 +7,7 @@
 
 namespace skitter::cpu_crowd {
 
-enum Stage { kNavigate, kBody, kGait, kFoothold, kSwing, kIk, kPose, kStages };
-using Seconds = std::array<double, kStages>;
-
-// A herd for one kind of lanes and one length of legs: its state, and the tick of a part of it. Parts are
+// A herd of one controller, for one kind of lanes: its state, and the tick of a part of it. Parts are
 // independent of each other, so threads may take them in any order; `thread` names the scratch memory to use.
 class Kernel {
  public:
@@ -20,7 +16,7 @@ class Kernel {
   virtual void tick(uint64_t n, size_t part, int thread) = 0;
   virtual void read(HerdState& state) const = 0;
   virtual size_t bytes() const = 0;
-  virtual Seconds seconds() const = 0;
+  virtual std::vector<StageSeconds> stageSeconds() const = 0;
 };
 
 // A file each, for they are large.

@@ -53,6 +53,22 @@ F flags(uint64_t set) {
   return Flags<F>::of(set);
 }
 
+// table[index] of each lane; indices are whole numbers.
+inline float gather(const float* table, float index) { return table[size_t(index)]; }
+inline Lanes gather(const float* table, Lanes index) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  return _mm512_i32gather_ps(_mm512_cvttps_epi32(index.v), table, 4);
+#else
+  Lanes found;
+  for (int i = 0; i < kLanes; ++i) lane(found, i) = table[size_t(index.v[i])];
+  return found;
+#endif
+}
+template <class V>
+Pair<V> gather(const float* table, const Pair<V>& index) {
+  return {gather(table, index.a), gather(table, index.b)};
+}
+
 // What lane i of `from` holds goes into lane j of `to`: structures of F alone, or of as many floats.
 template <class F, class G, class From, class To>
 void copyLane(const From& from, int i, To& to, int j) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/cpu_crowd/ik.h"
+#include "bench/cpu_crowd/play.h"
 #include "shared/records.h"
 #include "skitter/crowd.h"
 
@@ -98,6 +99,27 @@ inline void writePose(const BonePose<float>& pose, size_t entry, HerdState& stat
   const float record[] = {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w,
                           pose.position.x, pose.position.y, pose.position.z, 0};
   std::copy(std::begin(record), std::end(record), recordAt(state.pose, entry, shared::POSE_STRIDE));
+}
+
+inline Play<float> readPlay(const HerdState& state, size_t agent) {
+  const float* p = recordAt(state.play, agent, shared::PLAY_STRIDE);
+  return {{p[0], p[1], p[5], p[8], p[9]}, {p[2], p[3], p[6], p[10], p[11]}, p[4]};
+}
+
+inline void writePlay(const Play<float>& play, size_t agent, HerdState& state) {
+  const auto &to = play.to, &from = play.from;
+  const float record[] = {to.clip,   to.time, from.clip, from.time,   play.weight, to.rate,
+                          from.rate, 0,       to.frame,  to.fraction, from.frame,  from.fraction};
+  std::copy(std::begin(record), std::end(record), recordAt(state.play, agent, shared::PLAY_STRIDE));
+}
+
+inline void writeMatrices(const ClipTable& table, const Line* planes, size_t agent, HerdState& state) {
+  const size_t joints = size_t(table.joints);
+  for (size_t j = 0; j < joints; ++j) {
+    float* record = recordAt(state.pose, agent * joints + j, shared::MATRIX_STRIDE);
+    for (size_t row = 0; row < 3; ++row)
+      std::copy_n(planes[row * table.lines].at + 4 * j, 4, record + 4 * row);
+  }
 }
 
 }  // namespace skitter::cpu_crowd

@@ -1,5 +1,7 @@
 #include "bench/cpu_crowd/rig.h"
 
+#include <algorithm>
+
 #include "shared/records.h"
 #include "skitter/error.h"
 
@@ -37,6 +39,31 @@ LegModel legOf(const float* records, int bones) {
   return leg;
 }
 
+// From records of three rows a joint, a frame after another, and one that counts for nothing.
+ClipTable clipTableOf(const crowd::ClipRecords& records) {
+  ClipTable table;
+  for (size_t c = 0; c < records.heads.size(); c += 4) {
+    const float* head = records.heads.data() + c;
+    table.clips.push_back({head[0], head[1], head[2], head[3]});
+    table.standing = table.standing || head[3] == 0;
+  }
+  for (size_t f = 0; f < records.times.size(); f += 4) {
+    table.times.push_back(records.times[f]);
+    table.perSecond.push_back(records.times[f + 1]);
+  }
+  constexpr size_t kJointsALine = 4;
+  const size_t joints = size_t(records.joints), frames = records.rows.size() / (12 * joints);
+  table.joints = records.joints;
+  table.lines = (joints + kJointsALine - 1) / kJointsALine;
+  table.planes.resize(frames * 3 * table.lines);
+  for (size_t i = 0; i < frames * joints * 3; ++i) {
+    const size_t row = i % 3, joint = i / 3 % joints, frame = i / 3 / joints;
+    float* plane = table.planes[(frame * 3 + row) * table.lines].at;
+    std::copy_n(records.rows.data() + 4 * i, 4, plane + 4 * joint);
+  }
+  return table;
+}
+
 }  // namespace
 
 World worldOf(const validation::HerdFacts& facts) {
@@ -49,6 +76,10 @@ World worldOf(const validation::HerdFacts& facts) {
   world.groups = facts.rig.groupCount();
   world.approach = facts.ik.approach;
   world.chords = facts.ik.polish - 1;
+  if (crowd::playsClips(facts.controller)) {
+    world.clips = clipTableOf(facts.clips);
+    world.q.leanGain = world.q.leanLevel = world.q.breathHeight = 0;
+  }
   const size_t stride = size_t(4 * shared::rigStride(world.bones)), expected = facts.rig.legs.size() * stride;
   if (facts.rigRecords.size() != expected) {
     throw inputError("rig records: found " + std::to_string(facts.rigRecords.size()) + " floats, expected " +

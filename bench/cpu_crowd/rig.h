@@ -32,6 +32,26 @@ struct Terrain {
   float originX, originZ, inverseSpacingX, inverseSpacingZ;
 };
 
+struct alignas(64) Line {
+  float at[16];
+};
+
+// The clips that agents play; a frame's matrices lie in three planes, a row of all joints each, so that an
+// agent's are blended and turned as they lie.
+struct ClipTable {
+  struct Clip {
+    float first, frames, seconds, speed;
+  };
+  std::vector<Clip> clips;
+  bool standing = false;                // there is one that stands
+  std::vector<float> times, perSecond;  // of frames; 1 / time to the next one
+  int joints = 0;
+  size_t lines = 0;  // a plane
+  std::vector<Line> planes;
+
+  const Line* frame(float f) const { return planes.data() + size_t(f) * 3 * lines; }
+};
+
 // What all agents share.
 struct World {
   shared::Parameters q;
@@ -39,9 +59,11 @@ struct World {
   std::vector<LegModel> legs;
   int bones;  // of the longest leg
   int groups, approach, chords;
+  ClipTable clips;  // empty where none are played
 };
 
-// Throws Error(input) where the rig records' size does not fit the rig.
+// Of a controller that plays clips the parameters are those of a blind body (docs/stages.md). Throws
+// Error(input) where the rig records' size does not fit the rig.
 World worldOf(const validation::HerdFacts& facts);
 
 }  // namespace skitter::cpu_crowd

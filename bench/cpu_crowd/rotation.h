@@ -5,6 +5,11 @@
 namespace skitter::cpu_crowd {
 
 template <class F>
+Mat3<F> broadcast(const Mat3<float>& m) {
+  return {broadcast<F>(m.x), broadcast<F>(m.y), broadcast<F>(m.z)};
+}
+
+template <class F>
 struct Quaternion {
   F x, y, z, w;
 };

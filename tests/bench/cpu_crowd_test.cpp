@@ -21,6 +21,11 @@ struct Start {
     simulate(device, crowd, ticks);
     state = crowd.download(0);
   }
+  Start(Device& device, const Heightfield& ground, const Scene& scene, int ticks)
+      : terrain(ground), crowd(device, terrain, scene) {
+    simulate(device, crowd, ticks);
+    state = crowd.download(0);
+  }
   Start(Device& device, const Heightfield& ground, uint32_t agents, int ticks, Rig rig)
       : terrain(ground), crowd(device, terrain, sceneOf(agents), std::vector<Rig>{std::move(rig)}) {
     simulate(device, crowd, ticks);
@@ -62,6 +67,15 @@ Heightfield steepGround() {
 class CpuCrowdTest : public GpuTest, public ::testing::WithParamInterface<Width> {
  protected:
   Options options(int threads = 1) const { return {.threads = threads, .width = GetParam(), .poses = true}; }
+
+  // Of an opponent that is told something else than the reference.
+  std::string refusedStages(const validation::HerdFacts& broken, Start& start, int ticks) const {
+    CpuCrowd opponent(broken, start.state, options());
+    std::string names;
+    for (const validation::StageResult& stage : replay(opponent, start, ticks))
+      if (!stage.pass) names += stage.name + " ";
+    return names;
+  }
 };
 
 TEST_P(CpuCrowdTest, WalksAsTheReferenceDoes) {
@@ -135,6 +149,50 @@ TEST_P(CpuCrowdTest, WalksOnLegsOfUnequalLength) {
   expectSamples(results);
 }
 
+// Feet are measure's alone: without it nobody swings.
+void expectAllButSwingPass(std::vector<validation::StageResult> results) {
+  std::erase_if(results, [](const auto& stage) { return stage.name == "swing"; });
+  expectAllPass(results);
+  expectSamples(results);
+}
+
+TEST_P(CpuCrowdTest, PlaysClipsAsTheReferenceDoes) {
+  for (const uint32_t agents : {1u, 15u, 16u, 17u}) {
+    Start start(device(), rollingGround(), sceneOf(agents, 1, 1, "clip"), 1);
+    CpuCrowd opponent(start.facts(), start.state, options(2));
+    SCOPED_TRACE(agents);
+    expectAllButSwingPass(replay(opponent, start, 120));
+  }
+}
+
+TEST_P(CpuCrowdTest, ChangesClipsAsItStops) {
+  Scene scene = sceneOf(16, 1.5f, 3, "clip");
+  scene.herds[0].spawn.kind = Spawn::Kind::grid;
+  scene.herds[0].spawn.heading = 3;  // nearly away from the target
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 2}, .speed = 1.5f};
+  Start start(device(), smallRollingGround(), scene, 1);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  expectAllButSwingPass(replay(opponent, start, 420));
+  CpuCrowd underWay(start.facts(), start.state, options());
+  for (uint64_t n = 2; n < 120; ++n) underWay.tick(n);
+  EXPECT_NE(underWay.state().play[0], opponent.state().play[0]) << "the clip of agent 0";
+}
+
+TEST_P(CpuCrowdTest, AnotherPaceIsRefused) {
+  Start start(device(), rollingGround(), sceneOf(16, 1, 1, "clip"), 60);
+  validation::HerdFacts slower = start.facts();
+  for (size_t speed = 3; speed < slower.clips.heads.size(); speed += 4) slower.clips.heads[speed] *= 1.01f;
+  EXPECT_EQ(refusedStages(slower, start, 60), "clip swing ");
+}
+
+TEST_P(CpuCrowdTest, AnotherFrameIsRefused) {
+  Start start(device(), rollingGround(), sceneOf(16, 1, 1, "clip"), 60);
+  validation::HerdFacts bent = start.facts();
+  for (size_t i = 0; i < bent.clips.rows.size(); i += 12 * size_t(bent.clips.joints))
+    bent.clips.rows[i] += 1e-3f;
+  EXPECT_EQ(refusedStages(bent, start, 5), "swing pose ");
+}
+
 TEST_P(CpuCrowdTest, ThreadsChangeNoBit) {
   Start start(device(), rollingGround(), 700, 60);
   CpuCrowd one(start.facts(), start.state, options(1)), three(start.facts(), start.state, options(3));
@@ -152,21 +210,14 @@ TEST_P(CpuCrowdTest, ThreadsChangeNoBit) {
 
 TEST_P(CpuCrowdTest, ABrokenOneIsRefused) {
   Start start(device(), rollingGround(), 16, 90);
-  const auto refusedStages = [&](const validation::HerdFacts& broken) {
-    CpuCrowd opponent(broken, start.state, options());
-    std::string names;
-    for (const validation::StageResult& stage : replay(opponent, start, 20))
-      if (!stage.pass) names += stage.name + " ";
-    return names;
-  };
   validation::HerdFacts slower = start.facts();
   slower.parameters.heightBlend *= 1.02f;
-  EXPECT_EQ(refusedStages(slower), "body ");
+  EXPECT_EQ(refusedStages(slower, start, 20), "body ");
   std::vector<float> records = start.crowd.impl().herds[0].rigRecords;
   records[0] += 1e-3f;  // a root
   const validation::HerdFacts crooked{start.facts().rig, start.terrain, start.facts().parameters, records,
                                       start.facts().ik};
-  EXPECT_EQ(refusedStages(crooked), "ik pose ");
+  EXPECT_EQ(refusedStages(crooked, start, 20), "ik pose ");
 }
 
 TEST_P(CpuCrowdTest, RefusesWhatItCannotWalk) {

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <algorithm>
+
+#include "bench/cpu_crowd/body.h"
+#include "bench/cpu_crowd/kernel.h"
+#include "bench/cpu_crowd/laps.h"
+#include "bench/cpu_crowd/navigate.h"
+#include "bench/cpu_crowd/pose_clip.h"
+#include "bench/cpu_crowd/records.h"
+
+namespace skitter::cpu_crowd {
+
+// A herd that plays clips. Its feet are what measure would look at, and are left out with it, as on a device.
+template <class F>
+class ClipKernel final : public Kernel {
+ public:
+  ClipKernel(const World& world, const HerdState& start, const Options& options)
+      : world_(world),
+        agents_(start.agents),
+        blocks_((agents_ + kAgents - 1) / kAgents),
+        timings_(options.timings),
+        agentBlocks_(blocks_),
+        plays_(blocks_),
+        poses_(options.poses ? agents_ * poseLines() : 0),
+        scratch_(size_t(options.threads)) {
+    // Idle lanes of the last block repeat its last agent.
+    for (size_t i = 0; i < blocks_ * kAgents; ++i) {
+      const size_t agent = std::min(i, agents_ - 1);
+      copyLane<float, F>(readAgent(start, agent), 0, agentBlocks_[i / kAgents], int(i % kAgents));
+      copyLane<float, F>(readPlay(start, agent), 0, plays_[i / kAgents], int(i % kAgents));
+    }
+  }
+
+  size_t parts() const override { return (blocks_ + kPartBlocks - 1) / kPartBlocks; }
+
+  void tick(uint64_t, size_t part, int thread) override {
+    Laps laps(timings_ ? &scratch_[size_t(thread)].seconds : nullptr);
+    const size_t first = part * kPartBlocks, last = std::min(first + kPartBlocks, blocks_);
+    for (size_t block = first; block < last; ++block) {
+      Agent<F>& a = agentBlocks_[block];
+      navigate(world_, a);
+      laps.end(0);
+      blindBody(world_, a);
+      laps.end(1);
+      clip(world_, a, plays_[block]);
+      laps.end(2);
+      if (!poses_.empty()) poseBlock(block);
+      laps.end(3);
+    }
+  }
+
+  void read(HerdState& state) const override {
+    for (size_t agent = 0; agent < agents_; ++agent) {
+      const size_t block = agent / kAgents;
+      Agent<float> a;
+      Play<float> play;
+      copyLane<F, float>(agentBlocks_[block], int(agent % kAgents), a, 0);
+      copyLane<F, float>(plays_[block], int(agent % kAgents), play, 0);
+      writeAgent(a, agent, state);
+      writePlay(play, agent, state);
+      if (!poses_.empty()) writeMatrices(world_.clips, &poses_[agent * poseLines()], agent, state);
+    }
+  }
+
+  size_t bytes() const override {
+    return (agentBlocks_.size() * (sizeof(Agent<F>) + sizeof(Play<F>)) + poses_.size() * sizeof(Line)) /
+           (blocks_ * kAgents);
+  }
+
+  std::vector<StageSeconds> stageSeconds() const override {
+    return sumOf(scratch_, {"navigate", "body", "clip", "pose"});
+  }
+
+ private:
+  static constexpr size_t kAgents = kWidth<F>;
+  static constexpr size_t kPartBlocks = 128 / kAgents;
+
+  struct alignas(64) Scratch {
+    Seconds seconds{};
+  };
+
+  size_t poseLines() const { return 3 * world_.clips.lines; }
+
+  void poseBlock(size_t block) {
+    const Mat3<F> turns = matrixOf(agentBlocks_[block].orientation);
+    const size_t first = block * kAgents, count = std::min(kAgents, agents_ - first);
+    for (size_t i = 0; i < count; ++i) {
+      Mat3<float> r;
+      Play<float> play;
+      copyLane<F, float>(turns, int(i), r, 0);
+      copyLane<F, float>(plays_[block], int(i), play, 0);
+      poseClip<F>(world_.clips, play, r, &poses_[(first + i) * poseLines()]);
+    }
+  }
+
+  const World& world_;
+  size_t agents_, blocks_;
+  bool timings_;
+  std::vector<Agent<F>> agentBlocks_;
+  std::vector<Play<F>> plays_;
+  std::vector<Line> poses_;
+  std::vector<Scratch> scratch_;
+};
+
+}  // namespace skitter::cpu_crowd
