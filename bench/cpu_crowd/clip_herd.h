@@ -48,6 +48,7 @@ class ClipKernel final : public Kernel {
       if (!poses_.empty()) poseBlock(block);
       laps.end(3);
     }
+    settleStreams();
   }
 
   void read(HerdState& state) const override {

@@ -84,6 +84,7 @@ class HerdKernel final : public Kernel {
       if (!poses_.empty()) poseBlock(block, r);
       laps.end(kPose);
     }
+    settleStreams();
   }
 
   void read(HerdState& state) const override {
@@ -198,7 +199,7 @@ class HerdKernel final : public Kernel {
   void poseBlock(size_t block, const Mat3<F>& r) {
     const Agent<F>& a = agentBlocks_[block];
     BonePose<F>* poses = &poses_[block * poseCount()];
-    *poses++ = {a.orientation, {F(0), F(0), F(0)}};
+    stream(poses++, a.orientation, Vec3<F>{F(0), F(0), F(0)});
     for (size_t l = 0; l < legs_; ++l, poses += world_.bones)
       pose<F, N>(world_.legs[l], world_.bones, a, r, legsOf(block)[l].chain, poses);
   }

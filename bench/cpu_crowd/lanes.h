@@ -1,5 +1,9 @@
 #pragma once
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 #include "bench/cpu_baseline/lane_vector.h"
 
 namespace skitter::cpu_crowd {
@@ -67,6 +71,29 @@ inline Lanes gather(const float* table, Lanes index) {
 template <class V>
 Pair<V> gather(const float* table, const Pair<V>& index) {
   return {gather(table, index.a), gather(table, index.b)};
+}
+
+// Stores what is not read again soon past the caches, which then need not fetch the line. settleStreams()
+// comes before another thread is told.
+inline void stream(float* to, float value) { *to = value; }
+inline void stream(Lanes* to, Lanes value) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  _mm512_stream_ps(reinterpret_cast<float*>(to), value.v);
+#elif defined(__AVX2__)
+  _mm256_stream_ps(reinterpret_cast<float*>(to), value.v);
+#else
+  *to = value;
+#endif
+}
+inline void settleStreams() {
+#if defined(__SSE__)
+  _mm_sfence();
+#endif
+}
+template <class V>
+void stream(Pair<V>* to, const Pair<V>& value) {
+  stream(&to->a, value.a);
+  stream(&to->b, value.b);
 }
 
 // What lane i of `from` holds goes into lane j of `to`: structures of F alone, or of as many floats.

@@ -24,9 +24,9 @@ template <class F>
     Vec3<F> m = blended(a, toShare);
     if (fades) m = mix(blended(b, fromShare), m, weight);
     const Vec3<F> turned = broadcast<F>(r) * m;
-    to[i] = turned.x;
-    to[count + i] = turned.y;
-    to[2 * count + i] = turned.z;
+    stream(to + i, turned.x);
+    stream(to + count + i, turned.y);
+    stream(to + 2 * count + i, turned.z);
   }
 }
 
