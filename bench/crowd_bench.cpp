@@ -118,11 +118,8 @@ void addAll(int64_t agents) {
   for (const std::string controller : {"adaptive", "clip"})
     for (const Who who : {Who::device, Who::simd, Who::scalar}) {
       if (who != Who::device && controller != "adaptive") continue;
-      for (const crowd::Stage& stage : crowd::stagesOf(crowd::controllerNamed(controller))) {
-        const std::string name = stage.name;
-        if (name == "measure" || name == "footfall" || (name == "swing" && controller == "clip")) continue;
-        add(controller, name, who, agents);
-      }
+      for (const crowd::Stage& stage : crowd::stagesOf(crowd::controllerNamed(controller), options()))
+        add(controller, stage.name, who, agents);
     }
 }
 

@@ -18,10 +18,9 @@ namespace {
 constexpr int inRow = 32;  // dispatches of one submission
 
 size_t footholdIndex(const crowd::Herd& herd) {
-  const std::vector<crowd::Stage>& stages = crowd::stagesOf(herd.controller);
-  for (size_t i = 0; i < stages.size(); ++i)
-    if (std::string_view(stages[i].name) == "foothold") return i;
-  return stages.size();
+  for (size_t i = 0; i < herd.stages.size(); ++i)
+    if (std::string_view(herd.stages[i].name) == "foothold") return i;
+  return herd.stages.size();
 }
 
 // The foothold stage over the first legs of a crowd that walks, again and again.

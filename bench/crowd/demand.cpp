@@ -51,13 +51,12 @@ std::vector<StageDemand> demandOf(const Crowd& crowd, const CrowdOptions& option
   const gpu::Context& context = *impl.context;
   std::vector<StageDemand> demands;
   for (const std::string_view name : crowd::frame()) {
-    if (name == "measure" || name == "footfall" || (name == "pose" && !options.pose)) continue;
+    if (name == "measure" || name == "footfall") continue;
     StageDemand sum{std::string(name)};
     bool found = false;
     for (const crowd::Herd& herd : impl.herds)
-      for (const crowd::Stage& stage : crowd::stagesOf(herd.controller)) {
-        // Of a clip as it is, feet are looked at by measure alone.
-        if (stage.name != name || (name == "swing" && herd.controller == crowd::Controller::clip)) continue;
+      for (const crowd::Stage& stage : herd.stages) {
+        if (stage.name != name) continue;
         found = true;
         const gpu::KernelInfo info = crowd::kernelsOf(stage, options, herd).first;
         const double operations = operationsAnInvocation(info.code.pick(context), info.constants);

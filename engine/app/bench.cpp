@@ -195,7 +195,6 @@ ordered_json benchDevice(const BenchOptions& options, const std::string& name) {
       chosen.controller = controller;
       chosen.agents = static_cast<uint64_t>(agents);
       const Scene scene = chosen.load();
-      checkMemory(scene, device);
       ContestOptions contestOptions = contestOf(options, controller);
       contestOptions.seed = scene.seed;
       Match match;

@@ -13,8 +13,8 @@
 namespace skitter::app {
 namespace {
 
-constexpr uint64_t maxAgents = 16777216;  // as in a scene file: beyond it a float cannot count agents
-constexpr double maxMetres = 1e5;         // a sample, as in a scene file
+constexpr uint64_t maxAgents = UINT32_MAX;  // whether a device has room for them is the crowd's to say
+constexpr double maxMetres = 1e5;           // a sample, as in a scene file
 constexpr double minMetres = 1e-4;
 constexpr double maxHeight = 1e6;  // metres
 constexpr double minScale = 1e-6, maxScale = 1e6, maxExaggeration = 1000;
@@ -22,9 +22,6 @@ constexpr double maxVoidValue = std::numeric_limits<double>::max();
 // Steps are timed in whole ticks of at least three a swing, so ticks far from a display's rate animate
 // nothing.
 constexpr double minTick = 1e-3, maxTick = 0.1;
-// Of the built-in spider, by shaders/shared/records.h: 2.7 KB of records and their share of lists and
-// counters.
-constexpr uint64_t bytesPerAgent = 2800;
 
 void scaleHerds(Scene& scene, uint64_t agents) {
   if (scene.herds.empty()) throw inputError(fmt::format("--agents: {} has no herds", scene.name));
@@ -208,14 +205,6 @@ Scene SceneOptions::load() const {
   if (seed) result.seed = *seed;
   applyTerrain(result);
   return result;
-}
-
-void checkMemory(const Scene& scene, const Device& device) {
-  const uint64_t needed = scene.agentCount() * bytesPerAgent;
-  const uint64_t available = device.report().limits.availableBytes;
-  if (needed <= available) return;
-  throw inputError(fmt::format("{} agents need about {} MiB of device memory, {} has {} MiB free",
-                               scene.agentCount(), needed >> 20, device.report().name, available >> 20));
 }
 
 }  // namespace skitter::app

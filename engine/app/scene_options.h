@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "skitter/device.h"
 #include "skitter/scene.h"
 #include "values.h"
 
@@ -41,8 +40,5 @@ struct SceneOptions {
   void addTerrainTo(CLI::App& command);
   void applyTerrain(Scene& scene) const;
 };
-
-// Refuses a scene whose records cannot fit the device's free memory, before anything is allocated.
-void checkMemory(const Scene& scene, const Device& device);
 
 }  // namespace skitter::app

@@ -47,6 +47,20 @@ void printFidelity(const Fidelity& f, uint32_t watchEvery) {
                        100 * f.margin, 100 * f.marginLeast, 100 * f.unstable));
 }
 
+void printMemory(const std::vector<MemoryUse>& memory, uint64_t agents) {
+  const double each = 1 / static_cast<double>(std::max<uint64_t>(agents, 1));
+  uint64_t all = 0;
+  std::string parts;
+  for (const MemoryUse& use : memory) {
+    all += use.bytes;
+    parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", use.name,
+                         each * static_cast<double>(use.bytes));
+  }
+  printRow("memory",
+           fmt::format("{:.1f} MiB, {:.0f} bytes an agent: {}", static_cast<double>(all) / (1 << 20),
+                       each * static_cast<double>(all), parts));
+}
+
 nlohmann::ordered_json jsonOf(const Fidelity& f) {
   return {{"agentTicks", f.agentTicks},
           {"stances", f.stances},
@@ -91,6 +105,7 @@ void Summary::print() const {
     printRow("", fmt::format("{:<10}{:9.4f} ms a tick", stage.stage,
                              stage.milliseconds / static_cast<double>(std::max<uint64_t>(ticks, 1))));
   }
+  if (!times.stages.empty()) printMemory(memory, agents);
   printFidelity(fidelity, watchEvery);
   for (size_t h = 0; h < herds.size() && herds.size() > 1; ++h) {
     fmt::print("herd {}: {}, {} agents\n", h, herds[h].rig, herds[h].agents);

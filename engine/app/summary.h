@@ -30,6 +30,7 @@ struct Summary {
   Fidelity fidelity;        // of all herds
   std::vector<HerdFigures> herds;
   uint64_t stateHash = 0;
+  std::vector<MemoryUse> memory;  // of all herds; told with the stages' times
   std::vector<std::string> files;
 
   void print() const;

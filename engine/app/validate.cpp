@@ -148,7 +148,6 @@ int validate(const ValidateOptions& options) {
   DeviceRequest request;
   request.device = options.scene.device;
   Device device = Device::create(request);
-  checkMemory(scene, device);
   Crowd crowd(device, terrain, scene);
 
   gpu::CommandRing ring(device.context());

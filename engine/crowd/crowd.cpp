@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -32,6 +33,14 @@ using Impl = Crowd::Impl;
 constexpr int kSettleIterations = 24;
 // World coordinates beyond it are too coarse in float32 for a foot to be placed.
 constexpr float kFarthest = 4096;
+// Above it an agent's index is no exact float, as records have it.
+constexpr uint64_t kMostAgents = 1 << 24;
+
+std::string gibibytes(uint64_t bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f GiB", static_cast<double>(bytes) / (1 << 30));
+  return text;
+}
 
 std::vector<Rig> loadRigs(const Scene& scene) {
   std::vector<Rig> rigs;
@@ -80,16 +89,17 @@ uint32_t invocations(const crowd::Herd& herd, const Page& page, Stage::Over over
   return page.agents;
 }
 
+bool isNamed(const Stage& stage, std::string_view name) { return stage.name == name; }
+
 // Gait looks at the ground under every foot in the ticks after an edit of the heights.
 const gpu::Kernel& kernelOf(const Impl& crowd, const crowd::Herd& herd, size_t index) {
   const bool watches = herd.watchingGait && crowd.watchUntil > 0 && crowd.tick <= crowd.watchUntil;
-  const std::string_view name = crowd::stagesOf(herd.controller)[index].name;
-  return watches && name == "gait" ? herd.watchingGait : herd.kernels[index];
+  return watches && isNamed(herd.stages[index], "gait") ? herd.watchingGait : herd.kernels[index];
 }
 
 void dispatch(const Impl& crowd, const crowd::Herd& herd, const Page& page, size_t index, uint64_t tick,
               vk::CommandBuffer cmd) {
-  const Stage& stage = crowd::stagesOf(herd.controller)[index];
+  const Stage& stage = herd.stages[index];
   shared::TickConstants constants{invocations(herd, page, stage.over),
                                   static_cast<float>(tick),
                                   page.firstAgent,
@@ -117,23 +127,18 @@ void clearLists(const Impl& crowd, vk::CommandBuffer cmd) {
 
 bool hasStage(const Impl& crowd, std::string_view name) {
   return std::any_of(crowd.herds.begin(), crowd.herds.end(), [&](const crowd::Herd& herd) {
-    const std::vector<Stage>& stages = crowd::stagesOf(herd.controller);
-    return std::any_of(stages.begin(), stages.end(), [&](const Stage& stage) { return stage.name == name; });
+    return std::any_of(herd.stages.begin(), herd.stages.end(),
+                       [&](const Stage& stage) { return isNamed(stage, name); });
   });
 }
 
-// Of every herd whose controller has it.
+// Of every herd that has it.
 void recordStage(const Impl& crowd, std::string_view name, uint64_t tick, vk::CommandBuffer cmd) {
   const auto eachPage = [&](const auto& record) {
-    for (const crowd::Herd& herd : crowd.herds) {
-      // Of a clip as it is, feet are looked at by measure alone.
-      const bool judged = crowd.options.measure || crowd.options.footfalls > 0;
-      if (name == "swing" && herd.controller == crowd::Controller::clip && !judged) continue;
-      const std::vector<Stage>& stages = crowd::stagesOf(herd.controller);
-      for (size_t i = 0; i < stages.size(); ++i)
-        if (stages[i].name == name)
+    for (const crowd::Herd& herd : crowd.herds)
+      for (size_t i = 0; i < herd.stages.size(); ++i)
+        if (isNamed(herd.stages[i], name))
           for (const Page& page : herd.pages) record(herd, page, i);
-    }
   };
   eachPage([&](const crowd::Herd& herd, const Page& page, size_t index) {
     dispatch(crowd, herd, page, index, tick, cmd);
@@ -143,7 +148,7 @@ void recordStage(const Impl& crowd, std::string_view name, uint64_t tick, vk::Co
   eachPage([&](const crowd::Herd& herd, const Page& page, size_t index) {
     if (!herd.restKernels[index]) return;
     if (!std::exchange(listed, true)) gpu::computeToIndirectAndCompute(cmd);
-    const auto at = static_cast<uint64_t>(crowd::stagesOf(herd.controller)[index].rest);
+    const auto at = static_cast<uint64_t>(herd.stages[index].rest);
     herd.restKernels[index].dispatchIndirect(cmd, page.bindings[index], gpu::bytesOf(shared::TickConstants{}),
                                              page.counters, at * sizeof(uint32_t));
   });
@@ -163,9 +168,8 @@ void settle(Impl& crowd) {
     };
     for (const crowd::Herd& herd : crowd.herds)
       for (size_t i = 0; i < herd.kernels.size(); ++i) {
-        const std::string_view name = crowd::stagesOf(herd.controller)[i].name;
         warmUp(herd.kernels[i], herd, i);
-        if (herd.watchingGait && name == "gait") warmUp(herd.watchingGait, herd, i);
+        if (herd.watchingGait && isNamed(herd.stages[i], "gait")) warmUp(herd.watchingGait, herd, i);
         if (herd.restKernels[i]) warmUp(herd.restKernels[i], herd, i);
       }
     recordStage(crowd, "swing", 0, cmd);
@@ -234,6 +238,7 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
   for (const Herd& from : scene.herds) agents += from.agents;
   crowd.watchEvery = crowd::watchEvery(options, agents);
 
+  uint64_t needed = 0;
   for (const Herd& from : scene.herds) {
     crowd::Herd& herd = crowd.herds.emplace_back();
     herd.controller = crowd::controllerNamed(from.controller);
@@ -255,17 +260,22 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     herd.parameterBlock =
         gpu::HostBuffer(context, sizeof herd.parameters, gpu::HostUse::upload, "parameters");
     std::memcpy(herd.parameterBlock.bytes().data(), &herd.parameters, sizeof herd.parameters);
-    crowd::makeKernels(context, options, herd);
+    herd.stages = crowd::stagesOf(herd.controller, options);
+    needed += crowd::bytesOf(crowd, herd, from.agents);
+  }
+  if (needed > context.limits().availableBytes)
+    throw deviceError(std::to_string(agents) + " agents need " + gibibytes(needed) + ", " +
+                      context.report().name + " has " + gibibytes(context.limits().availableBytes) +
+                      " available");
+  if (agents > kMostAgents)
+    throw inputError(std::to_string(agents) + " agents, expected at most " + std::to_string(kMostAgents));
 
-    const crowd::RecordBytes bytes = crowd::recordBytes(herd);
-    const uint64_t needed = bytes.sum(crowd.watchEvery) * from.agents;
-    if (needed > context.limits().availableBytes)
-      throw deviceError(std::to_string(from.agents) + " agents need " + std::to_string(needed >> 20) +
-                        " MiB, " + context.report().name + " has " +
-                        std::to_string(context.limits().availableBytes >> 20) + " MiB");
-    const uint64_t herdIndex = crowd.herds.size() - 1;
-    const crowd::Spawner spawner(from, herd, terrain, scene.seed + (herdIndex << 32));
-    const uint32_t most = crowd::agentsPerPage(context, options, bytes);
+  for (size_t h = 0; h < crowd.herds.size(); ++h) {
+    crowd::Herd& herd = crowd.herds[h];
+    const Herd& from = scene.herds[h];
+    crowd::makeKernels(context, options, herd);
+    const crowd::Spawner spawner(from, herd, terrain, scene.seed + (uint64_t{h} << 32));
+    const uint32_t most = crowd::agentsPerPage(crowd, herd);
     for (uint32_t first = 0; first < from.agents; first += most)
       herd.pages.push_back(crowd::makePage(crowd, herd, spawner, first, std::min(most, from.agents - first)));
   }
@@ -289,10 +299,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   if (!crowd.edits.empty()) crowd.edits.record(cmd, crowd.terrain, crowd.heights);
   gpu::transferToCompute(cmd);
   for (const std::string_view name : crowd::frame()) {
-    const CrowdOptions& options = crowd.options;
-    if (!hasStage(crowd, name) || (name == "pose" && !options.pose) ||
-        (name == "measure" && !options.measure) || (name == "footfall" && options.footfalls == 0))
-      continue;
+    if (!hasStage(crowd, name)) continue;
     crowd.timer.begin(cmd, name.data());
     recordStage(crowd, name, tick, cmd);
     crowd.timer.end(cmd, name.data());
@@ -317,12 +324,20 @@ uint64_t Crowd::agentCount() const {
   return count;
 }
 
+std::vector<MemoryUse> Crowd::memoryUse(uint32_t herdIndex) const {
+  const crowd::Herd& herd = impl_->herds.at(herdIndex);
+  std::vector<MemoryUse> uses;
+  for (const crowd::PageBuffer& each : crowd::pageBuffers(*impl_, herd)) {
+    MemoryUse& use = uses.emplace_back(MemoryUse{each.name});
+    for (const Page& page : herd.pages) use.bytes += (page.*each.buffer).size();
+  }
+  return uses;
+}
+
 uint64_t Crowd::memoryBytes() const {
   uint64_t bytes = 0;
-  for (const crowd::Herd& herd : impl_->herds)
-    for (const Page& page : herd.pages)
-      bytes += crowd::recordBytes(herd).sum(impl_->watchEvery) * page.agents + page.flight.size() +
-               page.footfall.size();
+  for (uint32_t h = 0; h < herdCount(); ++h)
+    for (const MemoryUse& use : memoryUse(h)) bytes += use.bytes;
   return bytes;
 }
 

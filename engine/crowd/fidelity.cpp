@@ -93,6 +93,7 @@ double percentile99(const std::vector<uint64_t>& buckets) {
 
 template <class Each>
 void eachAgent(const Crowd::Impl& crowd, const crowd::Herd& herd, const Each& each) {
+  if (!crowd.options.measure) return;
   for (const Page& page : herd.pages) {
     const std::vector<float> m = gpu::download<float>(*crowd.context, page.metric);
     for (size_t at = 0; at + kFloats <= m.size(); at += kFloats)
@@ -108,8 +109,10 @@ Fidelity figuresOf(const Crowd::Impl& crowd, std::span<const crowd::Herd> herds)
   for (const crowd::Herd& herd : herds) {
     eachAgent(crowd, herd, [&](std::span<const float, kFloats> m) { sums.add(m, herd); });
     for (const Page& page : herd.pages) {
-      const std::vector<uint32_t> counts = gpu::download<uint32_t>(*crowd.context, page.histogram);
-      for (size_t i = 0; i < buckets.size(); ++i) buckets[i] += counts[i];
+      if (page.histogram) {
+        const std::vector<uint32_t> counts = gpu::download<uint32_t>(*crowd.context, page.histogram);
+        for (size_t i = 0; i < buckets.size(); ++i) buckets[i] += counts[i];
+      }
       const std::vector<uint32_t> counters = gpu::download<uint32_t>(*crowd.context, page.counters);
       lastResorts += counters[shared::COUNTER_LAST_RESORTS];
       notFinite += counters[shared::COUNTER_NOT_FINITE];

@@ -26,15 +26,17 @@ namespace skitter::crowd {
 struct Page {
   uint32_t firstAgent = 0;
   uint32_t agents = 0;
-  gpu::Buffer goal, steer, body, gait, step, foot, chain, pose, metric, watch;
+  gpu::Buffer goal, steer, body, gait, step, foot, chain;
+  gpu::Buffer pose;              // none unless poses are wanted
+  gpu::Buffer metric, watch;     // none unless fidelity is measured
   gpu::Buffer play, start, fix;  // where clips are played, the latter two where they are planted
   gpu::Buffer spring;            // of controller pose
-  gpu::Buffer flight, footfall;  // empty unless footfalls are kept
+  gpu::Buffer flight, footfall;  // none unless footfalls are kept
   uint32_t footfallRoom = 0;
   gpu::Buffer list;                     // legs that begin a step this tick
   gpu::Buffer counters;                 // indirect arguments and counts
   gpu::Buffer histogram;                // of reach errors
-  std::vector<gpu::Bindings> bindings;  // one a stage of the controller
+  std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
 struct Herd {
@@ -52,7 +54,8 @@ struct Herd {
   gpu::HostBuffer parameterBlock;  // uniform; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
   gpu::Buffer rigBuffer;
-  std::vector<gpu::Kernel> kernels;      // one a stage of the controller, specialised
+  std::vector<Stage> stages;             // of the controller, those that were asked for
+  std::vector<gpu::Kernel> kernels;      // one a stage, specialised
   std::vector<gpu::Kernel> restKernels;  // one a stage: for what that leaves out (Stage::rest), mostly none
   gpu::Kernel watchingGait;              // gait in the ticks after an edit of the heights
   std::vector<Page> pages;

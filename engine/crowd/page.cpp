@@ -91,76 +91,87 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
   }
 }
 
-RecordBytes recordBytes(const Herd& herd) {
+std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) {
   using namespace shared;
+  constexpr uint32_t aPage = UINT32_MAX;
+  const CrowdOptions& options = crowd.options;
   const Rig& rig = herd.rig;
   const bool clips = playsClips(herd.controller), planted = herd.controller == Controller::planted;
   const auto legs = static_cast<uint64_t>(rig.legCount());
   const auto vec4s = [](uint64_t count, int stride) { return count * static_cast<uint64_t>(stride) * 16; };
-  return {.goal = vec4s(1, GOAL_STRIDE),
-          .steer = vec4s(1, STEER_STRIDE),
-          .body = vec4s(1, BODY_STRIDE),
-          .gait = vec4s(1, GAIT_STRIDE),
-          .step = vec4s(legs, STEP_STRIDE),
-          .foot = vec4s(legs, FOOT_STRIDE),
-          .chain = vec4s(legs, chainStride(rig.maxBones())),
-          .pose = clips ? vec4s(static_cast<uint64_t>(herd.clips.joints), MATRIX_STRIDE)
-                        : vec4s(static_cast<uint64_t>(rig.paletteSize()), POSE_STRIDE),
-          .metric = vec4s(1, METRIC_STRIDE),
-          .list = legs * 4,
-          .watch = vec4s(1, watchStride(rig.legCount())),
-          .play = clips ? vec4s(1, PLAY_STRIDE) : 0,
-          .start = planted ? vec4s(legs, chainStride(rig.maxBones())) : 0,
-          .fix = planted ? vec4s(legs * static_cast<uint64_t>(rig.maxBones()), FIX_STRIDE) : 0,
-          .spring = herd.controller == Controller::pose ? vec4s(legs, chainDirections(rig.maxBones())) : 0};
+  std::vector<PageBuffer> buffers = {{"goal", &Page::goal, vec4s(1, GOAL_STRIDE)},
+                                     {"steer", &Page::steer, vec4s(1, STEER_STRIDE)},
+                                     {"body", &Page::body, vec4s(1, BODY_STRIDE)},
+                                     {"gait", &Page::gait, vec4s(1, GAIT_STRIDE)},
+                                     {"step", &Page::step, vec4s(legs, STEP_STRIDE)},
+                                     {"foot", &Page::foot, vec4s(legs, FOOT_STRIDE)},
+                                     {"chain", &Page::chain, vec4s(legs, chainStride(rig.maxBones()))},
+                                     {"list", &Page::list, legs * sizeof(uint32_t)}};
+  if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE)});
+  if (planted) {
+    buffers.push_back({"start", &Page::start, vec4s(legs, chainStride(rig.maxBones()))});
+    buffers.push_back({"fix", &Page::fix, vec4s(legs * static_cast<uint64_t>(rig.maxBones()), FIX_STRIDE)});
+  }
+  if (herd.controller == Controller::pose)
+    buffers.push_back({"spring", &Page::spring, vec4s(legs, chainDirections(rig.maxBones()))});
+  if (options.pose)
+    buffers.push_back({"pose", &Page::pose,
+                       clips ? vec4s(static_cast<uint64_t>(herd.clips.joints), MATRIX_STRIDE)
+                             : vec4s(static_cast<uint64_t>(rig.paletteSize()), POSE_STRIDE)});
+  if (options.measure) {
+    buffers.push_back({"metric", &Page::metric, vec4s(1, METRIC_STRIDE)});
+    buffers.push_back({"watch", &Page::watch, vec4s(1, watchStride(rig.legCount())), crowd.watchEvery});
+    buffers.push_back({"histogram", &Page::histogram, HISTOGRAM_BUCKETS * sizeof(uint32_t), aPage});
+  }
+  if (options.footfalls > 0) {
+    buffers.push_back({"flight", &Page::flight, vec4s(legs, FLIGHT_STRIDE)});
+    buffers.push_back({"footfall", &Page::footfall, vec4s(legs, FOOTFALL_STRIDE), 1,
+                       vec4s(options.footfalls, FOOTFALL_STRIDE)});
+  }
+  buffers.push_back({"counters", &Page::counters, COUNTERS * sizeof(uint32_t), aPage, UINT64_MAX,
+                     gpu::BufferUse::indirect});
+  return buffers;
 }
 
-uint32_t agentsPerPage(const gpu::Context& context, const CrowdOptions& options, const RecordBytes& bytes) {
+uint32_t agentsPerPage(const Crowd::Impl& crowd, const Herd& herd) {
+  const gpu::Context& context = *crowd.context;
   uint64_t limit = context.limits().maxStorageBufferRange;
   if (context.texelLoads()) limit = std::min(limit, context.limits().maxTexelBufferElements * 16);
-  uint64_t agents = std::min<uint64_t>(kMostPageAgents, limit / bytes.largest());
-  if (options.pageAgents > 0) agents = std::min<uint64_t>(agents, options.pageAgents);
-  if (agents == 0)
-    throw deviceError(context.report().name + ": a binding reaches " + std::to_string(limit) +
-                      " bytes, one agent needs " + std::to_string(bytes.largest()));
+  uint64_t agents =
+      crowd.options.pageAgents > 0 ? std::min(crowd.options.pageAgents, kMostPageAgents) : kMostPageAgents;
+  for (const PageBuffer& buffer : pageBuffers(crowd, herd)) {
+    agents = std::min(agents, limit / buffer.bytes * buffer.agents);
+    if (agents == 0)
+      throw deviceError(context.report().name + ": a binding reaches " + std::to_string(limit) +
+                        " bytes, one agent's " + buffer.name + " needs " + std::to_string(buffer.bytes));
+  }
   return static_cast<uint32_t>(agents);
+}
+
+uint64_t bytesOf(const Crowd::Impl& crowd, const Herd& herd, uint32_t agents) {
+  const std::vector<PageBuffer> buffers = pageBuffers(crowd, herd);
+  const uint32_t most = agentsPerPage(crowd, herd);
+  const auto ofPage = [&](uint32_t count) {
+    uint64_t bytes = 0;
+    for (const PageBuffer& buffer : buffers) bytes += buffer.bytesOf(count);
+    return bytes;
+  };
+  return agents / most * ofPage(most) + ofPage(agents % most);
 }
 
 Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner, uint32_t first,
               uint32_t agents) {
   const gpu::Context& context = *crowd.context;
-  const RecordBytes bytes = recordBytes(herd);
   HerdState spawned;
   spawner.append(first, agents, spawned);
   Page page;
   page.firstAgent = first;
   page.agents = agents;
-  const auto make = [&](gpu::Buffer& buffer, uint64_t each, const char* name) {
-    buffer = gpu::Buffer(context, each * agents, name);
-  };
-  make(page.goal, bytes.goal, "goal");
-  make(page.steer, bytes.steer, "steer");
-  make(page.body, bytes.body, "body");
-  make(page.gait, bytes.gait, "gait");
-  make(page.step, bytes.step, "step");
-  make(page.foot, bytes.foot, "foot");
-  make(page.chain, bytes.chain, "chain");
-  make(page.pose, bytes.pose, "pose");
-  make(page.metric, bytes.metric, "metric");
-  make(page.list, bytes.list, "list");
-  if (bytes.play > 0) make(page.play, bytes.play, "play");
-  if (bytes.start > 0) make(page.start, bytes.start, "start");
-  if (bytes.fix > 0) make(page.fix, bytes.fix, "fix");
-  if (bytes.spring > 0) make(page.spring, bytes.spring, "spring");
-  const uint64_t watched = (uint64_t{agents} + crowd.watchEvery - 1) / crowd.watchEvery;
-  page.watch = gpu::Buffer(context, bytes.watch * watched, "watch");
-  const auto legs = static_cast<uint64_t>(herd.legs) * agents;
-  page.footfallRoom = static_cast<uint32_t>(std::min<uint64_t>(crowd.options.footfalls, legs));
-  page.flight = gpu::Buffer(context, page.footfallRoom > 0 ? legs * shared::FLIGHT_STRIDE * 16 : 0, "flight");
-  page.footfall =
-      gpu::Buffer(context, uint64_t{page.footfallRoom} * shared::FOOTFALL_STRIDE * 16, "footfall");
-  page.counters = gpu::Buffer(context, shared::COUNTERS * 4, "counters", gpu::BufferUse::indirect);
-  page.histogram = gpu::Buffer(context, shared::HISTOGRAM_BUCKETS * 4, "histogram");
+  for (const PageBuffer& each : pageBuffers(crowd, herd)) {
+    page.*each.buffer = gpu::Buffer(context, each.bytesOf(agents), each.name, each.use);
+    gpu::clear(context, page.*each.buffer);
+  }
+  page.footfallRoom = static_cast<uint32_t>(page.footfall.size() / (shared::FOOTFALL_STRIDE * 16));
   gpu::upload(context, page.goal, spawned.goal);
   gpu::upload(context, page.steer, spawned.steer);
   gpu::upload(context, page.body, spawned.body);
@@ -168,20 +179,10 @@ Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner
   gpu::upload(context, page.step, spawned.step);
   gpu::upload(context, page.foot, spawned.foot);
   gpu::upload(context, page.chain, spawned.chain);
-  if (bytes.play > 0) gpu::upload(context, page.play, spawned.play);
-  if (bytes.start > 0) gpu::clear(context, page.start);
-  if (bytes.fix > 0) gpu::clear(context, page.fix);
-  if (bytes.spring > 0) gpu::clear(context, page.spring);
-  gpu::clear(context, page.pose);
-  gpu::clear(context, page.metric);
-  gpu::clear(context, page.watch);
-  gpu::clear(context, page.flight);
-  gpu::clear(context, page.counters);
-  gpu::clear(context, page.histogram);
-  const std::vector<Stage>& stages = stagesOf(herd.controller);
-  for (size_t i = 0; i < stages.size(); ++i) {
+  if (page.play) gpu::upload(context, page.play, spawned.play);
+  for (size_t i = 0; i < herd.stages.size(); ++i) {
     std::vector<gpu::Binding> list;
-    for (const gpu::BindingDecl& declared : stages[i].bindings)
+    for (const gpu::BindingDecl& declared : herd.stages[i].bindings)
       list.push_back(bindingOf(crowd, herd, page, declared.binding));
     page.bindings.push_back(herd.kernels[i].bind(context, list));
   }

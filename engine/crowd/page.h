@@ -1,29 +1,39 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "crowd/herd.h"
 #include "crowd/spawn.h"
 
 namespace skitter::crowd {
 
-// Bytes an agent in each of the page's record buffers; of `watch`, bytes a watched agent.
-struct RecordBytes {
-  uint64_t goal, steer, body, gait, step, foot, chain, pose, metric, list, watch, play, start, fix, spring;
-  uint64_t largest() const { return std::max({body, step, foot, chain, pose, metric, list, watch, fix}); }
-  uint64_t sum(uint32_t watchEvery) const {
-    return goal + steer + body + gait + step + foot + chain + pose + metric + list + watch / watchEvery +
-           play + start + fix + spring;
+// One of a page's buffers, and how large it is.
+struct PageBuffer {
+  const char* name;
+  gpu::Buffer Page::*buffer;
+  uint64_t bytes;              // of an entry
+  uint32_t agents = 1;         // an entry for so many
+  uint64_t most = UINT64_MAX;  // bytes, whatever the number of agents
+  gpu::BufferUse use = gpu::BufferUse::records;
+
+  uint64_t bytesOf(uint32_t pageAgents) const {
+    return std::min(most, (uint64_t{pageAgents} + agents - 1) / agents * bytes);
   }
 };
 
-RecordBytes recordBytes(const Herd& herd);
+// Those that the herd's controller and what was asked for (poses, figures, footfalls) need.
+std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd);
 
 // What a stage's binding of that number (shaders/shared/bindings.h) is bound to.
 gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& page, uint32_t binding);
 
 // The most agents whose records fit the device's bindings. Throws Error(device) when not even one does.
-uint32_t agentsPerPage(const gpu::Context& context, const CrowdOptions& options, const RecordBytes& bytes);
+uint32_t agentsPerPage(const Crowd::Impl& crowd, const Herd& herd);
+
+// Device memory that so many agents of the herd take, in pages.
+uint64_t bytesOf(const Crowd::Impl& crowd, const Herd& herd, uint32_t agents);
 
 // Agents [first, first + agents) of the herd: buffers, their first records, and a descriptor set a stage.
 Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner, uint32_t first,

@@ -46,12 +46,13 @@ HerdState Crowd::download(uint32_t herdIndex) const {
     appendRecords(context, page.step, state.step);
     appendRecords(context, page.foot, state.foot);
     appendRecords(context, page.chain, state.chain);
-    appendRecords(context, page.pose, state.pose);
-    appendRecords(context, page.metric, state.metric);
+    if (page.pose) appendRecords(context, page.pose, state.pose);
     if (page.play) appendRecords(context, page.play, state.play);
     if (page.start) appendRecords(context, page.start, state.start);
     if (page.fix) appendRecords(context, page.fix, state.fix);
     if (page.spring) appendRecords(context, page.spring, state.spring);
+    if (!page.metric) continue;
+    appendRecords(context, page.metric, state.metric);
     appendWatch(*impl_, herd, page, state.watch);
   }
   return state;
@@ -61,6 +62,7 @@ std::vector<Footfall> Crowd::footfalls(uint32_t herd) const {
   const gpu::Context& context = *impl_->context;
   context.waitIdle();
   std::vector<Footfall> all;
+  if (impl_->options.footfalls == 0) return all;
   for (const Page& page : impl_->herds.at(herd).pages) {
     const uint32_t count = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_FOOTFALLS];
     const std::vector<float> events = gpu::download<float>(context, page.footfall);

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <string_view>
 
 #include "crowd/herd.h"
 #include "crowd/tuning.h"
@@ -10,6 +11,30 @@
 #include "skitter/error.h"
 
 namespace skitter::crowd {
+namespace {
+
+std::vector<Stage> everyStageOf(Controller controller) {
+  switch (controller) {
+    case Controller::clip:
+      return {navigateStage(), blindBodyStage(), clipStage(),    clipSwingStage(),
+              clipPoseStage(), measureStage(),   footfallStage()};
+    case Controller::planted:
+      return {navigateStage(),  blindBodyStage(),   clipStage(),    plantedSwingStage(),
+              plantedIkStage(), plantedPoseStage(), measureStage(), footfallStage()};
+    case Controller::pose:
+      return {navigateStage(), blindBodyStage(), keyPoseGaitStage(), keyPoseSwingStage(),
+              poseStage(),     measureStage(),   footfallStage()};
+    case Controller::loop:
+      return {navigateStage(), blindBodyStage(), loopGaitStage(), loopSwingStage(),
+              ikStage(),       poseStage(),      measureStage(),  footfallStage()};
+    case Controller::adaptive:
+      break;
+  }
+  return {navigateStage(), bodyStage(), gaitStage(),    footholdStage(), swingStage(),
+          ikStage(),       poseStage(), measureStage(), footfallStage()};
+}
+
+}  // namespace
 
 Controller controllerNamed(const std::string& name) {
   if (name == "adaptive") return Controller::adaptive;
@@ -26,40 +51,18 @@ const std::vector<const char*>& frame() {
   return names;
 }
 
-const std::vector<Stage>& stagesOf(Controller controller) {
-  static const std::vector<Stage> adaptive = {
-      navigateStage(), bodyStage(), gaitStage(),    footholdStage(), swingStage(),
-      ikStage(),       poseStage(), measureStage(), footfallStage(),
-  };
-  static const std::vector<Stage> loop = {
-      navigateStage(), blindBodyStage(), loopGaitStage(), loopSwingStage(),
-      ikStage(),       poseStage(),      measureStage(),  footfallStage(),
-  };
-  static const std::vector<Stage> clip = {
-      navigateStage(), blindBodyStage(), clipStage(),     clipSwingStage(),
-      clipPoseStage(), measureStage(),   footfallStage(),
-  };
-  static const std::vector<Stage> planted = {
-      navigateStage(),  blindBodyStage(),   clipStage(),    plantedSwingStage(),
-      plantedIkStage(), plantedPoseStage(), measureStage(), footfallStage(),
-  };
-  static const std::vector<Stage> pose = {
-      navigateStage(), blindBodyStage(), keyPoseGaitStage(), keyPoseSwingStage(),
-      poseStage(),     measureStage(),   footfallStage(),
-  };
-  switch (controller) {
-    case Controller::clip:
-      return clip;
-    case Controller::planted:
-      return planted;
-    case Controller::pose:
-      return pose;
-    case Controller::loop:
-      return loop;
-    case Controller::adaptive:
-      break;
-  }
-  return adaptive;
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) {
+  std::vector<Stage> stages = everyStageOf(controller);
+  std::erase_if(stages, [&](const Stage& stage) {
+    const std::string_view name = stage.name;
+    if (name == "pose") return !options.pose;
+    if (name == "measure") return !options.measure;
+    if (name == "footfall") return options.footfalls == 0;
+    // Of a clip as it is, feet are looked at by measure alone.
+    if (name == "swing" && controller == Controller::clip) return !options.measure && options.footfalls == 0;
+    return false;
+  });
+  return stages;
 }
 
 StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const Herd& herd) {
@@ -99,7 +102,7 @@ StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const He
 }
 
 void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd) {
-  for (const Stage& stage : stagesOf(herd.controller)) {
+  for (const Stage& stage : herd.stages) {
     const StageKernels kernels = kernelsOf(stage, options, herd);
     herd.kernels.emplace_back(context, kernels.first);
     gpu::Kernel& rest = herd.restKernels.emplace_back();

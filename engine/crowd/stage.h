@@ -27,8 +27,8 @@ struct Stage {
 
 // Every stage's name in the order in which they are recorded; a controller has those that it needs.
 const std::vector<const char*>& frame();
-// A controller's stages, in that order.
-const std::vector<Stage>& stagesOf(Controller controller);
+// A controller's stages, in that order, less those that make what nobody asked for.
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options);
 
 struct Herd;
 

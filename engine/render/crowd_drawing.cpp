@@ -8,6 +8,7 @@
 #include "embedded/shadow_vert_storage.h"
 #include "embedded/shadow_vert_texel.h"
 #include "render/bindings.h"
+#include "skitter/error.h"
 
 namespace skitter::render {
 namespace {
@@ -75,6 +76,7 @@ gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences, bool matr
 }  // namespace
 
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s.context) {
+  if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
   for (const crowd::Herd& source : crowd.herds) {
     Herd herd;
     const bool clips = crowd::playsClips(source.controller);

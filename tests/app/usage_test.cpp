@@ -79,7 +79,7 @@ TEST_F(Usage, Numbers) {
   expectInputError({"run", "--agents", "-5"}, {"--agents", "-5"});
   expectInputError({"run", "--agents", "many"}, {"--agents", "many"});
   expectInputError({"run", "--agents", "1.5"}, {"--agents", "1.5"});
-  expectInputError({"run", "--agents", "2000000000"}, {"--agents", "2000000000"});
+  expectInputError({"run", "--agents", "5000000000"}, {"--agents", "5000000000"});
   expectInputError({"run", "--agents", "99999999999999999999999"}, {"--agents"});
   expectInputError({"run", "--agents"}, {"--agents"});
   expectInputError({"run", "--frames", "-1"}, {"--frames", "-1"});
@@ -104,6 +104,12 @@ TEST_F(Usage, Numbers) {
   expectInputError({"run", "--void-value", "nan"}, {"--void-value", "nan"});
   expectInputError({"run", "--view", "sideways"}, {"--view", "sideways"});
   expectInputError({"validate", "--agents", "-5"}, {"--agents", "-5"});
+}
+
+TEST_F(Usage, AgentsBeyondTheMemory) {
+  for (const char* command : {"run", "validate"})
+    expectRefusal(skitter({command, "--agents", "2000000000"}), 3,
+                  {"2000000000 agents need", "GiB", "available"});
 }
 
 TEST_F(Usage, Outputs) {

@@ -1,8 +1,11 @@
 // Sizes that are no multiple of anything, and inputs that are nasty.
+#include <gmock/gmock.h>
+
 #include <cmath>
 #include <limits>
 
 #include "crowd/herd.h"
+#include "crowd/page.h"
 #include "crowd/simulation.h"
 #include "gpu/transfer.h"
 #include "skitter/error.h"
@@ -82,6 +85,49 @@ TEST_F(InputTest, RefusesWhatItDoesNotKnow) {
   Crowd crowd(device(), flatGround(), sceneOf(1));
   EXPECT_THROW(simulate(device(), crowd, 1, 0), Error);
   EXPECT_THROW(simulate(device(), crowd, 1, std::numeric_limits<float>::quiet_NaN()), Error);
+}
+
+TEST_F(InputTest, RefusesMoreAgentsThanThereIsMemoryFor) {
+  Scene scene = sceneOf(2'000'000'000);
+  try {
+    Crowd crowd(device(), flatGround(), scene);
+    FAIL() << "was made";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::device);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("2000000000 agents need"));
+  }
+}
+
+uint64_t bytesOf(const Crowd& crowd, const char* name) {
+  for (const MemoryUse& use : crowd.memoryUse(0))
+    if (use.name == name) return use.bytes;
+  return 0;
+}
+
+TEST_F(InputTest, MemoryIsWhatWasForetold) {
+  for (const char* controller : {"adaptive", "clip", "planted"})
+    for (const CrowdOptions& options : {CrowdOptions{}, CrowdOptions{.pose = false, .measure = false},
+                                        CrowdOptions{.watchEvery = 3, .footfalls = 11, .pageAgents = 7}}) {
+      SCOPED_TRACE(controller);
+      const Crowd crowd(device(), flatGround(), sceneOf(23, 1, 1, controller), options);
+      EXPECT_EQ(crowd.memoryBytes(), crowd::bytesOf(crowd.impl(), crowd.impl().herds[0], 23));
+      const uint64_t pages = options.pageAgents > 0 ? 4 : 1;
+      EXPECT_EQ(bytesOf(crowd, "body"), 23 * 64u);
+      EXPECT_EQ(bytesOf(crowd, "pose") > 0, options.pose);
+      EXPECT_EQ(bytesOf(crowd, "metric"), options.measure ? 23 * 112u : 0);
+      EXPECT_EQ(bytesOf(crowd, "footfall"), options.footfalls > 0 ? pages * 11 * 32 : 0);
+    }
+}
+
+TEST_F(InputTest, WhatIsLeftOutIsNotRead) {
+  Crowd crowd(device(), flatGround(), sceneOf(5), CrowdOptions{.pose = false, .measure = false});
+  simulate(device(), crowd, 2);
+  const HerdState state = crowd.download(0);
+  EXPECT_TRUE(state.pose.empty());
+  EXPECT_TRUE(state.metric.empty());
+  EXPECT_EQ(crowd.fidelity().agentTicks, 0u);
+  EXPECT_TRUE(crowd.footfalls(0).empty());
+  EXPECT_EQ(state.body.size(), 5 * 16u);
 }
 
 }  // namespace

@@ -135,13 +135,12 @@ void solveListed(const gpu::Context& context, const crowd::Herd& herd) {
   counters[shared::COUNTER_IK_LISTED] = legs;
   counters[shared::COUNTER_IK_DISPATCH_X] = gpu::groupsFor(legs, shared::WORK_GROUP);
   gpu::upload(context, page.counters, counters);
-  const std::vector<crowd::Stage>& stages = crowd::stagesOf(herd.controller);
-  const auto ik = std::find_if(stages.begin(), stages.end(), [](const crowd::Stage& stage) {
+  const auto ik = std::find_if(herd.stages.begin(), herd.stages.end(), [](const crowd::Stage& stage) {
     return stage.name == std::string_view("ik");
   });
   gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
-    herd.restKernels[static_cast<size_t>(ik - stages.begin())].dispatchIndirect(
-        cmd, page.bindings[static_cast<size_t>(ik - stages.begin())], gpu::bytesOf(shared::TickConstants{}),
+    herd.restKernels[static_cast<size_t>(ik - herd.stages.begin())].dispatchIndirect(
+        cmd, page.bindings[static_cast<size_t>(ik - herd.stages.begin())], gpu::bytesOf(shared::TickConstants{}),
         page.counters, shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
   });
 }

@@ -65,10 +65,11 @@ struct Fidelity {
 // shaders/shared/records.h. For tools, traces and validation.
 struct HerdState {
   uint32_t agents = 0;
-  std::vector<float> goal, steer, body, gait, step, foot, chain, pose, metric;
+  std::vector<float> goal, steer, body, gait, step, foot, chain;
+  std::vector<float> pose, metric;      // empty where CrowdOptions left them out, like watch
   std::vector<float> play, start, fix, spring;  // empty where the controller has none
-  uint32_t watchEvery = 1;                      // measure watches one agent of this many at a time
-  std::vector<float> watch;                     // of agent g at place g / watchEvery, if it is being watched
+  uint32_t watchEvery = 1;              // measure watches one agent of this many at a time
+  std::vector<float> watch;             // of agent g at place g / watchEvery, if it is being watched
   bool watched = false;  // the last tick's gait looked at the ground, because the heights were edited lately
 };
 
@@ -91,6 +92,12 @@ struct FootfallBuffer {
   uint32_t room = 0;
 };
 
+// Device memory of one kind of records, of all of a herd's pages.
+struct MemoryUse {
+  std::string name;
+  uint64_t bytes = 0;
+};
+
 struct StageTime {
   std::string stage;
   double milliseconds = 0;  // of the last tick that has finished on the device
@@ -101,8 +108,8 @@ struct StageTime {
 class Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
-  // cannot be (an unknown rig or controller, a terrain that reaches beyond 4 km from the origin) and
-  // Error(device) when memory does not suffice.
+  // cannot be (an unknown rig or controller, a terrain that reaches beyond 4 km from the origin) and, before
+  // anything of it is made, Error(device) when memory does not suffice (DeviceLimits::availableBytes).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // With rigs that the caller made, one a herd, in place of those that the scene names.
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,
@@ -131,6 +138,7 @@ class Crowd {
   uint32_t watchEvery() const;  // the fidelity figures are of one agent of this many at a time
   uint64_t agentCount() const;
   uint64_t memoryBytes() const;  // device memory of all records
+  std::vector<MemoryUse> memoryUse(uint32_t herd) const;
   const Rig& rig(uint32_t herd) const;
 
   // Each of these waits for the device.
