@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
+#include "clock.h"
 #include "commands.h"
 #include "footfall_log.h"
 #include "gpu/submit.h"
@@ -114,6 +116,7 @@ void failOnValidation(const Device& device) {
 }
 
 int run(const RunOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
   const OutTarget target = parseOut(options.out);
   if (!options.json.empty()) checkFileTarget("--json", options.json);
   if (!options.trace.empty()) checkFolderTarget("--trace", options.trace);
@@ -165,6 +168,8 @@ int run(const RunOptions& options) {
   };
 
   Summary summary;
+  summary.startSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  summary.startCpuSeconds = processSeconds();
   summary.device = device.report().name;
   summary.terrain = fmt::format("{}, {} x {} samples, {:.6g} x {:.6g} m", terrain.name, terrain.columns,
                                 terrain.rows, terrain.extentX(), terrain.extentZ());

@@ -105,7 +105,10 @@ void Summary::print() const {
     printRow("", fmt::format("{:<10}{:9.4f} ms a tick", stage.stage,
                              stage.milliseconds / static_cast<double>(std::max<uint64_t>(ticks, 1))));
   }
-  if (!times.stages.empty()) printMemory(memory, agents);
+  if (!times.stages.empty()) {
+    printRow("start", fmt::format("{:.3f} s, {:.3f} s of CPU", startSeconds, startCpuSeconds));
+    printMemory(memory, agents);
+  }
   printFidelity(fidelity, watchEvery);
   for (size_t h = 0; h < herds.size() && herds.size() > 1; ++h) {
     fmt::print("herd {}: {}, {} agents\n", h, herds[h].rig, herds[h].agents);

@@ -30,7 +30,8 @@ struct Summary {
   Fidelity fidelity;        // of all herds
   std::vector<HerdFigures> herds;
   uint64_t stateHash = 0;
-  std::vector<MemoryUse> memory;  // of all herds; told with the stages' times
+  std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times
+  double startSeconds = 0, startCpuSeconds = 0;  // before the first tick; told likewise
   std::vector<std::string> files;
 
   void print() const;

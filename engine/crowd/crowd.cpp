@@ -275,9 +275,7 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     const Herd& from = scene.herds[h];
     crowd::makeKernels(context, options, herd);
     const crowd::Spawner spawner(from, herd, terrain, scene.seed + (uint64_t{h} << 32));
-    const uint32_t most = crowd::agentsPerPage(crowd, herd);
-    for (uint32_t first = 0; first < from.agents; first += most)
-      herd.pages.push_back(crowd::makePage(crowd, herd, spawner, first, std::min(most, from.agents - first)));
+    herd.pages = crowd::makePages(crowd, herd, spawner, from.agents);
   }
   settle(crowd);
 }

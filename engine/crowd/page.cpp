@@ -1,11 +1,13 @@
 #include "crowd/page.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 #include "crowd/stage.h"
+#include "gpu/barrier.h"
 #include "gpu/context.h"
-#include "gpu/transfer.h"
+#include "gpu/submit.h"
 #include "skitter/error.h"
 
 namespace skitter::crowd {
@@ -91,6 +93,32 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
   }
 }
 
+namespace {
+
+// What is spawned is written once, to where the device copies it from; all else begins as zeros.
+void spawn(const gpu::Context& context, const std::vector<PageBuffer>& buffers, const Spawner& spawner,
+           const gpu::HostBuffer& staging, const Page& page) {
+  SpawnRecords records;
+  gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
+    uint64_t end = 0;
+    for (const PageBuffer& each : buffers) {
+      const gpu::Buffer& buffer = page.*each.buffer;
+      if (each.spawned == nullptr) {
+        cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 0);
+        continue;
+      }
+      records.*each.spawned = staging.as<float>().subspan(end / sizeof(float), buffer.size() / sizeof(float));
+      cmd.copyBuffer(staging.handle(), buffer.handle(),
+                     vk::BufferCopy{.srcOffset = end, .size = buffer.size()});
+      end += buffer.size();
+    }
+    gpu::allToAll(cmd);
+    spawner.write(page.firstAgent, page.agents, records);
+  });
+}
+
+}  // namespace
+
 std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) {
   using namespace shared;
   constexpr uint32_t aPage = UINT32_MAX;
@@ -99,15 +127,16 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
   const bool clips = playsClips(herd.controller), planted = herd.controller == Controller::planted;
   const auto legs = static_cast<uint64_t>(rig.legCount());
   const auto vec4s = [](uint64_t count, int stride) { return count * static_cast<uint64_t>(stride) * 16; };
-  std::vector<PageBuffer> buffers = {{"goal", &Page::goal, vec4s(1, GOAL_STRIDE)},
-                                     {"steer", &Page::steer, vec4s(1, STEER_STRIDE)},
-                                     {"body", &Page::body, vec4s(1, BODY_STRIDE)},
-                                     {"gait", &Page::gait, vec4s(1, GAIT_STRIDE)},
-                                     {"step", &Page::step, vec4s(legs, STEP_STRIDE)},
-                                     {"foot", &Page::foot, vec4s(legs, FOOT_STRIDE)},
-                                     {"chain", &Page::chain, vec4s(legs, chainStride(rig.maxBones()))},
-                                     {"list", &Page::list, legs * sizeof(uint32_t)}};
-  if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE)});
+  std::vector<PageBuffer> buffers = {
+      {"goal", &Page::goal, vec4s(1, GOAL_STRIDE), &SpawnRecords::goal},
+      {"steer", &Page::steer, vec4s(1, STEER_STRIDE)},
+      {"body", &Page::body, vec4s(1, BODY_STRIDE), &SpawnRecords::body},
+      {"gait", &Page::gait, vec4s(1, GAIT_STRIDE), &SpawnRecords::gait},
+      {"step", &Page::step, vec4s(legs, STEP_STRIDE), &SpawnRecords::step},
+      {"foot", &Page::foot, vec4s(legs, FOOT_STRIDE), &SpawnRecords::foot},
+      {"chain", &Page::chain, vec4s(legs, chainStride(rig.maxBones())), &SpawnRecords::chain},
+      {"list", &Page::list, legs * sizeof(uint32_t)}};
+  if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE), &SpawnRecords::play});
   if (planted) {
     buffers.push_back({"start", &Page::start, vec4s(legs, chainStride(rig.maxBones()))});
     buffers.push_back({"fix", &Page::fix, vec4s(legs * static_cast<uint64_t>(rig.maxBones()), FIX_STRIDE)});
@@ -120,15 +149,16 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
                              : vec4s(static_cast<uint64_t>(rig.paletteSize()), POSE_STRIDE)});
   if (options.measure) {
     buffers.push_back({"metric", &Page::metric, vec4s(1, METRIC_STRIDE)});
-    buffers.push_back({"watch", &Page::watch, vec4s(1, watchStride(rig.legCount())), crowd.watchEvery});
-    buffers.push_back({"histogram", &Page::histogram, HISTOGRAM_BUCKETS * sizeof(uint32_t), aPage});
+    buffers.push_back(
+        {"watch", &Page::watch, vec4s(1, watchStride(rig.legCount())), nullptr, crowd.watchEvery});
+    buffers.push_back({"histogram", &Page::histogram, HISTOGRAM_BUCKETS * sizeof(uint32_t), nullptr, aPage});
   }
   if (options.footfalls > 0) {
     buffers.push_back({"flight", &Page::flight, vec4s(legs, FLIGHT_STRIDE)});
-    buffers.push_back({"footfall", &Page::footfall, vec4s(legs, FOOTFALL_STRIDE), 1,
+    buffers.push_back({"footfall", &Page::footfall, vec4s(legs, FOOTFALL_STRIDE), nullptr, 1,
                        vec4s(options.footfalls, FOOTFALL_STRIDE)});
   }
-  buffers.push_back({"counters", &Page::counters, COUNTERS * sizeof(uint32_t), aPage, UINT64_MAX,
+  buffers.push_back({"counters", &Page::counters, COUNTERS * sizeof(uint32_t), nullptr, aPage, UINT64_MAX,
                      gpu::BufferUse::indirect});
   return buffers;
 }
@@ -159,34 +189,30 @@ uint64_t bytesOf(const Crowd::Impl& crowd, const Herd& herd, uint32_t agents) {
   return agents / most * ofPage(most) + ofPage(agents % most);
 }
 
-Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner, uint32_t first,
-              uint32_t agents) {
-  const gpu::Context& context = *crowd.context;
-  HerdState spawned;
-  spawner.append(first, agents, spawned);
-  Page page;
-  page.firstAgent = first;
-  page.agents = agents;
-  for (const PageBuffer& each : pageBuffers(crowd, herd)) {
-    page.*each.buffer = gpu::Buffer(context, each.bytesOf(agents), each.name, each.use);
-    gpu::clear(context, page.*each.buffer);
+std::vector<Page> makePages(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner,
+                            uint32_t agents) {
+  const uint32_t most = std::min(agents, agentsPerPage(crowd, herd));
+  const std::vector<PageBuffer> buffers = pageBuffers(crowd, herd);
+  uint64_t staged = 0;
+  for (const PageBuffer& each : buffers) staged += each.spawned != nullptr ? each.bytesOf(most) : 0;
+  const gpu::HostBuffer staging(*crowd.context, staged, gpu::HostUse::upload, "spawn staging");
+  std::vector<Page> pages;
+  for (uint32_t first = 0; first < agents; first += most) {
+    Page& page = pages.emplace_back();
+    page.firstAgent = first;
+    page.agents = std::min(most, agents - first);
+    for (const PageBuffer& each : buffers)
+      page.*each.buffer = gpu::Buffer(*crowd.context, each.bytesOf(page.agents), each.name, each.use);
+    page.footfallRoom = static_cast<uint32_t>(page.footfall.size() / (shared::FOOTFALL_STRIDE * 16));
+    spawn(*crowd.context, buffers, spawner, staging, page);
+    for (size_t i = 0; i < herd.stages.size(); ++i) {
+      std::vector<gpu::Binding> list;
+      for (const gpu::BindingDecl& declared : herd.stages[i].bindings)
+        list.push_back(bindingOf(crowd, herd, page, declared.binding));
+      page.bindings.push_back(herd.kernels[i].bind(*crowd.context, list));
+    }
   }
-  page.footfallRoom = static_cast<uint32_t>(page.footfall.size() / (shared::FOOTFALL_STRIDE * 16));
-  gpu::upload(context, page.goal, spawned.goal);
-  gpu::upload(context, page.steer, spawned.steer);
-  gpu::upload(context, page.body, spawned.body);
-  gpu::upload(context, page.gait, spawned.gait);
-  gpu::upload(context, page.step, spawned.step);
-  gpu::upload(context, page.foot, spawned.foot);
-  gpu::upload(context, page.chain, spawned.chain);
-  if (page.play) gpu::upload(context, page.play, spawned.play);
-  for (size_t i = 0; i < herd.stages.size(); ++i) {
-    std::vector<gpu::Binding> list;
-    for (const gpu::BindingDecl& declared : herd.stages[i].bindings)
-      list.push_back(bindingOf(crowd, herd, page, declared.binding));
-    page.bindings.push_back(herd.kernels[i].bind(context, list));
-  }
-  return page;
+  return pages;
 }
 
 }  // namespace skitter::crowd

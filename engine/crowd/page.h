@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "crowd/herd.h"
@@ -13,7 +14,8 @@ namespace skitter::crowd {
 struct PageBuffer {
   const char* name;
   gpu::Buffer Page::*buffer;
-  uint64_t bytes;              // of an entry
+  uint64_t bytes;  // of an entry
+  std::span<float> SpawnRecords::*spawned = nullptr;
   uint32_t agents = 1;         // an entry for so many
   uint64_t most = UINT64_MAX;  // bytes, whatever the number of agents
   gpu::BufferUse use = gpu::BufferUse::records;
@@ -35,8 +37,8 @@ uint32_t agentsPerPage(const Crowd::Impl& crowd, const Herd& herd);
 // Device memory that so many agents of the herd take, in pages.
 uint64_t bytesOf(const Crowd::Impl& crowd, const Herd& herd, uint32_t agents);
 
-// Agents [first, first + agents) of the herd: buffers, their first records, and a descriptor set a stage.
-Page makePage(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner, uint32_t first,
-              uint32_t agents);
+// All agents of the herd: buffers, the records that they begin with, and a descriptor set a stage.
+std::vector<Page> makePages(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner,
+                            uint32_t agents);
 
 }  // namespace skitter::crowd

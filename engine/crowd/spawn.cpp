@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <thread>
+#include <vector>
 
 #include "shared/records.h"
 
@@ -17,8 +19,17 @@ float uniform(uint64_t seed, uint64_t agent, uint64_t purpose) {
   return static_cast<float>((z ^ (z >> 31)) >> 40) * 0x1p-24f;
 }
 
-void push(std::vector<float>& records, float a, float b, float c, float d) {
-  records.insert(records.end(), {a, b, c, d});
+// Below that many a thread costs more than it saves.
+constexpr uint32_t kAgentsAThread = 4096;
+
+// Agents [from, to) of records of `count`.
+SpawnRecords partOf(const SpawnRecords& all, uint32_t count, uint32_t from, uint32_t to) {
+  const auto part = [&](std::span<float> records) {
+    const size_t each = records.size() / count;
+    return records.subspan(from * each, (to - from) * each);
+  };
+  return {part(all.goal), part(all.body),  part(all.gait), part(all.step),
+          part(all.foot), part(all.chain), part(all.play)};
 }
 
 // The frame that a clip shows at a time, and the fraction of the way to the next.
@@ -31,6 +42,19 @@ glm::vec2 frameAt(const ClipRecords& clips, int clip, float time) {
 }
 
 }  // namespace
+
+// Writes one vec4 after another.
+class Spawner::Writer {
+ public:
+  explicit Writer(std::span<float> records) : at_(records.data()) {}
+  void push(float a, float b, float c, float d) {
+    at_[0] = a, at_[1] = b, at_[2] = c, at_[3] = d;
+    at_ += 4;
+  }
+
+ private:
+  float* at_;
+};
 
 Spawner::Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield& terrain, uint64_t seed)
     : herd_(from),
@@ -51,6 +75,19 @@ Spawner::Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield&
   rows_ = (agents + lanes_ - 1) / lanes_;
   laneSpacing_ = std::min(spacing, roomX / static_cast<float>(std::max(1u, lanes_ - 1)));
   rowSpacing_ = std::min(1.2f * spacing, 0.9f * roomZ / static_cast<float>(std::max(1u, rows_ - 1)));
+}
+
+// Of a leg at rest, or as the standing pose has it.
+void Spawner::pushDirections(size_t leg, Writer& chain) const {
+  const int bones = rig_.maxBones();
+  if (keyPoses_.keys == 0) {
+    for (int i = 0; i < shared::chainDirections(bones); ++i) chain.push(0, 0, 0, 0);
+    return;
+  }
+  const auto stride = 4 * static_cast<size_t>(shared::keyStride(bones, keyPoses_.keys));
+  const float* standing = &keyPoses_.records[leg * stride + 4];
+  for (int i = 0; i < shared::chainDirections(bones); ++i, standing += 4)
+    chain.push(standing[0], standing[1], standing[2], standing[3]);
 }
 
 Spawner::Placement Spawner::place(uint32_t agent) const {
@@ -85,28 +122,31 @@ Spawner::Placement Spawner::place(uint32_t agent) const {
   return p;
 }
 
-// At rest, or as the standing pose has them.
-void Spawner::pushDirections(size_t leg, std::vector<float>& chain) const {
-  const int bones = rig_.maxBones();
-  const auto floats = 4 * static_cast<size_t>(shared::chainDirections(bones));
-  if (keyPoses_.keys == 0) {
-    chain.resize(chain.size() + floats);
-    return;
+void Spawner::write(uint32_t first, uint32_t count, const SpawnRecords& records) const {
+  if (count == 0) return;
+  const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, count / kAgentsAThread + 1);
+  std::vector<std::jthread> runs;
+  for (uint32_t i = 0; i < threads; ++i) {
+    const auto from = static_cast<uint32_t>(uint64_t{count} * i / threads);
+    const auto to = static_cast<uint32_t>(uint64_t{count} * (i + 1) / threads);
+    const SpawnRecords part = partOf(records, count, from, to);
+    if (i + 1 == threads)
+      writeRun(first + from, to - from, part);
+    else
+      runs.emplace_back([this, first, from, to, part] { writeRun(first + from, to - from, part); });
   }
-  const auto stride = 4 * static_cast<size_t>(shared::keyStride(bones, keyPoses_.keys));
-  const auto standing = keyPoses_.records.begin() + static_cast<ptrdiff_t>(leg * stride + 4);
-  chain.insert(chain.end(), standing, standing + static_cast<ptrdiff_t>(floats));
 }
 
-void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
+void Spawner::writeRun(uint32_t first, uint32_t count, const SpawnRecords& records) const {
+  Writer goal(records.goal), body(records.body), gait(records.gait), step(records.step), foot(records.foot),
+      chain(records.chain), play(records.play);
   for (uint32_t agent = first; agent < first + count; ++agent) {
     const Placement p = place(agent);
     const float kind = herd_.goal.kind == Goal::Kind::cross   ? shared::GOAL_CROSS
                        : herd_.goal.kind == Goal::Kind::point ? shared::GOAL_POINT
                                                               : shared::GOAL_NONE;
-    push(state.goal, p.targetX, p.targetZ, p.otherX, p.otherZ);
-    push(state.goal, herd_.goal.speed, 0.5f * rig_.legLength, kind, 0);
-    push(state.steer, 0, 0, 0, 0);
+    goal.push(p.targetX, p.targetZ, p.otherX, p.otherZ);
+    goal.push(herd_.goal.speed, 0.5f * rig_.legLength, kind, 0);
 
     // Standing on the plane through the ground a leg length around.
     const float reach = rig_.legLength;
@@ -121,40 +161,38 @@ void Spawner::append(uint32_t first, uint32_t count, HerdState& state) const {
     const glm::quat q = glm::quat_cast(glm::mat3(glm::cross(normal, forward), normal, forward));
     const float tileX = std::floor(p.x / shared::TILE_SIZE), tileZ = std::floor(p.z / shared::TILE_SIZE);
     const float localX = p.x - tileX * shared::TILE_SIZE, localZ = p.z - tileZ * shared::TILE_SIZE;
-    push(state.body, localX, height, localZ, heading.x);
-    push(state.body, tileX, tileZ, heading.y, 0);
-    push(state.body, q.x, q.y, q.z, q.w);
-    push(state.body, 0, 0, 1, 0);
-    push(state.gait, uniform(seed_, agent, 2), 0, 0, 1);
-    push(state.gait, 0, 1, 0, 0);
+    body.push(localX, height, localZ, heading.x);
+    body.push(tileX, tileZ, heading.y, 0);
+    body.push(q.x, q.y, q.z, q.w);
+    body.push(0, 0, 1, 0);
+    gait.push(uniform(seed_, agent, 2), 0, 0, 1);
+    gait.push(0, 1, 0, 0);
     if (clips_.clips > 0) {
       const auto clip = static_cast<float>(clips_.standing);
       const float seconds = clips_.heads[static_cast<size_t>(clips_.standing) * 4 + 2];
       const float time = seconds * uniform(seed_, agent, 2);
-      push(state.play, clip, time, clip, time);
-      push(state.play, 1, 0, 0, 0);
+      play.push(clip, time, clip, time);
+      play.push(1, 0, 0, 0);
       const glm::vec2 frame = frameAt(clips_, clips_.standing, time);
-      push(state.play, frame.x, frame.y, frame.x, frame.y);
+      play.push(frame.x, frame.y, frame.x, frame.y);
     }
 
     for (size_t l = 0; l < rig_.legs.size(); ++l) {
       const Leg& leg = rig_.legs[l];
       const glm::vec3 home = q * leg.home;
-      const glm::vec3 foot(localX + home.x, terrain_.at(p.x + home.x, p.z + home.z), localZ + home.z);
-      push(state.step, foot.x, foot.y, foot.z, tileX);
+      const glm::vec3 landing(localX + home.x, terrain_.at(p.x + home.x, p.z + home.z), localZ + home.z);
+      step.push(landing.x, landing.y, landing.z, tileX);
       // Where clips are played it is no lift-off but an offset: docs/stages.md, planted.
-      const glm::vec3 liftOff = clips_.clips > 0 ? glm::vec3(0) : foot;
-      push(state.step, liftOff.x, liftOff.y, liftOff.z, tileZ);
-      push(state.step, 0, 0, 0, -1000);
-      push(state.step, 0, 0, 0, 1);
-      push(state.foot, home.x, foot.y - height, home.z, 1);
-      pushDirections(l, state.chain);
-      push(state.chain, home.x, home.y, home.z, 0);
-      push(state.chain, 1, 0, 0, 0);
+      const glm::vec3 liftOff = clips_.clips > 0 ? glm::vec3(0) : landing;
+      step.push(liftOff.x, liftOff.y, liftOff.z, tileZ);
+      step.push(0, 0, 0, -1000);
+      step.push(0, 0, 0, 1);
+      foot.push(home.x, landing.y - height, home.z, 1);
+      pushDirections(l, chain);
+      chain.push(home.x, home.y, home.z, 0);
+      chain.push(1, 0, 0, 0);
     }
   }
-  state.agents += count;
-  state.pose.resize(size_t{state.agents} * static_cast<size_t>(rig_.paletteSize() * shared::POSE_STRIDE) * 4);
 }
 
 }  // namespace skitter::crowd

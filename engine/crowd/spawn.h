@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "crowd/herd.h"
 #include "shared/parameters.h"
@@ -9,21 +9,30 @@
 
 namespace skitter::crowd {
 
-// Where agent i of n starts: the herd's spawn, goal and seed decide alone, so pages never change a crowd.
+// The records that a run of agents begins with, agent after agent; all others begin as zeros.
+struct SpawnRecords {
+  std::span<float> goal, body, gait, step, foot, chain, play;
+};
+
+// Where agent i of n starts: the herd's spawn, goal and seed decide alone, so neither pages nor threads ever
+// change a crowd.
 class Spawner {
  public:
   Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield& terrain, uint64_t seed);
 
-  // Appends the initial records of agents [first, first + count): standing at home, feet on the ground.
-  void append(uint32_t first, uint32_t count, HerdState& state) const;
-
- private:
   struct Placement {
-    float x, z, heading;
-    float targetX, targetZ, otherX, otherZ;
+    float x, z, heading;                     // world metres; radians from +z toward +x
+    float targetX, targetZ, otherX, otherZ;  // of the goal, world metres
   };
   Placement place(uint32_t agent) const;
-  void pushDirections(size_t leg, std::vector<float>& chain) const;
+
+  // Agents [first, first + count), standing at home, feet on the ground; on all cores where there are many.
+  void write(uint32_t first, uint32_t count, const SpawnRecords& records) const;
+
+ private:
+  class Writer;
+  void pushDirections(size_t leg, Writer& chain) const;
+  void writeRun(uint32_t first, uint32_t count, const SpawnRecords& records) const;
 
   const skitter::Herd& herd_;
   const Rig& rig_;

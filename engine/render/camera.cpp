@@ -21,14 +21,12 @@ Walk walkOf(const Herd& herd, const crowd::Herd& live, const Heightfield& terrai
             double seconds) {
   const auto side = uint32_t(std::ceil(std::sqrt(double(herd.agents))));
   const uint32_t row = uint32_t(float(herd.agents) * kFollowRow) / side;
-  HerdState state;
-  crowd::Spawner(herd, live, terrain, seed)
-      .append(std::min(herd.agents - 1, row * side + side / 2), 1, state);
-  const std::vector<float>& body = state.body;
-  const glm::vec2 start(body[4] * shared::TILE_SIZE + body[0], body[5] * shared::TILE_SIZE + body[2]);
-  const glm::vec2 there(state.goal[0], state.goal[1]), back(state.goal[2], state.goal[3]);
+  const auto placed =
+      crowd::Spawner(herd, live, terrain, seed).place(std::min(herd.agents - 1, row * side + side / 2));
+  const glm::vec2 start(placed.x, placed.z);
+  const glm::vec2 there(placed.targetX, placed.targetZ), back(placed.otherX, placed.otherZ);
   const float length = glm::distance(start, there);
-  Walk walk{start, {body[3], body[6]}};
+  Walk walk{start, {std::sin(placed.heading), std::cos(placed.heading)}};
   if (herd.goal.kind == Goal::Kind::none || length < 1e-3f) return walk;
   walk.along = (there - start) / length;
   const double gone = seconds * herd.goal.speed;
