@@ -296,16 +296,17 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   clearLists(crowd, cmd);
   if (!crowd.edits.empty()) crowd.edits.record(cmd, crowd.terrain, crowd.heights);
   gpu::transferToCompute(cmd);
+  const char* last = nullptr;
   for (const std::string_view name : crowd::frame()) {
     if (!hasStage(crowd, name)) continue;
-    crowd.timer.begin(cmd, name.data());
+    crowd.timer.next(cmd, last = name.data());
     recordStage(crowd, name, tick, cmd);
-    crowd.timer.end(cmd, name.data());
     if (name == "gait")
       gpu::computeToIndirectAndCompute(cmd);
     else
       gpu::computeToCompute(cmd);
   }
+  if (last != nullptr) crowd.timer.end(cmd, last);
   gpu::computeToGraphics(cmd);
   gpu::computeToTransfer(cmd);
 }

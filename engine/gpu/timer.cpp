@@ -20,36 +20,51 @@ StageTimer::StageTimer(const Context& context, uint32_t maxStages, bool enabled)
 
 void StageTimer::reset(vk::CommandBuffer cmd) {
   entries_.clear();
+  stamps_ = 0;
   if (measures()) cmd.resetQueryPool(*pool_, 0, 2 * maxStages_);
+}
+
+// After all earlier work, or a stage would be charged with the tail of the one before.
+uint32_t StageTimer::stamp(vk::CommandBuffer cmd) {
+  if (measures()) cmd.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *pool_, stamps_);
+  return stamps_++;
+}
+
+StageTimer::Entry* StageTimer::open() {
+  const auto found =
+      std::find_if(entries_.rbegin(), entries_.rend(), [](const Entry& e) { return e.ended == kOpen; });
+  return found == entries_.rend() ? nullptr : &*found;
 }
 
 void StageTimer::begin(vk::CommandBuffer cmd, const char* stage) {
   if (!context_) return;
   context_->beginLabel(cmd, stage);
-  if (!measures()) return;
   assert(entries_.size() < maxStages_);
-  const auto query = uint32_t(2 * entries_.size());
-  entries_.push_back({stage, false});
-  // After all earlier work, or this stage would be charged with the tail of the one before.
-  cmd.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *pool_, query);
+  entries_.push_back({stage, stamp(cmd), kOpen});
 }
 
 void StageTimer::end(vk::CommandBuffer cmd, [[maybe_unused]] const char* stage) {
   if (!context_) return;
-  if (measures()) {
-    const auto open =
-        std::find_if(entries_.rbegin(), entries_.rend(), [](const Entry& e) { return !e.ended; });
-    assert(open != entries_.rend() && std::strcmp(open->stage, stage) == 0);
-    open->ended = true;
-    const auto query = uint32_t(2 * (entries_.rend() - open - 1) + 1);
-    cmd.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *pool_, query);
-  }
+  Entry* const entry = open();
+  assert(entry && std::strcmp(entry->stage, stage) == 0);
+  entry->ended = stamp(cmd);
   context_->endLabel(cmd);
+}
+
+void StageTimer::next(vk::CommandBuffer cmd, const char* stage) {
+  if (!context_) return;
+  Entry* const last = open();
+  if (!last) return begin(cmd, stage);
+  context_->endLabel(cmd);
+  context_->beginLabel(cmd, stage);
+  assert(entries_.size() < maxStages_);
+  last->ended = stamp(cmd);
+  entries_.push_back({stage, last->ended, kOpen});
 }
 
 std::vector<StageTime> StageTimer::milliseconds() const {
   if (!measures() || entries_.empty()) return {};
-  std::vector<uint64_t> ticks(2 * entries_.size());
+  std::vector<uint64_t> ticks(stamps_);
   const vk::Result result = guarded("the stage timer", [&] {
     return (*context_->device())
         .getQueryPoolResults(*pool_, 0, uint32_t(ticks.size()), ticks.size() * sizeof(uint64_t), ticks.data(),
@@ -61,10 +76,10 @@ std::vector<StageTime> StageTimer::milliseconds() const {
   const uint32_t bits = context_->limits().timestampBits;
   const uint64_t mask = bits >= 64 ? ~0ull : (1ull << bits) - 1;
   std::vector<StageTime> times;
-  for (size_t i = 0; i < entries_.size(); ++i) {
-    assert(entries_[i].ended);
-    const uint64_t elapsed = (ticks[2 * i + 1] - ticks[2 * i]) & mask;
-    times.push_back({entries_[i].stage, double(elapsed) * context_->limits().timestampPeriod * 1e-6});
+  for (const Entry& entry : entries_) {
+    assert(entry.ended != kOpen);
+    const uint64_t elapsed = (ticks[entry.ended] - ticks[entry.began]) & mask;
+    times.push_back({entry.stage, double(elapsed) * context_->limits().timestampPeriod * 1e-6});
   }
   return times;
 }

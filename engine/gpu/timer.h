@@ -27,6 +27,9 @@ class StageTimer {
   // literal.
   void begin(vk::CommandBuffer, const char* stage);
   void end(vk::CommandBuffer, const char* stage);
+  // Ends the stage that is open, if one is, and begins another at the same timestamp: on a software device
+  // one costs as much as a small dispatch.
+  void next(vk::CommandBuffer, const char* stage);
 
   // Of the last reset(), in the order of begin(), once the submission is complete.
   std::vector<StageTime> milliseconds() const;
@@ -35,12 +38,17 @@ class StageTimer {
  private:
   struct Entry {
     const char* stage;
-    bool ended;
+    uint32_t began, ended;  // queries
   };
+  static constexpr uint32_t kOpen = UINT32_MAX;
+  uint32_t stamp(vk::CommandBuffer);
+  Entry* open();
+
   const Context* context_ = nullptr;
   uint32_t maxStages_ = 0;
   vk::raii::QueryPool pool_ = nullptr;
   std::vector<Entry> entries_;
+  uint32_t stamps_ = 0;  // since reset()
 };
 
 }  // namespace skitter::gpu

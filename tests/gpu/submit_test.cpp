@@ -68,14 +68,38 @@ TEST_F(SubmitTest, TimersAreMonotone) {
   EXPECT_LE(times[0].milliseconds, host.count());
 }
 
+TEST_F(SubmitTest, StagesInARowShareTheirTimestamps) {
+  StageTimer timer(context(), 3);
+  const Buffer buffer(context(), 32 << 20, "timed");
+  submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+    timer.reset(cmd);
+    timer.begin(cmd, "all");
+    timer.begin(cmd, "first");
+    cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 1);
+    transferToTransfer(cmd);
+    timer.next(cmd, "second");
+    cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 2);
+    timer.end(cmd, "second");
+    timer.end(cmd, "all");
+  });
+  if (!timer.measures()) return;
+  const auto times = timer.milliseconds();
+  ASSERT_EQ(times.size(), 3u);
+  EXPECT_EQ(times[1].stage, "first");
+  EXPECT_EQ(times[2].stage, "second");
+  for (size_t i : {1u, 2u}) EXPECT_GT(times[i].milliseconds, 0) << times[i].stage;
+  EXPECT_GE(times[0].milliseconds, times[1].milliseconds + times[2].milliseconds);
+}
+
 TEST_F(SubmitTest, DisabledTimerIsSilent) {
   StageTimer off(context(), 4, false);
   StageTimer none;
   submitAndWait(context(), [&](vk::CommandBuffer cmd) {
     for (StageTimer* timer : {&off, &none}) {
       timer->reset(cmd);
-      timer->begin(cmd, "stage");
-      timer->end(cmd, "stage");
+      timer->next(cmd, "stage");
+      timer->next(cmd, "next");
+      timer->end(cmd, "next");
     }
   });
   EXPECT_TRUE(off.milliseconds().empty());
