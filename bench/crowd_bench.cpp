@@ -60,7 +60,7 @@ Run makeRun(const std::string& key, const std::string& controller, Who who, uint
   run.contestant = who == Who::device ? bench::deviceContestant(device(), *run.crowd, kDt)
                                       : bench::cpuContestant(*run.crowd, who == Who::scalar, 1, true);
   for (const validation::StageResult& check : bench::checkTick(
-           *run.crowd, *run.contestant, next, bench::demandOf(*run.crowd, options()), true, scene.seed))
+           *run.crowd, *run.contestant, next, bench::demandOf(*run.crowd, options()), scene.seed))
     if (!check.pass) run.fault += check.name + ": " + check.worst + "; ";
   return run;
 }
@@ -117,7 +117,6 @@ void add(const std::string& controller, const std::string& stage, Who who, int64
 void addAll(int64_t agents) {
   for (const std::string controller : {"adaptive", "clip"})
     for (const Who who : {Who::device, Who::simd, Who::scalar}) {
-      if (who != Who::device && controller != "adaptive") continue;
       for (const crowd::Stage& stage : crowd::stagesOf(crowd::controllerNamed(controller), options()))
         add(controller, stage.name, who, agents);
     }

@@ -83,7 +83,7 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
   const auto inputs = tolerance::feltGround(setting.tuning, setting.creature, previous);
   const reference::BodyResult result = run({});
   const Sample sample = compare(setting, moment, previous, inputs, result);
-  if (sample.passes()) return judge.add(moment.n, moment.agent, -1, sample);
+  if (sample.passes()) return judge.add(moment.n, moment.number(), -1, sample);
 
   // A leg square to the way counts or not; a desired velocity straight backward is turned to either way
   // round.
@@ -103,10 +103,10 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
       if (with != without) choices.kappa = kappa;
       if (result.turnMargin < eitherWay) choices.turnSign = sign;
       const Sample other = compare(setting, moment, previous, inputs, run(choices));
-      if (other.passes()) return judge.add(moment.n, moment.agent, -1, other, true);
+      if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
     }
   }
-  judge.add(moment.n, moment.agent, -1, sample);
+  judge.add(moment.n, moment.number(), -1, sample);
 }
 
 void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) {
@@ -122,10 +122,10 @@ void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) 
   if (!sample.passes() && result.turnMargin < eitherWay) {
     for (const int sign : {-1, 1}) {
       const Sample other = compare(setting, moment, previous, inputs, run(sign));
-      if (other.passes()) return judge.add(moment.n, moment.agent, -1, other, true);
+      if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
     }
   }
-  judge.add(moment.n, moment.agent, -1, sample);
+  judge.add(moment.n, moment.number(), -1, sample);
 }
 
 }  // namespace skitter::validation

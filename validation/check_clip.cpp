@@ -77,7 +77,7 @@ void checkClip(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::ClipResult result = run({});
   const Verdict verdict = compare(setting, moment, previous, result);
   if (verdict.sample.passes()) {
-    return judge.add(moment.n, moment.agent, -1, verdict.sample, verdict.tie);
+    return judge.add(moment.n, moment.number(), -1, verdict.sample, verdict.tie);
   }
 
   // A speed at the idle threshold, a fade that ends in this tick or the next, two clips that suit as well.
@@ -92,9 +92,9 @@ void checkClip(const Setting& setting, const Moment& moment, Judge& judge) {
     const double least = ruled.costs[static_cast<size_t>(ruled.winner)];
     if (most - least <= tolerance::clipCost(most) + tolerance::clipCost(least)) choices.winner = got.to.clip;
     const Verdict other = compare(setting, moment, previous, run(choices));
-    if (other.sample.passes()) return judge.add(moment.n, moment.agent, -1, other.sample, true);
+    if (other.sample.passes()) return judge.add(moment.n, moment.number(), -1, other.sample, true);
   }
-  judge.add(moment.n, moment.agent, -1, verdict.sample);
+  judge.add(moment.n, moment.number(), -1, verdict.sample);
 }
 
 }  // namespace skitter::validation

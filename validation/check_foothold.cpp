@@ -204,13 +204,13 @@ void checkLeg(const Case& c, size_t l, Judge& judge) {
   const reference::FootholdResult result = c.run({});
   const Sample sample = compare(c, result);
   const int leg = static_cast<int>(l);
-  if (sample.passes()) return judge.add(c.moment.n, c.moment.agent, leg, sample);
+  if (sample.passes()) return judge.add(c.moment.n, c.moment.number(), leg, sample);
   Sample other;
-  if (passesAnyWay(c, {}, other)) return judge.add(c.moment.n, c.moment.agent, leg, other, true);
+  if (passesAnyWay(c, {}, other)) return judge.add(c.moment.n, c.moment.number(), leg, other, true);
   for (const reference::FootholdChoices& choices : alternatives(c, result)) {
-    if (passesAnyWay(c, choices, other)) return judge.add(c.moment.n, c.moment.agent, leg, other, true);
+    if (passesAnyWay(c, choices, other)) return judge.add(c.moment.n, c.moment.number(), leg, other, true);
   }
-  judge.add(c.moment.n, c.moment.agent, leg, sample);
+  judge.add(c.moment.n, c.moment.number(), leg, sample);
 }
 
 }  // namespace
@@ -235,7 +235,7 @@ void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge) {
     for (size_t i = 0; i < before.size(); ++i) {
       sample.same("step of a leg that neither lifts nor is aimed anew", before[i], after[i]);
     }
-    judge.add(moment.n, moment.agent, static_cast<int>(l), sample);
+    judge.add(moment.n, moment.number(), static_cast<int>(l), sample);
   }
 }
 

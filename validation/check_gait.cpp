@@ -128,10 +128,10 @@ void checkGait(const Setting& setting, const Moment& moment, Judge& judge) {
     const double duration = gaitOf(moment.after, moment.agent).duration;
     if (result.durationMargin < bound.duration && std::abs(duration - result.gait.duration) == 1) {
       const Verdict other = compare(setting, moment, run({duration}));
-      if (other.sample.passes()) return judge.add(moment.n, moment.agent, -1, other.sample, true);
+      if (other.sample.passes()) return judge.add(moment.n, moment.number(), -1, other.sample, true);
     }
   }
-  judge.add(moment.n, moment.agent, -1, verdict.sample, verdict.tie);
+  judge.add(moment.n, moment.number(), -1, verdict.sample, verdict.tie);
 }
 
 }  // namespace skitter::validation

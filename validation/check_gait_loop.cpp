@@ -45,9 +45,9 @@ void checkLoopGait(const Setting& setting, const Moment& moment, Judge& judge) {
   if (!sample.passes() && result.durationMargin < bound.duration &&
       std::abs(duration - result.gait.duration) == 1) {
     const Sample other = compare(setting, moment, run(duration).gait);
-    if (other.passes()) return judge.add(moment.n, moment.agent, -1, other, true);
+    if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
   }
-  judge.add(moment.n, moment.agent, -1, sample);
+  judge.add(moment.n, moment.number(), -1, sample);
 }
 
 }  // namespace skitter::validation

@@ -83,7 +83,7 @@ void checkIk(const Setting& setting, const Moment& moment, Judge& judge) {
     const size_t leg = moment.agent * static_cast<size_t>(setting.legs) + l;
     const reference::Chain previous = chainOf(moment.before, leg, setting.bones);
     const auto verdict = compareSolve(setting, moment, l, setting.creature.limbs[l], previous);
-    judge.add(moment.n, moment.agent, static_cast<int>(l), verdict.sample, verdict.tie);
+    judge.add(moment.n, moment.number(), static_cast<int>(l), verdict.sample, verdict.tie);
   }
 }
 

@@ -51,7 +51,7 @@ void checkPlantedIk(const Setting& setting, const Moment& moment, Judge& judge) 
     auto verdict = compareSolve(setting, moment, l, limb, clips);
     verdict.sample.finite("fix", records(moment.after.fix, leg * bones, shared::FIX_STRIDE, bones));
     compareFixes(setting, moment, leg, limb, start, verdict.sample);
-    judge.add(moment.n, moment.agent, static_cast<int>(l), verdict.sample, verdict.tie);
+    judge.add(moment.n, moment.number(), static_cast<int>(l), verdict.sample, verdict.tie);
   }
 }
 

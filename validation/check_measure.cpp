@@ -99,7 +99,7 @@ void compareUnwatched(const Moment& moment, Judge& judge) {
   const auto after = records(moment.after.metric, moment.agent, shared::METRIC_STRIDE);
   sample.same("metric of an agent that is not watched", 0,
               std::memcmp(before.data(), after.data(), before.size_bytes()) == 0 ? 0 : 1);
-  judge.add(moment.n, moment.agent, -1, sample);
+  judge.add(moment.n, moment.number(), -1, sample);
 }
 
 }  // namespace
@@ -107,11 +107,11 @@ void compareUnwatched(const Moment& moment, Judge& judge) {
 void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
   const uint64_t every = moment.after.watchEvery;
   const reference::WatchTurn turn = reference::watchTurn(moment.n, every);
-  if (moment.agent % every != turn.turn) return compareUnwatched(moment, judge);
+  if (moment.number() % every != turn.turn) return compareUnwatched(moment, judge);
 
   const reference::Tuning& tuning = setting.tuning;
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
-  const size_t legs = static_cast<size_t>(setting.legs), slot = moment.agent / every;
+  const size_t legs = static_cast<size_t>(setting.legs), slot = moment.number() / every;
   const double unit = tuning.legLength;
   std::vector<reference::Foot> feet;
   std::vector<reference::Chain> chains;
@@ -210,7 +210,7 @@ void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
     metric.number("jerk of the body", &Metric::bodyJerk, bodyJerk);
     metric.number("squared path of the body", &Metric::bodyPath, bodyPath);
   }
-  judge.add(moment.n, moment.agent, -1, sample, metric.ties() || footTie || bodyTie);
+  judge.add(moment.n, moment.number(), -1, sample, metric.ties() || footTie || bodyTie);
 }
 
 }  // namespace skitter::validation

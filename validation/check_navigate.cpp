@@ -38,7 +38,7 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::Goal goal = goalOf(moment.before, moment.agent);
   const auto result = reference::navigate(setting.tuning, body, goal);
   const Sample sample = compare(setting, moment, body, result);
-  if (sample.passes()) return judge.add(moment.n, moment.agent, -1, sample);
+  if (sample.passes()) return judge.add(moment.n, moment.number(), -1, sample);
 
   const double near = tolerance::goalDistance(setting.extent);
   for (int choice = 0; choice < 8; ++choice) {
@@ -49,9 +49,9 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
     }
     const Sample other =
         compare(setting, moment, body, reference::navigate(setting.tuning, body, goal, choices));
-    if (other.passes()) return judge.add(moment.n, moment.agent, -1, other, true);
+    if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
   }
-  judge.add(moment.n, moment.agent, -1, sample);
+  judge.add(moment.n, moment.number(), -1, sample);
 }
 
 }  // namespace skitter::validation

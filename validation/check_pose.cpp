@@ -42,7 +42,7 @@ void checkPose(const Setting& setting, const Moment& moment, Judge& judge) {
       compareBone(expected[b], boneOf(moment.after, entry + b), static_cast<int>(b) + 1, length, unit,
                   sample);
     }
-    judge.add(moment.n, moment.agent, static_cast<int>(l), sample);
+    judge.add(moment.n, moment.number(), static_cast<int>(l), sample);
   }
 }
 

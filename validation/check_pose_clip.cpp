@@ -31,7 +31,7 @@ void compare(const Setting& setting, const Moment& moment, const reference::Play
   sample.compare("place / leg length", glm::length(expected[3] - got[3]) / unit,
                  (place + 3 * tolerance::rotated(glm::length(expected[3]) + moved)) / unit, {expected[3], 0},
                  {got[3], 0});
-  judge.add(moment.n, moment.agent, static_cast<int>(joint), sample);
+  judge.add(moment.n, moment.number(), static_cast<int>(joint), sample);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ void checkSwing(const Setting& setting, const Moment& moment, Judge& judge) {
     sample.compare("target, horizontally / leg length", std::hypot(apart.x, apart.z) / unit,
                    horizontal / unit, want, found);
     sample.compare("target's height / leg length", std::abs(apart.y) / unit, vertical / unit, want, found);
-    judge.add(moment.n, moment.agent, static_cast<int>(l), sample);
+    judge.add(moment.n, moment.number(), static_cast<int>(l), sample);
   }
 }
 

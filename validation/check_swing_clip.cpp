@@ -37,7 +37,7 @@ void checkClipSwing(const Setting& setting, const Moment& moment, Judge& judge) 
     sample.same("reach error", 0, chain.reachError);
     sample.same("error before solving", 0, chain.errorBefore);
     sample.same("damping", 1, chain.damping);
-    judge.add(moment.n, moment.agent, static_cast<int>(l), sample);
+    judge.add(moment.n, moment.number(), static_cast<int>(l), sample);
   }
 }
 

@@ -36,7 +36,7 @@ void checkLoopSwing(const Setting& setting, const Moment& moment, Judge& judge) 
     }
     sample.compare("target / leg length", glm::length(expected.foot.target - got.target) / unit,
                    bound.place / unit, {expected.foot.target, 0}, {got.target, 0});
-    judge.add(moment.n, moment.agent, static_cast<int>(l), sample, tie);
+    judge.add(moment.n, moment.number(), static_cast<int>(l), sample, tie);
   }
 }
 

@@ -97,7 +97,7 @@ void checkPlantedSwing(const Setting& setting, const Moment& moment, Judge& judg
       sample = common;
       compare(setting, moment, leg, run(!expected.plant.locked), bounds, sample);
     }
-    judge.add(moment.n, moment.agent, static_cast<int>(l), sample, tie);
+    judge.add(moment.n, moment.number(), static_cast<int>(l), sample, tie);
   }
 }
 

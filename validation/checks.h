@@ -10,7 +10,8 @@ struct Moment {
   uint64_t n;
   const HerdState& before;
   const HerdState& after;
-  size_t agent;
+  size_t agent;  // of those that the states hold
+  size_t number() const { return after.sample.first + agent * after.sample.stride; }  // in the herd
 };
 
 void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge);

@@ -59,7 +59,8 @@ void expectSize(const char* what, size_t found, size_t expected) {
                    std::to_string(expected));
 }
 
-void expectSizes(const Setting& setting, const HerdState& state, size_t agents) {
+void expectSizes(const Setting& setting, const HerdState& state) {
+  const size_t agents = state.agents;
   const auto expect = [&](const char* what, const std::vector<float>& buffer, size_t count, int stride) {
     expectSize(what, buffer.size(), 4 * agents * count * static_cast<size_t>(stride));
   };
@@ -84,11 +85,14 @@ void expectSizes(const Setting& setting, const HerdState& state, size_t agents) 
   }
   if (setting.controller == crowd::Controller::pose)
     expect("spring records", state.spring, legs, shared::chainDirections(setting.bones));
-  if (state.metric.empty()) return;
+  if (state.metric.empty() || agents == 0) return;
   expect("metric records", state.metric, 1, shared::METRIC_STRIDE);
-  const size_t watched = (agents + state.watchEvery - 1) / state.watchEvery;
-  expectSize("watch records", state.watch.size(),
-             4 * watched * static_cast<size_t>(shared::watchStride(setting.legs)));
+  const auto floats = static_cast<size_t>(4 * shared::watchStride(setting.legs));
+  const size_t last = state.sample.first + (agents - 1) * state.sample.stride;
+  if (state.watch.size() % floats != 0 || state.watch.size() / floats <= last / state.watchEvery)
+    throw inputError("watch records: found " + std::to_string(state.watch.size()) + " floats, " +
+                     std::to_string(floats) + " an agent that is watched, and agent " + std::to_string(last) +
+                     " is not among them");
 }
 
 // splitmix64: Steele, Lea & Flood 2014.
@@ -100,6 +104,29 @@ uint64_t scrambled(uint64_t x) {
 }
 
 }  // namespace
+
+AgentSample sampleAt(uint64_t seed, uint64_t n, uint32_t agents, uint32_t most) {
+  const uint32_t stride = agents / most + 1;
+  return {static_cast<uint32_t>(scrambled(seed ^ scrambled(n)) % stride), stride};
+}
+
+HerdState sampled(const HerdState& whole, const AgentSample& sample) {
+  HerdState part;
+  part.sample = sample;
+  part.watched = whole.watched;
+  for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride) ++part.agents;
+  for (const auto records : {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait,
+                             &HerdState::step, &HerdState::foot, &HerdState::chain, &HerdState::pose,
+                             &HerdState::play, &HerdState::start, &HerdState::fix, &HerdState::spring}) {
+    const std::vector<float>& from = whole.*records;
+    const size_t each = from.size() / std::max(1u, whole.agents);
+    for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride)
+      (part.*records)
+          .insert((part.*records).end(), from.begin() + static_cast<ptrdiff_t>(agent * each),
+                  from.begin() + static_cast<ptrdiff_t>((agent + 1) * each));
+  }
+  return part;
+}
 
 Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   const Rig& rig = herd.rig;
@@ -126,31 +153,26 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   return setting;
 }
 
-Replay::Replay(const HerdFacts& herd, uint64_t seed)
-    : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)), seed_(seed) {
+Replay::Replay(const HerdFacts& herd) : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)) {
   for (const Stage& stage : stagesOf(herd.controller)) judges_.emplace_back(stage.name);
 }
 
-void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, const ReplayRange& range) {
+void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
   if (before.agents != after.agents) {
     throw inputError("replay: found " + std::to_string(after.agents) + " agents after the tick, expected " +
                      std::to_string(before.agents));
   }
-  const size_t agents = before.agents;
-  expectSizes(setting_, before, agents);
-  expectSizes(setting_, after, agents);
-  const bool measured = !before.metric.empty() && !after.metric.empty(), posed = !after.pose.empty();
-  const size_t last = std::min(agents, static_cast<size_t>(range.first) + range.count);
-  const size_t stride = std::max(1u, range.stride);
+  expectSizes(setting_, before);
+  expectSizes(setting_, after);
+  const auto left = [&](std::string_view stage) {
+    return (stage == "pose" && after.pose.empty()) ||
+           (stage == "measure" && (before.metric.empty() || after.metric.empty()));
+  };
   const Stages& stages = stagesOf(setting_.controller);
-  const size_t offset = static_cast<size_t>(scrambled(seed_ ^ scrambled(n)) % stride);
-  for (size_t agent = range.first + offset; agent < last; agent += stride) {
+  for (size_t agent = 0; agent < before.agents; ++agent) {
     const Moment moment{n, before, after, agent};
-    for (size_t s = 0; s < stages.size(); ++s) {
-      if (stages[s].check == checkMeasure && !measured) continue;
-      if (stages[s].name == std::string_view("pose") && !posed) continue;
-      stages[s].check(setting_, moment, judges_[s]);
-    }
+    for (size_t s = 0; s < stages.size(); ++s)
+      if (!left(stages[s].name)) stages[s].check(setting_, moment, judges_[s]);
   }
 }
 

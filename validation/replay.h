@@ -47,27 +47,27 @@ struct Setting {
 // the rig.
 Setting settingOf(const HerdFacts& herd, const Heightfield& terrain);
 
-// Which agents a tick compares.
-struct ReplayRange {
-  uint32_t first = 0;
-  uint32_t count = UINT32_MAX;
-  uint32_t stride = 1;  // one of this many, another one each tick
-};
+// Of a herd of so many agents, those that tick `n` compares: all up to `most`, else one of so many, by the
+// seed another one in each tick.
+AgentSample sampleAt(uint64_t seed, uint64_t n, uint32_t agents, uint32_t most);
+
+// Of a whole herd's state without metrics, the records of those agents.
+HerdState sampled(const HerdState& whole, const AgentSample& sample);
 
 // Lock-step replay: of two consecutive states of a herd, every stage of the reference starts from exactly
 // what that stage of the engine started from and its result is held against what the engine wrote. Records
 // that a stage itself or a later one writes come from `before`, those of earlier stages from `after`.
 class Replay {
  public:
-  // Copies what it needs. Throws Error(input) when the rig records' size does not fit the rig. `seed` decides
-  // which agents a strided range begins with.
-  Replay(const HerdFacts& herd, uint64_t seed);
+  // Copies what it needs. Throws Error(input) when the rig records' size does not fit the rig.
+  explicit Replay(const HerdFacts& herd);
   Replay(const Replay&) = delete;
   Replay& operator=(const Replay&) = delete;
 
-  // `n` is the tick that led from `before` to `after`. A state without metrics leaves measure out, one without poses pose.
-  // Throws Error(input) when a record buffer's size does not fit the number of agents.
-  void tick(uint64_t n, const HerdState& before, const HerdState& after, const ReplayRange& range = {});
+  // `n` is the tick that led from `before` to `after`, states of the same agents: all of these are compared.
+  // A state without poses or metrics leaves pose or measure out. Throws Error(input) when a record buffer's
+  // size does not fit the number of agents.
+  void tick(uint64_t n, const HerdState& before, const HerdState& after);
 
   // The terrain was edited before the next tick (Crowd::editHeights).
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
@@ -79,7 +79,6 @@ class Replay {
  private:
   Heightfield terrain_;
   Setting setting_;
-  uint64_t seed_;
   std::vector<Judge> judges_;
 };
 

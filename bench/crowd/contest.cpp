@@ -62,30 +62,27 @@ std::vector<StageTime> difference(const std::vector<StageTime>& after, const std
   return times;
 }
 
-// Without what is not computed here.
-std::vector<HerdState> statesOf(const Contestant& contestant, bool poses) {
-  std::vector<HerdState> states = contestant.states();
-  for (HerdState& state : states) {
-    state.metric.clear();
-    if (!poses) state.pose.clear();
-  }
-  return states;
-}
-
 }  // namespace
 
 std::vector<validation::StageResult> checkTick(const Crowd& crowd, Contestant& contestant, uint64_t tick,
-                                               const std::vector<StageDemand>& timed, bool poses,
-                                               uint64_t seed) {
-  const std::vector<HerdState> before = statesOf(contestant, poses);
+                                               const std::vector<StageDemand>& timed, uint64_t seed) {
+  const auto states = [&] {
+    std::vector<HerdState> made;
+    for (const crowd::Herd& herd : crowd.impl().herds) {
+      uint32_t agents = 0;
+      for (const crowd::Page& page : herd.pages) agents += page.agents;
+      made.push_back(contestant.state(static_cast<uint32_t>(made.size()),
+                                      validation::sampleAt(seed, tick, agents, kAgentsChecked)));
+    }
+    return made;
+  };
+  const std::vector<HerdState> before = states();
   contestant.tick();
-  const std::vector<HerdState> after = statesOf(contestant, poses);
+  const std::vector<HerdState> after = states();
   std::vector<validation::StageResult> results;
   for (size_t h = 0; h < before.size(); ++h) {
-    validation::Replay replay(validation::herdFacts(crowd.impl().herds[h], crowd.impl().terrain), seed);
-    validation::ReplayRange range;
-    range.stride = before[h].agents / kAgentsChecked + 1;
-    replay.tick(tick, before[h], after[h], range);
+    validation::Replay replay(validation::herdFacts(crowd.impl().herds[h], crowd.impl().terrain));
+    replay.tick(tick, before[h], after[h]);
     for (const validation::StageResult& result : replay.results())
       if (std::any_of(timed.begin(), timed.end(),
                       [&](const StageDemand& d) { return d.stage == result.name; }))
@@ -139,8 +136,7 @@ Match contest(Device& device, const Heightfield& terrain, const Scene& scene, co
     result.wall = spreadOf(corner.wall);
     result.cpu = spreadOf(corner.cpu);
     result.stages = difference(corner.contestant->stageTimes(), corner.before, static_cast<double>(ticks));
-    result.checks = checkTick(crowd, *corner.contestant, first + ticks + 1, match.demands, options.crowd.pose,
-                              options.seed);
+    result.checks = checkTick(crowd, *corner.contestant, first + ticks + 1, match.demands, options.seed);
     result.pass = std::all_of(result.checks.begin(), result.checks.end(),
                               [](const validation::StageResult& c) { return c.pass; });
     corner.contestant.reset();

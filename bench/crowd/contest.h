@@ -48,8 +48,7 @@ struct Match {
 // One more tick of the contestant, `tick`, in lock-step against the reference: of every herd the stages that
 // `timed` names, of large herds about a thousand agents.
 std::vector<validation::StageResult> checkTick(const Crowd&, Contestant&, uint64_t tick,
-                                               const std::vector<StageDemand>& timed, bool poses,
-                                               uint64_t seed);
+                                               const std::vector<StageDemand>& timed, uint64_t seed);
 
 // Lets the device and the CPU animate the same crowd from the same state, turn by turn in one run, then
 // checks a tick of each in lock-step against the reference. `step` is called with the share that is done;

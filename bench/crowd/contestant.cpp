@@ -12,12 +12,6 @@
 namespace skitter::bench {
 namespace {
 
-std::vector<HerdState> statesOf(const Crowd& crowd) {
-  std::vector<HerdState> states;
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h) states.push_back(crowd.download(h));
-  return states;
-}
-
 void add(std::vector<StageTime>& sums, const std::string& stage, double milliseconds) {
   const auto known =
       std::find_if(sums.begin(), sums.end(), [&](const StageTime& t) { return t.stage == stage; });
@@ -39,7 +33,9 @@ class DeviceContestant : public Contestant {
     ring_.wait(ring_.submit());
     for (const StageTime& time : crowd_.stageTimes()) add(times_, time.stage, time.milliseconds);
   }
-  std::vector<HerdState> states() const override { return statesOf(crowd_); }
+  HerdState state(uint32_t herd, const AgentSample& sample) const override {
+    return crowd_.download(herd, sample);
+  }
   std::vector<StageTime> stageTimes() const override { return times_; }
 
  private:
@@ -67,10 +63,8 @@ class CpuContestant : public Contestant {
     ++tick_;
     for (const auto& herd : herds_) herd->tick(tick_);
   }
-  std::vector<HerdState> states() const override {
-    std::vector<HerdState> states;
-    for (const auto& herd : herds_) states.push_back(herd->state());
-    return states;
+  HerdState state(uint32_t herd, const AgentSample& sample) const override {
+    return validation::sampled(herds_[herd]->state(), sample);
   }
   std::vector<StageTime> stageTimes() const override {
     std::vector<StageTime> times;
@@ -103,8 +97,9 @@ std::unique_ptr<Contestant> cpuContestant(const Crowd& crowd, bool scalar, int t
 
 bool hasCpuContestant(const Crowd& crowd) {
   return std::all_of(crowd.impl().herds.begin(), crowd.impl().herds.end(), [](const crowd::Herd& herd) {
-    return herd.controller == crowd::Controller::adaptive && herd.ik.solver == shared::SOLVER_FABRIK &&
-           herd.ik.polish > 0;
+    return herd.controller == crowd::Controller::clip ||
+           (herd.controller == crowd::Controller::adaptive && herd.ik.solver == shared::SOLVER_FABRIK &&
+            herd.ik.polish > 0 && !herd.reachTriggered);
   });
 }
 

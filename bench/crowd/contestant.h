@@ -14,9 +14,9 @@ class Contestant {
  public:
   virtual ~Contestant() = default;
   virtual std::string name() const = 0;
-  virtual int threads() const = 0;                    // of the CPU that it may use; 0: the device's own
-  virtual void tick() = 0;                            // one, to its end
-  virtual std::vector<HerdState> states() const = 0;  // of every herd
+  virtual int threads() const = 0;  // of the CPU that it may use; 0: the device's own
+  virtual void tick() = 0;          // one, to its end
+  virtual HerdState state(uint32_t herd, const AgentSample& sample) const = 0;  // without metrics
   // Milliseconds of all ticks so far by stage: the device's clock, or CPU time of all threads.
   virtual std::vector<StageTime> stageTimes() const = 0;
 };

@@ -66,18 +66,30 @@ class FreeRuns {
   std::vector<std::unique_ptr<validation::FreeRun>> runs_;
 };
 
-std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd, uint64_t seed) {
+std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd) {
   std::vector<std::unique_ptr<Replay>> replays;
   for (const crowd::Herd& herd : crowd.impl().herds) {
-    replays.push_back(std::make_unique<Replay>(validation::herdFacts(herd, crowd.impl().terrain), seed));
+    replays.push_back(std::make_unique<Replay>(validation::herdFacts(herd, crowd.impl().terrain)));
   }
   return replays;
 }
 
-std::vector<HerdState> download(const Crowd& crowd) {
+// What tick n compares of every herd.
+std::vector<AgentSample> samplesAt(uint64_t n, const Scene& scene) {
+  std::vector<AgentSample> samples;
+  for (const Herd& herd : scene.herds)
+    samples.push_back(validation::sampleAt(scene.seed, n, herd.agents, agentsATick));
+  return samples;
+}
+
+std::vector<HerdState> download(const Crowd& crowd, const std::vector<AgentSample>& samples) {
   std::vector<HerdState> states;
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h) states.push_back(crowd.download(h));
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) states.push_back(crowd.download(h, samples[h]));
   return states;
+}
+
+std::vector<HerdState> download(const Crowd& crowd) {
+  return download(crowd, std::vector<AgentSample>(crowd.herdCount()));
 }
 
 double ratioOf(const StageResult& result) {
@@ -153,25 +165,23 @@ int validate(const ValidateOptions& options) {
   gpu::CommandRing ring(device.context());
   TickTimes times;
   std::vector<std::unique_ptr<Replay>> replays;
-  std::vector<HerdState> before = download(crowd);
   std::optional<FreeRuns> freeRuns;
   Progress progress("ticks", options.frames, options.quiet);
   while (crowd.tick() < options.frames && !stopRequested()) {
+    const std::vector<AgentSample> samples = samplesAt(crowd.tick() + 1, scene);
+    const std::vector<HerdState> before = download(crowd, samples);
+    std::vector<HerdState> first;
+    if (options.freeRun && !freeRuns) first = download(crowd);
     runTick(ring, crowd, static_cast<float>(options.scene.dt), times);
     // A herd's parameters are complete only once the length of a tick is known.
-    if (replays.empty()) replays = replaysOf(crowd, scene.seed);
-    if (options.freeRun && !freeRuns) freeRuns.emplace(crowd, before);
+    if (replays.empty()) replays = replaysOf(crowd);
+    if (options.freeRun && !freeRuns) freeRuns.emplace(crowd, first);
     if (freeRuns) freeRuns->tick();
-    std::vector<HerdState> after = download(crowd);
-    for (size_t h = 0; h < replays.size(); ++h) {
-      validation::ReplayRange range;
-      range.stride = after[h].agents / agentsATick + 1;
-      replays[h]->tick(crowd.tick(), before[h], after[h], range);
-    }
-    before = std::move(after);
+    const std::vector<HerdState> after = download(crowd, samples);
+    for (size_t h = 0; h < replays.size(); ++h) replays[h]->tick(crowd.tick(), before[h], after[h]);
     progress.update(crowd.tick());
   }
-  if (replays.empty()) replays = replaysOf(crowd, scene.seed);
+  if (replays.empty()) replays = replaysOf(crowd);
 
   const std::vector<StageResult> results = merge(replays);
   std::string failed;
@@ -181,7 +191,7 @@ int validate(const ValidateOptions& options) {
   print(device, scene, crowd.tick(), results);
   std::optional<double> share;
   if (freeRuns) {
-    share = freeRuns->shareWithin(before);
+    share = freeRuns->shareWithin(download(crowd));
     fmt::print(
         "free run: {:.1f} % of the agents within {:g} % of leg length of where the reference alone has "
         "them\n",

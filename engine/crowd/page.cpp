@@ -215,4 +215,12 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Herd& herd, const Sp
   return pages;
 }
 
+PageSample sampleOf(const Page& page, const AgentSample& sample) {
+  const uint32_t past = page.firstAgent > sample.first ? (page.firstAgent - sample.first) % sample.stride : 0;
+  const uint32_t first = page.firstAgent <= sample.first ? sample.first - page.firstAgent
+                         : past > 0                      ? sample.stride - past
+                                                         : 0;
+  return {first, page.agents > first ? (page.agents - first + sample.stride - 1) / sample.stride : 0};
+}
+
 }  // namespace skitter::crowd

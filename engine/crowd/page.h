@@ -41,4 +41,11 @@ uint64_t bytesOf(const Crowd::Impl& crowd, const Herd& herd, uint32_t agents);
 std::vector<Page> makePages(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner,
                             uint32_t agents);
 
+// Agents of a page: first, first + stride and so on, `count` of them.
+struct PageSample {
+  uint32_t first, count;
+};
+// Those of the sample that the page has.
+PageSample sampleOf(const Page& page, const AgentSample& sample);
+
 }  // namespace skitter::crowd

@@ -1,6 +1,9 @@
 // What the host asks of a crowd after the fact; each waits for the device.
 #include <algorithm>
+#include <cassert>
+#include <span>
 
+#include "crowd/page.h"
 #include "crowd/watch.h"
 #include "gpu/context.h"
 #include "gpu/transfer.h"
@@ -11,10 +14,18 @@ namespace {
 
 using crowd::Page;
 
-template <class T>
-void appendRecords(const gpu::Context& context, const gpu::Buffer& buffer, std::vector<T>& records) {
-  const std::vector<T> page = gpu::download<T>(context, buffer);
-  records.insert(records.end(), page.begin(), page.end());
+void appendRecords(const gpu::Context& context, const Page& page, const gpu::Buffer& buffer,
+                   const AgentSample& sample, std::vector<float>& records) {
+  if (!buffer) return;
+  const uint64_t each = buffer.size() / page.agents;
+  const crowd::PageSample here = crowd::sampleOf(page, sample);
+  const size_t end = records.size();
+  records.resize(end + here.count * each / sizeof(float));
+  const auto bytes = std::as_writable_bytes(std::span(records).subspan(end));
+  if (sample.stride == 1)
+    gpu::downloadBytes(context, buffer, bytes, here.first * each);
+  else
+    gpu::downloadPieces(context, buffer, bytes, here.first * each, each, sample.stride * each);
 }
 
 // A page's watched agents come from its start; in the herd each has the place of its number.
@@ -30,30 +41,33 @@ void appendWatch(const Crowd::Impl& crowd, const crowd::Herd& herd, const Page& 
 
 }  // namespace
 
-HerdState Crowd::download(uint32_t herdIndex) const {
-  const gpu::Context& context = *impl_->context;
-  context.waitIdle();
+HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
+  assert(sample.stride > 0);
+  impl_->context->waitIdle();
   HerdState state;
+  state.sample = sample;
   state.watchEvery = impl_->watchEvery;
   state.watched = impl_->tick > 0 && impl_->tick <= impl_->watchUntil;
   const crowd::Herd& herd = impl_->herds.at(herdIndex);
   for (const Page& page : herd.pages) {
-    state.agents += page.agents;
-    appendRecords(context, page.goal, state.goal);
-    appendRecords(context, page.steer, state.steer);
-    appendRecords(context, page.body, state.body);
-    appendRecords(context, page.gait, state.gait);
-    appendRecords(context, page.step, state.step);
-    appendRecords(context, page.foot, state.foot);
-    appendRecords(context, page.chain, state.chain);
-    if (page.pose) appendRecords(context, page.pose, state.pose);
-    if (page.play) appendRecords(context, page.play, state.play);
-    if (page.start) appendRecords(context, page.start, state.start);
-    if (page.fix) appendRecords(context, page.fix, state.fix);
-    if (page.spring) appendRecords(context, page.spring, state.spring);
-    if (!page.metric) continue;
-    appendRecords(context, page.metric, state.metric);
-    appendWatch(*impl_, herd, page, state.watch);
+    const auto append = [&](const gpu::Buffer& buffer, std::vector<float>& records) {
+      appendRecords(*impl_->context, page, buffer, sample, records);
+    };
+    state.agents += crowd::sampleOf(page, sample).count;
+    append(page.goal, state.goal);
+    append(page.steer, state.steer);
+    append(page.body, state.body);
+    append(page.gait, state.gait);
+    append(page.step, state.step);
+    append(page.foot, state.foot);
+    append(page.chain, state.chain);
+    append(page.pose, state.pose);
+    append(page.metric, state.metric);
+    append(page.play, state.play);
+    append(page.start, state.start);
+    append(page.fix, state.fix);
+    append(page.spring, state.spring);
+    if (page.watch) appendWatch(*impl_, herd, page, state.watch);
   }
   return state;
 }
@@ -98,6 +112,7 @@ std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herd) const {
 uint64_t Crowd::stateHash() const {
   const gpu::Context& context = *impl_->context;
   context.waitIdle();
+  std::vector<uint32_t> words;
   uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, a word at a time
   for (const crowd::Herd& herd : impl_->herds) {
     // Record by record over the herd, not page by page: how agents are paged must not show.
@@ -105,7 +120,9 @@ uint64_t Crowd::stateHash() const {
          {&Page::goal, &Page::body, &Page::gait, &Page::step, &Page::chain, &Page::play, &Page::spring})
       for (const Page& page : herd.pages) {
         if (!(page.*buffer)) continue;
-        for (const uint32_t word : gpu::download<uint32_t>(context, page.*buffer)) {
+        words.resize((page.*buffer).size() / sizeof(uint32_t));
+        gpu::downloadBytes(context, page.*buffer, std::as_writable_bytes(std::span(words)));
+        for (const uint32_t word : words) {
           hash = (hash ^ word) * 0x100000001b3ull;
           hash ^= hash >> 32;
         }

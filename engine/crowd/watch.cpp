@@ -1,5 +1,7 @@
 #include "crowd/watch.h"
 
+#include "crowd/page.h"
+
 namespace skitter::crowd {
 namespace {
 
@@ -20,9 +22,8 @@ Watch watchAt(uint64_t tick, uint32_t every, const Page& page) {
   if (every == 1) return {0, page.agents, static_cast<uint32_t>(past)};
   // Counted within the herd, so that pages do not show.
   const auto turn = static_cast<uint32_t>(past / shared::WATCH_TICKS % every);
-  const uint32_t first = (turn + every - page.firstAgent % every) % every;
-  const uint32_t count = page.agents > first ? (page.agents - first + every - 1) / every : 0;
-  return {first, count, static_cast<uint32_t>(past % shared::WATCH_TICKS)};
+  const PageSample sample = sampleOf(page, {turn, every});
+  return {sample.first, sample.count, static_cast<uint32_t>(past % shared::WATCH_TICKS)};
 }
 
 }  // namespace skitter::crowd

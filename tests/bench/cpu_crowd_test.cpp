@@ -41,13 +41,14 @@ struct Start {
 // `ticks` ticks of `opponent`, which began at `start`, as the reference that knows `facts` sees them.
 std::vector<validation::StageResult> replay(CpuCrowd& opponent, Start& start, int ticks,
                                             uint32_t stride = 1) {
-  validation::Replay replay(start.facts(), 1);
+  validation::Replay replay(start.facts());
   HerdState before = start.state;
   before.metric.clear();
   for (uint64_t n = start.crowd.tick() + 1; ticks-- > 0; ++n) {
     opponent.tick(n);
     HerdState after = opponent.state();
-    replay.tick(n, before, after, {.stride = stride});
+    const AgentSample sample{0, stride};
+    replay.tick(n, validation::sampled(before, sample), validation::sampled(after, sample));
     before = std::move(after);
   }
   return replay.results();

@@ -47,7 +47,7 @@ TEST_P(ControllersTest, TurnsBackAtTheEdgeAndFast) {
   const Heightfield ground = smallRollingGround();
   Crowd crowd(device(), ground, sceneOf(16, 3, 7, controller()));
   simulate(device(), crowd, 420);
-  expectPass(replay(device(), crowd, ground, 180, 7));
+  expectPass(replay(device(), crowd, ground, 180));
 }
 
 // Feet are wanted on a wall's far side, and the body falls past it.

@@ -9,6 +9,7 @@
 #include "crowd/simulation.h"
 #include "gpu/transfer.h"
 #include "skitter/error.h"
+#include "validation/herd_facts.h"
 
 namespace skitter::test {
 namespace {
@@ -117,6 +118,48 @@ TEST_F(InputTest, MemoryIsWhatWasForetold) {
       EXPECT_EQ(bytesOf(crowd, "metric"), options.measure ? 23 * 112u : 0);
       EXPECT_EQ(bytesOf(crowd, "footfall"), options.footfalls > 0 ? pages * 11 * 32 : 0);
     }
+}
+
+// Of `whole`, agent by agent, what a download of the sample must be.
+std::vector<float> sampled(const std::vector<float>& whole, const HerdState& state,
+                           const AgentSample& sample) {
+  const size_t each = whole.size() / state.agents;
+  std::vector<float> records;
+  for (size_t agent = sample.first; agent < state.agents; agent += sample.stride)
+    records.insert(records.end(), whole.begin() + static_cast<std::ptrdiff_t>(agent * each),
+                   whole.begin() + static_cast<std::ptrdiff_t>((agent + 1) * each));
+  return records;
+}
+
+TEST_F(InputTest, ASampleIsWhatTheWholeHas) {
+  Crowd crowd(device(), rollingGround(), sceneOf(23), CrowdOptions{.watchEvery = 3, .pageAgents = 7});
+  simulate(device(), crowd, 30);
+  const HerdState whole = crowd.download(0);
+  for (const AgentSample& sample : {AgentSample{0, 1}, AgentSample{0, 5}, AgentSample{4, 5},
+                                    AgentSample{8, 9}, AgentSample{22, 100}, AgentSample{23, 24}}) {
+    SCOPED_TRACE(std::to_string(sample.first) + " and every " + std::to_string(sample.stride));
+    const HerdState part = crowd.download(0, sample);
+    EXPECT_EQ(part.agents, sample.first < 23 ? (23 - sample.first + sample.stride - 1) / sample.stride : 0);
+    for (const auto records :
+         {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait, &HerdState::step,
+          &HerdState::foot, &HerdState::chain, &HerdState::pose, &HerdState::metric})
+      EXPECT_EQ(part.*records, sampled(whole.*records, whole, sample));
+    EXPECT_EQ(part.watch, whole.watch);
+  }
+}
+
+TEST_F(InputTest, ASampleIsValidated) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device(), ground, sceneOf(23), CrowdOptions{.watchEvery = 3, .pageAgents = 7});
+  simulate(device(), crowd, 30);
+  validation::Replay replay(validation::herdFacts(crowd.impl().herds[0], ground));
+  for (uint32_t first = 0; first < 5; ++first) {
+    const HerdState before = crowd.download(0, {first, 5});
+    simulate(device(), crowd, 1);
+    replay.tick(crowd.tick(), before, crowd.download(0, {first, 5}));
+  }
+  expectAllPass(replay.results());
+  EXPECT_EQ(replay.results()[0].samples, 23u);
 }
 
 TEST_F(InputTest, WhatIsLeftOutIsNotRead) {

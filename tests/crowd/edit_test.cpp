@@ -111,7 +111,7 @@ TEST_P(EditTest, ReplayThroughEdits) {
   Crowd crowd(device(), rollingGround(), sceneOf(32));
   simulate(device(), crowd, 90);
   const crowd::Herd& herd = crowd.impl().herds.at(0);
-  validation::Replay replay(validation::herdFacts(herd, crowd.terrain()), 1);
+  validation::Replay replay(validation::herdFacts(herd, crowd.terrain()));
   HerdState before = crowd.download(0);
   for (int tick = 0; tick < 200; ++tick) {
     if (tick % 20 == 0 && tick < 100) {

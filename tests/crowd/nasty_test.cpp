@@ -106,7 +106,7 @@ void expectEveryStage(Device& device, const Rig& rig, uint64_t seeds, float fart
     Crowd crowd(device, ground, sceneOf(65), std::vector<Rig>{rig});
     crowd::Herd& herd = crowd.impl().herds[0];
     scramble(device.context(), crowd, seed, farthest);
-    validation::Replay replay(validation::herdFacts(herd, ground), seed);
+    validation::Replay replay(validation::herdFacts(herd, ground));
     HerdState before = crowd.download(0);
     for (int tick = 0; tick < 4; ++tick) {
       simulate(device, crowd, 1);

@@ -18,7 +18,7 @@ TEST_P(ReplayTest, FastAndTurning) {
   const Heightfield ground = flatGround();
   Crowd crowd(device(), ground, sceneOf(16, 3, 7));
   simulate(device(), crowd, 600);
-  expectAllPass(replay(device(), crowd, ground, 240, 7));
+  expectAllPass(replay(device(), crowd, ground, 240));
 }
 
 INSTANTIATE_TEST_SUITE_P(, ReplayTest, bothLoadPaths(), loadPathName);

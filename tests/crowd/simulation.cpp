@@ -49,15 +49,14 @@ void simulate(Device& device, Crowd& crowd, int ticks, float dt) {
 }
 
 std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crowd& crowd,
-                                                            const Heightfield& terrain, int ticks,
-                                                            uint64_t seed) {
+                                                            const Heightfield& terrain, int ticks) {
   // The first tick fixes dt, and with it the tuning that the reference is given.
   simulate(device, crowd, 1);
   std::vector<std::unique_ptr<validation::Replay>> replays;
   std::vector<HerdState> before;
   for (const crowd::Herd& herd : crowd.impl().herds) {
     before.push_back(crowd.download(static_cast<uint32_t>(replays.size())));
-    replays.push_back(std::make_unique<validation::Replay>(validation::herdFacts(herd, terrain), seed));
+    replays.push_back(std::make_unique<validation::Replay>(validation::herdFacts(herd, terrain)));
   }
   for (int i = 0; i < ticks; ++i) {
     simulate(device, crowd, 1);
@@ -73,8 +72,8 @@ std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crow
 }
 
 std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
-                                            int ticks, uint64_t seed) {
-  return replayAll(device, crowd, terrain, ticks, seed).front();
+                                            int ticks) {
+  return replayAll(device, crowd, terrain, ticks).front();
 }
 
 void expectAllPass(const std::vector<validation::StageResult>& results) {

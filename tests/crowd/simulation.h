@@ -29,13 +29,12 @@ void simulate(Device& device, Crowd& crowd, int ticks, float dt = kTick);
 
 // Runs `ticks` ticks in lock step with the reference, from the crowd's present state on; of the first herd.
 std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
-                                            int ticks, uint64_t seed = 1);
+                                            int ticks);
 void expectAllPass(const std::vector<validation::StageResult>& results);
 
 // The same of every herd.
 std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crowd& crowd,
-                                                            const Heightfield& terrain, int ticks,
-                                                            uint64_t seed = 1);
+                                                            const Heightfield& terrain, int ticks);
 
 // Of agent i: the world position and, per leg, whether it is planted.
 glm::dvec3 positionOf(const HerdState& state, size_t agent);

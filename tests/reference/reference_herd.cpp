@@ -30,7 +30,7 @@ HerdFacts ReferenceHerd::facts() const {
   return {rig_, terrain_, parameters_, rigRecords_, ik};
 }
 
-Replay ReferenceHerd::replay() const { return {facts(), 1}; }
+Replay ReferenceHerd::replay() const { return Replay(facts()); }
 
 void ReferenceHerd::spawn(uint32_t agents) {
   const size_t count = agents, legCount = static_cast<size_t>(legs());

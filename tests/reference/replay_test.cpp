@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "reference_herd.h"
 #include "shared/records.h"
@@ -13,7 +14,6 @@ namespace skitter::test {
 namespace {
 
 using validation::Replay;
-using validation::ReplayRange;
 using validation::StageResult;
 
 TEST(Replay, referenceAgreesWithItself) {
@@ -38,16 +38,33 @@ TEST(Replay, referenceAgreesWithItself) {
   EXPECT_LT(results[3].samples, 8u * 24 * 240);
 }
 
-TEST(Replay, strideSamplesEveryAgentInTurn) {
-  ReferenceHerd herd(roughField(), 8);
-  Replay replay = herd.replay();
-  for (int i = 0; i < 20; ++i) {
-    const HerdState before = herd.state();
-    herd.tick();
-    replay.tick(herd.ticks(), before, herd.state(), ReplayRange{0, 8, 4});
+TEST(Replay, samplesAgentsInTurn) {
+  EXPECT_EQ(validation::sampleAt(7, 1, 1023, 1024).stride, 1u);
+  std::set<uint32_t> firsts;
+  for (uint64_t n = 1; n <= 100; ++n) {
+    const AgentSample sample = validation::sampleAt(7, n, 4100, 1024);
+    ASSERT_EQ(sample.stride, 5u);
+    ASSERT_LT(sample.first, 5u);
+    firsts.insert(sample.first);
   }
-  EXPECT_EQ(replay.results()[0].samples, 40u);
+  EXPECT_EQ(firsts.size(), 5u);
+}
+
+TEST(Replay, leavesOutWhatAStateHasNot) {
+  ReferenceHerd herd(roughField(), 2);
+  Replay replay = herd.replay();
+  HerdState before = herd.state();
+  herd.tick();
+  HerdState after = herd.state();
+  for (HerdState* state : {&before, &after}) {
+    state->pose.clear();
+    state->metric.clear();
+  }
+  replay.tick(herd.ticks(), before, after);
   EXPECT_TRUE(replay.pass());
+  EXPECT_EQ(replay.results()[5].samples, 16u);
+  EXPECT_EQ(replay.results()[6].samples, 0u);
+  EXPECT_EQ(replay.results()[7].samples, 0u);
 }
 
 TEST(Replay, wrongSizesAreErrors) {

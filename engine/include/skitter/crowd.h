@@ -61,15 +61,21 @@ struct Fidelity {
   uint64_t notFinite = 0;    // targets that were not finite; the leg kept its pose; of all agents and ticks
 };
 
-// One herd's records as the host sees them, agent after agent: the layouts are those of
+// Agents first, first + stride, first + 2 stride, ... of a herd.
+struct AgentSample {
+  uint32_t first = 0, stride = 1;
+};
+
+// Records of a herd as the host sees them, agent after agent: the layouts are those of
 // shaders/shared/records.h. For tools, traces and validation.
 struct HerdState {
-  uint32_t agents = 0;
+  uint32_t agents = 0;  // that are here
+  AgentSample sample;   // which of the herd they are
   std::vector<float> goal, steer, body, gait, step, foot, chain;
   std::vector<float> pose, metric;      // empty where CrowdOptions left them out, like watch
   std::vector<float> play, start, fix, spring;  // empty where the controller has none
   uint32_t watchEvery = 1;              // measure watches one agent of this many at a time
-  std::vector<float> watch;             // of agent g at place g / watchEvery, if it is being watched
+  std::vector<float> watch;  // of the herd's agent g at place g / watchEvery, if it is being watched; whole
   bool watched = false;  // the last tick's gait looked at the ground, because the heights were edited lately
 };
 
@@ -142,7 +148,7 @@ class Crowd {
   const Rig& rig(uint32_t herd) const;
 
   // Each of these waits for the device.
-  HerdState download(uint32_t herd) const;
+  HerdState download(uint32_t herd, const AgentSample& sample = {}) const;
   Fidelity fidelity() const;  // of all herds
   Fidelity fidelity(uint32_t herd) const;
   // Agent by agent. reachErrorP99, lastResorts and notFinite are only counted by herd and 0 here.
