@@ -6,6 +6,7 @@
 #include "bench/cpu_crowd/kernel.h"
 #include "bench/cpu_crowd/laps.h"
 #include "bench/cpu_crowd/navigate.h"
+#include "bench/cpu_crowd/parts.h"
 #include "bench/cpu_crowd/pose_clip.h"
 #include "bench/cpu_crowd/records.h"
 
@@ -18,7 +19,7 @@ class ClipKernel final : public Kernel {
   ClipKernel(const World& world, const HerdState& start, const Options& options)
       : world_(world),
         agents_(start.agents),
-        blocks_((agents_ + kAgents - 1) / kAgents),
+        blocks_(Parts<F>::blocks(agents_)),
         timings_(options.timings),
         agentBlocks_(blocks_),
         plays_(blocks_),
@@ -32,22 +33,21 @@ class ClipKernel final : public Kernel {
     }
   }
 
-  size_t parts() const override { return (blocks_ + kPartBlocks - 1) / kPartBlocks; }
+  size_t parts() const override { return Parts<F>::count(blocks_); }
 
   void tick(uint64_t, size_t part, int thread) override {
     Laps laps(timings_ ? &scratch_[size_t(thread)].seconds : nullptr);
-    const size_t first = part * kPartBlocks, last = std::min(first + kPartBlocks, blocks_);
-    for (size_t block = first; block < last; ++block) {
-      Agent<F>& a = agentBlocks_[block];
-      navigate(world_, a);
-      laps.end(0);
-      blindBody(world_, a);
-      laps.end(1);
-      clip(world_, a, plays_[block]);
-      laps.end(2);
-      if (!poses_.empty()) poseBlock(block);
-      laps.end(3);
-    }
+    Parts<F>::eachGroup(part, blocks_, [&](size_t first, size_t last) {
+      for (size_t b = first; b < last; ++b) navigate(world_, agentBlocks_[b]);
+      laps.end(kNavigate);
+      for (size_t b = first; b < last; ++b) blindBody(world_, agentBlocks_[b]);
+      laps.end(kBody);
+      for (size_t b = first; b < last; ++b) clip(world_, agentBlocks_[b], plays_[b]);
+      laps.end(kClip);
+      if (poses_.empty()) return;
+      for (size_t b = first; b < last; ++b) poseBlock(b);
+      laps.end(kPose);
+    });
     settleStreams();
   }
 
@@ -74,8 +74,8 @@ class ClipKernel final : public Kernel {
   }
 
  private:
-  static constexpr size_t kAgents = kWidth<F>;
-  static constexpr size_t kPartBlocks = 128 / kAgents;
+  enum { kNavigate, kBody, kClip, kPose };
+  static constexpr size_t kAgents = Parts<F>::kAgents;
 
   struct alignas(64) Scratch {
     Seconds seconds{};

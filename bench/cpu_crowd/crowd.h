@@ -25,7 +25,7 @@ struct Options {
 
 struct StageSeconds {
   std::string stage;
-  double seconds = 0;  // of all threads together, since the start
+  double seconds = 0;  // of CPU time, of all threads together, since the start
 };
 
 // One herd, adaptive or clip, on ground that stays as it is: no edits, no measure, no footfalls. Not

@@ -10,14 +10,14 @@
 #include "bench/cpu_crowd/kernel.h"
 #include "bench/cpu_crowd/laps.h"
 #include "bench/cpu_crowd/navigate.h"
+#include "bench/cpu_crowd/parts.h"
 #include "bench/cpu_crowd/pose.h"
 #include "bench/cpu_crowd/records.h"
 
 namespace skitter::cpu_crowd {
 
-// The stages of a block follow each other while it is in the nearest cache; only foothold, which few legs
-// need, waits for enough of them to fill its lanes: a part is as many agents as that takes and the second
-// cache holds.
+// An adaptive herd. Its stages follow each other group by group; only foothold waits for the rest of its
+// part.
 template <class F, int N>
 class HerdKernel final : public Kernel {
  public:
@@ -25,15 +25,15 @@ class HerdKernel final : public Kernel {
       : world_(world),
         agents_(start.agents),
         legs_(world.legs.size()),
-        blocks_((agents_ + kAgents - 1) / kAgents),
+        blocks_(Parts<F>::blocks(agents_)),
         timings_(options.timings),
         agentBlocks_(blocks_),
         legBlocks_(blocks_ * legs_),
         poses_(options.poses ? blocks_ * poseCount() : 0),
         scratch_(size_t(options.threads)) {
     for (Scratch& scratch : scratch_) {
-      scratch.begins.resize(kPartBlocks * kAgents * legs_);
-      scratch.rare.resize(kPartBlocks * kAgents * legs_);
+      scratch.begins.resize(Parts<F>::kPart * kAgents * legs_);
+      scratch.rare.resize(kAgents * legs_);
     }
     // Idle lanes of the last block repeat its last agent.
     for (size_t i = 0; i < blocks_ * kAgents; ++i) {
@@ -48,42 +48,32 @@ class HerdKernel final : public Kernel {
     }
   }
 
-  size_t parts() const override { return (blocks_ + kPartBlocks - 1) / kPartBlocks; }
+  size_t parts() const override { return Parts<F>::count(blocks_); }
 
   void tick(uint64_t n, size_t part, int thread) override {
     Scratch& scratch = scratch_[size_t(thread)];
-    const size_t first = part * kPartBlocks, last = std::min(first + kPartBlocks, blocks_);
     const float tick = float(n);
     Laps laps(timings_ ? &scratch.seconds : nullptr);
-    scratch.begun = scratch.listed = 0;
-    for (size_t block = first; block < last; ++block) {
-      Agent<F>& a = agentBlocks_[block];
-      navigate(world_, a);
+    scratch.begun = 0;
+    Parts<F>::eachGroup(part, blocks_, [&](size_t first, size_t last) {
+      for (size_t b = first; b < last; ++b) navigate(world_, agentBlocks_[b]);
       laps.end(kNavigate);
-      body(world_, tick, a, legsOf(block));
+      for (size_t b = first; b < last; ++b) body(world_, tick, agentBlocks_[b], legsOf(b));
       laps.end(kBody);
-      Begun begun;
-      gait(world_, tick, a, legsOf(block), begun);
-      list(block, begun, scratch);
+      for (size_t b = first; b < last; ++b) gaitBlock(tick, b, scratch);
       laps.end(kGait);
-    }
+    });
     beginSteps(tick, scratch);
     laps.end(kFoothold);
-    for (size_t block = first; block < last; ++block) {
-      const Agent<F>& a = agentBlocks_[block];
-      Leg<F, kBones<N>>* legs = legsOf(block);
-      for (size_t l = 0; l < legs_; ++l) swing(tick, a, legs[l].step, legs[l].foot);
+    Parts<F>::eachGroup(part, blocks_, [&](size_t first, size_t last) {
+      for (size_t b = first; b < last; ++b) swingBlock(tick, b);
       laps.end(kSwing);
-      const Mat3<F> r = matrixOf(a.orientation);
-      for (size_t l = 0; l < legs_; ++l) {
-        const auto rare = [&](uint64_t lanes) { listRare(block, l, lanes, scratch); };
-        ikQuick<F, N>(world_, world_.legs[l], r, legs[l].foot, legs[l].chain, rare);
-      }
-      if (scratch.listed > 0) solveRare(block, scratch);
+      for (size_t b = first; b < last; ++b) ikBlock(b, scratch);
       laps.end(kIk);
-      if (!poses_.empty()) poseBlock(block, r);
+      if (poses_.empty()) return;
+      for (size_t b = first; b < last; ++b) poseBlock(b);
       laps.end(kPose);
-    }
+    });
     settleStreams();
   }
 
@@ -121,17 +111,18 @@ class HerdKernel final : public Kernel {
 
  private:
   enum { kNavigate, kBody, kGait, kFoothold, kSwing, kIk, kPose };
-  static constexpr size_t kAgents = kWidth<F>;
-  static constexpr size_t kPartBlocks = 128 / kAgents;
+  static constexpr size_t kAgents = Parts<F>::kAgents;
 
-  // A leg of an agent.
+  // A leg that begins a step, or is aimed anew.
   struct Place {
     size_t block;
     uint16_t leg, lane;
     bool again;
   };
+  // A leg, of one block, that needs more than ik's usual step.
   struct Rare {
-    Place place;
+    size_t leg;
+    int lane;
     Chain<float, kBones<N>> chain;  // as it was
   };
   struct alignas(64) Scratch {
@@ -144,7 +135,9 @@ class HerdKernel final : public Kernel {
   Leg<F, kBones<N>>* legsOf(size_t block) { return &legBlocks_[block * legs_]; }
   size_t poseCount() const { return 1 + legs_ * size_t(world_.bones); }
 
-  void list(size_t block, const Begun& begun, Scratch& scratch) const {
+  void gaitBlock(float tick, size_t block, Scratch& scratch) {
+    Begun begun;
+    gait(world_, tick, agentBlocks_[block], legsOf(block), begun);
     for (size_t l = 0; l < legs_; ++l) {
       for (uint64_t all = begun.lift[l] | begun.again[l]; all != 0; all &= all - 1) {
         const int at = std::countr_zero(all);
@@ -175,29 +168,41 @@ class HerdKernel final : public Kernel {
     }
   }
 
-  void listRare(size_t block, size_t l, uint64_t lanes, Scratch& scratch) {
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const int at = std::countr_zero(lanes);
-      Rare& rare = scratch.rare[scratch.listed++];
-      rare.place = {block, uint16_t(l), uint16_t(at), false};
-      copyLane<F, float>(legsOf(block)[l].chain, at, rare.chain, 0);
-    }
+  void swingBlock(float tick, size_t block) {
+    Leg<F, kBones<N>>* legs = legsOf(block);
+    for (size_t l = 0; l < legs_; ++l) swing(tick, agentBlocks_[block], legs[l].step, legs[l].foot);
   }
 
-  void solveRare(size_t block, Scratch& scratch) {
-    for (; scratch.listed > 0; --scratch.listed) {
-      auto& [place, chain] = scratch.rare[scratch.listed - 1];
-      Quaternion<float> orientation;
-      copyLane<F, float>(agentBlocks_[block].orientation, place.lane, orientation, 0);
+  void ikBlock(size_t block, Scratch& scratch) {
+    Leg<F, kBones<N>>* legs = legsOf(block);
+    const Mat3<F> r = matrixOf(agentBlocks_[block].orientation);
+    scratch.listed = 0;
+    for (size_t l = 0; l < legs_; ++l) {
+      const auto list = [&](uint64_t lanes) {
+        for (; lanes != 0; lanes &= lanes - 1) {
+          Rare& rare = scratch.rare[scratch.listed++];
+          rare.leg = l;
+          rare.lane = std::countr_zero(lanes);
+          copyLane<F, float>(legs[l].chain, rare.lane, rare.chain, 0);
+        }
+      };
+      ikQuick<F, N>(world_, world_.legs[l], r, legs[l].foot, legs[l].chain, list);
+    }
+    for (size_t i = 0; i < scratch.listed; ++i) {
+      Rare& rare = scratch.rare[i];
+      Leg<F, kBones<N>>& leg = legs[rare.leg];
+      Mat3<float> turn;
       Foot<float> foot;
-      copyLane<F, float>(legsOf(block)[place.leg].foot, place.lane, foot, 0);
-      ikWhole<N>(world_, world_.legs[place.leg], matrixOf(orientation), foot, chain);
-      copyLane<float, F>(chain, 0, legsOf(block)[place.leg].chain, place.lane);
+      copyLane<F, float>(r, rare.lane, turn, 0);
+      copyLane<F, float>(leg.foot, rare.lane, foot, 0);
+      ikWhole<N>(world_, world_.legs[rare.leg], turn, foot, rare.chain);
+      copyLane<float, F>(rare.chain, 0, leg.chain, rare.lane);
     }
   }
 
-  void poseBlock(size_t block, const Mat3<F>& r) {
+  void poseBlock(size_t block) {
     const Agent<F>& a = agentBlocks_[block];
+    const Mat3<F> r = matrixOf(a.orientation);
     BonePose<F>* poses = &poses_[block * poseCount()];
     stream(poses++, a.orientation, Vec3<F>{F(0), F(0), F(0)});
     for (size_t l = 0; l < legs_; ++l, poses += world_.bones)

@@ -1,36 +1,49 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <vector>
 
 #include "bench/cpu_crowd/crowd.h"
+#include "bench/ik/clock.h"
 
 namespace skitter::cpu_crowd {
 
-// Seconds of each of a herd's stages, in its order.
+// Of each of a herd's stages, in its order.
 using Seconds = std::array<double, 8>;
 
-// Clocks stages as they follow each other, or nothing.
+// Clocks the stages of a part of a herd as they follow each other, or nothing. Laps are of the wall, whose
+// clock is read quickly; in the end they share out what the thread was given of the CPU.
 class Laps {
  public:
   explicit Laps(Seconds* sums) : sums_(sums) {
-    if (sums_ != nullptr) last_ = Clock::now();
-  }
-  void end(int stage) {
     if (sums_ == nullptr) return;
-    const auto now = Clock::now();
-    (*sums_)[size_t(stage)] += std::chrono::duration<double>(now - last_).count();
+    begin_ = bench::readClock(CLOCK_THREAD_CPUTIME_ID);
+    last_ = bench::readClock(CLOCK_MONOTONIC);
+  }
+  Laps(const Laps&) = delete;
+  Laps& operator=(const Laps&) = delete;
+  ~Laps() {
+    if (sums_ == nullptr) return;
+    double wall = 0;
+    for (const double lap : laps_) wall += lap;
+    const double share = (bench::readClock(CLOCK_THREAD_CPUTIME_ID) - begin_) / wall;
+    for (size_t s = 0; s < laps_.size(); ++s) (*sums_)[s] += laps_[s] * share;
+  }
+
+  void end(size_t stage) {
+    if (sums_ == nullptr) return;
+    const double now = bench::readClock(CLOCK_MONOTONIC);
+    laps_[stage] += now - last_;
     last_ = now;
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
   Seconds* sums_;
-  Clock::time_point last_;
+  Seconds laps_{};
+  double begin_ = 0, last_ = 0;
 };
 
-// Sums of all threads' seconds by the stages' names.
+// Sums of all threads' seconds, under the stages' names.
 template <class Scratch>
 std::vector<StageSeconds> sumOf(const std::vector<Scratch>& threads, const std::vector<const char*>& names) {
   std::vector<StageSeconds> all;
