@@ -15,13 +15,6 @@ struct Beginning {
   F reach, again;  // 1: aimed anew
 };
 
-// The best candidate so far and, if none fits, the one nearest to where legs reach.
-template <class F>
-struct Choice {
-  Vec3<F> point, nearest;
-  F score = F(3e38f), misfit = F(3e38f);
-};
-
 template <class F>
 class Foothold {
  public:
@@ -41,11 +34,10 @@ class Foothold {
 
   Step<F> step(float tick) const {
     Step<F> next;
-    const Choice<F> choice = collect();
-    const Vec3<F> rootThen = r_ * predictRoot();
-    const auto none = F(3e38f) <= choice.score;
-    Vec3<F> p1 = choice.point;
-    if (any(none)) p1 = select(none, ontoRange(choice.nearest, rootThen), p1);
+    const Ladder ladder = ladderOf();
+    Vec3<F> p1;
+    const auto none = !findBest(ladder, p1);
+    if (any(none)) p1 = select(none, lastResort(ladder), p1);
 
     const Flight<F> flight(b_.step, a_);
     const F inverse = reciprocal(oldTicks_), u = clamp(flown_ * inverse, 0, 1), way = flight.easedTime(u);
@@ -68,68 +60,79 @@ class Foothold {
   }
 
  private:
-  // In model space.
-  Vec3<F> predictRoot() const {
-    const F time = ticks_ * q_.dt;
+  // Rungs from the root toward the predicted landing: that and the root at touchdown, relative to the body
+  // along world axes, and the ways from a rung to the next and from a place to the next along it.
+  struct Ladder {
+    Vec3<F> predicted, root, along, across;
+  };
+
+  Ladder ladderOf() const {
+    const F time = ticks_ * q_.dt, stance = a_.cycle - a_.stepTicks * q_.dt;
+    const Vec3<F> tau = predictLanding(b_.home, a_, time, stance);
     Vec3<F> root = Turn<F>(a_.turnRate * time)(b_.root);
     root.z = root.z + a_.surfaceSpeed * time;
-    return root;
+    F ox = tau.x - root.x, oz = tau.z - root.z;
+    const F span = squareRoot(ox * ox + oz * oz), rho = larger(span, b_.reach * 0.1f);
+    const auto below = span < F(1e-6f);
+    ox = select(below, b_.home.x - b_.root.x, ox);
+    oz = select(below, b_.home.z - b_.root.z, oz);
+    const F size = rho * rsqrt(larger(ox * ox + oz * oz, 1e-20f));
+    return {r_ * tau, r_ * root, (r_.x * ox + r_.z * oz) * (size * (1 / 3.0f)),
+            (r_.z * ox - r_.x * oz) * (size * (1 / 6.0f))};
   }
 
-  // The ladder of rungs from the root toward the predicted landing.
-  Choice<F> collect() const {
-    const F stance = a_.cycle - a_.stepTicks * q_.dt;
-    const Vec3<F> tau = predictLanding(b_.home, a_, ticks_ * q_.dt, stance), rootThen = predictRoot();
-    F ox = tau.x - rootThen.x, oz = tau.z - rootThen.z;
-    const F span = squareRoot(ox * ox + oz * oz);
-    const auto above = span < F(1e-6f);
-    ox = select(above, b_.home.x - b_.root.x, ox);
-    oz = select(above, b_.home.z - b_.root.z, oz);
-    const F inverse = rsqrt(larger(ox * ox + oz * oz, 1e-20f)), rho = larger(span, b_.reach * 0.1f);
-    ox = ox * inverse;
-    oz = oz * inverse;
-    // What turns a rung and a place on it into a way along world axes.
-    const Vec3<F> along = (r_.x * ox + r_.z * oz) * (rho * (1 / 3.0f)),
-                  across = (r_.z * ox - r_.x * oz) * (rho * (1 / 6.0f));
-    const Vec3<F> predicted = r_ * tau, root = r_ * rootThen;
-    Choice<F> choice;
-    choice.point = choice.nearest = predicted;
+  // visit(point, ground there, distance from the root) for each candidate, in order.
+  template <class Visit>
+  void eachCandidate(const Ladder& ladder, const Visit& visit) const {
     for (int k = 1; k <= 4; ++k) {
-      for (int j = -k; j <= k; ++j)
-        consider(predicted + along * float(k - 3) + across * float(j), predicted, root, choice);
+      for (int j = -k; j <= k; ++j) {
+        Vec3<F> point = ladder.predicted + ladder.along * float(k - 3) + ladder.across * float(j);
+        const Ground<F> ground = groundAt(world_.terrain, x_ + point.x, z_ + point.z);
+        point.y = ground.height - a_.local.y;
+        visit(point, ground, length(point - ladder.root));
+      }
     }
-    return choice;
   }
 
-  void consider(Vec3<F> point, const Vec3<F>& predicted, const Vec3<F>& root, Choice<F>& choice) const {
-    const Ground<F> g = groundAt(world_.terrain, x_ + point.x, z_ + point.z);
-    point.y = g.height - a_.local.y;
-    const F distance = length(point - root);
-    const F least = b_.reach * q_.reachLeast, most = b_.reach * q_.reachMost;
+  // Where any candidate fits.
+  Mask<F> findBest(const Ladder& ladder, Vec3<F>& best) const {
+    const F least = b_.reach * q_.reachLeast, most = b_.reach * q_.reachMost,
+            inverseReach = reciprocal(b_.reach);
     const Vec3<F>& up = r_.y;
-    const F aligned =
-        (up.y - g.slopeX * up.x - g.slopeZ * up.z) * rsqrt(g.slopeX * g.slopeX + g.slopeZ * g.slopeZ + 1.0f);
-    const auto fits = (least <= distance) & (distance <= most) & (F(q_.slopeLeast) <= aligned);
-    const Vec3<F> miss = point - predicted;
-    F score = dot(miss, miss) * (1 / (q_.legLength * q_.legLength));
-    if (q_.nearestOnly == 0) {
-      const F strain = larger(F(0), distance * reciprocal(b_.reach) - q_.reachComfort);
-      score = score + (F(1) - aligned) * q_.slopeWeight + strain * strain * q_.reachWeight;
-    }
-    const auto better = fits & (score < choice.score);
-    choice.score = select(better, score, choice.score);
-    choice.point = select(better, point, choice.point);
-    const F misfit = larger(larger(least - distance, distance - most), 0);
-    const auto nearer = misfit < choice.misfit;
-    choice.misfit = select(nearer, misfit, choice.misfit);
-    choice.nearest = select(nearer, point, choice.nearest);
+    F lowest(3e38f);
+    best = ladder.predicted;
+    eachCandidate(ladder, [&](const Vec3<F>& point, const Ground<F>& g, const F& distance) {
+      const F steep = g.slopeX * g.slopeX + g.slopeZ * g.slopeZ + 1.0f;
+      const F aligned = (up.y - g.slopeX * up.x - g.slopeZ * up.z) * rsqrt(steep);
+      const auto fits = (least <= distance) & (distance <= most) & (F(q_.slopeLeast) <= aligned);
+      const Vec3<F> miss = point - ladder.predicted;
+      F score = dot(miss, miss) * (1 / (q_.legLength * q_.legLength));
+      if (q_.nearestOnly == 0) {
+        const F strain = larger(F(0), distance * inverseReach - q_.reachComfort);
+        score = score + (F(1) - aligned) * q_.slopeWeight + strain * strain * q_.reachWeight;
+      }
+      const auto better = fits & (score < lowest);
+      lowest = select(better, score, lowest);
+      best = select(better, point, best);
+    });
+    return lowest < F(3e38f);
   }
 
-  // A last resort: moved along its line from the root.
-  Vec3<F> ontoRange(const Vec3<F>& point, const Vec3<F>& root) const {
-    const Vec3<F> d = point - root;
-    const F far = length(d), range = larger(smaller(far, b_.reach * q_.reachMost), b_.reach * q_.reachLeast);
-    return root + d * (range * reciprocal(larger(far, 1e-6f)));
+  // Of candidates that do not fit the one nearest to the range of the leg, moved into that along its line
+  // from the root.
+  Vec3<F> lastResort(const Ladder& ladder) const {
+    const F least = b_.reach * q_.reachLeast, most = b_.reach * q_.reachMost;
+    F misfit(3e38f), far(1);
+    Vec3<F> nearest = ladder.predicted;
+    eachCandidate(ladder, [&](const Vec3<F>& point, const Ground<F>&, const F& distance) {
+      const F off = larger(larger(least - distance, distance - most), 0);
+      const auto nearer = off < misfit;
+      misfit = select(nearer, off, misfit);
+      far = select(nearer, distance, far);
+      nearest = select(nearer, point, nearest);
+    });
+    const F range = larger(smaller(far, most), least);
+    return ladder.root + (nearest - ladder.root) * (range * reciprocal(larger(far, 1e-6f)));
   }
 
   // The shortest lift vector that clears the ground at all places of its lane.

@@ -95,14 +95,14 @@ template <class F, int N>
 void setClamped(const BoneModel& bone, const F& x, const F& y, const F& below, const F& inverseN, int i,
                 Directions<F, N>& to) {
   // Beyond the cone |(x, y)| / edge is more than what is below.
-  const F s2 = x * x + y * y;
-  const F scale = rsqrt(larger(larger(below * below, s2 * bone.inverseEdgeSquared), 1e-12f));
+  const F s2 = x * x + y * y, scale = rsqrt(larger(below * below, s2 * bone.inverseEdgeSquared));
+  const F k = below * inverseN;
   to.x[i] = x * scale;
   to.y[i] = y * scale;
-  to.k[i] = larger(below * inverseN, bone.leastK);
-  // Straight against the rest direction every way is as good.
-  const auto against = (s2 * (inverseN * inverseN) < F(1e-6f)) & (below * inverseN < F(1));
-  if (!any(against)) return;
+  to.k[i] = larger(k, bone.leastK);
+  // Straight against the rest direction, k nearly 0, every way is as good.
+  if (!any(k < F(1e-6f))) return;
+  const auto against = (s2 * (inverseN * inverseN) < F(1e-6f)) & (k < F(1));
   to.x[i] = select(against, F(bone.edge), to.x[i]);
   to.y[i] = select(against, F(0), to.y[i]);
 }
@@ -207,7 +207,7 @@ template <class F, int N>
   Vec3<F> e = target - tip;
   const F e2 = dot(e, e), mu = (smaller(e2, 0.25f) * 0.25f + 1e-5f) * damping;
   Symmetric<F> m{mu, F(0), F(0), mu, F(0), mu};
-  e = e * smaller(F(1), rsqrt(larger(e2, 1e-20f)) * 0.5f);
+  if (any(F(0.25f) < e2)) e = e * smaller(F(1), rsqrt(larger(e2, 1e-20f)) * 0.5f);
   walk<N>(leg, d, [&](int i, const Mat3<F>& a, const Vec3<F>& p) {
     // What the bone turns about as its direction goes the ways of X and of Y.
     const Vec3<F> aboutX = a.y - a.z * d.y[i], aboutY = a.z * d.x[i] - a.x, r = tip - p;

@@ -21,7 +21,7 @@ BoneModel boneOf(const float* records) {
   bone.carry = {x, cross(z, x), z};
   bone.length = record(5)[3];
   bone.edge = record(6)[3];
-  bone.inverseEdgeSquared = 1 / (bone.edge * bone.edge);
+  bone.inverseEdgeSquared = 1 / std::max(bone.edge * bone.edge, 1e-20f);
   bone.leastK = 2 / (1 + bone.edge * bone.edge);
   return bone;
 }

@@ -137,6 +137,15 @@ TEST_P(CpuCrowdTest, WalksOnFourLegs) {
   expectSamples(results);
 }
 
+TEST_P(CpuCrowdTest, WalksOnStiffLegs) {
+  Rig rig = spiderRig();
+  rig.legs[2].bones[1].coneHalfAngle = 0;
+  rig.legs[5].bones[2].coneHalfAngle = 0.1f;
+  Start start(device(), rollingGround(), 16, 60, rig);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  expectAllPass(replay(opponent, start, 60));
+}
+
 TEST_P(CpuCrowdTest, WalksOnLegsOfUnequalLength) {
   Rig rig = spiderRig();
   Leg& leg = rig.legs[1];
