@@ -10,7 +10,8 @@
 #include "validation/replay.h"
 
 // The opponent of the engine's crowd: the same tick (docs/stages.md) in single precision on the CPU, as fast
-// as can be written. validation::Replay judges it as it judges a device.
+// as can be written. validation::Replay judges it as it judges a device; baseline::buildDescription() says
+// how it was compiled.
 namespace skitter::cpu_crowd {
 
 // Agents to an instruction. Both are the same source: what it does to a register of floats it does to one.
@@ -33,8 +34,8 @@ struct StageSeconds {
 class CpuCrowd {
  public:
   // Copies what it needs of `facts` and `start`, a state read back from a device (or from another CpuCrowd).
-  // Throws Error(input) where the records' sizes do not fit the rig, for a controller other than adaptive,
-  // and for an ik plan other than the active set's.
+  // Throws Error(input) where the records' sizes do not fit the rig, for a controller other than adaptive and
+  // clip, and of adaptive for an ik plan other than the active set's.
   CpuCrowd(const validation::HerdFacts& facts, const HerdState& start, const Options& options);
   ~CpuCrowd();
   CpuCrowd(const CpuCrowd&) = delete;

@@ -3,9 +3,9 @@
 #include "bench/cpu_crowd/layout.h"
 #include "bench/cpu_crowd/rig.h"
 
-// docs/stages.md, ik, for cones, in stereographic directions: no sine, no cosine, no square root where a
-// direction is turned. Only the columns need the joints' frames; where the tip alone is asked for, it is
-// carried from foot to root as one vector, a third of the work.
+// docs/stages.md, ik, for cones. Directions stay stereographic, so no step needs a sine or a cosine. Only the
+// columns need the bones' frames; where the tip alone is asked for it is carried from foot to root as one
+// vector, a third of the work.
 namespace skitter::cpu_crowd {
 
 template <int N>

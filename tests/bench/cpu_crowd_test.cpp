@@ -1,6 +1,8 @@
 // The CPU opponent before the judge that the devices stand before: lock-step replay against the reference.
 #include "bench/cpu_crowd/crowd.h"
 
+#include <limits>
+
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
 #include "skitter/error.h"
@@ -17,10 +19,7 @@ using cpu_crowd::Width;
 // A herd that a device has walked for some ticks.
 struct Start {
   Start(Device& device, const Heightfield& ground, uint32_t agents, int ticks, float speed = 1)
-      : terrain(ground), crowd(device, terrain, sceneOf(agents, speed)) {
-    simulate(device, crowd, ticks);
-    state = crowd.download(0);
-  }
+      : Start(device, ground, sceneOf(agents, speed), ticks) {}
   Start(Device& device, const Heightfield& ground, const Scene& scene, int ticks)
       : terrain(ground), crowd(device, terrain, scene) {
     simulate(device, crowd, ticks);
@@ -216,6 +215,27 @@ TEST_P(CpuCrowdTest, ThreadsChangeNoBit) {
   EXPECT_EQ(a.chain, b.chain);
   EXPECT_EQ(a.pose, b.pose);
   EXPECT_NE(a.body, start.state.body);
+}
+
+TEST_P(CpuCrowdTest, ALostAgentLeavesItsBlockAlone) {
+  Start start(device(), rollingGround(), 17, 60);
+  CpuCrowd well(start.facts(), start.state, options());
+  HerdState lost = start.state;
+  lost.step[3 * 8 * 16] = std::numeric_limits<float>::quiet_NaN();  // of agent 3, where its first leg stands
+  CpuCrowd ill(start.facts(), lost, options());
+  for (uint64_t n = start.crowd.tick() + 1, i = 0; i < 40; ++n, ++i) {
+    well.tick(n);
+    ill.tick(n);
+  }
+  const HerdState a = well.state(), b = ill.state();
+  for (size_t agent = 0; agent < 17; ++agent) {
+    const size_t floats = a.chain.size() / 17;
+    const auto chain = [&](const HerdState& state) {
+      return std::vector<float>(state.chain.begin() + ptrdiff_t(agent * floats),
+                                state.chain.begin() + ptrdiff_t((agent + 1) * floats));
+    };
+    EXPECT_EQ(agent != 3, chain(a) == chain(b)) << agent;
+  }
 }
 
 TEST_P(CpuCrowdTest, ABrokenOneIsRefused) {
