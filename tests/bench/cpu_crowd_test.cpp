@@ -1,6 +1,7 @@
 // The CPU opponent before the judge that the devices stand before: lock-step replay against the reference.
 #include "bench/cpu_crowd/crowd.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "crowd/herd.h"
@@ -123,7 +124,20 @@ TEST_P(CpuCrowdTest, SolvesLegsThatAreFarOff) {
   Start start(device(), rollingGround(), 17, 30);
   std::vector<float>& chain = start.state.chain;
   for (size_t leg = 0; leg < chain.size() / 16; leg += 3)
-    for (size_t i = 0; i < 8; ++i) chain[16 * leg + i] = 0;
+    std::fill_n(chain.begin() + ptrdiff_t(16 * leg), 8, 0.0f);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  expectAllPass(replay(opponent, start, 5));
+}
+
+// At rest in one line from root to home, which is nearer than they reach.
+TEST_P(CpuCrowdTest, BendsStraightLegs) {
+  Rig rig = spiderRig();
+  for (Leg& leg : rig.legs)
+    for (Bone& bone : leg.bones) bone.direction = glm::normalize(leg.home - leg.root());
+  Start start(device(), rollingGround(), 17, 30, rig);
+  std::vector<float>& chain = start.state.chain;
+  for (size_t leg = 0; leg < chain.size() / 16; leg += 3)
+    std::fill_n(chain.begin() + ptrdiff_t(16 * leg), 8, 0.0f);
   CpuCrowd opponent(start.facts(), start.state, options());
   expectAllPass(replay(opponent, start, 5));
 }
