@@ -6,6 +6,7 @@
 
 #include "crowd/herd.h"
 #include "crowd/page.h"
+#include "crowd/spawn.h"
 #include "crowd/simulation.h"
 #include "gpu/transfer.h"
 #include "skitter/error.h"
@@ -118,6 +119,26 @@ TEST_F(InputTest, MemoryIsWhatWasForetold) {
       EXPECT_EQ(bytesOf(crowd, "metric"), options.measure ? 23 * 112u : 0);
       EXPECT_EQ(bytesOf(crowd, "footfall"), options.footfalls > 0 ? pages * 11 * 32 : 0);
     }
+}
+
+// As many as are spread over threads, and in runs that one thread writes.
+TEST_F(InputTest, SpawningIsTheSameOnAnyNumberOfThreads) {
+  constexpr uint32_t agents = 9000, run = 1500;
+  const Scene scene = sceneOf(agents);
+  const Heightfield ground = rollingGround();
+  const Crowd crowd(device(), ground, sceneOf(1));
+  const crowd::Spawner spawner(scene.herds[0], crowd.impl().herds[0], ground, scene.seed);
+  const auto records = [](std::vector<float>& floats, uint32_t first, uint32_t count) {
+    const auto part = [&](size_t at, size_t each) {
+      return std::span(floats).subspan(agents * at + first * each, count * each);
+    };
+    return crowd::SpawnRecords{part(0, 8),    part(8, 16),    part(24, 8), part(32, 128),
+                               part(160, 32), part(192, 128), {}};
+  };
+  std::vector<float> whole(agents * 320), runs(agents * 320);
+  spawner.write(0, agents, records(whole, 0, agents));
+  for (uint32_t first = 0; first < agents; first += run) spawner.write(first, run, records(runs, first, run));
+  EXPECT_EQ(whole, runs);
 }
 
 // Of `whole`, agent by agent, what a download of the sample must be.
