@@ -17,6 +17,7 @@
 #include "crowd/tuning.h"
 #include "crowd/watch.h"
 #include "gpu/barrier.h"
+#include "gpu/choice.h"
 #include "gpu/context.h"
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
@@ -263,10 +264,10 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     herd.stages = crowd::stagesOf(herd.controller, options);
     needed += crowd::bytesOf(crowd, herd, from.agents);
   }
-  if (needed > context.limits().availableBytes)
+  const uint64_t available = gpu::availableBytes(context.physical());
+  if (needed > available)
     throw deviceError(std::to_string(agents) + " agents need " + gibibytes(needed) + ", " +
-                      context.report().name + " has " + gibibytes(context.limits().availableBytes) +
-                      " available");
+                      context.report().name + " has " + gibibytes(available) + " available");
   if (agents > kMostAgents)
     throw inputError(std::to_string(agents) + " agents, expected at most " + std::to_string(kMostAgents));
 

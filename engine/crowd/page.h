@@ -15,7 +15,8 @@ struct PageBuffer {
   const char* name;
   gpu::Buffer Page::*buffer;
   uint64_t bytes;  // of an entry
-  std::span<float> SpawnRecords::*spawned = nullptr;
+  std::span<float> SpawnRecords::*spawned =
+      nullptr;                 // where it is written at first; none: it begins as zeros
   uint32_t agents = 1;         // an entry for so many
   uint64_t most = UINT64_MAX;  // bytes, whatever the number of agents
   gpu::BufferUse use = gpu::BufferUse::records;

@@ -115,7 +115,7 @@ class Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
   // cannot be (an unknown rig or controller, a terrain that reaches beyond 4 km from the origin) and, before
-  // anything of it is made, Error(device) when memory does not suffice (DeviceLimits::availableBytes).
+  // any agent is made, Error(device) when memory does not suffice (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // With rigs that the caller made, one a herd, in place of those that the scene names.
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,
