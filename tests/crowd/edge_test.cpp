@@ -6,8 +6,8 @@
 
 #include "crowd/herd.h"
 #include "crowd/page.h"
-#include "crowd/spawn.h"
 #include "crowd/simulation.h"
+#include "crowd/spawn.h"
 #include "gpu/transfer.h"
 #include "skitter/error.h"
 #include "validation/herd_facts.h"
