@@ -7,6 +7,7 @@
 namespace skitter::reference {
 namespace {
 
+constexpr double chordError = 0.1;        // beyond it chord steps would only stir a chain that cannot arrive
 constexpr double leastDenominator = 0.1;  // of a room's tangent; below it, the limit is too far to matter
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
@@ -128,7 +129,14 @@ void activeSet(const ActiveSet& how, const glm::dvec3& target, Posture& posture,
   const Pose old = posture.pose();
   applySteps(joints, posture);
   for (int chord = 0; chord < how.chords; ++chord) {
-    chordStep(joints, inverse * (target - posture.tip()), posture);
+    const glm::dvec3 left = target - posture.tip();
+    const bool far = glm::length(left) > chordError;
+    if (how.ifNear && (far || glm::length(left) <= how.tolerance)) break;
+    const Pose without = posture.pose();
+    chordStep(joints, inverse * left, posture);
+    if (!how.ifNear || glm::length(target - posture.tip()) < glm::length(left)) continue;
+    posture.setPose(without);
+    break;
   }
   const double after = glm::length(target - posture.tip());
   if (after > 1.0001 * before && after > how.tolerance) {

@@ -39,7 +39,7 @@ double shareOf(double tanHalf, double share) { return std::tan(share * std::atan
 Pose pulledToRest(const std::vector<BoneRest>& bones, Pose pose) {
   for (size_t i = 0; i < bones.size(); ++i) {
     const double length = glm::length(pose.swing[i]);
-    if (length > 0) pose.swing[i] *= shareOf(length, 1 - pull) / length;
+    if (length > 0 && bones[i].kind != LimitKind::free) pose.swing[i] *= shareOf(length, 1 - pull) / length;
     pose.twist[i] = shareOf(pose.twist[i], 1 - pull);
   }
   return clamped(bones, pose);

@@ -14,7 +14,8 @@ using IkRandom = std::mt19937_64;
 Pose randomLegalPose(const std::vector<BoneRest>& bones, IkRandom& random);
 
 // Where a limited chain starts anew: at most `count` legal poses whose tips lie far apart, picked out of 1024
-// random ones pulled 30 % to rest. Each is picked farthest from the ones before it and from rest.
+// random ones pulled 30 % to rest, but for free bones. Each is picked farthest from the ones before it and
+// from rest.
 std::vector<Pose> makeSeeds(const std::vector<BoneRest>& bones, uint64_t seed, size_t count = 64);
 
 }  // namespace skitter::reference

@@ -18,6 +18,8 @@
 namespace skitter::reference {
 namespace {
 
+constexpr int trackingChords = 3;  // after a step of a solve that continues another
+
 bool isDissertation(IkSolver solver) {
   return solver == IkSolver::dissertationKeep || solver == IkSolver::dissertationEdge;
 }
@@ -62,8 +64,11 @@ void iteratePose(const IkChain& chain, const IkSettings& settings, const glm::dv
   Posture posture(chain.bones, state.pose);
   switch (settings.solver) {
     case IkSolver::activeSet:
-      activeSet({.restPull = settings.restPull, .tolerance = settings.tolerance}, target, posture,
-                state.damping);
+      activeSet({.restPull = settings.restPull,
+                 .tolerance = settings.tolerance,
+                 .chords = settings.continues ? trackingChords : 0,
+                 .ifNear = true},
+                target, posture, state.damping);
       break;
     case IkSolver::ccd:
       ccd(target, posture);

@@ -34,7 +34,7 @@ struct IkSettings {
 // What a solve that continues another one knows of it.
 struct IkMemory {
   int pause = 0;      // solves to come without a restart
-  int nextPause = 1;  // after restarts in vain; doubles up to 32
+  int nextPause = 0;  // after restarts in vain; 0, 1, 2, 4 up to 32
 };
 
 struct IkResult {

@@ -18,6 +18,7 @@ constexpr double poseWeight = 0.1;    // of a seed's distance from the start pos
 constexpr double leapShare = 0.5;     // of the first attempt's error: worth leaving the last solve's pose for
 constexpr int longestPause = 32;      // solves
 constexpr double bendsAway = -1e-3;
+constexpr double cells = 16;  // each way, of the cube from -1 to 1
 
 struct Seed {
   IkState state;
@@ -35,7 +36,7 @@ class Search {
   }
 
   IkResult run(IkMemory& memory) {
-    const IkState* wanted = bendsWrong(origin_) ? nearestSeed() : nullptr;
+    const IkState* wanted = bendsWrong(origin_) ? nearestSeed() : isFarFromRest() ? seedOfCell() : nullptr;
     const IkState& first = wanted ? *wanted : origin_;
     const bool paused = settings_.continues && memory.pause > 0;
     const bool mayRestart = settings_.restarts && !paused && untried();
@@ -74,6 +75,27 @@ class Search {
     Seed* nearest = nullptr;
     for (Seed& seed : seeds_) {
       if (!seed.tried && (!nearest || distance(seed.state) < distance(nearest->state))) nearest = &seed;
+    }
+    if (!nearest) return nullptr;
+    nearest->tried = true;
+    return &nearest->state;
+  }
+
+  bool isFarFromRest() const {
+    return settings_.restarts && !settings_.continues && origin_.error(target_) > settings_.tolerance;
+  }
+
+  // Marks the seed of the target's cell as tried; null where that is the pose at rest.
+  const IkState* seedOfCell() {
+    const glm::dvec3 cell = glm::clamp(glm::floor((target_ + 1.0) * (cells / 2)), 0.0, cells - 1);
+    const glm::dvec3 middle = (cell + 0.5) * (2 / cells) - 1.0;
+    Seed* nearest = nullptr;
+    double least = origin_.error(middle);
+    for (Seed& seed : seeds_) {
+      if (seed.state.error(middle) < least) {
+        nearest = &seed;
+        least = seed.state.error(middle);
+      }
     }
     if (!nearest) return nullptr;
     nearest->tried = true;
@@ -138,7 +160,7 @@ class Search {
       memory = {};
     } else if (restarted) {
       memory.pause = memory.nextPause;
-      memory.nextPause = std::min(2 * memory.nextPause, longestPause);
+      memory.nextPause = std::clamp(2 * memory.nextPause, 1, longestPause);
     } else if (memory.pause > 0) {
       --memory.pause;
     }

@@ -76,7 +76,8 @@ class ActiveSet : private LimitedChain<F, N> {
     Posture<F, N> posture;
     Vec3<F> target;
     F error, damping, iterations;
-    F attempt, slow;  // this attempt's iterations, and how many in a row hardly helped
+    F attempt;  // this attempt's iterations
+    F begun;    // the seed that the first attempt began at, or -1
   };
 
   using LimitedChain<F, N>::LimitedChain;
@@ -84,8 +85,17 @@ class ActiveSet : private LimitedChain<F, N> {
   [[gnu::flatten]] uint64_t start(State& state, size_t chain, size_t count) {
     const auto open = this->startTogether(state.posture, state.target, state.error, chain);
     state.damping = F(1);
-    state.iterations = state.attempt = state.slow = F(0);
-    return bits(open & firstLanes<F>(count));
+    state.iterations = state.attempt = F(0);
+    state.begun = F(-1);
+    const uint64_t waiting = bits(open & firstLanes<F>(count));
+    if (continues()) return waiting;
+    for (uint64_t left = waiting; left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left), seed = this->model_.seedNear(laneOf(state.target, i));
+      if (seed < 0) continue;
+      enter(seed, state, i);
+      lane(state.begun, i) = float(seed);
+    }
+    return waiting;
   }
 
   [[gnu::flatten]] uint64_t step(State& state) const {
@@ -100,9 +110,8 @@ class ActiveSet : private LimitedChain<F, N> {
         select(undone, smaller(F(16) * state.damping, F(4096)), larger(state.damping * F(0.1f), F(1)));
     state.iterations = state.iterations + F(1);
     state.attempt = state.attempt + F(1);
-    state.slow = select(F(0.8f) * before < state.error, state.slow + F(1), F(0));
     return bits((state.error <= tolerance) | (F(float(this->options_.iterations)) <= state.iterations) |
-                (F(2) <= state.slow) | (F(8) <= state.attempt));
+                (F(0.8f) * before < state.error) | (F(8) <= state.attempt));
   }
 
   // An attempt is over: the chain is finished, or begins anew from the next seed.
@@ -294,7 +303,11 @@ class ActiveSet : private LimitedChain<F, N> {
   // Starts the next attempt; false if there is none.
   bool begin(Attempts& attempts, State& state, int i, size_t chain) {
     if (continues() && this->batch_.patience.at(0, chain) > 0) return false;
-    if (attempts.made == 0) measureSeeds(attempts, state, i, chain);
+    if (attempts.made == 0) {
+      measureSeeds(attempts, state, i, chain);
+      const int begun = int(lane(state.begun, i));
+      if (begun >= 0) attempts.distance[begun] = std::numeric_limits<float>::infinity();
+    }
     const int seed = nearest(attempts.distance, this->model_.seeds);
     if (seed < 0) return false;
     // An attempt's last pose is its best one, to the 1e-4 that a step may lose.
@@ -358,13 +371,13 @@ class ActiveSet : private LimitedChain<F, N> {
     for (int b = 0; b < n; ++b) {
       posture.d[b] = directionOf(rows.at(3 * (n + b), seed), rows.at(3 * (n + b) + 1, seed));
       posture.twist[b] = rows.at(3 * (n + b) + 2, seed);
+      posture.joint[b] = {rows.at(3 * b, seed), rows.at(3 * b + 1, seed), rows.at(3 * b + 2, seed)};
     }
-    forward(this->model_, posture);
     copyRows(posture, state.posture, i);
     const Vec3<float> gap = laneOf(state.target, i) - posture.joint[n - 1];
     lane(state.error, i) = length(gap);
     lane(state.damping, i) = 1;
-    lane(state.attempt, i) = lane(state.slow, i) = 0;
+    lane(state.attempt, i) = 0;
   }
 
   static void copyRows(const Posture<float, N>& from, Posture<F, N>& to, int i) {

@@ -148,6 +148,25 @@ void pickSeeds(const Chain& chain, Model& model) {
   }
 }
 
+void fillCells(Model& model) {
+  const auto middle = [](int i) { return (i + 0.5f) * 2 / Model::kCells - 1; };
+  const auto apart = [](const Vec3<float>& a, const Vec3<float>& b) { return dot(a - b, a - b); };
+  const int tip = model.bones - 1;
+  for (int z = 0; z < Model::kCells; ++z)
+    for (int y = 0; y < Model::kCells; ++y)
+      for (int x = 0; x < Model::kCells; ++x) {
+        const Vec3<float> at{middle(x), middle(y), middle(z)};
+        int nearest = -1;
+        float least = apart(at, model.restJoints[tip]);
+        for (int s = 0; s < model.seeds; ++s) {
+          const float distance = apart(at, {model.seedRows.at(3 * tip, s), model.seedRows.at(3 * tip + 1, s),
+                                            model.seedRows.at(3 * tip + 2, s)});
+          if (distance < least) least = distance, nearest = s;
+        }
+        model.seedCells.push_back(int8_t(nearest));
+      }
+}
+
 }  // namespace
 
 Chain bentChain(int bones, const Limit& limit) {
@@ -175,7 +194,10 @@ Model::Model(const Chain& chain) : bones(int(chain.bones.size())) {
     joint = joint + restDirections[i] * (source.length / total);
     restJoints[i] = narrowed(joint);
   }
-  if (limited) pickSeeds(chain, *this);
+  if (limited) {
+    pickSeeds(chain, *this);
+    fillCells(*this);
+  }
 }
 
 Pose randomPose(const Chain& chain, std::mt19937& random, double share) {
@@ -193,7 +215,8 @@ Pose randomPose(const Chain& chain, std::mt19937& random, double share) {
     const double cone = limit.kind == LimitKind::cone ? std::min(double(limit.cone), kFreeLimit) : kFreeLimit;
     const double most = limit.kind == LimitKind::ellipse ? ellipseAngle(limit, hx, hy) : cone;
     // Evenly over the solid angle of the cone.
-    const double theta = share * std::acos(1 - uniform(random, 0, 1) * (1 - std::cos(most)));
+    const double theta = (limit.kind == LimitKind::free ? 1 : share) *
+                         std::acos(1 - uniform(random, 0, 1) * (1 - std::cos(most)));
     pose.x[i] = float(hx * std::tan(theta / 2));
     pose.y[i] = float(hy * std::tan(theta / 2));
     pose.twist[i] = float(std::tan(std::clamp(share * uniform(random, limit.twistLow, limit.twistHigh),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <random>
@@ -72,6 +73,16 @@ struct Model {
   static constexpr int kSeeds = 64;
   int seeds = 0;
   Rows seedRows;
+  // Of the cells of the cube from -1 to 1, x first, kCells each way: the seed whose tip is nearest to the
+  // cell's middle, or -1 where the tip at rest is nearer.
+  static constexpr int kCells = 16;
+  std::vector<int8_t> seedCells;
+
+  // Where a cold solve of a target begins: a seed, or -1 for rest.
+  int seedNear(const Vec3<float>& target) const {
+    const auto cell = [](float x) { return int(std::clamp((x + 1) * (kCells / 2), 0.0f, kCells - 1.0f)); };
+    return seedCells[cell(target.x) + kCells * (cell(target.y) + kCells * cell(target.z))];
+  }
 
   Model() = default;
   // Throws std::invalid_argument for what docs/ik.md refuses.

@@ -32,6 +32,12 @@ bool isPositional(const Chain& chain, Solver solver) {
   return chain.isFree() || solver == Solver::dissertationKeep || solver == Solver::dissertationEdge;
 }
 
+template <class Kind>
+bool any(const Chain& chain) {
+  return std::any_of(chain.bones.begin(), chain.bones.end(),
+                     [](const Bone& bone) { return std::holds_alternative<Kind>(bone.limit); });
+}
+
 void checkSolver(const Chain& chain, Solver solver) {
   const auto refuse = [&](const char* expected) {
     throw inputError(fmt::format("the solver {} takes {}", nameOf(solver), expected));
@@ -63,7 +69,7 @@ struct Page {
 };
 
 std::vector<glm::vec4> unpausedReports(uint32_t chains) {
-  return std::vector<glm::vec4>(chains, {0, 0, shared::STOPS * shared::PAUSES * shared::FIRST_PAUSE, 1});
+  return std::vector<glm::vec4>(chains, {0, 0, 0, 1});
 }
 
 // The inverse of a base's rotation, stored xyzw.
@@ -110,6 +116,7 @@ struct Batch::Impl {
   }
   gpu::ShaderCode code() const;
   int quickSteps() const;
+  int chords(int pass) const;
   gpu::Kernel makeKernel(int pass) const;
   void makePages();
   void bind(Page&);
@@ -156,6 +163,8 @@ Batch::Impl::Impl(Device& device, const Chain& of, uint32_t count, const Options
     const auto poses = seedPoses(skeleton, chain.pole, shared::SEEDS_MOST);
     seedRecord = seedRecords(skeleton, poses);
     constants.seeds = static_cast<uint32_t>(poses.size());
+    const std::vector<float> cells = seedCells(skeleton, poses);
+    seedRecord.insert(seedRecord.end(), cells.begin(), cells.end());
   }
   seeds = gpu::Buffer(*context, seedRecord.size() * sizeof(float), "ik seeds");
   gpu::upload(*context, seeds, seedRecord);
@@ -178,7 +187,16 @@ gpu::ShaderCode Batch::Impl::code() const {
 int Batch::Impl::quickSteps() const {
   const bool tracks = options.start == Start::previous;
   if (positional) return tracks ? 2 : 4;
-  return tracks ? 1 : 5;
+  if (tracks) return 1;
+  return any<Free>(chain) ? 4 : 3;
+}
+
+// After a step of a solve that continues another. A step hardly ever leaves a chain of balls where it needs
+// one.
+int Batch::Impl::chords(int pass) const {
+  if (options.start != Start::previous) return 0;
+  if (pass != shared::PASS_QUICK) return shared::CHORDS_MOST;
+  return any<Hinge>(chain) ? 1 : 0;
 }
 
 gpu::Kernel Batch::Impl::makeKernel(int pass) const {
@@ -209,6 +227,7 @@ gpu::Kernel Batch::Impl::makeKernel(int pass) const {
                     {CONSTANT_PULL, solver == Solver::activeSet && options.restPull > 0},
                     {CONSTANT_PASS, pass},
                     {CONSTANT_STEPS, pass == PASS_QUICK ? quickSteps() : 0},
+                    {CONSTANT_CHORDS, chords(pass)},
                     {CONSTANT_PARALLEL, parallelWord(skeleton)},
                     {CONSTANT_PADDED, skeleton.isPadded()}};
   return {*context, info};
@@ -397,7 +416,10 @@ void Batch::setStates(std::span<const glm::vec4> states) {
 }
 
 std::vector<glm::vec4> Batch::downloadSeeds() const {
-  return gpu::download<glm::vec4>(*impl_->context, impl_->seeds);
+  std::vector<glm::vec4> records = gpu::download<glm::vec4>(*impl_->context, impl_->seeds);
+  records.resize(impl_->constants.seeds *
+                 static_cast<size_t>(shared::seedStride(static_cast<int>(impl_->bones), impl_->twists)));
+  return records;
 }
 
 void Batch::record(VkCommandBuffer commandBuffer) const {

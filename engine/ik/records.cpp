@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/ik_batch.h"
 #include "shared/records.h"
 
 namespace skitter::ik {
@@ -100,6 +101,24 @@ std::vector<float> seedRecords(const Skeleton& skeleton, const std::vector<Skele
     for (const glm::dvec3& p : joints) append(records, p, &p == &tip ? own / 2 : 0);
   }
   return records;
+}
+
+std::vector<float> seedCells(const Skeleton& skeleton, const std::vector<Skeleton::Pose>& seeds) {
+  constexpr int n = shared::SEED_CELLS;
+  std::vector<glm::dvec3> tips = {skeleton.place(skeleton.rest()).back()};
+  for (const Skeleton::Pose& pose : seeds) tips.push_back(skeleton.place(pose).back());
+  const auto middle = [](int i) { return (i + 0.5) * 2 / n - 1; };
+  std::vector<float> cells;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const glm::dvec3 at(middle(x), middle(y), middle(z));
+        const auto nearest = std::min_element(tips.begin(), tips.end(), [&](const auto& a, const auto& b) {
+          return glm::dot(a - at, a - at) < glm::dot(b - at, b - at);
+        });
+        cells.push_back(static_cast<float>(nearest - tips.begin()) - 1);
+      }
+  return cells;
 }
 
 }  // namespace skitter::ik

@@ -17,5 +17,7 @@ uint32_t parallelWord(const Skeleton&);
 // Directions and twists, whole vec4.
 void appendPose(const Skeleton&, const Skeleton::Pose&, std::vector<float>& records);
 std::vector<float> seedRecords(const Skeleton&, const std::vector<Skeleton::Pose>&);
+// The cells after the seeds.
+std::vector<float> seedCells(const Skeleton&, const std::vector<Skeleton::Pose>&);
 
 }  // namespace skitter::ik

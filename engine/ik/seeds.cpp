@@ -38,7 +38,7 @@ dvec3 randomDirection(const Limit& limit, Random& random) {
   const double most = greatestAngle(limit, phi);
   // Uniform on the cap.
   const double theta = std::acos(random.within(std::cos(most), 1));
-  return leaning(kPulled * theta, phi);
+  return leaning(std::holds_alternative<Free>(limit) ? theta : kPulled * theta, phi);
 }
 
 double fold(const std::vector<dvec3>& places, const dvec3& pole) {

@@ -18,6 +18,7 @@ layout(constant_id = CONSTANT_REST_LEGAL) const bool REST_LEGAL = false;
 layout(constant_id = CONSTANT_PULL) const bool PULL = false;
 layout(constant_id = CONSTANT_PASS) const int PASS = PASS_WHOLE;
 layout(constant_id = CONSTANT_STEPS) const int STEPS = 0;
+layout(constant_id = CONSTANT_CHORDS) const int CHORDS = 0;
 
 LOAD4_BUFFER(BATCH_RIG, rig);
 LOAD4_BUFFER(BATCH_TARGET, targets);

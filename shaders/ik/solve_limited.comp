@@ -24,7 +24,9 @@ const bool ATTEMPTS_ALONE_IMPROVE = SOLVER == SOLVER_ACTIVE_SET;
 void iterate(Limb limb, vec3 target, bool lost, inout Pose pose, inout float error, inout float damping) {
   if (SOLVER == SOLVER_ACTIVE_SET) {
     float pull = PULL && error < PULL_WITHIN ? constants.restPull : 0.0;
-    activeSet(limb, target, lost, 0, pull, constants.tolerance, pose, error, damping);
+    // What a chord step does not bring there is listed.
+    int which = PASS == PASS_QUICK ? CHORDS_NEAR : CHORDS_BETTER;
+    activeSet(limb, target, lost, CHORDS, which, pull, constants.tolerance, pose, error, damping);
     return;
   }
   if (SOLVER == SOLVER_FABRIK) fabrikIteration(limb, target, pose);
@@ -73,6 +75,13 @@ void advance(Limb limb, vec3 target, bool follows, int most, inout Attempt attem
   attempt.running = attempt.running && !ended && k < most;
 }
 
+// The seed nearest to the target, or -1: rest.
+int seedAt(vec3 target) {
+  ivec3 at = clamp(ivec3(floor((target + 1.0) * (0.5 * float(SEED_CELLS)))), 0, SEED_CELLS - 1);
+  int cell = at.x + SEED_CELLS * (at.y + SEED_CELLS * at.z);
+  return int(LOAD4(seeds, int(constants.seeds) * seedStride(BONES, TWISTS) + cell / 4)[cell & 3]);
+}
+
 // The nearest four, or as many as there are, of the seeds not yet tried, by |tip_s - target|^2 + 0.1 mean |p_s,i - start_i|^2
 // without what all seeds have in common, halved. One look at all seeds costs as much as several steps.
 void findSeeds(vec3 target, vec3 start[BONES], uvec2 untried, out ivec4 queue, out int queued) {
@@ -97,6 +106,18 @@ void findSeeds(vec3 target, vec3 start[BONES], uvec2 untried, out ivec4 queue, o
   }
 }
 
+void loadSeed(int seed, inout Pose pose) {
+  int at = seed * seedStride(BONES, TWISTS);
+  LOAD_SWINGS(pose.swing, seeds, at);
+  LOAD_TWISTS(pose.twist, seeds, at + stateTwists(BONES));
+}
+
+// The set of all seeds without one.
+uvec2 allBut(int seed) {
+  uint bit = 1u << uint(seed & 31);
+  return seed < 32 ? uvec2(~bit, 0xffffffffu) : uvec2(0xffffffffu, ~bit);
+}
+
 void main() {
   int chain = chainHere();
   if (chain >= int(constants.count)) return;
@@ -104,7 +125,7 @@ void main() {
   LOAD_LIMB(limb, rig, 0);
   int at = chain * stateStride(BONES, TWISTS);
   Pose pose;
-  vec2 memory = PREVIOUS ? LOAD4(reports, chain).zw : vec2(STOPS * PAUSES * FIRST_PAUSE, 1.0);
+  vec2 memory = PREVIOUS ? LOAD4(reports, chain).zw : vec2(0.0, 1.0);
   float pauses = floor(memory.x / STOPS);
   float nextPause = floor(pauses / PAUSES), pause = pauses - PAUSES * nextPause;
   if (PREVIOUS) {
@@ -143,15 +164,25 @@ void main() {
   ivec4 queue = ivec4(0);  // the nearest seeds of those
   int queued = 0;
   bool first = true, inVain = false;
+  if (!PREVIOUS && PASS != PASS_WHOLE) {
+    int nearest = seedAt(target);
+    bool seeded = nearest >= 0 && error > constants.tolerance && !folded;
+    Pose seed;
+    loadSeed(max(nearest, 0), seed);
+    copyIf(seeded, pose, seed);
+    forwardKinematics(limb, pose);
+    error = distance(target, pose.tip);
+    untried &= seeded ? allBut(nearest) : untried;
+  }
   // A chain folded to the wrong side begins at a seed.
   bool again = open && folded && follows;
   // The steps that most chains need stand in a row: on a device that masks lanes a loop's body is run once more after
   // the last lane has left it, and what it changes is blended twice.
-  Attempt attempt = Attempt(open && !again, error, 0, 0);
+  Attempt attempt = Attempt(open && !again && (PULL || error > constants.tolerance), error, 0, 0);
   if (PASS == PASS_QUICK) {
     [[unroll]] for (int i = 0; i < STEPS; ++i)
       advance(limb, target, follows, follows ? spent : budget, attempt, pose, best, error, bestError, damping, k);
-    needsMore = needsMore || again || attempt.running || (open && follows && k < budget && error > constants.tolerance);
+    needsMore = needsMore || again || attempt.running || (open && error > constants.tolerance);
   }
   while (PASS != PASS_QUICK && open) {
     while (attempt.running)
@@ -168,11 +199,8 @@ void main() {
       bool seeded = queued > 0 && (k < spent || bestError > 1e29);
       queue = queue.yzww;
       queued = max(queued - 1, 0);
-      uint bit = 1u << uint(nearest & 31);
-      untried &= nearest < 32 ? uvec2(~bit, 0xffffffffu) : uvec2(0xffffffffu, ~bit);
-      int seedAt = nearest * seedStride(BONES, TWISTS);
-      LOAD_SWINGS(pose.swing, seeds, seedAt);
-      LOAD_TWISTS(pose.twist, seeds, seedAt + stateTwists(BONES));
+      untried &= allBut(nearest);
+      loadSeed(nearest, pose);
       // No more attempts: the best pose so far has what is left.
       copyIf(!seeded, pose, best);
       bestError = seeded ? bestError : 1e30;
@@ -203,7 +231,7 @@ void main() {
     // After attempts in vain, a pause: longer each time, so that a target out of reach costs little.
     bool paused = inVain && !arrived && !jumped && worth < 1.0;
     pause = paused ? nextPause : max(pause - 1.0, 0.0);
-    nextPause = arrived || jumped ? FIRST_PAUSE : (paused ? min(2.0 * nextPause, LONGEST_PAUSE) : nextPause);
+    nextPause = arrived || jumped ? 0.0 : (paused ? clamp(2.0 * nextPause, 1.0, LONGEST_PAUSE) : nextPause);
     STORE_SWINGS(statesOut, at, pose.swing);
     STORE_TWISTS(statesOut, at + stateTwists(BONES), pose.twist);
   }

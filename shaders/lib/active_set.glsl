@@ -62,10 +62,17 @@ void hold(float x, float z, vec2 room, vec3 column, inout float end, inout float
   free = held ? 0.0 : free;
 }
 
-// From `pose`, whose forward kinematics are done, one step and `chords` chord steps. On return `pose` and `error`
-// are the new ones if they are better. A `lost` target, one that is not finite, keeps the pose to the bit.
-void activeSet(Limb limb, vec3 target, bool lost, int chords, float restPull, float tolerance, inout Pose pose,
-               inout float error, inout float damping) {
+// Which chord steps are made: all; those from near the target but not within the tolerance; of these, up to the first
+// that leads away.
+const int CHORDS_ALL = 0;
+const int CHORDS_NEAR = 1;
+const int CHORDS_BETTER = 2;
+const float NEAR = 0.1;
+
+// From `pose`, whose forward kinematics are done, one step and at most `chords` chord steps. On return `pose` and
+// `error` are the new ones if they are better. A `lost` target, one that is not finite, keeps the pose to the bit.
+void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float restPull, float tolerance,
+               inout Pose pose, inout float error, inout float damping) {
   Columns c;
   columnsOf(limb, pose, pose.tip, c);
   vec2 pull[BONES], x[BONES];
@@ -107,19 +114,25 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, float restPull, fl
     }
   }
   forwardKinematics(limb, trial);
+  bool going = true;
   for (int chord = 0; chord < chords; ++chord) {
-    lambda = times(inverse, target - trial.tip);
+    e = target - trial.tip;
+    float left = length(e);
+    lambda = times(inverse, which == CHORDS_ALL || (left > tolerance && left <= NEAR) ? e : vec3(0.0));
+    Pose next;
     for (int i = 0; i < BONES; ++i) {
       vec2 more = stepOf(c, i, lambda);
       x[i] += more - (free[i] > 0.0 ? 0.0 : dot(way[i].along, more)) * way[i].along;
-      trial.swing[i] = turned(limb, i, pose.swing[i], x[i]);
+      next.swing[i] = turned(limb, i, pose.swing[i], x[i]);
+      next.twist[i] = pose.twist[i];
       if (isKind(i, LIMIT_TWIST)) {
         twist[i] += twistFree[i] * dot(c.twist[i], lambda);
-        trial.twist[i] = pose.twist[i];
-        turnTwist(limb, i, twist[i], trial.twist[i]);
+        turnTwist(limb, i, twist[i], next.twist[i]);
       }
     }
-    forwardKinematics(limb, trial);
+    forwardKinematics(limb, next);
+    going = which != CHORDS_BETTER || (going && distance(target, next.tip) < left);
+    keepIf(going, trial, next);
   }
   float after = distance(target, trial.tip);
   // At rest out of reach, rounding alone must not decide; an error that is not a number is no better.

@@ -57,6 +57,7 @@ BATCH int CONSTANT_PASS = 16;
 BATCH int CONSTANT_PADDED = 17;    // a bone may have no length
 BATCH int CONSTANT_STEPS = 18;     // made in a row, before any in a loop
 BATCH int CONSTANT_PARALLEL = 19;  // a bit a bone: a hinge about the x axis of the bone before
+BATCH int CONSTANT_CHORDS = 20;    // chord steps after a step, at most
 
 // One dispatch solves all, or a quick one does what most chains need and lists those that need more, which a
 // second one then solves from the start: on devices that mask lanes, rare code is paid for by all.
@@ -76,14 +77,17 @@ BATCH_FUNCTION int stateStride(int bones, bool twists) {
 // last one
 // (|p_n|^2 + 0.1 mean |p_i|^2) / 2.
 BATCH_FUNCTION int seedStride(int bones, bool twists) { return stateStride(bones, twists) + bones; }
+// After all seeds, a float a cell of the cube from -1 to 1, x first: the seed whose tip is nearest to its
+// middle, or -1: rest.
+BATCH int SEED_CELLS = 16;  // each way
 // report: error, iterations, stop + STOPS * (solves to come without restarts + PAUSES * the next pause),
 // damping.
 BATCH float STOPS = 8.0;
 BATCH float PAUSES = 64.0;
-BATCH float FIRST_PAUSE = 1.0;
 BATCH float LONGEST_PAUSE = 32.0;
 BATCH int BASE_STRIDE = 2;
 BATCH int SEEDS_MOST = 64;
+BATCH int CHORDS_MOST = 3;
 
 struct BatchConstants {
 #ifdef __cplusplus

@@ -117,7 +117,7 @@ void main() {
   }
   if (POLISH_ITERATIONS > 0) {
     float pull = POLISH_ITERATIONS > 1 && error < parameters.pullError ? parameters.restPull : 0.0;
-    activeSet(limb, target, lost, POLISH_ITERATIONS - 1, pull, parameters.ikTolerance, pose, error, damping);
+    activeSet(limb, target, lost, POLISH_ITERATIONS - 1, CHORDS_ALL, pull, parameters.ikTolerance, pose, error, damping);
   }
 
   STORE_SWINGS(chainsOut, at, pose.swing);
