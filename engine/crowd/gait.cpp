@@ -19,7 +19,7 @@ Stage gaitStage() {
            {BINDING_RIG, load4},
            {BINDING_BODY, load4},
            {BINDING_STEP, load4},
-           {BINDING_CHAIN, load4},
+           {BINDING_ERROR, load4},
            {BINDING_GAIT, load4},
            {BINDING_GAIT_OUT, store},
            {BINDING_LIST, store},

@@ -21,6 +21,7 @@ Stage ikStage() {
            {BINDING_FOOT, load4},
            {BINDING_CHAIN, load4},
            {BINDING_CHAIN_OUT, store},
+           {BINDING_ERROR_OUT, store},
            {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::legs,

@@ -53,6 +53,9 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
     case BINDING_CHAIN:
     case BINDING_CHAIN_OUT:
       return {binding, &page.chain};
+    case BINDING_ERROR:
+    case BINDING_ERROR_OUT:
+      return {binding, &page.error};
     case BINDING_POSE:
     case BINDING_POSE_OUT:
       return {binding, &page.pose};
@@ -136,6 +139,7 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
       {"foot", &Page::foot, vec4s(legs, FOOT_STRIDE), &SpawnRecords::foot},
       {"chain", &Page::chain, vec4s(legs, chainStride(rig.maxBones())), &SpawnRecords::chain},
       {"list", &Page::list, legs * sizeof(uint32_t)}};
+  if (!clips) buffers.push_back({"error", &Page::error, vec4s(1, errorStride(rig.legCount()))});
   if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE), &SpawnRecords::play});
   if (planted) {
     buffers.push_back({"start", &Page::start, vec4s(legs, chainStride(rig.maxBones()))});

@@ -60,6 +60,10 @@ SKITTER_CONST int FOOT_STRIDE = 1;
 SKITTER_FUNCTION int chainDirections(int bones) { return (bones + 1) / 2; }
 SKITTER_FUNCTION int chainStride(int bones) { return (bones + 1) / 2 + 2; }
 
+// error, per agent, written by ik: the reach error of each leg (m) once more, four a vec4. Who reads all of an
+// agent's would fetch a cache line a leg for them from its chains.
+SKITTER_FUNCTION int errorStride(int legs) { return (legs + 3) / 4; }
+
 // pose, per agent, written by pose: 1 + legs * bones entries of
 //   [0] R, quaternion xyzw, world from rest
 //   [1] joint position relative to the body's position, world axes, x, y, z; unused

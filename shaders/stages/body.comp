@@ -11,7 +11,7 @@ LOAD4_BUFFER(BINDING_STEER, steers);
 #ifndef BLIND
 LOAD4_BUFFER(BINDING_GAIT, gaits);
 LOAD4_BUFFER(BINDING_STEP, steps);
-LOAD4_BUFFER(BINDING_CHAIN, chains);
+LOAD4_BUFFER(BINDING_ERROR, errors);
 #endif
 LOAD4_BUFFER(BINDING_BODY, bodies);
 STORE4_BUFFER(BINDING_BODY_OUT, bodiesOut);
@@ -47,7 +47,7 @@ void main() {
     vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
     vec3 liftOff = fromTile(s.liftOff, s.tile, body.local, body.tile);
     vec4 root = LOAD4(rig, leg * rigStride(BONES));
-    float error = LOAD4(chains, (agent * LEGS + leg) * chainStride(BONES) + chainDirections(BONES)).w;
+    float error = LOAD4(errors, agent * errorStride(LEGS) + leg / 4)[leg % 4];
     float slow = followFactor(parameters, rotate(body.orientation, root.xyz), landing, root.w, error, velocity);
     follow = u >= 1.0 ? min(follow, slow) : follow;
     addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));

@@ -15,7 +15,7 @@ layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_STEP, steps);
-LOAD4_BUFFER(BINDING_CHAIN, chains);
+LOAD4_BUFFER(BINDING_ERROR, errors);
 LOAD4_BUFFER(BINDING_GAIT, gaits);
 STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
 layout(set = 0, binding = BINDING_LIST, std430) writeonly buffer ListBlock { uint list[]; };
@@ -58,7 +58,7 @@ void main() {
     if (u >= 1.0) {
       float stretch = length(foot - root.xyz) / root.w;
       float off = distance(foot.xz, home.xz);
-      float error = LOAD4(chains, (agent * LEGS + leg) * chainStride(BONES) + chainDirections(BONES)).w;
+      float error = LOAD4(errors, agent * errorStride(LEGS) + leg / 4)[leg % 4];
       bool must = stretch < parameters.rootShare || stretch > parameters.stretchLift ||
                   off > parameters.strayShare * stride.halfStride || error > parameters.errorLift * root.w;
       bool far = off > (REACH != 0 ? REACH_SHARE : parameters.liftShare) * stride.halfStride;

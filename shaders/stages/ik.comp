@@ -26,6 +26,7 @@ LOAD4_BUFFER(BINDING_START, chains);
 STORE4_BUFFER(BINDING_FIX_OUT, fixesOut);
 #else
 LOAD4_BUFFER(BINDING_CHAIN, chains);
+layout(set = 0, binding = BINDING_ERROR_OUT, std430) writeonly buffer ErrorBlock { float errorsOut[]; };
 #endif
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
@@ -131,5 +132,7 @@ void main() {
     STORE4(fixesOut, (record * BONES + i) * FIX_STRIDE, q);
     STORE4(fixesOut, (record * BONES + i) * FIX_STRIDE + 1, vec4(move, 0.0));
   }
+#else
+  errorsOut[agent * 4 * errorStride(LEGS) + leg] = error * reach;
 #endif
 }

@@ -170,6 +170,29 @@ TEST_P(NastyTest, ListedLegsAndOthersAreSolvedAlike) {
   }
 }
 
+// What body and gait read of a leg's error is what its chain has, listed or not, padded to whole vec4s or
+// not.
+TEST_P(NastyTest, ErrorsAreThoseOfTheChains) {
+  const gpu::Context& context = device().context();
+  for (const Rig& rig : {spiderRig(), straightLegs({2, 5, 3, 1, 4, 5}, 60)}) {
+    SCOPED_TRACE(rig.name);
+    Crowd crowd(device(), rollingGround(), sceneOf(65), std::vector<Rig>{rig});
+    const crowd::Herd& herd = crowd.impl().herds[0];
+    const crowd::Page& page = herd.pages.at(0);
+    scramble(context, crowd, 1, 1.1f);
+    simulate(device(), crowd, 1);
+    const auto errors = gpu::download<float>(context, page.error),
+               chains = gpu::download<float>(context, page.chain);
+    const auto legs = static_cast<size_t>(herd.legs),
+               stride = static_cast<size_t>(shared::chainStride(herd.bones));
+    const auto entry = static_cast<size_t>(shared::chainDirections(herd.bones));
+    for (size_t record = 0; record < 65 * legs; ++record)
+      ASSERT_EQ(errors[record / legs * ((legs + 3) / 4 * 4) + record % legs],
+                chains[4 * (record * stride + entry) + 3])
+          << record;
+  }
+}
+
 TEST_P(NastyTest, SpidersInAnyState) { expectEveryStage(device(), spiderRig(), 8, 3, 0.02); }
 TEST_P(NastyTest, StraightLegs) {
   expectEveryStage(device(), straightLegs({4, 4, 4, 4, 4, 4}, 70), 4, 1.1f, 0.1);
