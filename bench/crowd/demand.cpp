@@ -14,7 +14,8 @@ namespace {
 // Counters, lists, tables and heights are shared by all, or small.
 bool isRecord(uint32_t binding) {
   using namespace shared;
-  return binding >= BINDING_GOAL && (binding < BINDING_CLIP || binding > BINDING_CLIP_JOINT);
+  return binding >= BINDING_GOAL && binding != BINDING_KEY &&
+         (binding < BINDING_CLIP || binding > BINDING_CLIP_JOINT);
 }
 
 double boundBytes(const Crowd::Impl& crowd, const crowd::Herd& herd, const crowd::Page& page,

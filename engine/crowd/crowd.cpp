@@ -31,7 +31,7 @@ using crowd::Stage;
 using Impl = Crowd::Impl;
 
 // The chains start at rest and must reach their feet before the first tick.
-constexpr int kSettleIterations = 24;
+constexpr int kSettleIterations = 6;
 // World coordinates beyond it are too coarse in float32 for a foot to be placed.
 constexpr float kFarthest = 4096;
 // Above it an agent's index is no exact float, as records have it.
