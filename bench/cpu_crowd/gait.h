@@ -8,6 +8,8 @@
 namespace skitter::cpu_crowd {
 
 inline constexpr int kMostLegs = 24;
+// Of the half stride: out of comfort for legs that step without a rhythm.
+inline constexpr float kReachShare = 0.6f;
 
 // Lanes whose leg lifts, or is aimed anew; a set a leg.
 struct Begun {
@@ -45,7 +47,7 @@ template <class F, int N>
   a.halfStride = halfStride;
 
   const bool reach = q.reachTriggered != 0;
-  const F comfort = halfStride * (reach ? 0.6f : q.liftShare), astray = halfStride * q.strayShare;
+  const F comfort = halfStride * (reach ? kReachShare : q.liftShare), astray = halfStride * q.strayShare;
   const auto settled = F(q.settleTime) <= a.still;
   const Mat3<F> r = matrixOf(a.orientation);
   uint64_t air[kMostLegs], wants[kMostLegs];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/cpu_crowd/rotation.h"
+#include "shared/records.h"
 
 namespace skitter::cpu_crowd {
 
@@ -66,9 +67,8 @@ struct BonePose {
 // A point of a step relative to the agent's position, along world axes.
 template <class F>
 Vec3<F> relative(const Vec3<F>& point, const Step<F>& step, const Agent<F>& agent) {
-  constexpr float kTile = 16;
-  return {point.x + (step.tileX - agent.tileX) * kTile - agent.local.x, point.y - agent.local.y,
-          point.z + (step.tileZ - agent.tileZ) * kTile - agent.local.z};
+  return {point.x + (step.tileX - agent.tileX) * shared::TILE_SIZE - agent.local.x, point.y - agent.local.y,
+          point.z + (step.tileZ - agent.tileZ) * shared::TILE_SIZE - agent.local.z};
 }
 
 }  // namespace skitter::cpu_crowd

@@ -90,6 +90,31 @@ TEST_P(CpuCrowdTest, WalksAsTheReferenceDoes) {
   }
 }
 
+// Agents that turn round, and stop at their target.
+Scene turningScene(const std::string& controller) {
+  Scene scene = sceneOf(16, 1.5f, 3, controller);
+  scene.herds[0].spawn.kind = Spawn::Kind::grid;
+  scene.herds[0].spawn.heading = 3;  // nearly away from the target
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 2}, .speed = 1.5f};
+  return scene;
+}
+
+TEST_P(CpuCrowdTest, TurnsRoundAndStops) {
+  Start start(device(), smallRollingGround(), turningScene("adaptive"), 1);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  expectAllPass(replay(opponent, start, 420));
+}
+
+TEST_P(CpuCrowdTest, StepsWithoutARhythm) {
+  Scene scene = sceneOf(16);
+  scene.herds[0].stepping = "reach";
+  Start start(device(), rollingGround(), scene, 60);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  const auto results = replay(opponent, start, 60);
+  expectAllPass(results);
+  expectSamples(results);
+}
+
 TEST_P(CpuCrowdTest, WalksAThousandAsTheReferenceDoes) {
   Start start(device(), rollingGround(), 1000, 120);
   CpuCrowd opponent(start.facts(), start.state, options(3));
@@ -189,11 +214,7 @@ TEST_P(CpuCrowdTest, PlaysClipsAsTheReferenceDoes) {
 }
 
 TEST_P(CpuCrowdTest, ChangesClipsAsItStops) {
-  Scene scene = sceneOf(16, 1.5f, 3, "clip");
-  scene.herds[0].spawn.kind = Spawn::Kind::grid;
-  scene.herds[0].spawn.heading = 3;  // nearly away from the target
-  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 2}, .speed = 1.5f};
-  Start start(device(), smallRollingGround(), scene, 1);
+  Start start(device(), smallRollingGround(), turningScene("clip"), 1);
   CpuCrowd opponent(start.facts(), start.state, options());
   expectAllButSwingPass(replay(opponent, start, 420));
   CpuCrowd underWay(start.facts(), start.state, options());
