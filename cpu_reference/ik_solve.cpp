@@ -64,7 +64,8 @@ void iteratePose(const IkChain& chain, const IkSettings& settings, const glm::dv
   Posture posture(chain.bones, state.pose);
   switch (settings.solver) {
     case IkSolver::activeSet:
-      activeSet({.restPull = settings.restPull,
+      activeSet({.restPull = state.damping > 1 ? 0 : settings.restPull,
+                 .pullError = 0.05,
                  .tolerance = settings.tolerance,
                  .chords = settings.continues ? trackingChords : 0,
                  .ifNear = true},

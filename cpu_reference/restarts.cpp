@@ -123,7 +123,7 @@ class Search {
     return ends == Ends::whenStill ? settings_.iterations : settings_.iterations - settings_.iterations / 4;
   }
 
-  bool isPulled() const { return settings_.restPull > 0 && iterations_ < 2; }
+  bool isPulled() const { return settings_.restPull > 0 && iterations_ == 0; }
 
   // Iterates from `start`. The best pose of it is the result if its error is below `bound`; whether it is.
   bool attempt(const IkState& start, Ends ends, double bound) {

@@ -17,13 +17,13 @@ const float SLOW = 0.8;          // of the error left by a step: the attempt has
 const float IDLE = 0.999;        // of the error left by a step that hardly moves
 const int IDLE_STEPS = 4;        // in a row: a last attempt has stalled
 const float WORTH_A_JUMP = 0.5;  // of the error, for an attempt to replace a pose that is seen
-const float PULL_WITHIN = 2e-3;
+const float PULL_WITHIN = 0.05;  // and where the last step was not undone
 // The active set never leaves a pose for a worse one.
 const bool ATTEMPTS_ALONE_IMPROVE = SOLVER == SOLVER_ACTIVE_SET;
 
 void iterate(Limb limb, vec3 target, bool lost, inout Pose pose, inout float error, inout float damping) {
   if (SOLVER == SOLVER_ACTIVE_SET) {
-    float pull = PULL && error < PULL_WITHIN ? constants.restPull : 0.0;
+    float pull = PULL && error < PULL_WITHIN && damping <= 1.0 ? constants.restPull : 0.0;
     // What a chord step does not bring there is listed.
     int which = PASS == PASS_QUICK ? CHORDS_NEAR : CHORDS_BETTER;
     activeSet(limb, target, lost, CHORDS, which, pull, constants.tolerance, pose, error, damping);
@@ -70,7 +70,7 @@ void advance(Limb limb, vec3 target, bool follows, int most, inout Attempt attem
   attempt.idle = error > IDLE * attempt.last ? attempt.idle + 1 : 0;
   bool stalled = SOLVER == SOLVER_ACTIVE_SET ? !follows && attempt.idle >= IDLE_STEPS
                                              : abs(attempt.last - error) < leastProgress();
-  bool ended = arrived ? !PULL || k > 1 : stalled || (follows && (error > SLOW * attempt.last || ++attempt.steps >= ATTEMPT));
+  bool ended = arrived || stalled || (follows && (error > SLOW * attempt.last || ++attempt.steps >= ATTEMPT));
   attempt.last = error;
   attempt.running = attempt.running && !ended && k < most;
 }

@@ -100,6 +100,17 @@ TEST_F(LengthTest, LongLimitedChains) {
   compareSolver(device(), "mixed", 16, activeSet, ++seed);
 }
 
+TEST_F(LengthTest, PulledToRest) {
+  uint64_t seed = 700;
+  for (const char* limits : {"hinge", "mixed"}) {
+    Random random(++seed);
+    const ik::Chain chain = randomChain(limits, 5, random);
+    expectParity(
+        randomRun(device(), limits, chain, chains, {.start = ik::Start::previous, .restPull = 0.05f}, seed),
+        solveTies);
+  }
+}
+
 using StartTest = GpuLoadTest;
 
 TEST_P(StartTest, FromRest) {

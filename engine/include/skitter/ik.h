@@ -112,10 +112,12 @@ struct Options {
   float tolerance = 9e-4f;  // share of the reach: what rounding leaves is then within 1e-3
   uint32_t iterations = 0;  // at most; 0: defaultIterations
   bool restarts = true;     // activeSet: from seed poses, when a limit holds an attempt up
-  float restPull = 0;       // activeSet: share of the angle from rest taken back an iteration once on target
-  bool bases = false;       // each chain has a base of its own that may move; otherwise all are at 0
-  bool rotations = false;   // write the bones' rotations too
-  uint32_t pageChains = 0;  // most chains a page; 0: as many as the device's limits allow
+  // activeSet: share of the angle from rest taken back an iteration near the target. Where solves continue,
+  // 0.02 keeps chains of hinges out of dead ends.
+  float restPull = 0;
+  bool bases = false;                // each chain has a base of its own that may move; otherwise all are at 0
+  bool rotations = false;            // write the bones' rotations too
+  uint32_t pageChains = 0;           // most chains a page; 0: as many as the device's limits allow
   std::vector<Shader> shaders = {};  // in place of the built-in ones, for experiments
 };
 // What the engine ships: 20 for free chains, 64 for limited ones, 4 where solves continue.
