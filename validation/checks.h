@@ -34,6 +34,7 @@ void checkPose(const Setting& setting, const Moment& moment, Judge& judge);
 void checkClipPose(const Setting& setting, const Moment& moment, Judge& judge);
 void checkPlantedPose(const Setting& setting, const Moment& moment, Judge& judge);
 void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge);
+void checkFootfall(const Setting& setting, const Moment& moment, Judge& judge);
 
 // `count` records of `stride` vec4 beginning with record `index`.
 inline std::span<const float> records(const std::vector<float>& buffer, size_t index, int stride,

@@ -22,22 +22,30 @@ struct Stage {
 using Stages = std::vector<Stage>;
 
 const Stages& stagesOf(crowd::Controller controller) {
-  static const Stages adaptive = {{"navigate", checkNavigate}, {"body", checkBody},      {"gait", checkGait},
-                                  {"foothold", checkFoothold}, {"swing", checkSwing},    {"ik", checkIk},
-                                  {"pose", checkPose},         {"measure", checkMeasure}};
-  static const Stages loop = {{"navigate", checkNavigate}, {"body", checkBlindBody}, {"gait", checkLoopGait},
-                              {"swing", checkLoopSwing},   {"ik", checkIk},          {"pose", checkPose},
-                              {"measure", checkMeasure}};
+  static const Stages adaptive = {
+      {"navigate", checkNavigate}, {"body", checkBody},       {"gait", checkGait},
+      {"foothold", checkFoothold}, {"swing", checkSwing},     {"ik", checkIk},
+      {"pose", checkPose},         {"measure", checkMeasure}, {"footfall", checkFootfall}};
+  static const Stages loop = {{"navigate", checkNavigate},
+                              {"body", checkBlindBody},
+                              {"gait", checkLoopGait},
+                              {"swing", checkLoopSwing},
+                              {"ik", checkIk},
+                              {"pose", checkPose},
+                              {"measure", checkMeasure},
+                              {"footfall", checkFootfall}};
   static const Stages clip = {{"navigate", checkNavigate}, {"body", checkBlindBody},
                               {"clip", checkClip},         {"swing", checkClipSwing},
-                              {"pose", checkClipPose},     {"measure", checkMeasure}};
+                              {"pose", checkClipPose},     {"measure", checkMeasure},
+                              {"footfall", checkFootfall}};
   static const Stages planted = {{"navigate", checkNavigate}, {"body", checkBlindBody},
                                  {"clip", checkClip},         {"swing", checkPlantedSwing},
                                  {"ik", checkPlantedIk},      {"pose", checkPlantedPose},
-                                 {"measure", checkMeasure}};
+                                 {"measure", checkMeasure},   {"footfall", checkFootfall}};
   static const Stages pose = {{"navigate", checkNavigate}, {"body", checkBlindBody},
                               {"gait", checkPoseGait},     {"swing", checkPoseSwing},
-                              {"pose", checkPose},         {"measure", checkMeasure}};
+                              {"pose", checkPose},         {"measure", checkMeasure},
+                              {"footfall", checkFootfall}};
   switch (controller) {
     case crowd::Controller::loop:
       return loop;
@@ -165,7 +173,7 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
   expectSizes(setting_, before);
   expectSizes(setting_, after);
   const auto left = [&](std::string_view stage) {
-    return (stage == "pose" && after.pose.empty()) ||
+    return (stage == "pose" && after.pose.empty()) || (stage == "footfall" && !after.footfallsKept) ||
            (stage == "measure" && (before.metric.empty() || after.metric.empty()));
   };
   const Stages& stages = stagesOf(setting_.controller);

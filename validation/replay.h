@@ -65,8 +65,8 @@ class Replay {
   Replay& operator=(const Replay&) = delete;
 
   // `n` is the tick that led from `before` to `after`, states of the same agents: all of these are compared.
-  // A state without poses or metrics leaves pose or measure out. Throws Error(input) when a record buffer's
-  // size does not fit the number of agents.
+  // A state without poses, metrics or footfalls leaves pose, measure or footfall out. Throws Error(input)
+  // when a record buffer's size does not fit the number of agents.
   void tick(uint64_t n, const HerdState& before, const HerdState& after);
 
   // The terrain was edited before the next tick (Crowd::editHeights).

@@ -160,7 +160,9 @@ int validate(const ValidateOptions& options) {
   DeviceRequest request;
   request.device = options.scene.device;
   Device device = Device::create(request);
-  Crowd crowd(device, terrain, scene);
+  CrowdOptions crowdOptions;
+  crowdOptions.footfalls = UINT32_MAX;  // all that can be
+  Crowd crowd(device, terrain, scene, crowdOptions);
 
   gpu::CommandRing ring(device.context());
   TickTimes times;

@@ -183,6 +183,7 @@ void settle(Impl& crowd) {
     }
     gpu::computeToCompute(cmd);
     recordStage(crowd, "pose", 0, cmd);
+    recordStage(crowd, "footfall", 0, cmd);  // remembers which feet are in the air
   });
 }
 

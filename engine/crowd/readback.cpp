@@ -69,6 +69,8 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
     append(page.spring, state.spring);
     if (page.watch) appendWatch(*impl_, herd, page, state.watch);
   }
+  state.footfallsKept = impl_->options.footfalls > 0 && droppedFootfalls(herdIndex) == 0;
+  if (state.footfallsKept) state.footfalls = footfalls(herdIndex);
   return state;
 }
 
@@ -79,7 +81,8 @@ std::vector<Footfall> Crowd::footfalls(uint32_t herd) const {
   if (impl_->options.footfalls == 0) return all;
   for (const Page& page : impl_->herds.at(herd).pages) {
     const uint32_t count = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_FOOTFALLS];
-    const std::vector<float> events = gpu::download<float>(context, page.footfall);
+    std::vector<float> events(size_t{std::min(count, page.footfallRoom)} * 4 * shared::FOOTFALL_STRIDE);
+    gpu::downloadBytes(context, page.footfall, std::as_writable_bytes(std::span(events)));
     for (size_t i = 0; i < std::min(count, page.footfallRoom); ++i) {
       const float* e = events.data() + i * 4 * shared::FOOTFALL_STRIDE;
       all.push_back({static_cast<uint32_t>(e[4]), static_cast<uint32_t>(e[5]), static_cast<uint64_t>(e[6]),

@@ -24,7 +24,7 @@ TEST_F(Validate, EveryStageAgreesWithTheReference) {
     EXPECT_TRUE(stage.at("ties").is_number_unsigned());
   }
   EXPECT_EQ(names, (std::vector<std::string>{"navigate", "body", "gait", "foothold", "swing", "ik", "pose",
-                                             "measure"}));
+                                             "measure", "footfall"}));
 }
 
 std::vector<std::string> stagesThatAgree(const nlohmann::json& validation) {
@@ -39,10 +39,10 @@ std::vector<std::string> stagesThatAgree(const nlohmann::json& validation) {
 
 TEST_F(Validate, EveryControllerHasItsStages) {
   const std::map<std::string, std::vector<std::string>> stages = {
-      {"loop", {"navigate", "body", "gait", "swing", "ik", "pose", "measure"}},
-      {"clip", {"navigate", "body", "clip", "swing", "pose", "measure"}},
-      {"planted", {"navigate", "body", "clip", "swing", "ik", "pose", "measure"}},
-      {"pose", {"navigate", "body", "gait", "swing", "pose", "measure"}}};
+      {"loop", {"navigate", "body", "gait", "swing", "ik", "pose", "measure", "footfall"}},
+      {"clip", {"navigate", "body", "clip", "swing", "pose", "measure", "footfall"}},
+      {"planted", {"navigate", "body", "clip", "swing", "ik", "pose", "measure", "footfall"}},
+      {"pose", {"navigate", "body", "gait", "swing", "pose", "measure", "footfall"}}};
   for (const auto& [controller, names] : stages) {
     SCOPED_TRACE(controller);
     const Result result = skitter({"validate", "--controller", controller, "--agents", "8", "--frames", "20",
@@ -60,7 +60,7 @@ TEST_F(Validate, HerdsWithDifferentStagesAreOneTable) {
   EXPECT_EQ(result.code, 0) << result.out << result.err;
   EXPECT_EQ(stagesThatAgree(json("v.json")),
             (std::vector<std::string>{"navigate", "body", "clip", "gait", "foothold", "swing", "ik", "pose",
-                                      "measure"}));
+                                      "measure", "footfall"}));
 }
 
 TEST_F(Validate, AFreeRunStaysTogether) {

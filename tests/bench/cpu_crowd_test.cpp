@@ -56,7 +56,7 @@ std::vector<validation::StageResult> replay(CpuCrowd& opponent, Start& start, in
 
 void expectSamples(const std::vector<validation::StageResult>& results) {
   for (const validation::StageResult& stage : results) {
-    if (stage.name == "measure") continue;
+    if (stage.name == "measure" || stage.name == "footfall") continue;
     EXPECT_GT(stage.samples, 0u) << stage.name;
   }
 }

@@ -29,7 +29,7 @@ class ControllersTest : public GpuTest, public ::testing::WithParamInterface<Cas
 
 TEST_P(ControllersTest, FromAStandingStart) {
   const Heightfield ground = rollingGround();
-  Crowd crowd(device(), ground, sceneOf(40, 1, 1, controller()));
+  Crowd crowd(device(), ground, sceneOf(40, 1, 1, controller()), CrowdOptions{.footfalls = UINT32_MAX});
   expectPass(replay(device(), crowd, ground, 180));
 }
 
@@ -39,13 +39,13 @@ TEST_P(ControllersTest, TurnsRoundAndStops) {
   scene.herds[0].spawn.heading = 3;  // nearly away from the target
   scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 2}, .speed = 1.5f};
   const Heightfield ground = smallRollingGround();
-  Crowd crowd(device(), ground, scene);
+  Crowd crowd(device(), ground, scene, CrowdOptions{.footfalls = UINT32_MAX});
   expectPass(replay(device(), crowd, ground, 420));
 }
 
 TEST_P(ControllersTest, TurnsBackAtTheEdgeAndFast) {
   const Heightfield ground = smallRollingGround();
-  Crowd crowd(device(), ground, sceneOf(16, 3, 7, controller()));
+  Crowd crowd(device(), ground, sceneOf(16, 3, 7, controller()), CrowdOptions{.footfalls = UINT32_MAX});
   simulate(device(), crowd, 420);
   expectPass(replay(device(), crowd, ground, 180));
 }
@@ -53,7 +53,7 @@ TEST_P(ControllersTest, TurnsBackAtTheEdgeAndFast) {
 // Feet are wanted on a wall's far side, and the body falls past it.
 TEST_P(ControllersTest, PastACliff) {
   const Heightfield ground = cliffGround();
-  Crowd crowd(device(), ground, sceneOf(16, 2, 1, controller()));
+  Crowd crowd(device(), ground, sceneOf(16, 2, 1, controller()), CrowdOptions{.footfalls = UINT32_MAX});
   const auto atTheWall = [&] {
     const HerdState state = crowd.download(0);
     size_t past = 0;
@@ -150,7 +150,7 @@ TEST_F(HerdsTest, ControllersMix) {
     herd.controller = controller;
     herd.agents += 5;
   }
-  Crowd crowd(device(), ground, scene);
+  Crowd crowd(device(), ground, scene, CrowdOptions{.footfalls = UINT32_MAX});
   const auto results = replayAll(device(), crowd, ground, 90);
   ASSERT_EQ(results.size(), 5u);
   expectAllPass(results[0]);

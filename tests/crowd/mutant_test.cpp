@@ -23,7 +23,8 @@ class MutantTest : public GpuTest, public ::testing::WithParamInterface<size_t> 
 TEST_P(MutantTest, IsRefused) {
   const Mutant& mutant = mutants()[GetParam()];
   const Heightfield ground = rollingGround();
-  Crowd crowd(device(), ground, sceneOf(64, 1, 1, mutant.controller), {.shaders = {mutant.shader}});
+  Crowd crowd(device(), ground, sceneOf(64, 1, 1, mutant.controller),
+              CrowdOptions{.footfalls = UINT32_MAX, .shaders = {mutant.shader}});
   for (const validation::StageResult& stage : replay(device(), crowd, ground, 60)) {
     EXPECT_EQ(stage.pass, stage.name != mutant.shader.stage) << stage.name << ": " << stage.worst;
   }

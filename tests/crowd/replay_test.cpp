@@ -8,7 +8,7 @@ using ReplayTest = GpuLoadTest;
 
 TEST_P(ReplayTest, SixHundredTicksOnRollingGround) {
   const Heightfield ground = rollingGround();
-  Crowd crowd(device(), ground, sceneOf(64));
+  Crowd crowd(device(), ground, sceneOf(64), CrowdOptions{.footfalls = UINT32_MAX});
   const auto results = replay(device(), crowd, ground, 600);
   expectAllPass(results);
   for (const validation::StageResult& stage : results) EXPECT_GT(stage.samples, 0u) << stage.name;
@@ -16,7 +16,7 @@ TEST_P(ReplayTest, SixHundredTicksOnRollingGround) {
 
 TEST_P(ReplayTest, FastAndTurning) {
   const Heightfield ground = flatGround();
-  Crowd crowd(device(), ground, sceneOf(16, 3, 7));
+  Crowd crowd(device(), ground, sceneOf(16, 3, 7), CrowdOptions{.footfalls = UINT32_MAX});
   simulate(device(), crowd, 600);
   expectAllPass(replay(device(), crowd, ground, 240));
 }

@@ -61,6 +61,15 @@ struct Fidelity {
   uint64_t notFinite = 0;    // targets that were not finite; the leg kept its pose; of all agents and ticks
 };
 
+// A foot that came down: planted at the end of this tick, in the air at the end of the one before.
+struct Footfall {
+  uint32_t agent = 0, leg = 0;  // of the herd, of the rig
+  uint64_t tick = 0;
+  double seconds = 0;  // tick * dt
+  glm::vec3 place{0};  // where the foot is, world metres (float32: to 2.4e-4 m at 4 km)
+  float speed = 0;     // of the foot over that tick, m/s
+};
+
 // Agents first, first + stride, first + 2 stride, ... of a herd.
 struct AgentSample {
   uint32_t first = 0, stride = 1;
@@ -76,16 +85,9 @@ struct HerdState {
   std::vector<float> play, start, fix, spring;  // empty where the controller has none
   uint32_t watchEvery = 1;              // measure watches one agent of this many at a time
   std::vector<float> watch;  // of the herd's agent g at place g / watchEvery, if it is being watched; whole
+  std::vector<Footfall> footfalls;  // of the last tick and of all agents, by agent and leg
+  bool footfallsKept = false;       // they are all here: CrowdOptions::footfalls left room for them
   bool watched = false;  // the last tick's gait looked at the ground, because the heights were edited lately
-};
-
-// A foot that came down: planted at the end of this tick, in the air at the end of the one before.
-struct Footfall {
-  uint32_t agent = 0, leg = 0;  // of the herd, of the rig
-  uint64_t tick = 0;
-  double seconds = 0;  // tick * dt
-  glm::vec3 place{0};  // where the foot is, world metres (float32: to 2.4e-4 m at 4 km)
-  float speed = 0;     // of the foot over that tick, m/s
 };
 
 // The touchdowns of the last tick on the device, for shaders of the caller's: FOOTFALL_STRIDE vec4 each
