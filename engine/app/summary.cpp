@@ -53,8 +53,9 @@ void printMemory(const std::vector<MemoryUse>& memory, uint64_t agents) {
   std::string parts;
   for (const MemoryUse& use : memory) {
     all += use.bytes;
-    parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", use.name,
-                         each * static_cast<double>(use.bytes));
+    const double bytes = each * static_cast<double>(use.bytes);
+    if (bytes < 0.05) continue;  // what there is once a page
+    parts += fmt::format("{}{} {:.{}f}", parts.empty() ? "" : ", ", use.name, bytes, bytes < 10 ? 1 : 0);
   }
   printRow("memory",
            fmt::format("{:.1f} MiB, {:.0f} bytes an agent: {}", static_cast<double>(all) / (1 << 20),
