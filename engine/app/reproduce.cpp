@@ -132,7 +132,7 @@ void addReproduce(CLI::App& app, Command& chosen) {
           "number or part of the name of the device (skitter info) [the best suitable]")
       ->type_name("NAME|INDEX");
   command->add_flag("--quick", options->quick,
-                    "fewer points, ticks and agents: minutes instead of a quarter of an hour");
+                    "fewer points, ticks and agents: two minutes instead of seven or more");
   command
       ->add_option(
           "--terrain", options->terrains,
