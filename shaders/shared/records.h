@@ -60,8 +60,8 @@ SKITTER_CONST int FOOT_STRIDE = 1;
 SKITTER_FUNCTION int chainDirections(int bones) { return (bones + 1) / 2; }
 SKITTER_FUNCTION int chainStride(int bones) { return (bones + 1) / 2 + 2; }
 
-// error, per agent, written by ik: the reach error of each leg (m) once more, four a vec4. Who reads all of an
-// agent's would fetch a cache line a leg for them from its chains.
+// error, per agent, written by ik: the reach error of each leg (m) once more, four a vec4. Who reads all of
+// an agent's would fetch a cache line a leg for them from its chains.
 SKITTER_FUNCTION int errorStride(int legs) { return (legs + 3) / 4; }
 
 // pose, per agent, written by pose: 1 + legs * bones entries of
@@ -159,9 +159,10 @@ SKITTER_CONST int FLIGHT_STRIDE = 1;
 //   [1] agent of the herd, leg, tick, unused
 SKITTER_CONST int FOOTFALL_STRIDE = 2;
 
-// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] legs listed for it (where clips
-// are played: of pose, and the agents that fade), [4] footfalls of the tick, [5..7] indirect dispatch of ik, [8] legs listed for it; since the start: [9] last
-// resorts, [10] targets that were not finite, [11] footfalls without room.
+// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] legs listed for it (where
+// clips are played: of pose, and the agents that fade), [4] footfalls of the tick, [5..7] indirect dispatch
+// of ik, [8] legs listed for it; since the start: [9] last resorts, [10] targets that were not finite, [11]
+// footfalls without room.
 SKITTER_CONST int COUNTER_DISPATCH_X = 0;
 SKITTER_CONST int COUNTER_LISTED = 3;
 SKITTER_CONST int COUNTER_FOOTFALLS = 4;

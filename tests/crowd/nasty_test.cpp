@@ -140,8 +140,9 @@ void solveListed(const gpu::Context& context, const crowd::Herd& herd) {
   });
   gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
     herd.restKernels[static_cast<size_t>(ik - herd.stages.begin())].dispatchIndirect(
-        cmd, page.bindings[static_cast<size_t>(ik - herd.stages.begin())], gpu::bytesOf(shared::TickConstants{}),
-        page.counters, shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
+        cmd, page.bindings[static_cast<size_t>(ik - herd.stages.begin())],
+        gpu::bytesOf(shared::TickConstants{}), page.counters,
+        shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
   });
 }
 
