@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "bench/ik/machine.h"
-#include "experiments/statistics.h"
+#include "bench/statistics.h"
 #include "experiments/walk.h"
 #include "skitter/renderer.h"
 
@@ -61,9 +61,13 @@ class Timer {
       wall.push_back(1e3 * spent.wall);
       cpu.push_back(1e3 * spent.cpu);
     }
-    return {
-        controller_.name,  drawn_, agents, quantile(wall, 0.5), quantile(wall, 0.25), quantile(wall, 0.75),
-        quantile(cpu, 0.5)};
+    return {controller_.name,
+            drawn_,
+            agents,
+            bench::quantile(wall, 0.5),
+            bench::quantile(wall, 0.25),
+            bench::quantile(wall, 0.75),
+            bench::quantile(cpu, 0.5)};
   }
 
   Device& device_;

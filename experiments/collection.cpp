@@ -5,9 +5,9 @@
 #include <cstring>
 #include <string_view>
 
+#include "bench/statistics.h"
 #include "crowd/herd.h"
 #include "experiments/collection_cpu.h"
-#include "experiments/statistics.h"
 #include "experiments/walk.h"
 #include "gpu/barrier.h"
 #include "gpu/transfer.h"
@@ -91,7 +91,7 @@ CollectionTime measure(Walk& walk, const gpu::Context& context, const Heightfiel
     apart.push_back(glm::distance(device, glm::vec3(steps[at], steps[at + 1], steps[at + 2])));
     differing += apart.back() > 1e-3 ? 1 : 0;
   }
-  made.apart = quantile(apart, 0.5);
+  made.apart = bench::quantile(apart, 0.5);
   made.differing = static_cast<double>(differing) / legs;
 
   std::vector<double> alone, row, host;
@@ -106,11 +106,11 @@ CollectionTime measure(Walk& walk, const gpu::Context& context, const Heightfiel
                                    for (int k = 0; k < times; ++k) cpu.run(before, legs, stage.tick(), steps);
                                  }).wall);
   }
-  made.deviceMilliseconds = quantile(alone, 0.5);
-  made.lower = quantile(alone, 0.25);
-  made.upper = quantile(alone, 0.75);
-  made.inRowMilliseconds = quantile(row, 0.5);
-  made.cpuMilliseconds = quantile(host, 0.5);
+  made.deviceMilliseconds = bench::quantile(alone, 0.5);
+  made.lower = bench::quantile(alone, 0.25);
+  made.upper = bench::quantile(alone, 0.75);
+  made.inRowMilliseconds = bench::quantile(row, 0.5);
+  made.cpuMilliseconds = bench::quantile(host, 0.5);
   return made;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/statistics.h"
+#include "bench/statistics.h"
 #include "experiments/walk.h"
 
 namespace skitter::experiments {
@@ -43,10 +43,10 @@ FidelityRow measure(Device& device, const Heightfield& ground, const Settings& s
     }
     last = std::move(agents);
   }
-  row.roughness = mean(rough);
-  row.speed = mean(travelled) / speed;
-  row.depthSeen = mean(depths);
-  row.heightSeen = mean(heights);
+  row.roughness = bench::mean(rough);
+  row.speed = bench::mean(travelled) / speed;
+  row.depthSeen = bench::mean(depths);
+  row.heightSeen = bench::mean(heights);
   row.fidelity = walk.crowd().fidelity();
   return row;
 }

@@ -7,6 +7,7 @@
 
 #include "bench/crowd/contestant.h"
 #include "bench/ik/clock.h"
+#include "bench/statistics.h"
 #include "crowd/herd.h"
 #include "validation/herd_facts.h"
 #include "validation/replay.h"
@@ -24,13 +25,6 @@ struct Corner {
   std::vector<double> wall, cpu;
   std::vector<StageTime> before;
 };
-
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto i = static_cast<size_t>(at);
-  return values[i] + (at - static_cast<double>(i)) * (values[std::min(i + 1, values.size() - 1)] - values[i]);
-}
 
 Spread spreadOf(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.25), quantile(values, 0.75)};

@@ -1,8 +1,8 @@
-#include "experiments/statistics.h"
+#include "bench/statistics.h"
 
 #include <gtest/gtest.h>
 
-namespace skitter::experiments {
+namespace skitter::bench {
 namespace {
 
 TEST(Statistics, Quantiles) {
@@ -13,4 +13,4 @@ TEST(Statistics, Quantiles) {
 }
 
 }  // namespace
-}  // namespace skitter::experiments
+}  // namespace skitter::bench

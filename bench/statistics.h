@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace skitter::experiments {
+namespace skitter::bench {
 
 // The value below which a share of the others lie; 0.5: the median. `values` are not empty.
 inline double quantile(std::vector<double> values, double share) {
@@ -20,4 +20,4 @@ inline double mean(const std::vector<double>& values) {
   return values.empty() ? 0 : sum / static_cast<double>(values.size());
 }
 
-}  // namespace skitter::experiments
+}  // namespace skitter::bench
