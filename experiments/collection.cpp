@@ -34,7 +34,12 @@ class Stage {
     for (const crowd::Page& page : herd_.pages) {
       const uint32_t here = std::min(left, page.agents * static_cast<uint32_t>(herd_.legs));
       std::vector<uint32_t> list(here);
-      for (uint32_t i = 0; i < here; ++i) list[i] = 2 * i;  // they lift
+      for (uint32_t i = 0; i < here; ++i) {
+        const auto each = static_cast<uint32_t>(herd_.legs);
+        list[i] = 2 * static_cast<uint32_t>(shared::legRecord(static_cast<int>(i / each),
+                                                              static_cast<int>(i % each),
+                                                              herd_.legs));  // they lift
+      }
       gpu::upload(context, page.list, list);
       const std::vector<uint32_t> counters = {gpu::groupsFor(here, shared::WORK_GROUP), 1, 1, here};
       gpu::upload(context, page.counters, counters);

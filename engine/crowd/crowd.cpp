@@ -76,18 +76,14 @@ void loadClips(const gpu::Context& context, const Herd& from, crowd::Herd& herd)
   upload(herd.clipBones, herd.clips.bones, "clip joints");
 }
 
+// What a stage's shader has as count: of joints or of agents.
+uint32_t countOf(const crowd::Herd& herd, const Page& page, Stage::Over over) {
+  return over == Stage::Over::joints ? page.agents * static_cast<uint32_t>(herd.clips.joints) : page.agents;
+}
+
 uint32_t invocations(const crowd::Herd& herd, const Page& page, Stage::Over over) {
-  switch (over) {
-    case Stage::Over::joints:
-      return page.agents * static_cast<uint32_t>(herd.clips.joints);
-    case Stage::Over::legs:
-    case Stage::Over::listed:
-      return page.agents * static_cast<uint32_t>(herd.legs);
-    case Stage::Over::agents:
-    case Stage::Over::watched:
-      break;
-  }
-  return page.agents;
+  return over == Stage::Over::legs ? crowd::wholeBlocks(page.agents) * static_cast<uint32_t>(herd.legs)
+                                   : countOf(herd, page, over);
 }
 
 bool isNamed(const Stage& stage, std::string_view name) { return stage.name == name; }
@@ -101,12 +97,8 @@ const gpu::Kernel& kernelOf(const Impl& crowd, const crowd::Herd& herd, size_t i
 void dispatch(const Impl& crowd, const crowd::Herd& herd, const Page& page, size_t index, uint64_t tick,
               vk::CommandBuffer cmd) {
   const Stage& stage = herd.stages[index];
-  shared::TickConstants constants{invocations(herd, page, stage.over),
-                                  static_cast<float>(tick),
-                                  page.firstAgent,
-                                  1,
-                                  0,
-                                  page.footfallRoom};
+  shared::TickConstants constants{
+      countOf(herd, page, stage.over), static_cast<float>(tick), page.firstAgent, 1, 0, page.footfallRoom};
   if (stage.over == Stage::Over::watched) {
     const crowd::Watch watch = crowd::watchAt(tick, crowd.watchEvery, page);
     constants = {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0};
@@ -116,7 +108,8 @@ void dispatch(const Impl& crowd, const crowd::Herd& herd, const Page& page, size
     herd.kernels[index].dispatchIndirect(cmd, page.bindings[index], push, page.counters);
   else
     kernelOf(crowd, herd, index)
-        .dispatch(cmd, page.bindings[index], push, gpu::groupsFor(constants.count, shared::WORK_GROUP));
+        .dispatch(cmd, page.bindings[index], push,
+                  gpu::groupsFor(invocations(herd, page, stage.over), shared::WORK_GROUP));
 }
 
 // Zero listed legs and footfalls; the counts since the start stay.

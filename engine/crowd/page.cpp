@@ -130,23 +130,29 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
   const bool clips = playsClips(herd.controller), planted = herd.controller == Controller::planted;
   const auto legs = static_cast<uint64_t>(rig.legCount());
   const auto vec4s = [](uint64_t count, int stride) { return count * static_cast<uint64_t>(stride) * 16; };
+  const auto ofLegs = [&](const char* name, gpu::Buffer Page::*buffer, int stride,
+                          std::span<float> SpawnRecords::*spawned = nullptr) {
+    PageBuffer made{name, buffer, vec4s(legs, stride), spawned};
+    made.inBlocks = true;
+    return made;
+  };
   std::vector<PageBuffer> buffers = {
       {"goal", &Page::goal, vec4s(1, GOAL_STRIDE), &SpawnRecords::goal},
       {"steer", &Page::steer, vec4s(1, STEER_STRIDE)},
       {"body", &Page::body, vec4s(1, BODY_STRIDE), &SpawnRecords::body},
       {"gait", &Page::gait, vec4s(1, GAIT_STRIDE), &SpawnRecords::gait},
-      {"step", &Page::step, vec4s(legs, STEP_STRIDE), &SpawnRecords::step},
-      {"foot", &Page::foot, vec4s(legs, FOOT_STRIDE), &SpawnRecords::foot},
-      {"chain", &Page::chain, vec4s(legs, chainStride(rig.maxBones())), &SpawnRecords::chain},
+      ofLegs("step", &Page::step, STEP_STRIDE, &SpawnRecords::step),
+      ofLegs("foot", &Page::foot, FOOT_STRIDE, &SpawnRecords::foot),
+      ofLegs("chain", &Page::chain, chainStride(rig.maxBones()), &SpawnRecords::chain),
       {"list", &Page::list, legs * sizeof(uint32_t)}};
   if (!clips) buffers.push_back({"error", &Page::error, vec4s(1, errorStride(rig.legCount()))});
   if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE), &SpawnRecords::play});
   if (planted) {
-    buffers.push_back({"start", &Page::start, vec4s(legs, chainStride(rig.maxBones()))});
-    buffers.push_back({"fix", &Page::fix, vec4s(legs * static_cast<uint64_t>(rig.maxBones()), FIX_STRIDE)});
+    buffers.push_back(ofLegs("start", &Page::start, chainStride(rig.maxBones())));
+    buffers.push_back(ofLegs("fix", &Page::fix, rig.maxBones() * FIX_STRIDE));
   }
   if (herd.controller == Controller::pose)
-    buffers.push_back({"spring", &Page::spring, vec4s(legs, chainDirections(rig.maxBones()))});
+    buffers.push_back(ofLegs("spring", &Page::spring, chainDirections(rig.maxBones())));
   if (options.pose)
     buffers.push_back({"pose", &Page::pose,
                        clips ? vec4s(static_cast<uint64_t>(herd.clips.joints), MATRIX_STRIDE)
@@ -158,7 +164,7 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
     buffers.push_back({"histogram", &Page::histogram, HISTOGRAM_BUCKETS * sizeof(uint32_t), nullptr, aPage});
   }
   if (options.footfalls > 0) {
-    buffers.push_back({"flight", &Page::flight, vec4s(legs, FLIGHT_STRIDE)});
+    buffers.push_back(ofLegs("flight", &Page::flight, FLIGHT_STRIDE));
     buffers.push_back({"footfall", &Page::footfall, vec4s(legs, FOOTFALL_STRIDE), nullptr, 1,
                        vec4s(options.footfalls, FOOTFALL_STRIDE)});
   }
@@ -168,13 +174,15 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
 }
 
 uint32_t agentsPerPage(const Crowd::Impl& crowd, const Herd& herd) {
+  using shared::BLOCK;
   const gpu::Context& context = *crowd.context;
   uint64_t limit = context.limits().maxStorageBufferRange;
   if (context.texelLoads()) limit = std::min(limit, context.limits().maxTexelBufferElements * 16);
   uint64_t agents =
       crowd.options.pageAgents > 0 ? std::min(crowd.options.pageAgents, kMostPageAgents) : kMostPageAgents;
   for (const PageBuffer& buffer : pageBuffers(crowd, herd)) {
-    agents = std::min(agents, limit / buffer.bytes * buffer.agents);
+    const uint64_t fit = limit / buffer.bytes * buffer.agents;
+    agents = std::min(agents, buffer.inBlocks ? fit / BLOCK * BLOCK : fit);
     if (agents == 0)
       throw deviceError(context.report().name + ": a binding reaches " + std::to_string(limit) +
                         " bytes, one agent's " + buffer.name + " needs " + std::to_string(buffer.bytes));

@@ -10,19 +10,26 @@
 
 namespace skitter::crowd {
 
+// So many agents and those that their last block has room for (shaders/shared/records.h).
+inline uint32_t wholeBlocks(uint32_t agents) {
+  return (agents + shared::BLOCK - 1) / shared::BLOCK * shared::BLOCK;
+}
+
 // One of a page's buffers, and how large it is.
 struct PageBuffer {
   const char* name;
   gpu::Buffer Page::*buffer;
-  uint64_t bytes;  // of an entry
+  uint64_t bytes;  // of an entry: an agent's, or a few agents'
   std::span<float> SpawnRecords::*spawned =
       nullptr;                 // where it is written at first; none: it begins as zeros
   uint32_t agents = 1;         // an entry for so many
   uint64_t most = UINT64_MAX;  // bytes, whatever the number of agents
   gpu::BufferUse use = gpu::BufferUse::records;
+  bool inBlocks = false;  // leg records, which come in whole blocks of agents
 
   uint64_t bytesOf(uint32_t pageAgents) const {
-    return std::min(most, (uint64_t{pageAgents} + agents - 1) / agents * bytes);
+    const uint64_t count = inBlocks ? wholeBlocks(pageAgents) : pageAgents;
+    return std::min(most, (count + agents - 1) / agents * bytes);
   }
 };
 

@@ -1,6 +1,9 @@
 // What the host asks of a crowd after the fact; each waits for the device.
 #include <algorithm>
+#include <bit>
 #include <cassert>
+#include <cstring>
+#include <initializer_list>
 #include <span>
 
 #include "crowd/page.h"
@@ -14,18 +17,35 @@ namespace {
 
 using crowd::Page;
 
-void appendRecords(const gpu::Context& context, const Page& page, const gpu::Buffer& buffer,
+constexpr AgentSample kAll{};
+
+// Of a page's records those of the sample, agent after agent and of an agent leg after leg; legs = 0: one an
+// agent.
+void appendRecords(const gpu::Context& context, const Page& page, const gpu::Buffer& buffer, int legs,
                    const AgentSample& sample, std::vector<float>& records) {
   if (!buffer) return;
-  const uint64_t each = buffer.size() / page.agents;
   const crowd::PageSample here = crowd::sampleOf(page, sample);
+  const auto anAgent = static_cast<uint64_t>(std::max(1, legs));
+  const uint64_t held = legs > 0 ? crowd::wholeBlocks(page.agents) * anAgent : page.agents;
+  const uint64_t each = buffer.size() / held;
+  std::vector<uint64_t> places;
+  places.reserve(here.count * anAgent);
+  for (uint32_t i = 0; i < here.count; ++i)
+    for (int leg = 0; leg < static_cast<int>(anAgent); ++leg) {
+      const auto agent = static_cast<int>(here.first + i * sample.stride);
+      places.push_back(static_cast<uint64_t>(legs > 0 ? shared::legRecord(agent, leg, legs) : agent));
+    }
   const size_t end = records.size();
-  records.resize(end + here.count * each / sizeof(float));
+  records.resize(end + places.size() * each / sizeof(float));
   const auto bytes = std::as_writable_bytes(std::span(records).subspan(end));
-  if (sample.stride == 1)
-    gpu::downloadBytes(context, buffer, bytes, here.first * each);
-  else
-    gpu::downloadPieces(context, buffer, bytes, here.first * each, each, sample.stride * each);
+  if (sample.stride > 1) {
+    for (uint64_t& place : places) place *= each;
+    gpu::downloadPieces(context, buffer, bytes, places, each);
+    return;
+  }
+  const std::vector<std::byte> all = gpu::download<std::byte>(context, buffer);
+  for (size_t i = 0; i < places.size(); ++i)
+    std::memcpy(bytes.data() + i * each, all.data() + places[i] * each, each);
 }
 
 // A page's watched agents come from its start; in the herd each has the place of its number.
@@ -50,23 +70,23 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
   state.watched = impl_->tick > 0 && impl_->tick <= impl_->watchUntil;
   const crowd::Herd& herd = impl_->herds.at(herdIndex);
   for (const Page& page : herd.pages) {
-    const auto append = [&](const gpu::Buffer& buffer, std::vector<float>& records) {
-      appendRecords(*impl_->context, page, buffer, sample, records);
+    const auto append = [&](const gpu::Buffer& buffer, std::vector<float>& records, int legs = 0) {
+      appendRecords(*impl_->context, page, buffer, legs, sample, records);
     };
     state.agents += crowd::sampleOf(page, sample).count;
     append(page.goal, state.goal);
     append(page.steer, state.steer);
     append(page.body, state.body);
     append(page.gait, state.gait);
-    append(page.step, state.step);
-    append(page.foot, state.foot);
-    append(page.chain, state.chain);
+    append(page.step, state.step, herd.legs);
+    append(page.foot, state.foot, herd.legs);
+    append(page.chain, state.chain, herd.legs);
     append(page.pose, state.pose);
     append(page.metric, state.metric);
     append(page.play, state.play);
-    append(page.start, state.start);
-    append(page.fix, state.fix);
-    append(page.spring, state.spring);
+    append(page.start, state.start, herd.legs);
+    append(page.fix, state.fix, herd.legs);
+    append(page.spring, state.spring, herd.legs);
     if (page.watch) appendWatch(*impl_, herd, page, state.watch);
   }
   state.footfallsKept = impl_->options.footfalls > 0 && droppedFootfalls(herdIndex) == 0;
@@ -115,18 +135,27 @@ std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herd) const {
 uint64_t Crowd::stateHash() const {
   const gpu::Context& context = *impl_->context;
   context.waitIdle();
-  std::vector<uint32_t> words;
+  std::vector<float> records;
   uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, a word at a time
   for (const crowd::Herd& herd : impl_->herds) {
+    struct Hashed {
+      gpu::Buffer Page::*buffer;
+      int legs = 0;
+    };
+    const std::initializer_list<Hashed> kinds = {{&Page::goal},
+                                                 {&Page::body},
+                                                 {&Page::gait},
+                                                 {&Page::step, herd.legs},
+                                                 {&Page::chain, herd.legs},
+                                                 {&Page::play},
+                                                 {&Page::spring, herd.legs}};
     // Record by record over the herd, not page by page: how agents are paged must not show.
-    for (const auto buffer :
-         {&Page::goal, &Page::body, &Page::gait, &Page::step, &Page::chain, &Page::play, &Page::spring})
+    for (const Hashed& kind : kinds)
       for (const Page& page : herd.pages) {
-        if (!(page.*buffer)) continue;
-        words.resize((page.*buffer).size() / sizeof(uint32_t));
-        gpu::downloadBytes(context, page.*buffer, std::as_writable_bytes(std::span(words)));
-        for (const uint32_t word : words) {
-          hash = (hash ^ word) * 0x100000001b3ull;
+        records.clear();
+        appendRecords(context, page, page.*kind.buffer, kind.legs, kAll, records);
+        for (const float value : records) {
+          hash = (hash ^ std::bit_cast<uint32_t>(value)) * 0x100000001b3ull;
           hash ^= hash >> 32;
         }
       }

@@ -22,16 +22,6 @@ float uniform(uint64_t seed, uint64_t agent, uint64_t purpose) {
 // Below that many a thread costs more than it saves.
 constexpr uint32_t kAgentsAThread = 4096;
 
-// Agents [from, to) of records of `count`.
-SpawnRecords partOf(const SpawnRecords& all, uint32_t count, uint32_t from, uint32_t to) {
-  const auto part = [&](std::span<float> records) {
-    const size_t each = records.size() / count;
-    return records.subspan(from * each, (to - from) * each);
-  };
-  return {part(all.goal), part(all.body),  part(all.gait), part(all.step),
-          part(all.foot), part(all.chain), part(all.play)};
-}
-
 // The frame that a clip shows at a time, and the fraction of the way to the next.
 glm::vec2 frameAt(const ClipRecords& clips, int clip, float time) {
   const float* head = &clips.heads[static_cast<size_t>(clip) * 4];
@@ -43,17 +33,20 @@ glm::vec2 frameAt(const ClipRecords& clips, int clip, float time) {
 
 }  // namespace
 
-// Writes one vec4 after another.
+// Writes one vec4 after another, from a record's first one.
 class Spawner::Writer {
  public:
-  explicit Writer(std::span<float> records) : at_(records.data()) {}
+  Writer(std::span<float> records, int stride) : records_(records.data()), stride_(4 * stride) {}
+  void seek(int record) { at_ = records_ + std::ptrdiff_t{record} * stride_; }
   void push(float a, float b, float c, float d) {
     at_[0] = a, at_[1] = b, at_[2] = c, at_[3] = d;
     at_ += 4;
   }
 
  private:
-  float* at_;
+  float* records_;
+  std::ptrdiff_t stride_;  // floats a record
+  float* at_ = records_;
 };
 
 Spawner::Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield& terrain, uint64_t seed)
@@ -129,18 +122,21 @@ void Spawner::write(uint32_t first, uint32_t count, const SpawnRecords& records)
   for (uint32_t i = 0; i < threads; ++i) {
     const auto from = static_cast<uint32_t>(uint64_t{count} * i / threads);
     const auto to = static_cast<uint32_t>(uint64_t{count} * (i + 1) / threads);
-    const SpawnRecords part = partOf(records, count, from, to);
     if (i + 1 == threads)
-      writeRun(first + from, to - from, part);
+      writeRun(first, from, to, records);
     else
-      runs.emplace_back([this, first, from, to, part] { writeRun(first + from, to - from, part); });
+      runs.emplace_back([this, first, from, to, &records] { writeRun(first, from, to, records); });
   }
 }
 
-void Spawner::writeRun(uint32_t first, uint32_t count, const SpawnRecords& records) const {
-  Writer goal(records.goal), body(records.body), gait(records.gait), step(records.step), foot(records.foot),
-      chain(records.chain), play(records.play);
-  for (uint32_t agent = first; agent < first + count; ++agent) {
+void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRecords& records) const {
+  using namespace shared;
+  Writer goal(records.goal, GOAL_STRIDE), body(records.body, BODY_STRIDE), gait(records.gait, GAIT_STRIDE),
+      step(records.step, STEP_STRIDE), foot(records.foot, FOOT_STRIDE),
+      chain(records.chain, chainStride(rig_.maxBones())), play(records.play, PLAY_STRIDE);
+  for (uint32_t record = from; record < to; ++record) {
+    const uint32_t agent = first + record;
+    for (Writer* each : {&goal, &body, &gait, &play}) each->seek(static_cast<int>(record));
     const Placement p = place(agent);
     const float kind = herd_.goal.kind == Goal::Kind::cross   ? shared::GOAL_CROSS
                        : herd_.goal.kind == Goal::Kind::point ? shared::GOAL_POINT
@@ -178,6 +174,8 @@ void Spawner::writeRun(uint32_t first, uint32_t count, const SpawnRecords& recor
     }
 
     for (size_t l = 0; l < rig_.legs.size(); ++l) {
+      for (Writer* each : {&step, &foot, &chain})
+        each->seek(legRecord(static_cast<int>(record), static_cast<int>(l), rig_.legCount()));
       const Leg& leg = rig_.legs[l];
       const glm::vec3 home = q * leg.home;
       const glm::vec3 landing(localX + home.x, terrain_.at(p.x + home.x, p.z + home.z), localZ + home.z);

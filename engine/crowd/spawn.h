@@ -9,7 +9,8 @@
 
 namespace skitter::crowd {
 
-// The records that a run of agents begins with, agent after agent; all others begin as zeros.
+// The records that a page's agents begin with, laid out as shaders/shared/records.h says; all others begin as
+// zeros.
 struct SpawnRecords {
   std::span<float> goal, body, gait, step, foot, chain, play;
 };
@@ -26,13 +27,15 @@ class Spawner {
   };
   Placement place(uint32_t agent) const;
 
-  // Agents [first, first + count), standing at home, feet on the ground; on all cores where there are many.
+  // Agents [first, first + count), a page's, standing at home, feet on the ground; on all cores where there
+  // are many.
   void write(uint32_t first, uint32_t count, const SpawnRecords& records) const;
 
  private:
   class Writer;
   void pushDirections(size_t leg, Writer& chain) const;
-  void writeRun(uint32_t first, uint32_t count, const SpawnRecords& records) const;
+  // Of the page whose first agent that is, agents [from, to).
+  void writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRecords& records) const;
 
   const skitter::Herd& herd_;
   const Rig& rig_;

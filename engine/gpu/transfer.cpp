@@ -68,19 +68,17 @@ void downloadBytes(const Context& context, const Buffer& buffer, std::span<std::
   });
 }
 
-void downloadPieces(const Context& context, const Buffer& buffer, std::span<std::byte> data, uint64_t first,
-                    uint64_t bytes, uint64_t stride, uint64_t chunk) {
-  assert(bytes > 0 && data.size() % bytes == 0);
-  const uint64_t pieces = data.size() / bytes;
-  assert(pieces == 0 || first + (pieces - 1) * stride + bytes <= buffer.size());
+void downloadPieces(const Context& context, const Buffer& buffer, std::span<std::byte> data,
+                    std::span<const uint64_t> offsets, uint64_t bytes, uint64_t chunk) {
+  assert(bytes > 0 && data.size() == offsets.size() * bytes);
+  const uint64_t pieces = offsets.size();
   if (pieces == 0) return;
   const uint64_t perChunk = std::clamp<uint64_t>(chunk / bytes, 1, pieces);
   const HostBuffer staging(context, perChunk * bytes, HostUse::readback, "download staging");
   inChunks(pieces, perChunk, [&](uint64_t done, uint64_t count) {
     std::vector<vk::BufferCopy> copies(count);
     for (uint64_t i = 0; i < count; ++i)
-      copies[i] =
-          vk::BufferCopy{.srcOffset = first + (done + i) * stride, .dstOffset = i * bytes, .size = bytes};
+      copies[i] = vk::BufferCopy{.srcOffset = offsets[done + i], .dstOffset = i * bytes, .size = bytes};
     submitAndWait(context, [&](vk::CommandBuffer cmd) {
       allToAll(cmd);
       cmd.copyBuffer(buffer.handle(), staging.handle(), copies);

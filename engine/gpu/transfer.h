@@ -19,9 +19,9 @@ void uploadBytes(const Context&, const Buffer&, std::span<const std::byte>, uint
                  uint64_t chunk = kStagingChunk);
 void downloadBytes(const Context&, const Buffer&, std::span<std::byte>, uint64_t offset = 0,
                    uint64_t chunk = kStagingChunk);
-// Pieces of `bytes` at `first`, first + stride, ... until `data` is full, one close after another.
-void downloadPieces(const Context&, const Buffer&, std::span<std::byte> data, uint64_t first, uint64_t bytes,
-                    uint64_t stride, uint64_t chunk = kStagingChunk);
+// Pieces of `bytes` that begin at `offsets`, one close after another, which is as long as `data`.
+void downloadPieces(const Context&, const Buffer&, std::span<std::byte> data,
+                    std::span<const uint64_t> offsets, uint64_t bytes, uint64_t chunk = kStagingChunk);
 // Fills it with zero bytes.
 void clear(const Context&, const Buffer&);
 

@@ -15,6 +15,19 @@ namespace skitter::shared {
 
 // Invocations a work group in every stage.
 SKITTER_CONST int WORK_GROUP = 64;
+
+// Leg records are laid out in blocks of BLOCK agents: within a block those of the first legs, one an agent,
+// then those of the second legs, and so on. So a stage over agents walks through memory from end to end,
+// where agents leg by leg would be many cache lines apart. The last block of a page is whole, whatever its
+// agents; what is beyond them is never read.
+SKITTER_CONST int BLOCK = 8;
+SKITTER_FUNCTION int legRecord(int agent, int leg, int legs) {
+  return (agent / BLOCK * legs + leg) * BLOCK + agent % BLOCK;
+}
+SKITTER_FUNCTION int agentOfRecord(int record, int legs) {
+  return record / (BLOCK * legs) * BLOCK + record % BLOCK;
+}
+SKITTER_FUNCTION int legOfRecord(int record, int legs) { return record / BLOCK % legs; }
 // Metres; body positions are tile * TILE_SIZE + local, 0 <= local < TILE_SIZE.
 SKITTER_CONST float TILE_SIZE = 16.0;
 

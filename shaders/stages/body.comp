@@ -40,7 +40,7 @@ void main() {
   }
 #else
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
-    int stepAt = (agent * LEGS + leg) * STEP_STRIDE;
+    int stepAt = legRecord(agent, leg, LEGS) * STEP_STRIDE;
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
                         LOAD4(steps, stepAt + 3));
     float u = stepProgress(s, constants.tick - 1.0);

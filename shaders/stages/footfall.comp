@@ -12,8 +12,8 @@ layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint 
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
-  if (record >= int(constants.count)) return;
-  int agent = record / LEGS, leg = record - agent * LEGS;
+  int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
+  if (agent >= int(constants.count)) return;
   vec3 local = LOAD4(bodies, agent * BODY_STRIDE).xyz;
   vec2 tile = LOAD4(bodies, agent * BODY_STRIDE + 1).xy;
   vec3 tip = LOAD4(chains, record * chainStride(BONES) + chainDirections(BONES)).xyz + local;

@@ -26,7 +26,7 @@ void main() {
   if (listed >= counters[COUNTER_LISTED]) return;
   int record = int(list[listed] >> 1);
   bool again = (list[listed] & 1u) != 0u;
-  int agent = record / LEGS, leg = record - agent * LEGS;
+  int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
 
   int at = agent * BODY_STRIDE, stepAt = record * STEP_STRIDE, rigAt = leg * rigStride(BONES);
   Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));

@@ -45,7 +45,7 @@ void main() {
   float stoodSince = 3e38;
   bool settled = body.still >= parameters.settleTime;
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
-    int stepAt = (agent * LEGS + leg) * STEP_STRIDE;
+    int stepAt = legRecord(agent, leg, LEGS) * STEP_STRIDE;
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
                         LOAD4(steps, stepAt + 3));
     int rigAt = leg * rigStride(BONES);
@@ -105,7 +105,7 @@ void main() {
     atomicMax(counters[COUNTER_DISPATCH_X], (next + bitCount(begin) + WORK_GROUP - 1u) / WORK_GROUP);
     for (; begin != 0u; begin &= begin - 1u) {
       int leg = findLSB(begin);
-      list[next] = uint(agent * LEGS + leg) * 2u + ((again >> leg) & 1u);
+      list[next] = uint(legRecord(agent, leg, LEGS)) * 2u + ((again >> leg) & 1u);
       ++next;
     }
   }

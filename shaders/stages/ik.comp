@@ -58,10 +58,9 @@ void main() {
   if (PASS == PASS_LISTED) {
     if (record >= int(counters[COUNTER_IK_LISTED])) return;
     record = int(list[record]);
-  } else if (record >= int(constants.count)) {
-    return;
   }
-  int agent = record / LEGS, leg = record - agent * LEGS;
+  int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
+  if (PASS != PASS_LISTED && agent >= int(constants.count)) return;
   int at = record * chainStride(BONES), rigAt = leg * rigStride(BONES);
 
   Limb limb;

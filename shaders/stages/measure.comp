@@ -93,19 +93,20 @@ float depthOf(Stretched s, vec4 orientation, float y, vec2 world) {
   return depth;
 }
 
-// Least support of the planted tips over directions, from `centre`; `anchor` is one of them.
+// Least support of the planted tips over directions, from `centre`; `anchor` is one of them, `first` the record of
+// the first leg.
 float supportMargin(int first, vec2 centre, vec2 anchor) {
   vec2 q[LEGS];
-  for (int k = 0; k < LEGS; ++k) q[k] = plantedAt(first + k) ? tipOf(first + k).xz - centre : anchor;
+  for (int k = 0; k < LEGS; ++k) q[k] = plantedAt(first + k * BLOCK) ? tipOf(first + k * BLOCK).xz - centre : anchor;
   float margin = FAR, none = 1e-8 * parameters.legLength * parameters.legLength;
   for (int i = 0; i < LEGS; ++i) {
-    vec2 a = plantedAt(first + i) ? tipOf(first + i).xz - centre : anchor;
+    vec2 a = plantedAt(first + i * BLOCK) ? tipOf(first + i * BLOCK).xz - centre : anchor;
     vec2 away = -unit(a);
     float support = -FAR;
     for (int k = 0; k < LEGS; ++k) support = max(support, dot(away, q[k]));
     margin = dot(a, a) > none ? min(margin, support) : margin;
     for (int j = 0; j < i; ++j) {
-      vec2 edge = (plantedAt(first + j) ? tipOf(first + j).xz - centre : anchor) - a;
+      vec2 edge = (plantedAt(first + j * BLOCK) ? tipOf(first + j * BLOCK).xz - centre : anchor) - a;
       vec2 normal = unit(vec2(-edge.y, edge.x));
       float high = -FAR, low = FAR;
       for (int k = 0; k < LEGS; ++k) {
@@ -120,7 +121,7 @@ float supportMargin(int first, vec2 centre, vec2 anchor) {
 }
 
 void measure(int slot, int agent) {
-  int bodyAt = agent * BODY_STRIDE, firstLeg = agent * LEGS, watchAt = slot * watchStride(LEGS);
+  int bodyAt = agent * BODY_STRIDE, firstLeg = legRecord(agent, 0, LEGS), watchAt = slot * watchStride(LEGS);
   Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
                          LOAD4(bodies, bodyAt + 3));
   vec2 world = worldOf(body.local, body.tile);
@@ -142,7 +143,7 @@ void measure(int slot, int agent) {
   bool supported = false;
   vec2 anchor = vec2(0.0);
   for (int leg = 0; leg < LEGS; ++leg) {
-    int record = firstLeg + leg, at = watchAt + WATCH_TRAIL_STRIDE * (1 + leg);
+    int record = firstLeg + leg * BLOCK, at = watchAt + WATCH_TRAIL_STRIDE * (1 + leg);
     vec4 tip = tipOf(record);
     bool planted = plantedAt(record);
     anchor = planted ? tip.xz - centre : anchor;
@@ -172,7 +173,7 @@ void measure(int slot, int agent) {
     m3 = vec4(m3.x + depth, max(m3.y, depth), m3.z + (limb.violation > parameters.limitDeadZone ? 1.0 : 0.0), 0.0);
 
     int neighbour = neighbourOf(leg);
-    stretch(max(neighbour, 0), firstLeg + max(neighbour, 0), other);
+    stretch(max(neighbour, 0), firstLeg + max(neighbour, 0) * BLOCK, other);
     bool crosses = crossing(limb, other);
     m4.xy += neighbour >= 0 ? vec2(1.0, crosses ? 1.0 : 0.0) : vec2(0.0);
 

@@ -9,8 +9,8 @@ STORE4_BUFFER(BINDING_POSE_OUT, posesOut);
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
-  if (record >= int(constants.count)) return;
-  int agent = record / LEGS, leg = record - agent * LEGS;
+  int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
+  if (agent >= int(constants.count)) return;
   int at = record * chainStride(BONES), rigAt = leg * rigStride(BONES);
   int poseAt = (agent * (1 + LEGS * BONES) + 1 + leg * BONES) * POSE_STRIDE;
 

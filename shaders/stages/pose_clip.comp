@@ -33,7 +33,8 @@ void main() {
   LOAD_MATRIX(m, rows, play, joint);
   mat4x3 column = transpose(mat3x4(m[0], m[1], m[2]));
 #ifdef PLANTED
-  int bone = int(LOAD4(joints, joint).x), fixAt = (agent * LEGS * BONES + max(bone, 0)) * FIX_STRIDE;
+  int bone = int(LOAD4(joints, joint).x), own = max(bone, 0);
+  int fixAt = (legRecord(agent, own / BONES, LEGS) * BONES + own % BONES) * FIX_STRIDE;
   mat3 fix = matrixOf(bone >= 0 ? LOAD4(fixes, fixAt) : vec4(0.0, 0.0, 0.0, 1.0));
   column = fix * column;
   column[3] += bone >= 0 ? LOAD4(fixes, fixAt + 1).xyz : vec3(0.0);

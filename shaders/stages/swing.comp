@@ -9,8 +9,9 @@ STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
-  if (record >= int(constants.count)) return;
-  int at = record / LEGS * BODY_STRIDE, stepAt = record * STEP_STRIDE;
+  int agent = agentOfRecord(record, LEGS);
+  if (agent >= int(constants.count)) return;
+  int at = agent * BODY_STRIDE, stepAt = record * STEP_STRIDE;
   vec3 local = LOAD4(bodies, at).xyz;
   vec2 tile = LOAD4(bodies, at + 1).xy;
   Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),

@@ -33,8 +33,8 @@ STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
-  if (record >= int(constants.count)) return;
-  int agent = record / LEGS, leg = record - agent * LEGS;
+  int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
+  if (agent >= int(constants.count)) return;
   int bodyAt = agent * BODY_STRIDE, playAt = agent * PLAY_STRIDE, at = record * chainStride(BONES);
   Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
                          LOAD4(bodies, bodyAt + 3));

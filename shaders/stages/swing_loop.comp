@@ -10,8 +10,8 @@ STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
-  if (record >= int(constants.count)) return;
-  int agent = record / LEGS, leg = record - agent * LEGS;
+  int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
+  if (agent >= int(constants.count)) return;
   int at = agent * BODY_STRIDE;
   Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
   vec4 home = LOAD4(rig, leg * rigStride(BONES) + 1);

@@ -19,8 +19,8 @@ STORE4_BUFFER(BINDING_SPRING_OUT, springsOut);
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
-  if (record >= int(constants.count)) return;
-  int agent = record / LEGS, leg = record - agent * LEGS, pairs = chainDirections(BONES);
+  int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS), pairs = chainDirections(BONES);
+  if (agent >= int(constants.count)) return;
   int bodyAt = agent * BODY_STRIDE, at = record * chainStride(BONES), springAt = record * pairs;
   Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
                          LOAD4(bodies, bodyAt + 3));

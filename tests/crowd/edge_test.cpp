@@ -123,7 +123,7 @@ TEST_F(InputTest, MemoryIsWhatWasForetold) {
 
 // As many as are spread over threads, and in runs that one thread writes.
 TEST_F(InputTest, SpawningIsTheSameOnAnyNumberOfThreads) {
-  constexpr uint32_t agents = 9000, run = 1500;
+  constexpr uint32_t agents = 9024, run = 1504;  // whole blocks
   const Scene scene = sceneOf(agents);
   const Heightfield ground = rollingGround();
   const Crowd crowd(device(), ground, sceneOf(1));

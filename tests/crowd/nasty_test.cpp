@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <numeric>
 #include <random>
 #include <string_view>
 
@@ -73,7 +72,8 @@ void scramble(const gpu::Context& context, Crowd& crowd, uint64_t seed, float fa
     b[12] = uniform(-1.5f, 1.5f), b[13] = uniform(0, 2), b[15] = b[7];
     gait[agent * 8] = uniform(0, 1);
     for (size_t l = 0; l < legs; ++l) {
-      const size_t record = agent * legs + l;
+      const auto record =
+          static_cast<size_t>(shared::legRecord(static_cast<int>(agent), static_cast<int>(l), herd.legs));
       float* s = &step[record * 16];
       const Leg& leg = herd.rig.legs[l];
       const glm::vec3 root = q * leg.root();
@@ -127,8 +127,10 @@ void expectEveryStage(Device& device, const Rig& rig, uint64_t seeds, float fart
 // Solves every leg as those that ik's first dispatch lists are solved.
 void solveListed(const gpu::Context& context, const crowd::Herd& herd) {
   const crowd::Page& page = herd.pages.at(0);
-  std::vector<uint32_t> list(page.agents * static_cast<size_t>(herd.legs));
-  std::iota(list.begin(), list.end(), 0u);
+  std::vector<uint32_t> list;
+  for (int agent = 0; agent < static_cast<int>(page.agents); ++agent)
+    for (int leg = 0; leg < herd.legs; ++leg)
+      list.push_back(static_cast<uint32_t>(shared::legRecord(agent, leg, herd.legs)));
   gpu::upload(context, page.list, list);
   auto counters = gpu::download<uint32_t>(context, page.counters);
   const auto legs = static_cast<uint32_t>(list.size());
@@ -187,10 +189,13 @@ TEST_P(NastyTest, ErrorsAreThoseOfTheChains) {
     const auto legs = static_cast<size_t>(herd.legs),
                stride = static_cast<size_t>(shared::chainStride(herd.bones));
     const auto entry = static_cast<size_t>(shared::chainDirections(herd.bones));
-    for (size_t record = 0; record < 65 * legs; ++record)
-      ASSERT_EQ(errors[record / legs * ((legs + 3) / 4 * 4) + record % legs],
-                chains[4 * (record * stride + entry) + 3])
-          << record;
+    for (size_t agent = 0; agent < 65; ++agent)
+      for (size_t leg = 0; leg < legs; ++leg) {
+        const auto record = static_cast<size_t>(
+            shared::legRecord(static_cast<int>(agent), static_cast<int>(leg), herd.legs));
+        ASSERT_EQ(errors[agent * ((legs + 3) / 4 * 4) + leg], chains[4 * (record * stride + entry) + 3])
+            << "agent " << agent << ", leg " << leg;
+      }
   }
 }
 

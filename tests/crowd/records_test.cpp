@@ -11,6 +11,7 @@
 #include "crowd/stage.h"
 #include "shared/bindings.h"
 #include "shared/parameters.h"
+#include "shared/records.h"
 
 namespace skitter::test {
 namespace {
@@ -90,6 +91,21 @@ TEST(Records, PushConstantsAndStrides) {
     EXPECT_EQ(constants.at("watched"), offsetof(shared::TickConstants, watched)) << stage.name;
     EXPECT_EQ(constants.at("room"), offsetof(shared::TickConstants, room)) << stage.name;
     for (const uint32_t stride : layout.arrayStrides) EXPECT_TRUE(stride == 16 || stride == 4) << stage.name;
+  }
+}
+
+TEST(Records, BlocksHoldEveryLegOnce) {
+  for (const int legs : {1, 2, 6, 8}) {
+    std::set<int> seen;
+    for (int agent = 0; agent < 3 * shared::BLOCK; ++agent)
+      for (int leg = 0; leg < legs; ++leg) {
+        const int record = shared::legRecord(agent, leg, legs);
+        EXPECT_EQ(shared::agentOfRecord(record, legs), agent) << record;
+        EXPECT_EQ(shared::legOfRecord(record, legs), leg) << record;
+        seen.insert(record);
+      }
+    EXPECT_EQ(seen.size(), static_cast<size_t>(3 * shared::BLOCK * legs));
+    EXPECT_EQ(*seen.rbegin(), 3 * shared::BLOCK * legs - 1);
   }
 }
 
