@@ -8,10 +8,8 @@ vec3 heightAt(sampler2D heights, vec2 origin, vec2 inverseSpacing, vec2 world) {
   vec2 u = clamp((world - origin) * inverseSpacing, vec2(0.0), vec2(size - 1));
   ivec2 i = min(ivec2(floor(u)), size - 2);
   vec2 f = u - vec2(i);
-  float h00 = texelFetch(heights, i, 0).r;
-  float h10 = texelFetch(heights, i + ivec2(1, 0), 0).r;
-  float h01 = texelFetch(heights, i + ivec2(0, 1), 0).r;
-  float h11 = texelFetch(heights, i + ivec2(1, 1), 0).r;
+  vec4 g = textureGather(heights, vec2(i + 1) / vec2(size));
+  float h00 = g.w, h10 = g.z, h01 = g.x, h11 = g.y;
   float h0 = h00 + f.x * (h10 - h00);
   float h1 = h01 + f.x * (h11 - h01);
   float gx0 = h10 - h00, gx1 = h11 - h01;
