@@ -50,7 +50,7 @@ class Stage {
 
   bench::Seconds run(int times) {
     const shared::TickConstants constants{
-        .count = 0, .tick = tick(), .first = 0, .every = 1, .watched = 0, .room = 0};
+        .count = 0, .tick = tick(), .first = 0, .every = 1, .watched = 0, .room = 0, .sleepTime = 0};
     return bench::timed([&] {
       const vk::CommandBuffer cmd = walk_.ring().begin();
       for (int i = 0; i < times; ++i) {

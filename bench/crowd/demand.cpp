@@ -14,7 +14,7 @@ namespace {
 // Counters, lists, tables and heights are shared by all, or small.
 bool isRecord(uint32_t binding) {
   using namespace shared;
-  return binding >= BINDING_GOAL && binding != BINDING_KEY &&
+  return binding >= BINDING_GOAL && binding != BINDING_KEY && binding < BINDING_AWAKE &&
          (binding < BINDING_CLIP || binding > BINDING_CLIP_JOINT);
 }
 
@@ -34,10 +34,13 @@ double invocationsOf(const crowd::Herd& herd, const crowd::Page& page, crowd::St
   const double agents = page.agents;
   switch (over) {
     case crowd::Stage::Over::legs:
+    case crowd::Stage::Over::everyLeg:
     case crowd::Stage::Over::listed:
       return agents * herd.legs;
     case crowd::Stage::Over::joints:
       return agents * herd.clips.joints;
+    case crowd::Stage::Over::blocks:
+    case crowd::Stage::Over::everyone:
     case crowd::Stage::Over::agents:
     case crowd::Stage::Over::watched:
       break;

@@ -40,7 +40,8 @@ struct RunOptions {
   Size size{1280, 720};
   std::string view, out, json, trace, footfalls;
   bool poses = false, unmeasured = false;
-  bool headless = false, force = false, obstacle = false, timings = false, validation = false, quiet = false;
+  bool headless = false, force = false, obstacle = false, timings = false, validation = false, quiet = false,
+       sleep = false;
 };
 
 Camera cameraOf(const RunOptions& options, Camera camera) {
@@ -146,6 +147,7 @@ int run(const RunOptions& options) {
   crowdOptions.timestamps = options.timings;
   crowdOptions.measure = !options.unmeasured;
   crowdOptions.watchEvery = options.watchEvery;
+  crowdOptions.sleep = options.sleep;
   if (!options.footfalls.empty()) crowdOptions.footfalls = UINT32_MAX;  // all that can be
   crowdOptions.pose =
       options.poses || windowed || target.kind != OutTarget::Kind::none || !options.trace.empty();
@@ -192,6 +194,7 @@ int run(const RunOptions& options) {
   summary.fidelity = crowd.fidelity();
   for (uint32_t h = 0; h < crowd.herdCount(); ++h)
     summary.herds.push_back({crowd.rig(h).name, scene.herds[h].agents, crowd.fidelity(h)});
+  if (options.sleep) summary.sleeping = crowd.sleeping();
   summary.stateHash = crowd.stateHash();
   summary.memory = memoryOf(crowd);
   if (trace) {
@@ -274,6 +277,9 @@ void addRun(CLI::App& app, Command& chosen) {
   command->add_flag("--obstacle", options->obstacle,
                     "a mound wanders across the crowd's way: the terrain is edited in every tick");
   command->add_flag("--force", options->force, "allow a trace of more than 4 GiB");
+  command->add_flag(
+      "--sleep", options->sleep,
+      "pass over agents that have stood still for seconds, until their goal or the ground moves");
   command->add_flag("--timings", options->timings,
                     "time every stage on the device's clock (software devices may lie)");
   command->add_flag("--poses", options->poses,

@@ -95,6 +95,7 @@ void Summary::print() const {
   printRow("agents", fmt::format("{}", agents));
   printRow("ticks", ticks < wantedTicks ? fmt::format("{} of {}, interrupted", ticks, wantedTicks)
                                         : fmt::format("{}", ticks));
+  if (sleeping) printRow("asleep", fmt::format("{} agents at the end", *sleeping));
   if (frames > 0) printRow("frames", fmt::format("{}", frames));
   if (const auto tick = spreadOf(times.milliseconds)) {
     printRow("a tick",
@@ -132,6 +133,7 @@ nlohmann::ordered_json Summary::json() const {
     perHerd.push_back({{"rig", herd.rig}, {"agents", herd.agents}, {"fidelity", jsonOf(herd.fidelity)}});
   return {{"device", device},
           {"agents", agents},
+          {"sleeping", orNull(sleeping)},
           {"ticks", ticks},
           {"seed", seed},
           {"tickMilliseconds", milliseconds},

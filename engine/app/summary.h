@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct Summary {
   uint32_t watchEvery = 1;  // the figures are of one agent of this many at a time
   Fidelity fidelity;        // of all herds
   std::vector<HerdFigures> herds;
+  std::optional<uint64_t> sleeping;  // agents at the end; none where they may not
   uint64_t stateHash = 0;
   std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times
   double startSeconds = 0, startCpuSeconds = 0;  // before the first tick; told likewise

@@ -36,7 +36,7 @@ struct ValidateOptions {
   SceneOptions scene;
   uint64_t frames = defaultFrames;
   std::string json;
-  bool freeRun = false, quiet = false;
+  bool freeRun = false, quiet = false, sleep = false;
 };
 
 // Of a leg length: where an agent stands, after so long, is the same place to whoever looks.
@@ -162,6 +162,7 @@ int validate(const ValidateOptions& options) {
   Device device = Device::create(request);
   CrowdOptions crowdOptions;
   crowdOptions.footfalls = UINT32_MAX;  // all that can be
+  crowdOptions.sleep = options.sleep;
   Crowd crowd(device, terrain, scene, crowdOptions);
 
   gpu::CommandRing ring(device.context());
@@ -225,6 +226,7 @@ void addValidate(CLI::App& app, Command& chosen) {
   command->add_option("--json", options->json, "write the table to a file")->type_name("FILE");
   command->add_flag("--free-run", options->freeRun,
                     "also walk adaptive herds by the reference alone, and say what share stays together");
+  command->add_flag("--sleep", options->sleep, "let agents that have stood still for seconds sleep");
   command->add_flag("--quiet", options->quiet, "no progress on stderr");
   command->footer(
       fmt::format("Of herds of more than {} agents a part is compared, another one in each tick.\n"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -76,36 +77,64 @@ void loadClips(const gpu::Context& context, const Herd& from, crowd::Herd& herd)
   upload(herd.clipBones, herd.clips.bones, "clip joints");
 }
 
-// What a stage's shader has as count: of joints or of agents.
-uint32_t countOf(const crowd::Herd& herd, const Page& page, Stage::Over over) {
-  return over == Stage::Over::joints ? page.agents * static_cast<uint32_t>(herd.clips.joints) : page.agents;
+uint32_t invocations(const crowd::Herd& herd, const Page& page, Stage::Over over) {
+  const uint32_t agents = crowd::wholeBlocks(page.agents);
+  switch (over) {
+    case Stage::Over::joints:
+      return page.agents * static_cast<uint32_t>(herd.clips.joints);
+    case Stage::Over::legs:
+    case Stage::Over::everyLeg:
+      return agents * static_cast<uint32_t>(herd.legs);
+    case Stage::Over::blocks:
+      return agents / shared::BLOCK;
+    case Stage::Over::everyone:
+    case Stage::Over::agents:
+    case Stage::Over::listed:
+    case Stage::Over::watched:
+      break;
+  }
+  return page.agents;
 }
 
-uint32_t invocations(const crowd::Herd& herd, const Page& page, Stage::Over over) {
-  return over == Stage::Over::legs ? crowd::wholeBlocks(page.agents) * static_cast<uint32_t>(herd.legs)
-                                   : countOf(herd, page, over);
+// Where the counters have the dispatch over those who are awake.
+uint64_t awakeArguments(Stage::Over over) {
+  return sizeof(uint32_t) * (over == Stage::Over::agents ? shared::COUNTER_AWAKE_AGENTS_X
+                             : over == Stage::Over::legs ? shared::COUNTER_AWAKE_LEGS_X
+                                                         : shared::COUNTER_AWAKE_JOINTS_X);
 }
 
 bool isNamed(const Stage& stage, std::string_view name) { return stage.name == name; }
 
-// Gait looks at the ground under every foot in the ticks after an edit of the heights.
+// In the ticks after an edit of the heights gait looks at the ground under every foot, and nobody sleeps.
+bool watchesGround(const Impl& crowd) { return crowd.watchUntil > 0 && crowd.tick <= crowd.watchUntil; }
+
 const gpu::Kernel& kernelOf(const Impl& crowd, const crowd::Herd& herd, size_t index) {
-  const bool watches = herd.watchingGait && crowd.watchUntil > 0 && crowd.tick <= crowd.watchUntil;
-  return watches && isNamed(herd.stages[index], "gait") ? herd.watchingGait : herd.kernels[index];
+  return herd.watchingGait && watchesGround(crowd) && isNamed(herd.stages[index], "gait")
+             ? herd.watchingGait
+             : herd.kernels[index];
 }
 
 void dispatch(const Impl& crowd, const crowd::Herd& herd, const Page& page, size_t index, uint64_t tick,
               vk::CommandBuffer cmd) {
   const Stage& stage = herd.stages[index];
   shared::TickConstants constants{
-      countOf(herd, page, stage.over), static_cast<float>(tick), page.firstAgent, 1, 0, page.footfallRoom};
+      page.agents,
+      static_cast<float>(tick),
+      page.firstAgent,
+      1,
+      0,
+      page.footfallRoom,
+      watchesGround(crowd) ? std::numeric_limits<float>::infinity() : herd.parameters.sleepTime};
   if (stage.over == Stage::Over::watched) {
     const crowd::Watch watch = crowd::watchAt(tick, crowd.watchEvery, page);
-    constants = {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0};
+    constants = {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0, 0};
   }
   const auto push = gpu::bytesOf(constants);
   if (stage.over == Stage::Over::listed)
     herd.kernels[index].dispatchIndirect(cmd, page.bindings[index], push, page.counters);
+  else if (crowd.options.sleep && crowd::isOfTheAwake(stage))
+    kernelOf(crowd, herd, index)
+        .dispatchIndirect(cmd, page.bindings[index], push, page.counters, awakeArguments(stage.over));
   else
     kernelOf(crowd, herd, index)
         .dispatch(cmd, page.bindings[index], push,
@@ -117,6 +146,19 @@ void clearLists(const Impl& crowd, vk::CommandBuffer cmd) {
   constexpr std::array<uint32_t, shared::COUNTER_LAST_RESORTS> none = {0, 1, 1, 0, 0, 0, 1, 1, 0};
   for (const crowd::Herd& herd : crowd.herds)
     for (const Page& page : herd.pages) cmd.updateBuffer(page.counters.handle(), 0, sizeof none, none.data());
+}
+
+// Nobody is awake until `wake` says so.
+void clearAwake(const Impl& crowd, vk::CommandBuffer cmd) {
+  if (!crowd.options.sleep) return;
+  constexpr std::array<uint32_t, shared::COUNTERS - shared::COUNTER_AWAKE_AGENTS_X> none = {0, 1, 1, 0, 1, 1,
+                                                                                            0, 1, 1, 0, 0};
+  for (const crowd::Herd& herd : crowd.herds)
+    for (const Page& page : herd.pages) {
+      cmd.updateBuffer(page.counters.handle(), shared::COUNTER_AWAKE_AGENTS_X * sizeof(uint32_t), sizeof none,
+                       none.data());
+      cmd.fillBuffer(page.awake.handle(), 0, VK_WHOLE_SIZE, 0);
+    }
 }
 
 bool hasStage(const Impl& crowd, std::string_view name) {
@@ -153,6 +195,7 @@ void recordStage(const Impl& crowd, std::string_view name, uint64_t tick, vk::Co
 void settle(Impl& crowd) {
   gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
     clearLists(crowd, cmd);
+    clearAwake(crowd, cmd);
     gpu::transferToCompute(cmd);
     const shared::TickConstants nothing{};
     const auto warmUp = [&](const gpu::Kernel& kernel, const crowd::Herd& herd, size_t index) {
@@ -166,6 +209,8 @@ void settle(Impl& crowd) {
         if (herd.watchingGait && isNamed(herd.stages[i], "gait")) warmUp(herd.watchingGait, herd, i);
         if (herd.restKernels[i]) warmUp(herd.restKernels[i], herd, i);
       }
+    recordStage(crowd, "wake", 0, cmd);
+    gpu::computeToIndirectAndCompute(cmd);
     recordStage(crowd, "swing", 0, cmd);
     for (int i = 0; i < kSettleIterations; ++i) {
       gpu::computeToCompute(cmd);
@@ -289,6 +334,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   gpu::graphicsToCompute(cmd);
   gpu::computeToTransfer(cmd);
   clearLists(crowd, cmd);
+  clearAwake(crowd, cmd);
   if (!crowd.edits.empty()) crowd.edits.record(cmd, crowd.terrain, crowd.heights);
   gpu::transferToCompute(cmd);
   const char* last = nullptr;
@@ -296,7 +342,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
     if (!hasStage(crowd, name)) continue;
     crowd.timer.next(cmd, last = name.data());
     recordStage(crowd, name, tick, cmd);
-    if (name == "gait")
+    if (name == "gait" || name == "wake")
       gpu::computeToIndirectAndCompute(cmd);
     else
       gpu::computeToCompute(cmd);

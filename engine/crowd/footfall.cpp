@@ -18,7 +18,7 @@ Stage footfallStage() {
            {BINDING_FLIGHT, load4},
            {BINDING_FLIGHT_OUT, store},
            {BINDING_FOOTFALL_OUT, store}},
-          Stage::Over::legs};
+          Stage::Over::everyLeg};
 }
 
 }  // namespace skitter::crowd

@@ -34,6 +34,7 @@ struct Page {
   gpu::Buffer spring;            // of controller pose
   gpu::Buffer flight, footfall;  // none unless footfalls are kept
   uint32_t footfallRoom = 0;
+  gpu::Buffer awake;                    // blocks with somebody awake, where agents may sleep
   gpu::Buffer list;                     // legs that begin a step this tick
   gpu::Buffer counters;                 // indirect arguments and counts
   gpu::Buffer histogram;                // of reach errors

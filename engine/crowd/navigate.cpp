@@ -14,8 +14,9 @@ Stage navigateStage() {
            {BINDING_GOAL, load4},
            {BINDING_GOAL_OUT, store},
            {BINDING_STEER_OUT, store},
-           {BINDING_BODY, load4}},
-          Stage::Over::agents};
+           {BINDING_BODY, load4},
+           {BINDING_GAIT, load4}},
+          Stage::Over::everyone};
 }
 
 }  // namespace skitter::crowd

@@ -30,6 +30,9 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
       return {binding, &page.list};
     case BINDING_COUNTERS:
       return {binding, &page.counters};
+    case BINDING_AWAKE:
+    case BINDING_AWAKE_OUT:
+      return {binding, &page.awake};
     case BINDING_HISTOGRAM:
       return {binding, &page.histogram};
     case BINDING_GOAL:
@@ -168,6 +171,13 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
     buffers.push_back({"footfall", &Page::footfall, vec4s(legs, FOOTFALL_STRIDE), nullptr, 1,
                        vec4s(options.footfalls, FOOTFALL_STRIDE)});
   }
+  // The last work group reads on after the list's end.
+  PageBuffer awake{"awake", &Page::awake, vec4s(1, AWAKE_STRIDE), nullptr, BLOCK};
+  if (options.sleep)
+    awake.more = vec4s(WORK_GROUP, AWAKE_STRIDE);
+  else
+    awake.most = awake.bytes;
+  buffers.push_back(awake);
   buffers.push_back({"counters", &Page::counters, COUNTERS * sizeof(uint32_t), nullptr, aPage, UINT64_MAX,
                      gpu::BufferUse::indirect});
   return buffers;

@@ -26,10 +26,11 @@ struct PageBuffer {
   uint64_t most = UINT64_MAX;  // bytes, whatever the number of agents
   gpu::BufferUse use = gpu::BufferUse::records;
   bool inBlocks = false;  // leg records, which come in whole blocks of agents
+  uint64_t more = 0;      // bytes after the last entry
 
   uint64_t bytesOf(uint32_t pageAgents) const {
     const uint64_t count = inBlocks ? wholeBlocks(pageAgents) : pageAgents;
-    return std::min(most, (count + agents - 1) / agents * bytes);
+    return std::min(most, (count + agents - 1) / agents * bytes + more);
   }
 };
 

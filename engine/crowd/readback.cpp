@@ -67,6 +67,7 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
   HerdState state;
   state.sample = sample;
   state.watchEvery = impl_->watchEvery;
+  state.sleep = impl_->options.sleep;
   state.watched = impl_->tick > 0 && impl_->tick <= impl_->watchUntil;
   const crowd::Herd& herd = impl_->herds.at(herdIndex);
   for (const Page& page : herd.pages) {
@@ -130,6 +131,16 @@ std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herd) const {
     buffers.push_back(
         {page.footfall.handle(), page.counters.handle(), shared::COUNTER_FOOTFALLS * 4, page.footfallRoom});
   return buffers;
+}
+
+uint64_t Crowd::sleeping() const {
+  impl_->context->waitIdle();
+  if (!impl_->options.sleep || impl_->tick == 0) return 0;
+  uint64_t sleeping = agentCount();
+  for (const crowd::Herd& herd : impl_->herds)
+    for (const Page& page : herd.pages)
+      sleeping -= gpu::download<uint32_t>(*impl_->context, page.counters)[shared::COUNTER_AWAKE];
+  return sleeping;
 }
 
 uint64_t Crowd::stateHash() const {

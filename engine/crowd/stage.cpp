@@ -16,22 +16,22 @@ namespace {
 std::vector<Stage> everyStageOf(Controller controller) {
   switch (controller) {
     case Controller::clip:
-      return {navigateStage(), blindBodyStage(), clipStage(),    clipSwingStage(),
-              clipPoseStage(), measureStage(),   footfallStage()};
+      return {navigateStage(),  wakeStage(),     blindBodyStage(), clipStage(),
+              clipSwingStage(), clipPoseStage(), measureStage(),   footfallStage()};
     case Controller::planted:
-      return {navigateStage(),  blindBodyStage(),   clipStage(),    plantedSwingStage(),
-              plantedIkStage(), plantedPoseStage(), measureStage(), footfallStage()};
+      return {navigateStage(),  wakeStage(),        blindBodyStage(), clipStage(),    plantedSwingStage(),
+              plantedIkStage(), plantedPoseStage(), measureStage(),   footfallStage()};
     case Controller::pose:
-      return {navigateStage(), blindBodyStage(), keyPoseGaitStage(), keyPoseSwingStage(),
-              poseStage(),     measureStage(),   footfallStage()};
+      return {navigateStage(),     wakeStage(), blindBodyStage(), keyPoseGaitStage(),
+              keyPoseSwingStage(), poseStage(), measureStage(),   footfallStage()};
     case Controller::loop:
-      return {navigateStage(), blindBodyStage(), loopGaitStage(), loopSwingStage(),
-              ikStage(),       poseStage(),      measureStage(),  footfallStage()};
+      return {navigateStage(), wakeStage(), blindBodyStage(), loopGaitStage(), loopSwingStage(),
+              ikStage(),       poseStage(), measureStage(),   footfallStage()};
     case Controller::adaptive:
       break;
   }
-  return {navigateStage(), bodyStage(), gaitStage(),    footholdStage(), swingStage(),
-          ikStage(),       poseStage(), measureStage(), footfallStage()};
+  return {navigateStage(), wakeStage(), bodyStage(), gaitStage(),    footholdStage(),
+          swingStage(),    ikStage(),   poseStage(), measureStage(), footfallStage()};
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ Controller controllerNamed(const std::string& name) {
 }
 
 const std::vector<const char*>& frame() {
-  static const std::vector<const char*> names = {"navigate", "body", "clip", "gait",    "foothold",
+  static const std::vector<const char*> names = {"navigate", "wake", "body", "clip",    "gait",    "foothold",
                                                  "swing",    "ik",   "pose", "measure", "footfall"};
   return names;
 }
@@ -55,6 +55,7 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) 
   std::vector<Stage> stages = everyStageOf(controller);
   std::erase_if(stages, [&](const Stage& stage) {
     const std::string_view name = stage.name;
+    if (name == "wake") return !options.sleep;
     if (name == "pose") return !options.pose;
     if (name == "measure") return !options.measure;
     if (name == "footfall") return options.footfalls == 0;
@@ -62,7 +63,14 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) 
     if (name == "swing" && controller == Controller::clip) return !options.measure && options.footfalls == 0;
     return false;
   });
+  for (Stage& stage : stages)
+    if (isOfTheAwake(stage)) stage.bindings.push_back({shared::BINDING_AWAKE, gpu::BindingKind::load4});
   return stages;
+}
+
+bool isOfTheAwake(const Stage& stage) {
+  return stage.over == Stage::Over::agents || stage.over == Stage::Over::legs ||
+         stage.over == Stage::Over::joints;
 }
 
 StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const Herd& herd) {
@@ -74,6 +82,10 @@ StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const He
   for (const StageShader& other : options.shaders)
     if (other.stage == stage.name) info.code = {other.texel, other.storage};
   info.constants = {{CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
+  if (options.sleep) {
+    const bool breathes = herd.controller == Controller::adaptive;
+    info.constants.emplace_back(CONSTANT_SLEEP, breathes ? SLEEP_BREATHED_OUT : SLEEP_STILL);
+  }
   if (playsClips(herd.controller)) {
     info.constants.emplace_back(CONSTANT_CLIPS, herd.clips.clips);
     info.constants.emplace_back(CONSTANT_JOINTS, herd.clips.joints);

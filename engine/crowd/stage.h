@@ -12,9 +12,9 @@ namespace skitter::crowd {
 
 // A stage of the frame: one compute shader, the records it binds, and what it runs over.
 struct Stage {
-  // listed: the legs that begin a step, counted on the device; watched: agents whom measure looks at; joints:
-  // of the clips' palette.
-  enum class Over { agents, legs, listed, watched, joints };
+  // agents, legs, joints (of the clips' palette): of those that are awake; listed: the legs that begin a
+  // step, counted on the device; watched: agents whom measure looks at.
+  enum class Over { everyone, everyLeg, blocks, agents, legs, joints, listed, watched };
 
   const char* name;
   gpu::ShaderCode code;
@@ -30,6 +30,9 @@ const std::vector<const char*>& frame();
 // A controller's stages, in that order, less those that make what nobody asked for.
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options);
 
+// Whether it passes over those who sleep.
+bool isOfTheAwake(const Stage& stage);
+
 struct Herd;
 
 // A stage's shader, specialised by the herd's legs, bones and groups: for its first dispatch, for what that
@@ -44,6 +47,7 @@ void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd&
 
 // Each in a file of its own name.
 Stage navigateStage();
+Stage wakeStage();
 Stage bodyStage();
 Stage blindBodyStage();
 Stage clipStage();

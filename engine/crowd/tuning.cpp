@@ -104,6 +104,7 @@ shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield
   p.errorLift = 1e-3f;                 // of the reach
   p.rootShare = 0.25f;                 // of the reach
   p.settleTime = 1;                    // s
+  p.sleepTime = 2;                     // s; the last steps are over, and the joints at rest
   p.reaimDistance = 0.15f * length;    // less than a ladder's spacing, and steps are re-aimed for nothing
   p.reaimLatest = 0.7f;
   p.groundTolerance = 0.02f * length;  // less, and rounding of heights far from 0 would lift feet

@@ -58,6 +58,9 @@ BINDING BINDING_SPRING_OUT = 41;
 BINDING BINDING_KEY = 42;  // constant
 BINDING BINDING_ERROR = 43;
 BINDING BINDING_ERROR_OUT = 44;
+// Blocks with somebody awake, where agents may sleep.
+BINDING BINDING_AWAKE = 45;
+BINDING BINDING_AWAKE_OUT = 46;
 
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
@@ -74,12 +77,13 @@ BINDING CONSTANT_JOINTS = 21;        // of the clips' palette
 BINDING CONSTANT_SEARCH_STEPS = 22;  // 2 to their power is more than a clip has frames
 BINDING CONSTANT_REACH = 23;         // gait steps when out of reach, without a rhythm
 BINDING CONSTANT_WATCH = 24;  // gait looks at the ground under every foot: the heights were edited lately
+BINDING CONSTANT_SLEEP = 25;  // SLEEP_
 #undef BINDING
 
 // Push constants of every stage.
 struct TickConstants {
 #ifdef __cplusplus
-  uint32_t count;  // invocations with work: agents, legs or watched agents of the page
+  uint32_t count;  // agents of the page; of measure those that are watched
   float tick;      // n, the tick being computed
   // Of measure: invocation i looks at agent first + i * every of the page, watched for so many ticks. Of
   // footfall: the page's first agent in its herd, and the events that there is room for.
@@ -87,6 +91,8 @@ struct TickConstants {
   uint32_t every;
   uint32_t watched;
   uint32_t room;
+  // Of navigate: seconds of standing after which an agent may sleep in this tick.
+  float sleepTime;
 #else
   uint count;
   float tick;
@@ -94,6 +100,7 @@ struct TickConstants {
   uint every;
   uint watched;
   uint room;
+  float sleepTime;
 #endif
 };
 

@@ -62,6 +62,7 @@ struct Parameters {
   float errorLift;        // share of the reach: a planted foot that misses by more must lift
   float rootShare;        // share of the reach below which a foot is too close to its root
   float settleTime;       // seconds of standing after which nobody steps
+  float sleepTime;        // seconds of standing after which an agent may sleep
   float reaimDistance;    // a landing point further than this from the prediction is chosen anew
   float reaimLatest;      // progress after which it is kept
   float groundTolerance;  // ground that moves by more under a foot makes it step anew

@@ -40,8 +40,17 @@ SKITTER_CONST float GOAL_POINT = 1.0;
 SKITTER_CONST float GOAL_CROSS = 2.0;
 
 // steer, per agent, written by navigate.
-//   [0] desired velocity x, z (m/s), unused, unused
+//   [0] desired velocity x, z (m/s), 1 if the agent sleeps, unused
 SKITTER_CONST int STEER_STRIDE = 1;
+
+// Who may sleep: nobody, anybody, or who has breathed out.
+SKITTER_CONST int SLEEP_NEVER = 0;
+SKITTER_CONST int SLEEP_STILL = 1;
+SKITTER_CONST int SLEEP_BREATHED_OUT = 2;
+
+// awake, per block of agents of whom somebody is awake, in any order, zeros after the last; written by wake.
+//   [0] block, mask of its agents that are awake, unused, unused
+SKITTER_CONST int AWAKE_STRIDE = 1;
 
 // body, per agent, written by body.
 //   [0] local x, y (world), local z, heading x
@@ -175,7 +184,8 @@ SKITTER_CONST int FOOTFALL_STRIDE = 2;
 // counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] legs listed for it (where
 // clips are played: of pose, and the agents that fade), [4] footfalls of the tick, [5..7] indirect dispatch
 // of ik, [8] legs listed for it; since the start: [9] last resorts, [10] targets that were not finite, [11]
-// footfalls without room.
+// footfalls without room; where agents may sleep: [12..20] indirect dispatches over the agents, the legs and
+// the joints of blocks with somebody awake, [21] those blocks, [22] agents that are awake.
 SKITTER_CONST int COUNTER_DISPATCH_X = 0;
 SKITTER_CONST int COUNTER_LISTED = 3;
 SKITTER_CONST int COUNTER_FOOTFALLS = 4;
@@ -184,7 +194,12 @@ SKITTER_CONST int COUNTER_IK_LISTED = 8;
 SKITTER_CONST int COUNTER_LAST_RESORTS = 9;
 SKITTER_CONST int COUNTER_NOT_FINITE = 10;
 SKITTER_CONST int COUNTER_FOOTFALLS_DROPPED = 11;
-SKITTER_CONST int COUNTERS = 12;
+SKITTER_CONST int COUNTER_AWAKE_AGENTS_X = 12;
+SKITTER_CONST int COUNTER_AWAKE_LEGS_X = 15;
+SKITTER_CONST int COUNTER_AWAKE_JOINTS_X = 18;
+SKITTER_CONST int COUNTER_AWAKE_BLOCKS = 21;
+SKITTER_CONST int COUNTER_AWAKE = 22;
+SKITTER_CONST int COUNTERS = 23;
 // reach errors, per page: counts per bucket of a leg length; bucket k holds errors of 2^(k/4 - 20) and more.
 SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
 

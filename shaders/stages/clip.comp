@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 #include "shared/ik_batch.h"
 #include "lib/clip.glsl"
 
@@ -28,8 +28,8 @@ vec2 frameAt(vec4 clip, float time) {
 }
 
 void main() {
-  int agent = int(gl_GlobalInvocationID.x);
-  if (agent >= int(constants.count)) return;
+  int agent = agentAt(int(gl_GlobalInvocationID.x));
+  if (agent < 0) return;
   int at = agent * BODY_STRIDE, playAt = agent * PLAY_STRIDE;
   Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
   Play play = unpackPlay(LOAD4(plays, playAt), LOAD4(plays, playAt + 1), LOAD4(plays, playAt + 2));

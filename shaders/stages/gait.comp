@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 #include "lib/gait.glsl"
 #include "lib/heightfield.glsl"
 #include "lib/hermite.glsl"
@@ -30,8 +30,8 @@ float above(vec3 point, Body body) {
 }
 
 void main() {
-  int agent = int(gl_GlobalInvocationID.x);
-  if (agent >= int(constants.count)) return;
+  int agent = agentAt(int(gl_GlobalInvocationID.x));
+  if (agent < 0) return;
   int at = agent * BODY_STRIDE;
   Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
   Stride stride = strideFor(parameters, body.surfaceSpeed, body.turnRate, float(GROUPS));

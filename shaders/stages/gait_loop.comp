@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 #include "lib/gait.glsl"
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -8,8 +8,8 @@ LOAD4_BUFFER(BINDING_GAIT, gaits);
 STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
 
 void main() {
-  int agent = int(gl_GlobalInvocationID.x);
-  if (agent >= int(constants.count)) return;
+  int agent = agentAt(int(gl_GlobalInvocationID.x));
+  if (agent < 0) return;
   int at = agent * BODY_STRIDE;
   Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
   Stride stride = strideFor(parameters, body.surfaceSpeed, body.turnRate, float(GROUPS));

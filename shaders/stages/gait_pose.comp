@@ -1,14 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_GAIT, gaits);
 STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
 
 void main() {
-  int agent = int(gl_GlobalInvocationID.x);
-  if (agent >= int(constants.count)) return;
+  int agent = agentAt(int(gl_GlobalInvocationID.x));
+  if (agent < 0) return;
   int at = agent * BODY_STRIDE, gaitAt = agent * GAIT_STRIDE;
   Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
   float speed = body.surfaceSpeed + abs(body.turnRate) * parameters.homeRadius;

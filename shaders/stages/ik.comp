@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define ONLY_CONES  // are what rigs have
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 #include "shared/ik_batch.h"
 #include "lib/active_set.glsl"
 #include "lib/fabrik.glsl"
@@ -58,9 +58,11 @@ void main() {
   if (PASS == PASS_LISTED) {
     if (record >= int(counters[COUNTER_IK_LISTED])) return;
     record = int(list[record]);
+  } else {
+    record = legAt(record);
+    if (record < 0) return;
   }
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
-  if (PASS != PASS_LISTED && agent >= int(constants.count)) return;
   int at = record * chainStride(BONES), rigAt = leg * rigStride(BONES);
 
   Limb limb;

@@ -7,6 +7,17 @@ LOAD4_BUFFER(BINDING_GOAL, goals);
 STORE4_BUFFER(BINDING_GOAL_OUT, goalsOut);
 STORE4_BUFFER(BINDING_STEER_OUT, steersOut);
 LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_GAIT, gaits);
+layout(constant_id = CONSTANT_SLEEP) const int SLEEP = SLEEP_NEVER;
+
+// Nothing of it changes any more but by a goal or by the ground.
+bool asleep(int agent, vec2 velocity) {
+  vec4 gait = LOAD4(gaits, agent * GAIT_STRIDE), cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1);
+  float still = LOAD4(bodies, agent * BODY_STRIDE + 3).y;
+  bool breathedOut = SLEEP != SLEEP_BREATHED_OUT || gait.x < parameters.dt / cycle.y;
+  bool stands = gait.y == 0.0 && cycle.z == 0.0;
+  return length(velocity) < 1e-2 * parameters.legLength && still >= constants.sleepTime && stands && breathedOut;
+}
 
 void main() {
   int agent = int(gl_GlobalInvocationID.x);
@@ -16,5 +27,5 @@ void main() {
   vec2 velocity = navigate(parameters, worldOf(a.xyz, b.xy), manner, ends);
   STORE4(goalsOut, agent * GOAL_STRIDE, ends);
   STORE4(goalsOut, agent * GOAL_STRIDE + 1, manner);
-  STORE4(steersOut, agent, vec4(velocity, 0.0, 0.0));
+  STORE4(steersOut, agent, vec4(velocity, SLEEP != SLEEP_NEVER && asleep(agent, velocity) ? 1.0 : 0.0, 0.0));
 }

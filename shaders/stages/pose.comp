@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -8,9 +8,9 @@ LOAD4_BUFFER(BINDING_CHAIN, chains);
 STORE4_BUFFER(BINDING_POSE_OUT, posesOut);
 
 void main() {
-  int record = int(gl_GlobalInvocationID.x);
+  int record = legAt(int(gl_GlobalInvocationID.x));
+  if (record < 0) return;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
-  if (agent >= int(constants.count)) return;
   int at = record * chainStride(BONES), rigAt = leg * rigStride(BONES);
   int poseAt = (agent * (1 + LEGS * BONES) + 1 + leg * BONES) * POSE_STRIDE;
 

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 #include "shared/ik_batch.h"
 #include "lib/clip.glsl"
 
@@ -22,8 +22,9 @@ void main() {
   if (PASS == PASS_LISTED) {
     if (agent >= int(counters[COUNTER_LISTED])) return;
     agent = int(list[agent]);
-  } else if (record >= int(constants.count)) {
-    return;
+  } else {
+    agent = agentAt(agent);
+    if (agent < 0) return;
   }
   int playAt = agent * PLAY_STRIDE;
   Play play = unpackPlay(LOAD4(plays, playAt), LOAD4(plays, playAt + 1), LOAD4(plays, playAt + 2));

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 #include "lib/hermite.glsl"
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -8,9 +8,9 @@ LOAD4_BUFFER(BINDING_STEP, steps);
 STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 
 void main() {
-  int record = int(gl_GlobalInvocationID.x);
+  int record = legAt(int(gl_GlobalInvocationID.x));
+  if (record < 0) return;
   int agent = agentOfRecord(record, LEGS);
-  if (agent >= int(constants.count)) return;
   int at = agent * BODY_STRIDE, stepAt = record * STEP_STRIDE;
   vec3 local = LOAD4(bodies, at).xyz;
   vec2 tile = LOAD4(bodies, at + 1).xy;

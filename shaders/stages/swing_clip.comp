@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define ONLY_CONES
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 #include "shared/ik_batch.h"
 #include "lib/chain.glsl"
 #include "lib/clip.glsl"
@@ -32,9 +32,9 @@ STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 #endif
 
 void main() {
-  int record = int(gl_GlobalInvocationID.x);
+  int record = legAt(int(gl_GlobalInvocationID.x));
+  if (record < 0) return;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
-  if (agent >= int(constants.count)) return;
   int bodyAt = agent * BODY_STRIDE, playAt = agent * PLAY_STRIDE, at = record * chainStride(BONES);
   Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
                          LOAD4(bodies, bodyAt + 3));

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 #include "lib/loop.glsl"
 
 LOAD4_BUFFER(BINDING_RIG, rig);
@@ -9,9 +9,9 @@ LOAD4_BUFFER(BINDING_GAIT, gaits);
 STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 
 void main() {
-  int record = int(gl_GlobalInvocationID.x);
+  int record = legAt(int(gl_GlobalInvocationID.x));
+  if (record < 0) return;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
-  if (agent >= int(constants.count)) return;
   int at = agent * BODY_STRIDE;
   Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
   vec4 home = LOAD4(rig, leg * rigStride(BONES) + 1);

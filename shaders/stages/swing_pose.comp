@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define ONLY_CONES
-#include "stages/stage.glsl"
+#include "stages/awake.glsl"
 #include "shared/ik_batch.h"
 #include "lib/chain.glsl"
 #include "lib/hermite.glsl"
@@ -18,9 +18,9 @@ STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 STORE4_BUFFER(BINDING_SPRING_OUT, springsOut);
 
 void main() {
-  int record = int(gl_GlobalInvocationID.x);
+  int record = legAt(int(gl_GlobalInvocationID.x));
+  if (record < 0) return;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS), pairs = chainDirections(BONES);
-  if (agent >= int(constants.count)) return;
   int bodyAt = agent * BODY_STRIDE, at = record * chainStride(BONES), springAt = record * pairs;
   Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
                          LOAD4(bodies, bodyAt + 3));

@@ -29,8 +29,10 @@ struct CrowdOptions {
                             // in a crowd of at most 256, of one in 64 in a larger one
   uint32_t footfalls = 0;   // keep so many touchdowns of a tick, a page of the herd, at most one a
                             // leg; 0: none
-  bool timestamps = false;  // time every stage on the device
-  uint32_t pageAgents = 0;  // most agents a page; 0: as many as the device's limits allow
+  bool sleep = false;  // who has stood still for seconds is passed over, without a breath, until its goal or
+                       // the ground moves: standing crowds cost next to nothing
+  bool timestamps = false;                // time every stage on the device
+  uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
 };
 
@@ -88,6 +90,7 @@ struct HerdState {
   std::vector<Footfall> footfalls;  // of the last tick and of all agents, by agent and leg
   bool footfallsKept = false;       // they are all here: CrowdOptions::footfalls left room for them
   bool watched = false;  // the last tick's gait looked at the ground, because the heights were edited lately
+  bool sleep = false;    // CrowdOptions::sleep; who sleeps is told by its steer record
 };
 
 // The touchdowns of the last tick on the device, for shaders of the caller's: FOOTFALL_STRIDE vec4 each
@@ -158,8 +161,10 @@ class Crowd {
   // Of the last tick recorded, by agent and leg; empty without CrowdOptions::footfalls.
   std::vector<Footfall> footfalls(uint32_t herd) const;
   uint64_t droppedFootfalls(uint32_t herd) const;  // for want of room, since the start
-  uint64_t stateHash() const;                      // of every record that the next tick depends on
-  std::vector<StageTime> stageTimes() const;       // empty without CrowdOptions::timestamps
+  uint64_t sleeping()
+      const;  // agents of all herds that slept in the last tick; 0 without CrowdOptions::sleep
+  uint64_t stateHash() const;                 // of every record that the next tick depends on
+  std::vector<StageTime> stageTimes() const;  // empty without CrowdOptions::timestamps
 
   // One a page of the herd; does not wait. The last barrier of record() makes them visible.
   std::vector<FootfallBuffer> footfallBuffers(uint32_t herd) const;

@@ -1,0 +1,23 @@
+// Whom the stages from body to pose run over: everybody, or where agents may sleep the blocks that `wake` listed.
+#ifndef AWAKE_GLSL
+#define AWAKE_GLSL
+#include "stages/stage.glsl"
+
+layout(constant_id = CONSTANT_SLEEP) const int SLEEP = SLEEP_NEVER;
+LOAD4_BUFFER(BINDING_AWAKE, awake);
+
+// The agent in a place among those, or -1: there is none, or it sleeps.
+int agentAt(int place) {
+  if (SLEEP == SLEEP_NEVER) return place < int(constants.count) ? place : -1;
+  vec4 block = LOAD4(awake, place / BLOCK);
+  int lane = place % BLOCK;
+  return (uint(block.y) >> lane & 1u) != 0u ? int(block.x) * BLOCK + lane : -1;
+}
+
+// The record of the leg in a place among theirs, block by block as the records are, or -1.
+int legAt(int place) {
+  int agent = agentAt(agentOfRecord(place, LEGS));
+  return agent < 0 ? -1 : SLEEP == SLEEP_NEVER ? place : legRecord(agent, legOfRecord(place, LEGS), LEGS);
+}
+
+#endif
