@@ -24,8 +24,9 @@ void main() {
   if (agent >= int(constants.count)) return;
   vec4 ends = LOAD4(goals, agent * GOAL_STRIDE), manner = LOAD4(goals, agent * GOAL_STRIDE + 1);
   vec4 a = LOAD4(bodies, agent * BODY_STRIDE), b = LOAD4(bodies, agent * BODY_STRIDE + 1);
-  vec2 velocity = navigate(parameters, worldOf(a.xyz, b.xy), manner, ends);
-  STORE4(goalsOut, agent * GOAL_STRIDE, ends);
-  STORE4(goalsOut, agent * GOAL_STRIDE + 1, manner);
+  vec4 swapped = ends;
+  vec2 velocity = navigate(parameters, worldOf(a.xyz, b.xy), manner, swapped);
+  // A loop, because an `if` would not skip the store on a device that masks lanes; few arrive in a tick.
+  for (bool arrived = swapped != ends; arrived; arrived = false) STORE4(goalsOut, agent * GOAL_STRIDE, swapped);
   STORE4(steersOut, agent, vec4(velocity, SLEEP != SLEEP_NEVER && asleep(agent, velocity) ? 1.0 : 0.0, 0.0));
 }
