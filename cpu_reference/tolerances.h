@@ -46,6 +46,13 @@ inline double goalDistance(double extent) { return 4 * roundoff * extent; }
 inline double desiredVelocity(double extent, double distance, double slowRadius) {
   return goalDistance(extent) * (1 / std::max(distance, 1e-9) + 1 / slowRadius) + 8 * roundoff;
 }
+// Its length, whatever its direction: the distance over the slow radius, a normalisation and a length.
+// Against `standing`, a product of two.
+inline double stands(double extent, double speed, double slowRadius, double standing) {
+  return speed * (goalDistance(extent) / slowRadius + 12 * roundoff) + 2 * roundoff * standing;
+}
+// dt / C, a quotient of records, or phi C in its place.
+inline double breathedOut(const Tuning& t, const Gait& gait) { return 6 * roundoff * t.dt / gait.cycle; }
 
 // A rotation by a unit quaternion: 12 operations on lengths up to |v|, and the quaternion's own norm.
 inline double rotated(double length) { return 16 * roundoff * length; }

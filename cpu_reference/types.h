@@ -30,7 +30,7 @@ struct Tuning {
   double dutyStill = 0, dutyGain = 0, dutyLeast = 0, lagShare = 0;
   double cycleMax = 0, windowSlack = 0, windowOpen = 0, liftShare = 0, stretchLift = 0, strayShare = 0;
   double errorLift = 0, rootShare = 0;
-  double settleTime = 0, reaimDistance = 0, reaimLatest = 0, groundTolerance = 0;
+  double settleTime = 0, sleepTime = 0, reaimDistance = 0, reaimLatest = 0, groundTolerance = 0;
   bool reachTriggered = false;
   double reachMost = 0, reachLeast = 0, reachComfort = 0, slopeLeast = 0, slopeWeight = 0, reachWeight = 0;
   bool nearestOnly = false;

@@ -48,7 +48,7 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
       if (result.edgeMargin[axis] < near) choices.turnedBack[axis] = choice >> (axis + 1) & 1;
     }
     const Sample other =
-        compare(setting, moment, body, reference::navigate(setting.tuning, body, goal, choices));
+        compare(setting, moment, body, reference::navigate(setting.tuning, body, goal, {}, choices));
     if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
   }
   judge.add(moment.n, moment.number(), -1, sample);

@@ -70,6 +70,7 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.errorLift = p.errorLift;
   t.rootShare = p.rootShare;
   t.settleTime = p.settleTime;
+  t.sleepTime = p.sleepTime;
   t.reaimDistance = p.reaimDistance;
   t.reaimLatest = p.reaimLatest;
   t.groundTolerance = p.groundTolerance;

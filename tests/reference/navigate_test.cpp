@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "spider.h"
 #include "validation/convert.h"
 
@@ -48,6 +51,112 @@ TEST_F(Navigate, edgeTurnsBackOnlyTheOutwardPart) {
   EXPECT_GT(result.desired.y, 0);
   const Goal inward{{0, 0}, {0, 0}, 1, 0.5, GoalKind::point};
   EXPECT_LT(reference::navigate(tuning, bodyAt(31, 5), inward).desired.x, 0);
+}
+
+// An agent that sleeps, by a hair wherever numbers are compared.
+struct Sleeper {
+  Sleeper() {
+    body.still = tuning.sleepTime;
+    goal.speed = std::nextafter(1e-2 * tuning.legLength, 0);
+    rest = {.gait = {}, .allowed = true, .edited = false, .breathes = true};
+    rest.gait.cycle = 1.2;
+    rest.gait.phase = std::nextafter(tuning.dt / 1.2, 0);
+  }
+  reference::NavigateResult navigate(const reference::NavigateChoices& choices = {}) const {
+    return reference::navigate(tuning, body, goal, rest, choices);
+  }
+
+  reference::Tuning tuning = validation::tuningOf(parametersFor(flatField()));
+  reference::AgentBody body = bodyAt(1, 2);
+  reference::Goal goal{{1, 5}, {1, -5}, 0, 0.5, GoalKind::cross};
+  reference::Rest rest;
+};
+
+// One thing else about it, and whether it sleeps then.
+struct Case {
+  const char* name;
+  bool sleeps;
+  void (*change)(Sleeper& s);
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+class SleepLaw : public testing::TestWithParam<Case> {};
+
+TEST_P(SleepLaw, eachConditionDecidesAlone) {
+  Sleeper sleeper;
+  ASSERT_TRUE(sleeper.navigate().asleep);
+  GetParam().change(sleeper);
+  EXPECT_EQ(sleeper.navigate().asleep, GetParam().sleeps);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    conditions, SleepLaw,
+    testing::Values(
+        Case{"asSlowAsStanding", false, [](Sleeper& s) { s.goal.speed = 1e-2 * s.tuning.legLength; }},
+        Case{"walks", false, [](Sleeper& s) { s.goal.speed = 1; }},
+        Case{"wantsNothing", true,
+             [](Sleeper& s) {
+               s.goal.speed = 1;
+               s.goal.kind = GoalKind::none;
+             }},
+        Case{"wantsToBeElsewhere", false,
+             [](Sleeper& s) {
+               s.goal.speed = 1;
+               s.goal.kind = GoalKind::point;
+             }},
+        Case{"isThere", true,
+             [](Sleeper& s) {
+               s.goal = {s.body.world() + glm::dvec2(0, 0.4), {0, 0}, 1, 0.5, GoalKind::point};
+             }},
+        Case{"stoodTooShort", false, [](Sleeper& s) { s.body.still = std::nextafter(s.body.still, 0); }},
+        Case{"stoodForHours", true, [](Sleeper& s) { s.body.still = 1e4; }},
+        Case{"aLegLifts", false, [](Sleeper& s) { s.rest.gait.lift = 1u << 7; }},
+        Case{"aLegIsAimedAnew", false, [](Sleeper& s) { s.rest.gait.reaim = 1; }},
+        Case{"aLegIsInTheAir", false, [](Sleeper& s) { s.rest.gait.air = 1u << 3; }},
+        Case{"breathesIn", false, [](Sleeper& s) { s.rest.gait.phase = s.tuning.dt / s.rest.gait.cycle; }},
+        Case{"breathesOut", false, [](Sleeper& s) { s.rest.gait.phase = 0.999; }},
+        Case{"hasBreathedOut", true, [](Sleeper& s) { s.rest.gait.phase = 0; }},
+        Case{"shorterBreaths", true,
+             [](Sleeper& s) {
+               s.rest.gait.phase *= 1.5;
+               s.rest.gait.cycle /= 1.6;
+             }},
+        Case{"longerBreaths", false, [](Sleeper& s) { s.rest.gait.cycle *= 1.01; }},
+        Case{"doesNotBreathe", true,
+             [](Sleeper& s) {
+               s.rest.breathes = false;
+               s.rest.gait.phase = 0.5;
+             }},
+        Case{"mayNot", false, [](Sleeper& s) { s.rest.allowed = false; }},
+        Case{"theGroundMovedLately", false, [](Sleeper& s) { s.rest.edited = true; }}),
+    [](const auto& param) { return std::string(param.param.name); });
+
+TEST(SleepMargins, marginsAreThoseOfTheRoundedNumbers) {
+  Sleeper sleeper;
+  const double first = sleeper.tuning.dt / sleeper.rest.gait.cycle;
+  auto result = sleeper.navigate();
+  EXPECT_LT(result.standMargin, 1e-15);
+  EXPECT_LT(result.breathMargin, 1e-15);
+  sleeper.goal.speed = 0.004;
+  sleeper.rest.gait.phase = 3 * first;
+  result = sleeper.navigate();
+  EXPECT_NEAR(result.standMargin, 0.006, 1e-12);
+  EXPECT_NEAR(result.breathMargin, 2 * first, 1e-12);
+  sleeper.rest.breathes = false;
+  EXPECT_EQ(sleeper.navigate().breathMargin, std::numeric_limits<double>::infinity());
+  sleeper.rest.edited = true;
+  EXPECT_EQ(sleeper.navigate().standMargin, std::numeric_limits<double>::infinity());
+}
+
+TEST(SleepMargins, decisionsCanBeForced) {
+  Sleeper sleeper;
+  EXPECT_FALSE(sleeper.navigate({.stands = 0}).asleep);
+  EXPECT_FALSE(sleeper.navigate({.breathedOut = 0}).asleep);
+  sleeper.goal.speed = 1;
+  sleeper.rest.gait.phase = 0.5;
+  EXPECT_FALSE(sleeper.navigate({.stands = 1}).asleep);
+  EXPECT_FALSE(sleeper.navigate({.breathedOut = 1}).asleep);
+  EXPECT_TRUE(sleeper.navigate({.stands = 1, .breathedOut = 1}).asleep);
 }
 
 }  // namespace

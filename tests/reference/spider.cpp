@@ -191,6 +191,7 @@ shared::Parameters parametersFor(const Heightfield& terrain) {
   p.errorLift = 0.05f;
   p.rootShare = 0.25f;
   p.settleTime = 1;
+  p.sleepTime = 2;
   p.reaimDistance = 0.15f;
   p.reaimLatest = 0.7f;
   p.groundTolerance = 0.02f;
