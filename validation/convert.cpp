@@ -193,8 +193,12 @@ glm::dvec2 desiredOf(const HerdState& state, size_t agent) {
   return load(state.steer, at(agent, shared::STEER_STRIDE));
 }
 
-void putDesired(HerdState& state, size_t agent, const glm::dvec2& desired) {
-  store(state.steer, at(agent, shared::STEER_STRIDE), {desired, 0, 0});
+bool asleepOf(const HerdState& state, size_t agent) {
+  return load(state.steer, at(agent, shared::STEER_STRIDE)).z == 1;
+}
+
+void putSteer(HerdState& state, size_t agent, const glm::dvec2& desired, bool asleep) {
+  store(state.steer, at(agent, shared::STEER_STRIDE), {desired, asleep ? 1 : 0, 0});
 }
 
 reference::AgentBody bodyOf(const HerdState& state, size_t agent) {

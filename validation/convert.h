@@ -21,6 +21,7 @@ reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones
 
 reference::Goal goalOf(const HerdState& state, size_t agent);
 glm::dvec2 desiredOf(const HerdState& state, size_t agent);
+bool asleepOf(const HerdState& state, size_t agent);
 reference::AgentBody bodyOf(const HerdState& state, size_t agent);
 reference::Gait gaitOf(const HerdState& state, size_t agent);
 reference::Step stepOf(const HerdState& state, size_t leg);
@@ -34,7 +35,7 @@ reference::Watched watchedOf(const HerdState& state, size_t slot, int legs);
 
 // Rounded to float into records that are already of full size.
 void putGoal(HerdState& state, size_t agent, const reference::Goal& goal);
-void putDesired(HerdState& state, size_t agent, const glm::dvec2& desired);
+void putSteer(HerdState& state, size_t agent, const glm::dvec2& desired, bool asleep);
 void putBody(HerdState& state, size_t agent, const reference::AgentBody& body);
 void putGait(HerdState& state, size_t agent, const reference::Gait& gait);
 void putStep(HerdState& state, size_t leg, const reference::Step& step);

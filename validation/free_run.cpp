@@ -22,9 +22,12 @@ void walkAgent(const Setting& setting, uint64_t tick, size_t agent, HerdState& s
   const size_t legs = static_cast<size_t>(setting.legs), bones = static_cast<size_t>(setting.bones);
   const size_t first = agent * legs, entry = agent * (1 + legs * bones);
 
-  const auto way = reference::navigate(tuning, bodyOf(state, agent), goalOf(state, agent));
+  const reference::Rest rest{
+      .gait = gaitOf(state, agent), .allowed = state.sleep, .edited = state.watched, .breathes = true};
+  const auto way = reference::navigate(tuning, bodyOf(state, agent), goalOf(state, agent), rest);
   putGoal(state, agent, way.goal);
-  putDesired(state, agent, way.desired);
+  putSteer(state, agent, way.desired, way.asleep);
+  if (way.asleep) return;
 
   std::vector<reference::Step> steps;
   std::vector<double> errors;

@@ -18,33 +18,59 @@ namespace {
 struct Stage {
   const char* name;
   void (*check)(const Setting&, const Moment&, Judge&);
+  std::vector<Kept> writes = {};  // that a sleeper keeps; none: it takes part in the stage as ever
 };
 using Stages = std::vector<Stage>;
 
+namespace kept {
+constexpr Kept body{&HerdState::body, "body of a sleeper", false};
+constexpr Kept gait{&HerdState::gait, "gait of a sleeper", false};
+constexpr Kept play{&HerdState::play, "play of a sleeper", false};
+constexpr Kept pose{&HerdState::pose, "pose of a sleeper", false};
+constexpr Kept step{&HerdState::step, "step of a sleeper", true};
+constexpr Kept foot{&HerdState::foot, "foot of a sleeper", true};
+constexpr Kept chain{&HerdState::chain, "chain of a sleeper", true};
+constexpr Kept start{&HerdState::start, "start of a sleeper", true};
+constexpr Kept fix{&HerdState::fix, "fix of a sleeper", true};
+constexpr Kept spring{&HerdState::spring, "spring of a sleeper", true};
+}  // namespace kept
+
 const Stages& stagesOf(crowd::Controller controller) {
   static const Stages adaptive = {
-      {"navigate", checkNavigate}, {"body", checkBody},       {"gait", checkGait},
-      {"foothold", checkFoothold}, {"swing", checkSwing},     {"ik", checkIk},
-      {"pose", checkPose},         {"measure", checkMeasure}, {"footfall", checkFootfall}};
+      {"navigate", checkNavigate},         {"body", checkBody, {kept::body}},
+      {"gait", checkGait, {kept::gait}},   {"foothold", checkFoothold, {kept::step}},
+      {"swing", checkSwing, {kept::foot}}, {"ik", checkIk, {kept::chain}},
+      {"pose", checkPose, {kept::pose}},   {"measure", checkMeasure},
+      {"footfall", checkFootfall}};
   static const Stages loop = {{"navigate", checkNavigate},
-                              {"body", checkBlindBody},
-                              {"gait", checkLoopGait},
-                              {"swing", checkLoopSwing},
-                              {"ik", checkIk},
-                              {"pose", checkPose},
+                              {"body", checkBlindBody, {kept::body}},
+                              {"gait", checkLoopGait, {kept::gait}},
+                              {"swing", checkLoopSwing, {kept::foot}},
+                              {"ik", checkIk, {kept::chain}},
+                              {"pose", checkPose, {kept::pose}},
                               {"measure", checkMeasure},
                               {"footfall", checkFootfall}};
-  static const Stages clip = {{"navigate", checkNavigate}, {"body", checkBlindBody},
-                              {"clip", checkClip},         {"swing", checkClipSwing},
-                              {"pose", checkClipPose},     {"measure", checkMeasure},
+  static const Stages clip = {{"navigate", checkNavigate},
+                              {"body", checkBlindBody, {kept::body}},
+                              {"clip", checkClip, {kept::play}},
+                              {"swing", checkClipSwing, {kept::foot, kept::chain}},
+                              {"pose", checkClipPose, {kept::pose}},
+                              {"measure", checkMeasure},
                               {"footfall", checkFootfall}};
-  static const Stages planted = {{"navigate", checkNavigate}, {"body", checkBlindBody},
-                                 {"clip", checkClip},         {"swing", checkPlantedSwing},
-                                 {"ik", checkPlantedIk},      {"pose", checkPlantedPose},
-                                 {"measure", checkMeasure},   {"footfall", checkFootfall}};
-  static const Stages pose = {{"navigate", checkNavigate}, {"body", checkBlindBody},
-                              {"gait", checkPoseGait},     {"swing", checkPoseSwing},
-                              {"pose", checkPose},         {"measure", checkMeasure},
+  static const Stages planted = {{"navigate", checkNavigate},
+                                 {"body", checkBlindBody, {kept::body}},
+                                 {"clip", checkClip, {kept::play}},
+                                 {"swing", checkPlantedSwing, {kept::step, kept::foot, kept::start}},
+                                 {"ik", checkPlantedIk, {kept::chain, kept::fix}},
+                                 {"pose", checkPlantedPose, {kept::pose}},
+                                 {"measure", checkMeasure},
+                                 {"footfall", checkFootfall}};
+  static const Stages pose = {{"navigate", checkNavigate},
+                              {"body", checkBlindBody, {kept::body}},
+                              {"gait", checkPoseGait, {kept::gait}},
+                              {"swing", checkPoseSwing, {kept::foot, kept::chain, kept::spring}},
+                              {"pose", checkPose, {kept::pose}},
+                              {"measure", checkMeasure},
                               {"footfall", checkFootfall}};
   switch (controller) {
     case crowd::Controller::loop:
@@ -122,6 +148,7 @@ HerdState sampled(const HerdState& whole, const AgentSample& sample) {
   HerdState part;
   part.sample = sample;
   part.watched = whole.watched;
+  part.sleep = whole.sleep;
   for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride) ++part.agents;
   for (const auto records : {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait,
                              &HerdState::step, &HerdState::foot, &HerdState::chain, &HerdState::pose,
@@ -179,8 +206,13 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
   const Stages& stages = stagesOf(setting_.controller);
   for (size_t agent = 0; agent < before.agents; ++agent) {
     const Moment moment{n, before, after, agent};
-    for (size_t s = 0; s < stages.size(); ++s)
-      if (!left(stages[s].name)) stages[s].check(setting_, moment, judges_[s]);
+    const bool asleep = asleepOf(after, agent);
+    for (size_t s = 0; s < stages.size(); ++s) {
+      if (left(stages[s].name)) continue;
+      if (!asleep || stages[s].writes.empty()) stages[s].check(setting_, moment, judges_[s]);
+      for (const Kept& kept : stages[s].writes)
+        if (asleep) checkKept(setting_, moment, kept, judges_[s]);
+    }
   }
 }
 

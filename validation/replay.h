@@ -56,7 +56,9 @@ HerdState sampled(const HerdState& whole, const AgentSample& sample);
 
 // Lock-step replay: of two consecutive states of a herd, every stage of the reference starts from exactly
 // what that stage of the engine started from and its result is held against what the engine wrote. Records
-// that a stage itself or a later one writes come from `before`, those of earlier stages from `after`.
+// that a stage itself or a later one writes come from `before`, those of earlier stages from `after`. For an
+// agent that sleeps, as the device has it, the stages from body to pose compute nothing: what they write must
+// be what it was before, and only what is not counts as a sample.
 class Replay {
  public:
   // Copies what it needs. Throws Error(input) when the rig records' size does not fit the rig.

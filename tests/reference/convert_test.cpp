@@ -22,7 +22,7 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   const size_t bones = static_cast<size_t>(herd.bones());
   for (size_t agent = 0; agent < 3; ++agent) {
     putGoal(copy, agent, goalOf(state, agent));
-    putDesired(copy, agent, desiredOf(state, agent));
+    putSteer(copy, agent, desiredOf(state, agent), asleepOf(state, agent));
     putBody(copy, agent, bodyOf(state, agent));
     putGait(copy, agent, gaitOf(state, agent));
     putMetric(copy, agent, metricOf(state, agent));
