@@ -30,7 +30,7 @@ nlohmann::ordered_json describeMachine(const DeviceReport& device) {
   return {{"device", device.name},
           {"deviceType", device.typeName()},
           {"driver", device.driver},
-          {"loads", device.loads == LoadPath::texel ? "texel buffers" : "storage buffers"},
+          {"loads", device.loads.path == LoadPath::texel ? "texel buffers" : "storage buffers"},
           {"cpu", processor()},
           {"engineBuild", engineBuild()},
           {"cpuOpponentBuild", baseline::buildDescription()}};

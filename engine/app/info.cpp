@@ -32,7 +32,7 @@ std::string amount(uint64_t bytes) {
                              : fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1ull << 30));
 }
 
-void printDevice(const DeviceReport& report) {
+void printDevice(const DeviceReport& report, const std::optional<LoadChoice>& loads) {
   const DeviceLimits& limits = report.limits;
   const DeviceFeatures& features = report.features;
   const auto row = [](const char* name, const std::string& value) {
@@ -42,7 +42,10 @@ void printDevice(const DeviceReport& report) {
   fmt::print("{} {}: {} ({})\n", report.chosen ? "*" : " ", report.index, report.name, report.typeName());
   row("driver", report.driver);
   row("Vulkan", version(report.apiVersion));
-  row("records are read by", loadsName(report.loads));
+  if (loads) row("records are read by", fmt::format("{}: {}", loadsName(loads->path), loads->why));
+  if (loads && loads->cost)
+    row("reading a vec4",
+        fmt::format("texel {:.2f} ns, storage {:.2f} ns", loads->cost->texel, loads->cost->storage));
   row("subgroup", fmt::format("{} invocations", limits.subgroupSize));
   row("work group, at most", fmt::format("{} invocations", limits.maxComputeWorkGroupInvocations));
   row("storage buffer, at most", amount(limits.maxStorageBufferRange));
@@ -60,7 +63,27 @@ void printDevice(const DeviceReport& report) {
   for (const std::string& refusal : report.refusals) row("unsuitable", refusal);
 }
 
-nlohmann::ordered_json describe(const DeviceReport& report) {
+// How records are read is known once a device is open; nothing where it cannot be opened.
+std::optional<LoadChoice> loadsOf(DeviceReport& report) {
+  if (!report.suitable) return {};
+  try {
+    return Device::create({.device = fmt::format("{}", report.index)}).report().loads;
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::device) throw;
+    report.refusals.emplace_back(error.what());
+    return {};
+  }
+}
+
+nlohmann::ordered_json describe(const std::optional<LoadChoice>& loads) {
+  if (!loads) return nullptr;
+  nlohmann::ordered_json made = {{"path", loads->path == LoadPath::texel ? "texel" : "storage"},
+                                 {"why", loads->why}};
+  if (loads->cost) made["nanoseconds"] = {{"texel", loads->cost->texel}, {"storage", loads->cost->storage}};
+  return made;
+}
+
+nlohmann::ordered_json describe(const DeviceReport& report, const std::optional<LoadChoice>& loads) {
   const DeviceLimits& limits = report.limits;
   const DeviceFeatures& features = report.features;
   return {{"index", report.index},
@@ -68,7 +91,7 @@ nlohmann::ordered_json describe(const DeviceReport& report) {
           {"type", report.typeName()},
           {"driver", report.driver},
           {"apiVersion", version(report.apiVersion)},
-          {"loads", report.loads == LoadPath::texel ? "texel" : "storage"},
+          {"loads", describe(loads)},
           {"limits",
            {{"subgroupSize", limits.subgroupSize},
             {"maxStorageBufferRange", limits.maxStorageBufferRange},
@@ -106,12 +129,13 @@ int info(const InfoOptions& options) {
   if (!options.json.empty()) checkFileTarget("--json", options.json);
   DeviceRequest request;
   request.device = options.device;
-  const std::vector<DeviceReport> reports = listDevices(request);
+  std::vector<DeviceReport> reports = listDevices(request);
 
   nlohmann::ordered_json devices = nlohmann::ordered_json::array(), chosen = nullptr;
-  for (const DeviceReport& report : reports) {
-    printDevice(report);
-    devices.push_back(describe(report));
+  for (DeviceReport& report : reports) {
+    const std::optional<LoadChoice> loads = loadsOf(report);
+    printDevice(report, loads);
+    devices.push_back(describe(report, loads));
     if (report.chosen) chosen = report.index;
   }
   if (!options.json.empty()) {

@@ -1,6 +1,7 @@
 #include "gpu/choice.h"
 
 #include "gpu/context.h"
+#include "gpu/loads.h"
 
 #include <fmt/format.h>
 
@@ -13,8 +14,6 @@
 namespace skitter::gpu {
 namespace {
 
-// Under this, a page of records may not fit one texel view.
-constexpr uint64_t kEnoughTexels = 1ull << 24;
 constexpr uint32_t kLargestHeightfield = 16384;  // samples a side that files may have
 
 std::string lower(std::string text) {
@@ -139,17 +138,6 @@ void inspectQueue(const vk::raii::PhysicalDevice& physical, std::optional<uint32
   }
 }
 
-void chooseLoads(std::optional<LoadPath> wanted, DeviceReport& report) {
-  const bool enough = report.limits.maxTexelBufferElements >= kEnoughTexels;
-  const bool isCpu = report.type == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  report.loads = isCpu && report.limits.texelRgba32f && enough ? LoadPath::texel : LoadPath::storage;
-  if (!wanted) return;
-  report.loads = *wanted;
-  if (*wanted == LoadPath::texel && !report.limits.texelRgba32f) {
-    report.refusals.push_back("has no RGBA32F texel buffers, which were asked for");
-  }
-}
-
 // Of an adopted device the features are not known.
 void listLacks(bool adopted, DeviceReport& report) {
   const DeviceLimits& limits = report.limits;
@@ -241,7 +229,9 @@ Candidate inspect(vk::raii::PhysicalDevice physical, uint32_t index, const Devic
     inspectFeatures(device, queueFamily.has_value(), report);
     inspectQueue(device, queueFamily, candidate);
     listLacks(queueFamily.has_value(), report);
-    chooseLoads(request.loads, report);
+    if (wantedLoads(request.loads) == LoadPath::texel && !report.limits.texelRgba32f) {
+      report.refusals.push_back("has no RGBA32F texel buffers, which were asked for");
+    }
     if (request.presentation && !report.features.presentation) {
       report.refusals.push_back("has no VK_KHR_swapchain, which showing a window needs");
     }

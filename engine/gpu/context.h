@@ -48,7 +48,9 @@ class Context {
   const std::shared_ptr<ValidationLog>& validationLog() const { return parts_.log; }
 
   // LOAD4 goes through texel buffers rather than storage buffers.
-  bool texelLoads() const { return parts_.report.loads == LoadPath::texel; }
+  bool texelLoads() const { return parts_.report.loads.path == LoadPath::texel; }
+  // What was made before keeps to the path of its time.
+  void setLoads(LoadChoice choice) { parts_.report.loads = std::move(choice); }
   bool timestamps() const { return limits().timestampBits != 0; }
 
   // Kernels and graphics pipelines all go through it, so that making one again is cheap.

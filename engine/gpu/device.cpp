@@ -4,6 +4,7 @@
 #include "gpu/choice.h"
 #include "gpu/context.h"
 #include "gpu/instance.h"
+#include "gpu/loads.h"
 
 #include <fmt/format.h>
 
@@ -40,6 +41,13 @@ vk::raii::Device makeDevice(const gpu::Candidate& candidate, bool presentation) 
                                   .ppEnabledExtensionNames = extensions.data()};
   return gpu::guarded(fmt::format("opening the device \"{}\"", candidate.report.name),
                       [&] { return vk::raii::Device(candidate.physical, info); });
+}
+
+std::unique_ptr<gpu::Context> open(gpu::Context::Parts parts, std::optional<LoadPath> requested) {
+  auto context = std::make_unique<gpu::Context>(std::move(parts));
+  context->setLoads(gpu::chooseLoads(context->limits(), gpu::wantedLoads(requested),
+                                     [&] { return gpu::measureLoads(*context); }));
+  return context;
 }
 
 }  // namespace
@@ -99,16 +107,17 @@ Device Device::create(const DeviceRequest& request) {
   vk::raii::Device device = makeDevice(candidate, request.presentation);
   vk::raii::Queue queue(device, candidate.queueFamily, 0);
   candidate.report.features.presentation = request.presentation;
-  return Device(std::make_unique<gpu::Context>(gpu::Context::Parts{.log = std::move(instance.log),
-                                                                   .loader = std::move(instance.loader),
-                                                                   .instance = std::move(instance.instance),
-                                                                   .messenger = std::move(instance.messenger),
-                                                                   .physical = std::move(candidate.physical),
-                                                                   .device = std::move(device),
-                                                                   .queue = std::move(queue),
-                                                                   .queueFamily = candidate.queueFamily,
-                                                                   .debugUtils = instance.debugUtils,
-                                                                   .report = std::move(candidate.report)}));
+  return Device(open({.log = std::move(instance.log),
+                      .loader = std::move(instance.loader),
+                      .instance = std::move(instance.instance),
+                      .messenger = std::move(instance.messenger),
+                      .physical = std::move(candidate.physical),
+                      .device = std::move(device),
+                      .queue = std::move(queue),
+                      .queueFamily = candidate.queueFamily,
+                      .debugUtils = instance.debugUtils,
+                      .report = std::move(candidate.report)},
+                     request.loads));
 }
 
 Device Device::adopt(VkInstance instance, VkPhysicalDevice physicalDevice, VkDevice device,
@@ -132,7 +141,7 @@ Device Device::adopt(VkInstance instance, VkPhysicalDevice physicalDevice, VkDev
   parts.physical = std::move(candidate.physical);
   parts.device = gpu::adoptDevice(parts.physical, device);
   parts.queue = vk::raii::Queue(parts.device, queue);
-  return Device(std::make_unique<gpu::Context>(std::move(parts)));
+  return Device(open(std::move(parts), loads));
 }
 
 Device::Device(std::unique_ptr<gpu::Context> context) : context_(std::move(context)) {}

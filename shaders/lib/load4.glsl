@@ -2,8 +2,9 @@
 #define SKITTER_LOAD4
 
 // Records of vec4, read by LOAD4 and written by STORE4. Reads go through an RGBA32F texel buffer or a storage
-// buffer, as LOAD4_TEXEL says: on lavapipe a storage load costs 35 texel loads, on some devices texel buffers
-// are too small. LOAD4 is the sole declaration that differs, so both variants compute the same bits.
+// buffer, as LOAD4_TEXEL says, whichever a device is measured to be quicker at (engine/gpu/loads.h); on some
+// devices texel buffers are too small. LOAD4 is the sole declaration that differs, so both variants compute the
+// same bits.
 //
 //   LOAD4_BUFFER(0, legs)           declares; set 0, binding 0
 //   vec4 a = LOAD4(legs, i);

@@ -21,6 +21,11 @@ TEST_F(Info, TableAndJsonNameTheChosenDevice) {
     for (const nlohmann::json& lack : device.at("lacks")) {
       EXPECT_NE(result.out.find(lack.get<std::string>()), std::string::npos) << lack;
     }
+    if (device.at("suitable")) {
+      const nlohmann::json& loads = device.at("loads");
+      EXPECT_NE(result.out.find(loads.at("why").get<std::string>()), std::string::npos);
+      EXPECT_EQ(result.out.find("reading a vec4") != std::string::npos, loads.contains("nanoseconds"));
+    }
     if (device.at("chosen")) {
       ++chosen;
       EXPECT_EQ(device.at("index"), info.at("chosen"));
@@ -30,6 +35,22 @@ TEST_F(Info, TableAndJsonNameTheChosenDevice) {
     }
   }
   EXPECT_EQ(chosen, 1);
+}
+
+TEST_F(Info, ALoadPathCanBeAskedFor) {
+  const Result result = skitter({"info", "--json", file("info.json")}, {{"SKITTER_LOADS", "storage"}});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find("storage buffers: asked for"), std::string::npos) << result.out;
+  for (const nlohmann::json& device : json("info.json").at("devices")) {
+    if (device.at("suitable")) {
+      EXPECT_EQ(device.at("loads").at("path"), "storage");
+    }
+  }
+}
+
+TEST_F(Info, AnUnknownLoadPathIsRefused) {
+  expectRefusal(skitter({"info"}, {{"SKITTER_LOADS", "image"}}), 2,
+                {"SKITTER_LOADS", "image", "texel or storage"});
 }
 
 }  // namespace

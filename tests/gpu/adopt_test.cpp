@@ -65,6 +65,7 @@ TEST(Adopt, WorksOnTheCallersDeviceAndLeavesIt) {
     EXPECT_EQ(device.handle(), own.device);
     EXPECT_EQ(device.queue(), own.queue);
     EXPECT_TRUE(device.report().suitable);
+    EXPECT_NE(device.report().loads.why, "");
     Device moved = std::move(device);
     const std::vector<uint32_t> data{1, 2, 3};
     const gpu::Buffer buffer(moved.context(), 12, "adopted");

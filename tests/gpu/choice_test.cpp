@@ -1,3 +1,4 @@
+#include "support/environment.h"
 #include "support/gpu_fixture.h"
 
 #include <gmock/gmock.h>
@@ -8,6 +9,7 @@
 namespace skitter {
 namespace {
 
+using test::Environment;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -22,22 +24,6 @@ std::string deviceErrorOf(Call&& call) {
   ADD_FAILURE() << "nothing was thrown";
   return {};
 }
-
-// Sets an environment variable for a scope.
-class Environment {
- public:
-  Environment(const char* name, const char* value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    setenv(name, value, 1);
-  }
-  ~Environment() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 TEST(DeviceChoice, ListsDevicesAndMarksOne) {
   const auto devices = listDevices();
@@ -124,17 +110,6 @@ TEST(DeviceChoice, MissingWindowExtensionIsNamed) {
   const auto message = deviceErrorOf(
       [] { Device::create({.presentation = true, .instanceExtensions = {"VK_KHR_no_such_surface"}}); });
   EXPECT_THAT(message, HasSubstr("VK_KHR_no_such_surface"));
-}
-
-TEST(DeviceChoice, LoadPathFollowsTheDeviceUnlessNamed) {
-  const Device natural = Device::create(test::validatedRequest());
-  const bool texel = natural.report().type == VK_PHYSICAL_DEVICE_TYPE_CPU &&
-                     natural.report().limits.texelRgba32f &&
-                     natural.report().limits.maxTexelBufferElements >= 1u << 24;
-  EXPECT_EQ(natural.report().loads, texel ? LoadPath::texel : LoadPath::storage);
-  for (const LoadPath path : {LoadPath::texel, LoadPath::storage}) {
-    EXPECT_EQ(Device::create(test::validatedRequest(path)).report().loads, path);
-  }
 }
 
 }  // namespace

@@ -17,8 +17,21 @@ class Context;
 
 // How shaders read records (LOAD4 in shaders/lib/load4.glsl).
 enum class LoadPath {
-  texel,    // RGBA32F texel buffers: 35 times cheaper than storage loads on lavapipe
-  storage,  // storage buffers: wherever texel buffers are too small (SwiftShader) or no quicker (GPUs)
+  texel,    // RGBA32F texel buffers
+  storage,  // storage buffers
+};
+
+// Nanoseconds that reading a vec4 takes, records of four read as stages do: of a software device's CPU time,
+// of another's own time, in which many are read at once.
+struct LoadCost {
+  double texel = 0, storage = 0;
+};
+
+// Storage buffers, unless texel buffers are measured to be quicker by a margin that noise cannot make up for.
+struct LoadChoice {
+  LoadPath path = LoadPath::storage;
+  std::optional<LoadCost> cost = {};  // where both paths were measured
+  std::string why = {};               // for people
 };
 
 struct DeviceLimits {
@@ -62,8 +75,8 @@ struct DeviceReport {
   uint32_t apiVersion = 0;
   DeviceLimits limits;
   DeviceFeatures features;
-  std::vector<std::string> lacks;      // optional features and sizes that it is without, as `info` names them
-  LoadPath loads = LoadPath::storage;  // the path taken unless a request names one
+  std::vector<std::string> lacks;  // optional features and sizes that it is without, as `info` names them
+  LoadChoice loads;                // of a Device; listDevices() opens none and measures nothing
   bool suitable = false;
   std::vector<std::string> refusals;  // each reason why it is not suitable
   bool chosen = false;
@@ -80,7 +93,7 @@ struct DeviceRequest {
   // A swapchain will be made, for which the window system needs these instance extensions.
   bool presentation = false;
   std::vector<std::string> instanceExtensions = {};
-  // Overrides the device's own load path (tests run both).
+  // Read records so and measure nothing; without it, SKITTER_LOADS may name "texel" or "storage".
   std::optional<LoadPath> loads = {};
 };
 
@@ -113,13 +126,14 @@ class Device {
  public:
   // The best suitable device: Vulkan 1.3, a graphics and compute queue, dynamicRendering, synchronization2
   // and timelineSemaphore; discrete before integrated before virtual before cpu. Throws Error(device) listing
-  // each candidate with its reasons.
+  // each candidate with its reasons. Takes some milliseconds to find out how records are best read.
   static Device create(const DeviceRequest& = {});
 
   // A device that the caller made and keeps; it is never destroyed here. It needs what create() asks for,
   // with those three features enabled; the queue is used from the calling threads only and the caller keeps
-  // its own submissions to it apart from ours. The handles must come from the Vulkan loader (GLFW, SDL and
-  // volk all use it). Throws Error(device) when the physical device is unsuitable.
+  // its own submissions to it apart from ours, the first of which this call makes (see create()). The handles
+  // must come from the Vulkan loader (GLFW, SDL and volk all use it). Throws Error(device) when the physical
+  // device is unsuitable.
   static Device adopt(VkInstance, VkPhysicalDevice, VkDevice, uint32_t queueFamily, VkQueue,
                       PFN_vkGetInstanceProcAddr, std::optional<LoadPath> loads = {});
 

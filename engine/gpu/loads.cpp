@@ -1,0 +1,120 @@
+#include "gpu/loads.h"
+
+#include "embedded/load_cost_comp_storage.h"
+#include "embedded/load_cost_comp_texel.h"
+#include "gpu/kernel.h"
+#include "gpu/submit.h"
+#include "gpu/timer.h"
+#include "gpu/transfer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <limits>
+#include <string_view>
+
+namespace skitter::gpu {
+namespace {
+
+// How much quicker texel loads must be. The variants may round differently, so noise must not choose: in
+// about 120 measurements each, idle and loaded, equal paths (SwiftShader) came to at most 1.23, lavapipe to
+// at least 2.
+constexpr double kMargin = 1.6;
+constexpr uint32_t kRecords = 16384, kStride = 4;  // 1 MiB: as much as the smallest texel buffer view reaches
+constexpr uint32_t kGroup = 64;
+constexpr uint32_t kFewestGroups = 4 * kRecords / kGroup, kMostGroups = 1u << 20;
+constexpr int kTurns = 5;
+constexpr double kLeastSeconds = 2e-4;  // what is over sooner tells of the dispatch, not of the loads
+
+double cpuSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+class Reader {
+ public:
+  Reader(const Context& context, const Buffer& records, const Buffer& sums)
+      : context_(context),
+        ring_(context, 1),
+        timer_(context, 1, !context.isCpu()),
+        kernel_(context, {.name = "load cost",
+                          .code = {embedded::load_cost_comp_texel(), embedded::load_cost_comp_storage()},
+                          .bindings = {{0, BindingKind::load4}, {1, BindingKind::store}},
+                          .constants = {{0, kRecords}, {1, kStride}}}),
+        bindings_(kernel_.bind(context, {{0, &records}, {1, &sums}})) {}
+
+  double seconds(uint32_t groups) {
+    const double began = cpuSeconds();
+    const vk::CommandBuffer cmd = ring_.begin();
+    timer_.reset(cmd);
+    timer_.begin(cmd, "load cost");
+    kernel_.dispatch(cmd, bindings_, {}, groups);
+    timer_.end(cmd, "load cost");
+    ring_.wait(ring_.submit());
+    return context_.isCpu() ? cpuSeconds() - began : 1e-3 * timer_.milliseconds().front().milliseconds;
+  }
+
+ private:
+  const Context& context_;
+  CommandRing ring_;
+  StageTimer timer_;
+  Kernel kernel_;
+  Bindings bindings_;
+};
+
+}  // namespace
+
+std::optional<LoadPath> wantedLoads(std::optional<LoadPath> requested) {
+  const char* named = std::getenv("SKITTER_LOADS");
+  if (requested || named == nullptr) return requested;
+  const std::string_view name = named;
+  if (name == "texel") return LoadPath::texel;
+  if (name == "storage") return LoadPath::storage;
+  throw inputError(fmt::format("SKITTER_LOADS is \"{}\", expected texel or storage", name));
+}
+
+LoadChoice chooseLoads(const DeviceLimits& limits, std::optional<LoadPath> wanted,
+                       const std::function<std::optional<LoadCost>()>& measure) {
+  if (wanted) return {.path = *wanted, .why = "asked for"};
+  if (!limits.texelRgba32f) return {.why = "there are no RGBA32F texel buffers"};
+  if (limits.maxTexelBufferElements < kEnoughTexels) {
+    return {.why = fmt::format("texel buffers reach no further than {} vec4", limits.maxTexelBufferElements)};
+  }
+  const std::optional<LoadCost> cost = measure();
+  if (!cost) return {.why = "there are no timestamps to measure by"};
+  const double ratio = cost->storage / cost->texel;
+  return {.path = ratio >= kMargin ? LoadPath::texel : LoadPath::storage,
+          .cost = cost,
+          .why = fmt::format("texel loads are {:.2f} times as quick as storage loads, {} is asked for", ratio,
+                             kMargin)};
+}
+
+std::optional<LoadCost> measureLoads(Context& context) {
+  if (!context.isCpu() && !context.timestamps()) return {};
+  context.setLoads({.path = LoadPath::texel});  // a buffer made so can be read either way
+  const Buffer records(context, uint64_t{kRecords} * kStride * 16, "records to read");
+  const Buffer sums(context, 16, "sums");
+  clear(context, records);
+  Reader texel(context, records, sums);
+  context.setLoads({.path = LoadPath::storage});
+  Reader storage(context, records, sums);
+  texel.seconds(1), storage.seconds(1);  // some drivers compile only now
+
+  const uint32_t most = std::min(context.limits().maxComputeWorkGroupCountX, kMostGroups);
+  for (uint32_t groups = kFewestGroups;; groups = std::min(most, groups * 4)) {
+    double texelBest = std::numeric_limits<double>::max(), storageBest = texelBest;
+    for (int i = 0; i < kTurns; ++i) {
+      texelBest = std::min(texelBest, texel.seconds(groups));
+      storageBest = std::min(storageBest, storage.seconds(groups));
+    }
+    if (std::min(texelBest, storageBest) >= kLeastSeconds || groups == most) {
+      const double each = 1e9 / (double(groups) * kGroup * kStride);
+      return LoadCost{.texel = texelBest * each, .storage = storageBest * each};
+    }
+  }
+}
+
+}  // namespace skitter::gpu
