@@ -184,7 +184,10 @@ ordered_json benchDevice(const BenchOptions& options, const std::string& name) {
   if (!name.empty()) request.device = name;
   Device device = Device::create(request);
   const bool cpu = isCpu(device.report());
-  const Peaks peaks = measurePeaks(device.context());
+  const Peaks peaks = [&] {
+    const StopDeadline deadline;
+    return measurePeaks(device.context());
+  }();
   fmt::print(
       "{}copy          {:.1f} GB/s read and written\narithmetic    {:.1f} billion operations a second\n",
       machineLines(device.report()), 1e-9 * peaks.bytesPerSecond, 1e-9 * peaks.operationsPerSecond);
@@ -201,6 +204,7 @@ ordered_json benchDevice(const BenchOptions& options, const std::string& name) {
       {
         Progress progress(fmt::format("{}, {} agents, thousandths", controller, chosen.agents.value()),
                           progressParts, options.quiet);
+        const StopDeadline deadline;
         match = contest(
             device, scene.loadTerrain(), scene, contestOptions,
             [&](double share) { progress.update(static_cast<uint64_t>(share * progressParts)); },

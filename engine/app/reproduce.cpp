@@ -86,6 +86,7 @@ Settings settingsOf(const ReproduceOptions& options) {
 
 Results measure(Device& device, const std::vector<Ground>& grounds, const Settings& settings, bool quiet) {
   Progress progress("thousandths", progressParts, quiet);
+  const StopDeadline deadline;
   Course course([&](double done) { progress.update(static_cast<uint64_t>(done * progressParts)); },
                 [] { return stopRequested(); });
   try {

@@ -1,13 +1,32 @@
 #include "signals.h"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <cstdio>
+#include <string_view>
 
 namespace skitter::app {
 namespace {
 
-volatile std::sig_atomic_t stop = 0;
+constexpr unsigned patience = 1;  // seconds
 
-void requestStop(int) { stop = 1; }
+volatile std::sig_atomic_t stop = 0, deadline = 0;
+
+void requestStop(int) {
+  stop = 1;
+  if (deadline != 0) alarm(patience);
+}
+
+void say(std::string_view text) {
+  if (write(STDERR_FILENO, text.data(), text.size()) < 0) _exit(1);
+}
+
+void leave(int) {
+  if (isatty(STDERR_FILENO) == 1) say("\r\x1b[K");  // the progress
+  say("skitter: interrupted; nothing is written\n");
+  _exit(1);
+}
 
 }  // namespace
 
@@ -21,5 +40,17 @@ void catchSignals() {
 }
 
 bool stopRequested() { return stop != 0; }
+
+StopDeadline::StopDeadline() {
+  std::fflush(stdout);  // which leave() cannot
+  std::signal(SIGALRM, &leave);
+  deadline = 1;
+  if (stop != 0) alarm(patience);
+}
+
+StopDeadline::~StopDeadline() {
+  deadline = 0;
+  alarm(0);
+}
 
 }  // namespace skitter::app
