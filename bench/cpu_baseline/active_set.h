@@ -3,6 +3,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "bench/cpu_baseline/normal.h"
 #include "bench/cpu_baseline/posture.h"
 
 namespace skitter::baseline {
@@ -37,31 +38,6 @@ struct Columns {
     movement[count] = c;
     turn[count] = F(0);
     free[count++] = F(0) < F(1);
-  }
-};
-
-// Symmetric 3 x 3.
-template <class F>
-struct Normal {
-  F xx, xy, xz, yy, yz, zz;
-
-  void add(const Vec3<F>& c) {
-    xx = xx + c.x * c.x;
-    xy = xy + c.x * c.y;
-    xz = xz + c.x * c.z;
-    yy = yy + c.y * c.y;
-    yz = yz + c.y * c.z;
-    zz = zz + c.z * c.z;
-  }
-  // M^-1 e by L D L^T. In exact numbers no pivot is below the damping; in single precision it is held there,
-  // which keeps a chain that can move in one direction only from dividing by what rounding left.
-  Vec3<F> solve(const Vec3<F>& e, const F& damping) const {
-    const F d0 = F(1) / larger(xx, damping), l1 = xy * d0, l2 = xz * d0;
-    const F d1 = F(1) / larger(yy - l1 * xy, damping), rest = yz - l2 * xy, l3 = rest * d1;
-    const F d2 = F(1) / larger(zz - l2 * xz - l3 * rest, damping);
-    const F y = e.y - l1 * e.x, z = (e.z - l2 * e.x - l3 * y) * d2;
-    const F second = y * d1 - l3 * z;
-    return {e.x * d0 - l1 * second - l2 * z, second, z};
   }
 };
 

@@ -38,15 +38,11 @@ class ClipKernel final : public Kernel {
   void tick(uint64_t, size_t part, int thread) override {
     Laps laps(timings_ ? &scratch_[size_t(thread)].seconds : nullptr);
     Parts<F>::eachGroup(part, blocks_, [&](size_t first, size_t last) {
-      for (size_t b = first; b < last; ++b) navigate(world_, agentBlocks_[b]);
-      laps.end(kNavigate);
-      for (size_t b = first; b < last; ++b) blindBody(world_, agentBlocks_[b]);
-      laps.end(kBody);
-      for (size_t b = first; b < last; ++b) clip(world_, agentBlocks_[b], plays_[b]);
-      laps.end(kClip);
+      laps.stage(kNavigate, first, last, [&](size_t b) { navigate(world_, agentBlocks_[b]); });
+      laps.stage(kBody, first, last, [&](size_t b) { blindBody(world_, agentBlocks_[b]); });
+      laps.stage(kClip, first, last, [&](size_t b) { clip(world_, agentBlocks_[b], plays_[b]); });
       if (poses_.empty()) return;
-      for (size_t b = first; b < last; ++b) poseBlock(b);
-      laps.end(kPose);
+      laps.stage(kPose, first, last, [&](size_t b) { poseBlock(b); });
     });
     settleStreams();
   }

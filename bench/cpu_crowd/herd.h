@@ -56,23 +56,17 @@ class HerdKernel final : public Kernel {
     Laps laps(timings_ ? &scratch.seconds : nullptr);
     scratch.begun = 0;
     Parts<F>::eachGroup(part, blocks_, [&](size_t first, size_t last) {
-      for (size_t b = first; b < last; ++b) navigate(world_, agentBlocks_[b]);
-      laps.end(kNavigate);
-      for (size_t b = first; b < last; ++b) body(world_, tick, agentBlocks_[b], legsOf(b));
-      laps.end(kBody);
-      for (size_t b = first; b < last; ++b) gaitBlock(tick, b, scratch);
-      laps.end(kGait);
+      laps.stage(kNavigate, first, last, [&](size_t b) { navigate(world_, agentBlocks_[b]); });
+      laps.stage(kBody, first, last, [&](size_t b) { body(world_, tick, agentBlocks_[b], legsOf(b)); });
+      laps.stage(kGait, first, last, [&](size_t b) { gaitBlock(tick, b, scratch); });
     });
     beginSteps(tick, scratch);
     laps.end(kFoothold);
     Parts<F>::eachGroup(part, blocks_, [&](size_t first, size_t last) {
-      for (size_t b = first; b < last; ++b) swingBlock(tick, b);
-      laps.end(kSwing);
-      for (size_t b = first; b < last; ++b) ikBlock(b, scratch);
-      laps.end(kIk);
+      laps.stage(kSwing, first, last, [&](size_t b) { swingBlock(tick, b); });
+      laps.stage(kIk, first, last, [&](size_t b) { ikBlock(b, scratch); });
       if (poses_.empty()) return;
-      for (size_t b = first; b < last; ++b) poseBlock(b);
-      laps.end(kPose);
+      laps.stage(kPose, first, last, [&](size_t b) { poseBlock(b); });
     });
     settleStreams();
   }

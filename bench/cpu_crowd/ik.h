@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/cpu_baseline/normal.h"
 #include "bench/cpu_crowd/layout.h"
 #include "bench/cpu_crowd/rig.h"
 
@@ -15,37 +16,6 @@ int boneCountOf(const LegModel& leg) {
 inline constexpr int kMostBones = 15;
 template <int N>
 inline constexpr int kBones = N > 0 ? N : kMostBones;
-
-// Symmetric 3 x 3.
-template <class F>
-struct Symmetric {
-  F xx, xy, xz, yy, yz, zz;
-
-  void add(const Vec3<F>& c) {
-    xx = xx + c.x * c.x;
-    xy = xy + c.x * c.y;
-    xz = xz + c.x * c.z;
-    yy = yy + c.y * c.y;
-    yz = yz + c.y * c.z;
-    zz = zz + c.z * c.z;
-  }
-  void remove(const Vec3<F>& a, const Vec3<F>& c) {
-    xx = xx - a.x * c.x;
-    xy = xy - a.x * c.y;
-    xz = xz - a.x * c.z;
-    yy = yy - a.y * c.y;
-    yz = yz - a.y * c.z;
-    zz = zz - a.z * c.z;
-  }
-  Symmetric inverse() const {
-    const F a = yy * zz - yz * yz, b = yz * xz - xy * zz, c = xy * yz - xz * yy;
-    const F k = reciprocal(xx * a + xy * b + xz * c);
-    return {k * a, k * b, k * c, k * (xx * zz - xz * xz), k * (xy * xz - xx * yz), k * (xx * yy - xy * xy)};
-  }
-  Vec3<F> operator*(const Vec3<F>& v) const {
-    return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
-  }
-};
 
 // Directions (X, Y), and 2 / (1 + X^2 + Y^2).
 template <class F, int N>
@@ -147,8 +117,8 @@ Mask<F> mayMeetLimit(const BoneModel& bone, const F& dx, const F& dy, const F& x
 // Holds the bones that leave their room and hands what they cannot do to the others. Of the damped system
 // `m`, its inverse and `e` what is left of them are returned.
 template <class F, int N>
-void holdAtLimits(const LegModel& leg, const Directions<F, N>& d, Symmetric<F> m, Vec3<F> e,
-                  Steps<F, N>& steps, Symmetric<F>& inverse, Held<F, N>& held) {
+void holdAtLimits(const LegModel& leg, const Directions<F, N>& d, Normal<F> m, Vec3<F> e, Steps<F, N>& steps,
+                  Normal<F>& inverse, Held<F, N>& held) {
   constexpr int kMost = kBones<N>;
   const int n = boneCountOf<N>(leg);
   F room[kMost];
@@ -206,7 +176,7 @@ template <class F, int N>
   Steps<F, N> steps;
   Vec3<F> e = target - tip;
   const F e2 = dot(e, e), mu = (smaller(e2, 0.25f) * 0.25f + 1e-5f) * damping;
-  Symmetric<F> m{mu, F(0), F(0), mu, F(0), mu};
+  Normal<F> m{mu, F(0), F(0), mu, F(0), mu};
   if (any(F(0.25f) < e2)) e = e * smaller(F(1), rsqrt(larger(e2, 1e-20f)) * 0.5f);
   walk<N>(leg, d, [&](int i, const Mat3<F>& a, const Vec3<F>& p) {
     // What the bone turns about as its direction goes the ways of X and of Y.
@@ -218,7 +188,7 @@ template <class F, int N>
     steps.pull[i] = d.k[i] * (tuning.pull * -leg.bones[i].stiffness);
     e = e - (steps.columnX[i] * d.x[i] + steps.columnY[i] * d.y[i]) * steps.pull[i];
   });
-  Symmetric<F> inverse = m.inverse();
+  Normal<F> inverse = m.inverse();
   const Vec3<F> lambda = inverse * e;
   auto near = F(1) < F(0);
 #pragma GCC unroll 4

@@ -30,6 +30,13 @@ class Laps {
     for (size_t s = 0; s < laps_.size(); ++s) (*sums_)[s] += laps_[s] * share;
   }
 
+  // A stage over some blocks.
+  template <class Work>
+  void stage(size_t index, size_t first, size_t last, const Work& work) {
+    for (size_t block = first; block < last; ++block) work(block);
+    end(index);
+  }
+
   void end(size_t stage) {
     if (sums_ == nullptr) return;
     const double now = bench::readClock(CLOCK_MONOTONIC);
