@@ -15,15 +15,16 @@
 namespace skitter::bench {
 namespace {
 
-constexpr uint32_t kMostTicksATurn = 500;
+// Counted ones; the tick before them fills the caches that the other contestants took.
+constexpr uint32_t kFewestTicksATurn = 2, kMostTicksATurn = 500;
 // The reference takes about a millisecond for one of them.
 constexpr uint32_t kAgentsChecked = 1024;
 
-// One contestant and what its turns took, a tick.
+// One contestant and what its turns took, a tick; by stage the sum of the turns.
 struct Corner {
   std::unique_ptr<Contestant> contestant;
   std::vector<double> wall, cpu;
-  std::vector<StageTime> before;
+  std::vector<StageTime> stages;
 };
 
 Spread spreadOf(const std::vector<double>& values) {
@@ -34,7 +35,6 @@ std::vector<Corner> cornersOf(Device& device, Crowd& crowd, const ContestOptions
   std::vector<Corner> corners;
   const auto enter = [&](std::unique_ptr<Contestant> contestant) {
     corners.push_back({std::move(contestant), {}, {}, {}});
-    corners.back().before = corners.back().contestant->stageTimes();
   };
   enter(deviceContestant(device, crowd, static_cast<float>(options.dt)));
   if (!hasCpuContestant(crowd)) return corners;
@@ -45,15 +45,17 @@ std::vector<Corner> cornersOf(Device& device, Crowd& crowd, const ContestOptions
   return corners;
 }
 
-std::vector<StageTime> difference(const std::vector<StageTime>& after, const std::vector<StageTime>& before,
-                                  double ticks) {
-  std::vector<StageTime> times = after;
-  for (StageTime& time : times) {
-    for (const StageTime& earlier : before)
-      if (earlier.stage == time.stage) time.milliseconds -= earlier.milliseconds;
-    time.milliseconds /= ticks;
-  }
-  return times;
+void takeTurn(Corner& corner, uint32_t ticks) {
+  corner.contestant->tick();
+  const std::vector<StageTime> before = corner.contestant->stageTimes();
+  const Seconds spent = timed([&] {
+    for (uint32_t t = 0; t < ticks; ++t) corner.contestant->tick();
+  });
+  for (const StageTime& time : before) add(corner.stages, time.stage, -time.milliseconds / ticks);
+  for (const StageTime& time : corner.contestant->stageTimes())
+    add(corner.stages, time.stage, time.milliseconds / ticks);
+  corner.wall.push_back(1e3 * spent.wall / ticks);
+  corner.cpu.push_back(1e3 * spent.cpu / ticks);
 }
 
 }  // namespace
@@ -101,27 +103,23 @@ Match contest(Device& device, const Heightfield& terrain, const Scene& scene, co
       step(0.2 * (i + 1) / options.warmUp);
     }
   }
-  match.ticks = static_cast<uint32_t>(std::clamp(
-      std::round(options.turnSeconds / std::max(tickSeconds, 1e-6)), 1.0, double{kMostTicksATurn}));
+  match.ticks =
+      static_cast<uint32_t>(std::clamp(std::round(options.turnSeconds / std::max(tickSeconds, 1e-6)),
+                                       double{kFewestTicksATurn}, double{kMostTicksATurn}));
 
-  const uint64_t first = crowd.tick();
   std::vector<Corner> corners = cornersOf(device, crowd, options);
   for (uint32_t round = 0; round < options.rounds; ++round)
     for (size_t i = 0; i < corners.size(); ++i) {
       if (stopped()) return {};
       // Another one begins each round, so that nobody always follows the same one.
       Corner& corner = corners[(i + round) % corners.size()];
-      const Seconds spent = timed([&] {
-        for (uint32_t t = 0; t < match.ticks; ++t) corner.contestant->tick();
-      });
-      corner.wall.push_back(1e3 * spent.wall / match.ticks);
-      corner.cpu.push_back(1e3 * spent.cpu / match.ticks);
+      takeTurn(corner, match.ticks);
       step(0.2 +
            0.7 * (round + static_cast<double>(i + 1) / static_cast<double>(corners.size())) / options.rounds);
     }
   match.demands = demandOf(crowd, options.crowd);
 
-  const uint64_t ticks = uint64_t{match.ticks} * options.rounds;
+  const uint64_t next = crowd.tick() + 1;
   for (Corner& corner : corners) {
     if (stopped()) return {};
     Result& result = match.results.emplace_back();
@@ -129,8 +127,9 @@ Match contest(Device& device, const Heightfield& terrain, const Scene& scene, co
     result.threads = corner.contestant->threads();
     result.wall = spreadOf(corner.wall);
     result.cpu = spreadOf(corner.cpu);
-    result.stages = difference(corner.contestant->stageTimes(), corner.before, static_cast<double>(ticks));
-    result.checks = checkTick(crowd, *corner.contestant, first + ticks + 1, match.demands, options.seed);
+    for (StageTime& stage : corner.stages) stage.milliseconds /= options.rounds;
+    result.stages = std::move(corner.stages);
+    result.checks = checkTick(crowd, *corner.contestant, next, match.demands, options.seed);
     result.pass = std::all_of(result.checks.begin(), result.checks.end(),
                               [](const validation::StageResult& c) { return c.pass; });
     corner.contestant.reset();

@@ -21,6 +21,9 @@ class Contestant {
   virtual std::vector<StageTime> stageTimes() const = 0;
 };
 
+// To the stage's sum, which begins with its first time.
+void add(std::vector<StageTime>& sums, const std::string& stage, double milliseconds);
+
 std::unique_ptr<Contestant> deviceContestant(Device&, Crowd&, float dt);
 // From the crowd's present state on. `scalar` does with one float what it else does with a register of them.
 std::unique_ptr<Contestant> cpuContestant(const Crowd&, bool scalar, int threads, bool poses);
