@@ -113,7 +113,7 @@ class Comparison {
     settings_.iterations = static_cast<int>(run.options.iterations);
     settings_.restarts = run.options.restarts;
     settings_.continues = run.options.start == ik::Start::previous;
-    settings_.restPull = run.options.restPull;
+    settings_.restPull = ik::restPullOf(run.chain, run.options);
     chain_.seeds = seedsOf(layout_, run.seeds);
   }
 

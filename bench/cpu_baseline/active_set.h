@@ -19,6 +19,7 @@ struct Columns {
   bool bounded[kMost];
   Vec3<F> movement[kMost];
   F low[kMost], high[kMost];
+  F pull[kMost];        // toward rest, where there is a rest pull
   F turn[kMost];        // what is found: by how much it turns
   Mask<F> free[kMost];  // not held at an end of its room
 
@@ -36,7 +37,7 @@ struct Columns {
  private:
   void append(const Vec3<F>& c) {
     movement[count] = c;
-    turn[count] = F(0);
+    pull[count] = turn[count] = F(0);
     free[count++] = F(0) < F(1);
   }
 };
@@ -128,7 +129,13 @@ class ActiveSet : private LimitedChain<F, N> {
     const F square = state.error * state.error;
     const F damping = (F(0.25f) * smaller(square, F(0.25f)) + F(1e-5f)) * state.damping;
     const Vec3<F> e = state.target - state.posture.joint[this->bones() - 1];
-    solve(columns, e * smaller(F(1), F(0.5f) * rsqrt(larger(square, F(1e-20f)))), damping);
+    const Vec3<F> part = e * smaller(F(1), F(0.5f) * rsqrt(larger(square, F(1e-20f))));
+    if (this->options_.restPull > 0) {
+      pullToRest(state, ellipseR, ellipseT, columns);
+      solve<true>(columns, part, damping);
+    } else {
+      solve<false>(columns, part, damping);
+    }
     const F* turn = columns.turn;
     for (int b = 0; b < this->bones(); ++b) {
       turn += turnBone(state.posture, b, turn, ellipseR[b], ellipseT[b], trial);
@@ -191,7 +198,32 @@ class ActiveSet : private LimitedChain<F, N> {
     return select(atRest, F(kUnlimited), (F(1) - size) * size * inverse);
   }
 
+  // What each column does toward rest, near the target and after a step that was kept.
+  void pullToRest(const State& state, const F* ellipseR, const F* ellipseT, Columns<F, N>& columns) const {
+    const auto near = (state.error < F(0.05f)) & (state.damping <= F(1));
+    const F share = select(near, F(this->options_.restPull), F(0));
+    F* pull = columns.pull;
+    for (int b = 0; b < this->bones(); ++b) {
+      const BoneModel& bone = this->model_.bone[b];
+      const Vec3<F>& d = state.posture.d[b];
+      if (!bone.turns) continue;
+      if (bone.kind == LimitKind::hinge) {
+        *pull++ = share * d.y;
+        continue;
+      }
+      const F radial = -share * turned(d).s;
+      const bool across = bone.kind == LimitKind::ellipse;
+      pull[0] = across ? radial * ellipseR[b] : radial;
+      if (across) pull[1] = -radial * ellipseT[b];
+      pull += bone.twists ? 3 : 2;
+    }
+  }
+
+  template <bool Pulled>
   static void solve(Columns<F, N>& columns, Vec3<F> e, const F& damping) {
+    if constexpr (Pulled) {
+      for (int c = 0; c < columns.count; ++c) e = e - columns.movement[c] * columns.pull[c];
+    }
     Normal<F> open{damping, F(0), F(0), damping, F(0), damping};
     for (int c = 0; c < columns.count; ++c) {
       if (!columns.bounded[c]) open.add(columns.movement[c]);
@@ -204,24 +236,31 @@ class ActiveSet : private LimitedChain<F, N> {
         if (columns.bounded[c]) normal.add(select(columns.free[c], columns.movement[c], none));
       }
       lambda = normal.solve(e, damping);
-      if (!hold(columns, lambda, e)) break;
+      if (!hold<Pulled>(columns, lambda, e)) break;
     }
     for (int c = 0; c < columns.count; ++c) {
-      const F turn = dot(columns.movement[c], lambda);
+      const F turn = turnOf<Pulled>(columns, c, lambda);
       columns.turn[c] = columns.bounded[c] ? select(columns.free[c], turn, columns.turn[c]) : turn;
     }
   }
 
+  template <bool Pulled>
+  static F turnOf(const Columns<F, N>& columns, int c, const Vec3<F>& lambda) {
+    const F turn = dot(columns.movement[c], lambda);
+    return Pulled ? turn + columns.pull[c] : turn;
+  }
+
   // Holds the columns that leave their room, takes what they do from e; true if there are any.
+  template <bool Pulled>
   static bool hold(Columns<F, N>& columns, const Vec3<F>& lambda, Vec3<F>& e) {
     uint64_t held = 0;
     for (int c = 0; c < columns.count; ++c) {
       if (!columns.bounded[c]) continue;
-      const F turn = dot(columns.movement[c], lambda);
+      const F turn = turnOf<Pulled>(columns, c, lambda);
       const F end = larger(smaller(turn, columns.high[c]), columns.low[c]);
       const auto leaves = columns.free[c] & ((end < turn) | (turn < end));
       columns.turn[c] = select(columns.free[c], end, columns.turn[c]);
-      e = e - columns.movement[c] * select(leaves, end, F(0));
+      e = e - columns.movement[c] * select(leaves, Pulled ? end - columns.pull[c] : end, F(0));
       columns.free[c] = columns.free[c] & !leaves;
       held |= bits(leaves);
     }

@@ -15,6 +15,9 @@ struct Options {
   Start start = Start::rest;
   float tolerance = 9e-4f;  // share of the chain's length
   int iterations = 64;      // at most
+  // Active set: share of the angle from rest taken back a step near the target; solves make at least one
+  // then.
+  float restPull = 0;
 };
 
 // Chains of one model, each toward a target of its own. Lengths are shares of the chain's length, axes the

@@ -121,7 +121,7 @@ class LimitedChain {
     const auto bent = open & isStraight(posture.joint, bones()) & (length(target) < F(0.999f) * length(tip));
     if (any(bent)) bend(posture, bent, target, error);
     const auto near = error <= F(options_.tolerance);
-    const auto going = open & !near;
+    const auto going = options_.restPull > 0 ? finite : open & !near;
     if (any(!going)) {
       const F stop = select(finite, F(float(Stop::tolerance)), F(float(Stop::skipped)));
       writeTogether(posture, error, stop, chain);

@@ -50,6 +50,7 @@ class OnCpu : public Contestant {
     options_.solver = *entry.cpu;
     options_.tolerance = shipped.tolerance;
     options_.iterations = int(ik::defaultIterations(deviceChain(task.chain), shipped));
+    options_.restPull = ik::restPullOf(deviceChain(task.chain), shipped);
   }
 
   void aim(size_t set) override { batch_.target = task_.targets.rows[set]; }

@@ -121,11 +121,12 @@ void solveAll(IkMachine& machine, const IkTargets& targets, uint32_t atOnce, siz
   rotations.finish();
 }
 
-// What the engine is asked to do: no automatic solver, no default of iterations.
+// What the engine is asked to do: no automatic solver, no defaults.
 ik::Options resolved(const IkOptions& options, const ik::Chain& chain) {
   ik::Options solve = options.solve;
   solve.solver = ik::solverFor(chain, solve);
   if (solve.iterations == 0) solve.iterations = ik::defaultIterations(chain, solve);
+  solve.restPull = ik::restPullOf(chain, solve);
   solve.rotations = !options.rotations.empty();
   checkSolver(solve.solver, chain, options.chain);
   return solve;
@@ -201,6 +202,15 @@ void addSolverTo(CLI::App& command, IkOptions& options) {
           },
           "of a solve, at most [20 without limits, 64 within them; 4 from the previous pose]")
       ->type_name("I");
+  command
+      .add_option_function<std::string>(
+          "--rest-pull",
+          [&options](const std::string& text) {
+            options.solve.restPull = static_cast<float>(parseNumber("--rest-pull", text, 0, 1));
+          },
+          "of active-set: share of the angle from rest that an iteration near the target takes back [0; 0.02 "
+          "from the previous pose where there are hinges]")
+      ->type_name("P");
 }
 
 void addTargetsTo(CLI::App& command, IkOptions& options) {

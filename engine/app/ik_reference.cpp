@@ -88,7 +88,7 @@ reference::IkSettings settingsOf(const ik::Options& options) {
   settings.iterations = static_cast<int>(options.iterations);
   settings.restarts = options.restarts;
   settings.continues = options.start == ik::Start::previous;
-  settings.restPull = options.restPull;
+  settings.restPull = options.restPull.value_or(0);
   return settings;
 }
 

@@ -73,6 +73,7 @@ nlohmann::ordered_json IkSummary::json(const IkFigures& figures) const {
           {"seed", fromFile ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(seed)},
           {"tolerance", written(solve.tolerance)},
           {"iterations", solve.iterations},
+          {"restPull", written(solve.restPull.value_or(0))},
           {"limits", limits},
           {"pole", chain.pole ? arrayOf(*chain.pole) : nlohmann::ordered_json(nullptr)},
           {"bones", lengths},

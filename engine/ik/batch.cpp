@@ -54,11 +54,12 @@ void checkSolver(const Chain& chain, Solver solver) {
   }
 }
 
-void checkOptions(const Options& options) {
+void checkOptions(const Chain& chain, const Options& options) {
   if (!(std::isfinite(options.tolerance) && options.tolerance > 0))
     throw inputError(fmt::format("the tolerance is {}, expected more than 0", options.tolerance));
-  if (!(options.restPull >= 0 && options.restPull <= 1))
-    throw inputError(fmt::format("the rest pull is {}, expected 0 to 1", options.restPull));
+  const float restPull = restPullOf(chain, options);
+  if (!(restPull >= 0 && restPull <= 1))
+    throw inputError(fmt::format("the rest pull is {}, expected 0 to 1", restPull));
 }
 
 struct Page {
@@ -140,14 +141,14 @@ Batch::Impl::Impl(Device& device, const Chain& of, uint32_t count, const Options
       positional(isPositional(of, solver)),
       skeleton(of) {
   checkSolver(chain, solver);
-  checkOptions(options);
+  checkOptions(chain, options);
   twists = !positional && skeleton.hasTwists();
   // A free chain about a base at 0 goes on from the joints that it wrote.
   ownState = options.start == Start::previous && !(positional && !options.bases);
   constants.iterations = iterations;
   constants.tolerance = options.tolerance;
   constants.reach = chain.reach();
-  constants.restPull = options.restPull;
+  constants.restPull = restPullOf(chain, options);
   // The dissertation's cones would not survive a turn about the line to the tip.
   if (chain.pole && (!positional || chain.isFree())) {
     const glm::vec3 pole = glm::normalize(*chain.pole);
@@ -224,7 +225,7 @@ gpu::Kernel Batch::Impl::makeKernel(int pass) const {
                      constants.seeds == 0 && (options.start == Start::previous || skeleton.restIsStraight())},
                     {CONSTANT_POLE, chain.pole.has_value()},
                     {CONSTANT_REST_LEGAL, skeleton.restIsLegal()},
-                    {CONSTANT_PULL, solver == Solver::activeSet && options.restPull > 0},
+                    {CONSTANT_PULL, solver == Solver::activeSet && constants.restPull > 0},
                     {CONSTANT_PASS, pass},
                     {CONSTANT_STEPS, pass == PASS_QUICK ? quickSteps() : 0},
                     {CONSTANT_CHORDS, chords(pass)},

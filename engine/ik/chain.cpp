@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "skitter/error.h"
@@ -108,6 +109,14 @@ Solver solverFor(const Chain& chain, const Options& options) {
 uint32_t defaultIterations(const Chain& chain, const Options& options) {
   if (options.start == Start::previous) return 4;
   return chain.isFree() ? 20 : 64;
+}
+
+float restPullOf(const Chain& chain, const Options& options) {
+  if (options.restPull) return *options.restPull;
+  if (options.start != Start::previous || solverFor(chain, options) != Solver::activeSet) return 0;
+  const bool hinged = std::any_of(chain.bones.begin(), chain.bones.end(),
+                                  [](const Bone& bone) { return std::holds_alternative<Hinge>(bone.limit); });
+  return hinged ? 0.02f : 0;
 }
 
 }  // namespace skitter::ik

@@ -80,6 +80,7 @@ TEST_F(Ik, JsonHasTheDocumentedFields) {
                                          "seed",
                                          "tolerance",
                                          "iterations",
+                                         "restPull",
                                          "limits",
                                          "pole",
                                          "bones",
@@ -280,6 +281,19 @@ TEST_F(Ik, MadeRowsMoveALittle) {
     }
   }
   EXPECT_EQ(solve({"--joints", "3", "--chains", "2", "--start", "previous"}).at("rows"), 100);
+}
+
+TEST_F(Ik, HingesThatFollowTheirTargetsArePulledToRestUnlessToldOtherwise) {
+  const auto pull = [&](const char* limits, const char* start, std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"--joints", "3", "--chains", "2", "--limits", limits, "--start", start});
+    return solve(more).at("restPull");
+  };
+  EXPECT_EQ(pull("hinge:0,0,1,-90,30", "previous"), 0.02);
+  EXPECT_EQ(pull("hinge:0,0,1,-90,30", "previous", {"--rest-pull", "0"}), 0);
+  EXPECT_EQ(pull("hinge:0,0,1,-90,30", "previous", {"--solver", "ccd"}), 0);
+  EXPECT_EQ(pull("hinge:0,0,1,-90,30", "rest"), 0);
+  EXPECT_EQ(pull("cone:60", "previous"), 0);
+  EXPECT_EQ(pull("cone:60", "previous", {"--rest-pull", "0.1"}), 0.1);
 }
 
 TEST_F(Ik, EveryLimitHolds) {

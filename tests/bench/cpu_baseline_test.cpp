@@ -267,6 +267,41 @@ TEST(Restarts, BackOffWhereTheyAreInVain) {
   }
 }
 
+TEST(RestPull, BringsChainsOnTargetBackToRest) {
+  for (const Limits limits : {Limits::hinges, Limits::ellipses, Limits::mixture}) {
+    const Chain chain = chainOf(7, limits);
+    const Model model(chain);
+    for (bool simd : {false, true}) {
+      Batch batch(model, 100);
+      std::mt19937 random(4);
+      const auto bent = [&] {
+        double sum = 0;
+        for (size_t c = 0; c < batch.chains; ++c)
+          for (int row = 0; row < 18; ++row)
+            if (row % 3 < 2) sum += batch.pose.at(row, c) * batch.pose.at(row, c);
+        return sum;
+      };
+      for (size_t c = 0; c < batch.chains; ++c) {
+        const Pose pose = randomPose(chain, random);
+        const auto tip = jointsOf(chain, pose).back();
+        const double place[] = {tip.x, tip.y, tip.z};
+        for (int b = 0; b < 6; ++b) {
+          const float record[] = {pose.x[b], pose.y[b], pose.twist[b]};
+          for (int k = 0; k < 3; ++k) batch.pose.at(3 * b + k, c) = record[k];
+        }
+        for (int k = 0; k < 3; ++k) batch.target.at(k, c) = float(place[k]);
+      }
+      const double before = bent();
+      const Options options{Solver::activeSet, Start::previous, 9e-4f, 4, 0.1f};
+      for (int tick = 0; tick < 50; ++tick) solve(simd, model, options, batch);
+      EXPECT_LT(bent(), 0.8 * before) << simd << int(limits);
+      const Findings found = verify(chain, options, batch);
+      EXPECT_TRUE(found.hold()) << describe(found);
+      EXPECT_EQ(found.reached, 100u);
+    }
+  }
+}
+
 TEST(Chains, RefuseWhatTheyCannotBe) {
   EXPECT_THROW(Model(bentChain(16)), std::invalid_argument);
   Chain chain = bentChain(3, hinge());

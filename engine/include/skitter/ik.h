@@ -112,9 +112,9 @@ struct Options {
   float tolerance = 9e-4f;  // share of the reach: what rounding leaves is then within 1e-3
   uint32_t iterations = 0;  // at most; 0: defaultIterations
   bool restarts = true;     // activeSet: from seed poses, when a limit holds an attempt up
-  // activeSet: share of the angle from rest taken back an iteration near the target. Where solves continue,
-  // 0.02 keeps chains of hinges out of dead ends.
-  float restPull = 0;
+  // activeSet: share of the angle from rest taken back an iteration near the target, 0 to 1; none:
+  // restPullOf's
+  std::optional<float> restPull = {};
   bool bases = false;                // each chain has a base of its own that may move; otherwise all are at 0
   bool rotations = false;            // write the bones' rotations too
   uint32_t pageChains = 0;           // most chains a page; 0: as many as the device's limits allow
@@ -122,6 +122,9 @@ struct Options {
 };
 // What the engine ships: 20 for free chains, 64 for limited ones, 4 where solves continue.
 uint32_t defaultIterations(const Chain&, const Options&);
+// The rest pull asked for; else 0.02 where the active set continues solves of a chain with hinges, which it
+// keeps out of dead ends (docs/ik.md, Tracking), and 0.
+float restPullOf(const Chain&, const Options&);
 // The solver that `automatic` stands for.
 Solver solverFor(const Chain&, const Options&);
 
