@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
+#include "cpu_reference/rotation.h"
+
 namespace skitter::reference {
 namespace {
 
@@ -59,15 +61,41 @@ Pose randomLegalPose(const std::vector<BoneRest>& bones, IkRandom& random) {
   return clamped(bones, pose);
 }
 
-std::vector<Pose> makeSeeds(const std::vector<BoneRest>& bones, uint64_t seed, size_t count) {
+bool aimsSeeds(const IkChain& chain) {
+  return !chain.pole && chain.bones[0].kind == LimitKind::free && chain.bones[0].length > 0;
+}
+
+IkState aimed(const IkChain& chain, const IkState& state, const glm::dvec3& target) {
+  const glm::dmat3& frame = chain.bones[0].frame;
+  const glm::dvec3 to = glm::transpose(frame) * normalized(target);
+  // Where the tip would be with the base at rest. A swing is a quaternion (w, x, y, 0): of what takes `from`
+  // to `to` there is but one.
+  const glm::dmat3 swing = shortestFromZ(direction(state.pose.swing[0]));
+  const glm::dvec3 from = glm::transpose(frame * swing) * normalized(state.joints.back());
+  Pose pose = state.pose;
+  const double below = to.z + from.z, least = 1e-12;
+  pose.swing[0] = glm::dvec2(to - from) / (std::abs(below) < least ? least : below);
+  IkState turned = stateAt(chain, pose);
+  turned.damping = state.damping;
+  return turned;
+}
+
+std::vector<Pose> makeSeeds(const IkChain& chain, uint64_t seed, size_t count) {
+  const std::vector<BoneRest>& bones = chain.bones;
+  const bool shapes = aimsSeeds(chain);
   IkRandom random(seed);
-  const glm::dvec3 rest = Posture(bones, clamped(bones, Pose::rest(bones.size()))).tip();
+  const auto tipOf = [&](const Pose& pose) {
+    const glm::dvec3 tip = Posture(bones, pose).tip();
+    return shapes ? glm::dvec3(glm::length(tip), 0, 0) : tip;
+  };
+  const glm::dvec3 rest = tipOf(clamped(bones, Pose::rest(bones.size())));
   std::vector<Pose> poses;
   std::vector<glm::dvec3> tips;
   std::vector<double> apart;  // from the nearest tip picked so far
   for (size_t i = 0; i < candidates; ++i) {
     poses.push_back(pulledToRest(bones, randomLegalPose(bones, random)));
-    tips.push_back(Posture(bones, poses.back()).tip());
+    if (shapes) poses.back().swing[0] = {0, 0};
+    tips.push_back(tipOf(poses.back()));
     apart.push_back(glm::length(tips.back() - rest));
   }
   std::vector<Pose> seeds;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cpu_reference/deadlock.h"
+#include "cpu_reference/ik_seeds.h"
 #include "cpu_reference/pole.h"
 
 namespace skitter::reference {
@@ -28,7 +29,7 @@ struct Seed {
 class Search {
  public:
   Search(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target, const IkState& start)
-      : chain_(chain), settings_(settings), target_(target), origin_(start) {
+      : chain_(chain), settings_(settings), target_(target), origin_(start), shapes_(aimsSeeds(chain)) {
     for (const Pose& pose : chain.seeds) {
       const IkState seed = stateAt(chain, pose);
       if (!bendsWrong(seed)) seeds_.push_back({seed});
@@ -38,10 +39,12 @@ class Search {
   IkResult run(IkMemory& memory) {
     const IkState* wanted = bendsWrong(origin_) ? nearestSeed() : isFarFromRest() ? seedOfCell() : nullptr;
     const IkState& first = wanted ? *wanted : origin_;
+    const bool shape = wanted && shapes_;
     const bool paused = settings_.continues && memory.pause > 0;
     const bool mayRestart = settings_.restarts && !paused && untried();
 
-    attempt(first, mayRestart ? Ends::whenSlow : Ends::whenStill, std::numeric_limits<double>::infinity());
+    attempt(first, shape, mayRestart ? Ends::whenSlow : Ends::whenStill,
+            std::numeric_limits<double>::infinity());
     const bool restarted = mayRestart && restart();
     const bool arrived = error_ <= settings_.tolerance;
     remember(arrived || replaced_, restarted, memory);
@@ -59,14 +62,19 @@ class Search {
     return std::any_of(seeds_.begin(), seeds_.end(), [](const Seed& seed) { return !seed.tried; });
   }
 
+  // What of a joint seeds are compared by: shapes point anywhere.
+  glm::dvec3 compared(const glm::dvec3& joint) const {
+    return shapes_ ? glm::dvec3(glm::length(joint), 0, 0) : joint;
+  }
+
   double distance(const IkState& seed) const {
     const size_t n = chain_.bones.size();
     double apart = 0;
     for (size_t i = 1; i <= n; ++i) {
-      const glm::dvec3 d = seed.joints[i] - origin_.joints[i];
+      const glm::dvec3 d = compared(seed.joints[i]) - compared(origin_.joints[i]);
       apart += glm::dot(d, d) / static_cast<double>(n);
     }
-    const glm::dvec3 d = seed.joints[n] - target_;
+    const glm::dvec3 d = compared(seed.joints[n]) - compared(target_);
     return glm::dot(d, d) + poseWeight * apart;
   }
 
@@ -85,16 +93,26 @@ class Search {
     return settings_.restarts && !settings_.continues && origin_.error(target_) > settings_.tolerance;
   }
 
+  // The middle of the target's cell; of shapes, of the shell that it is in.
+  glm::dvec3 middleOfCell() const {
+    if (!shapes_) {
+      const glm::dvec3 cell = glm::clamp(glm::floor((target_ + 1.0) * (cells / 2)), 0.0, cells - 1);
+      return (cell + 0.5) * (2 / cells) - 1.0;
+    }
+    constexpr double shells = cells * cells * cells;
+    return {(std::min(std::floor(glm::length(target_) * shells), shells - 1) + 0.5) / shells, 0, 0};
+  }
+
   // Marks the seed of the target's cell as tried; null where that is the pose at rest.
   const IkState* seedOfCell() {
-    const glm::dvec3 cell = glm::clamp(glm::floor((target_ + 1.0) * (cells / 2)), 0.0, cells - 1);
-    const glm::dvec3 middle = (cell + 0.5) * (2 / cells) - 1.0;
+    const glm::dvec3 middle = middleOfCell();
     Seed* nearest = nullptr;
-    double least = origin_.error(middle);
+    double least = shapes_ ? std::numeric_limits<double>::infinity() : origin_.error(middle);
     for (Seed& seed : seeds_) {
-      if (seed.state.error(middle) < least) {
+      const double apart = glm::length(compared(seed.state.joints.back()) - middle);
+      if (apart < least) {
         nearest = &seed;
-        least = seed.state.error(middle);
+        least = apart;
       }
     }
     if (!nearest) return nullptr;
@@ -111,9 +129,9 @@ class Search {
       if (!seed) break;
       any = true;
       const double bound = settings_.continues ? leapShare * firstError : error_;
-      replaced_ = attempt(*seed, Ends::whenSlow, std::min(bound, error_)) || replaced_;
+      replaced_ = attempt(*seed, shapes_, Ends::whenSlow, std::min(bound, error_)) || replaced_;
     }
-    if (error_ > settings_.tolerance) attempt(IkState(best_), Ends::whenStill, error_);
+    if (error_ > settings_.tolerance) attempt(IkState(best_), false, Ends::whenStill, error_);
     return any;
   }
 
@@ -125,23 +143,29 @@ class Search {
 
   bool isPulled() const { return settings_.restPull > 0 && iterations_ == 0; }
 
-  // Iterates from `start`. The best pose of it is the result if its error is below `bound`; whether it is.
-  bool attempt(const IkState& start, Ends ends, double bound) {
+  // Iterates from `start`. The best pose of it is the result if its error is below `bound`; whether it is. A
+  // shape strives to reach as far as the target, and is then aimed.
+  bool attempt(const IkState& start, bool shape, Ends ends, double bound) {
+    const glm::dvec3 goal = shape ? glm::length(target_) * normalized(start.joints.back()) : target_;
     IkState best = start, state = start;
     if (iterations_ == 0 && (!settings_.restarts || seeds_.empty())) breakDeadlock(chain_, target_, state);
     if (iterations_ > 0) state.damping = 1;
-    double least = best.error(target_), error = state.error(target_);
+    double least = best.error(goal), error = state.error(goal);
     int slow = 0;
     for (int k = 0; (least > settings_.tolerance || isPulled()) && iterations_ < most(ends); ++k) {
       if (ends == Ends::whenSlow ? slow >= 1 || k >= longestAttempt : slow >= stillSteps) break;
-      iterate(chain_, settings_, target_, iterations_++, state);
+      iterate(chain_, settings_, goal, iterations_++, state);
       const double before = error;
-      error = state.error(target_);
+      error = state.error(goal);
       slow = error > (ends == Ends::whenSlow ? slowShare : stillShare) * before ? slow + 1 : 0;
       if (error < least || error <= settings_.tolerance) {
         least = error;
         best = state;
       }
+    }
+    if (shape) {
+      best = aimed(chain_, best, target_);
+      least = best.error(target_);
     }
     if (least >= bound) return false;
     best_ = best;
@@ -170,6 +194,7 @@ class Search {
   const IkSettings& settings_;
   const glm::dvec3 target_;
   const IkState origin_;
+  const bool shapes_;  // seeds are
   std::vector<Seed> seeds_;
   IkState best_;
   double error_ = 0;

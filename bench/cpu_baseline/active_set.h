@@ -53,8 +53,10 @@ class ActiveSet : private LimitedChain<F, N> {
     Posture<F, N> posture;
     Vec3<F> target;
     F error, damping, iterations;
-    F attempt;  // this attempt's iterations
-    F begun;    // the seed that the first attempt began at, or -1
+    F attempt;     // this attempt's iterations
+    F begun;       // the seed that the first attempt began at, or -1
+    Vec3<F> goal;  // what this attempt strives for
+    F shape;       // 1: it is a place as far away as the target, to which the pose is then turned
   };
 
   using LimitedChain<F, N>::LimitedChain;
@@ -64,7 +66,9 @@ class ActiveSet : private LimitedChain<F, N> {
     state.damping = F(1);
     state.iterations = state.attempt = F(0);
     state.begun = F(-1);
-    const uint64_t waiting = bits(open & firstLanes<F>(count));
+    state.goal = state.target;
+    state.shape = F(0);
+    uint64_t waiting = bits(open & firstLanes<F>(count));
     if (continues()) return waiting;
     for (uint64_t left = waiting; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left), seed = this->model_.seedNear(laneOf(state.target, i));
@@ -72,6 +76,7 @@ class ActiveSet : private LimitedChain<F, N> {
       enter(seed, state, i);
       lane(state.begun, i) = float(seed);
     }
+    if (this->model_.aimed && waiting != 0) waiting = stepTogether(state, chain, waiting);
     return waiting;
   }
 
@@ -79,7 +84,7 @@ class ActiveSet : private LimitedChain<F, N> {
     const F tolerance(this->options_.tolerance);
     Posture<F, N> trial;
     move(state, trial);
-    const F before = state.error, after = length(state.target - trial.joint[this->bones() - 1]);
+    const F before = state.error, after = length(state.goal - trial.joint[this->bones() - 1]);
     const auto undone = (F(1.0001f) * before < after) & (tolerance < after);
     keep(!undone, trial, state.posture);
     state.error = select(undone, before, after);
@@ -94,6 +99,7 @@ class ActiveSet : private LimitedChain<F, N> {
   // An attempt is over: the chain is finished, or begins anew from the next seed.
   bool settle(State& state, int i, size_t chain) {
     Attempts& attempts = attempts_[i];
+    aim(state, i);
     const bool over = lane(state.error, i) <= this->options_.tolerance ||
                       lane(state.iterations, i) >= float(this->options_.iterations);
     if (!over && begin(attempts, state, i, chain)) return false;
@@ -128,7 +134,7 @@ class ActiveSet : private LimitedChain<F, N> {
     }
     const F square = state.error * state.error;
     const F damping = (F(0.25f) * smaller(square, F(0.25f)) + F(1e-5f)) * state.damping;
-    const Vec3<F> e = state.target - state.posture.joint[this->bones() - 1];
+    const Vec3<F> e = state.goal - state.posture.joint[this->bones() - 1];
     const Vec3<F> part = e * smaller(F(1), F(0.5f) * rsqrt(larger(square, F(1e-20f))));
     if (this->options_.restPull > 0) {
       pullToRest(state, ellipseR, ellipseT, columns);
@@ -330,7 +336,7 @@ class ActiveSet : private LimitedChain<F, N> {
     attempts.distance[seed] = std::numeric_limits<float>::infinity();
     ++attempts.made;
     enter(seed, state, i);
-    return lane(state.error, i) > this->options_.tolerance;
+    return lane(state.error, i) > this->options_.tolerance || !aim(state, i);
   }
 
   static int nearest(const float* distance, int seeds) {
@@ -342,20 +348,25 @@ class ActiveSet : private LimitedChain<F, N> {
     return best;
   }
 
-  // |tip_s - t|^2 + 0.3 mean |p_s,i - p_i|^2 of all seeds, p the start pose.
+  // |tip_s - t|^2 + 0.3 mean |p_s,i - p_i|^2 of all seeds, p the start pose; of shapes with lengths in place
+  // of places.
   void measureSeeds(Attempts& attempts, const State& state, int i, size_t chain) const {
     using V = std::conditional_t<std::is_same_v<F, float>, float, Lanes>;
     const int n = this->bones();
-    const Vec3<V> target = broadcast<V>(laneOf(state.target, i));
+    const bool shapes = this->model_.aimed;
+    const auto compared = [&](const Vec3<float>& p) { return shapes ? Vec3<float>{length(p), 0, 0} : p; };
+    const Vec3<V> target = broadcast<V>(compared(laneOf(state.target, i)));
     const Posture<float, N> begun = startOf(chain);
     for (int s = 0; s < Model::kSeeds; s += kWidth<V>) {
       V apart(0);
       Vec3<V> joint{V(0), V(0), V(0)};
       for (int b = 0; b < n; ++b) {
-        this->model_.seedRows.load(joint.x, 3 * b, s);
-        this->model_.seedRows.load(joint.y, 3 * b + 1, s);
-        this->model_.seedRows.load(joint.z, 3 * b + 2, s);
-        const Vec3<V> gap = joint - broadcast<V>(begun.joint[b]);
+        this->model_.seedRows.load(joint.x, shapes ? 6 * n + b : 3 * b, s);
+        if (!shapes) {
+          this->model_.seedRows.load(joint.y, 3 * b + 1, s);
+          this->model_.seedRows.load(joint.z, 3 * b + 2, s);
+        }
+        const Vec3<V> gap = joint - broadcast<V>(compared(begun.joint[b]));
         apart = apart + dot(gap, gap);
       }
       const Vec3<V> gap = joint - target;
@@ -389,10 +400,88 @@ class ActiveSet : private LimitedChain<F, N> {
       posture.joint[b] = {rows.at(3 * b, seed), rows.at(3 * b + 1, seed), rows.at(3 * b + 2, seed)};
     }
     copyRows(posture, state.posture, i);
-    const Vec3<float> gap = laneOf(state.target, i) - posture.joint[n - 1];
-    lane(state.error, i) = length(gap);
+    const Vec3<float> target = laneOf(state.target, i), tip = posture.joint[n - 1];
+    const bool shape = this->model_.aimed;
+    const Vec3<float> goal = shape ? tip * (length(target) * inverseLength(tip)) : target;
+    setLane(state.goal, i, goal);
+    lane(state.shape, i) = shape;
+    lane(state.error, i) = length(goal - tip);
     lane(state.damping, i) = 1;
     lane(state.attempt, i) = 0;
+  }
+
+  // Turns what an attempt made of a shape about the free base to point at the target. Whether the chain is
+  // there.
+  bool aim(State& state, int i) const {
+    if (lane(state.shape, i) != 0) {
+      Posture<float, N> posture;
+      for (int b = 0; b < this->bones(); ++b) {
+        posture.d[b] = laneOf(state.posture.d[b], i);
+        posture.twist[b] = lane(state.posture.twist[b], i);
+        posture.joint[b] = laneOf(state.posture.joint[b], i);
+      }
+      const Vec3<float> target = laneOf(state.target, i);
+      turnToward(target, posture);
+      copyRows(posture, state.posture, i);
+      setLane(state.goal, i, target);
+      lane(state.shape, i) = 0;
+      lane(state.error, i) = length(target - posture.joint[this->bones() - 1]);
+    }
+    return lane(state.error, i) <= this->options_.tolerance;
+  }
+
+  template <class G>
+  void turnToward(const Vec3<G>& target, Posture<G, N>& posture) const {
+    const BoneModel& base = this->model_.bone[0];
+    const int n = this->bones();
+    const Mat3<G> rest = broadcast<G>(base.carry), before = turnedFrame(base, rest, posture.d[0], G(0));
+    const Vec3<G> to = within(rest, normalized(target));
+    const Vec3<G> from = within(before, normalized(posture.joint[n - 1]));
+    const G x = to.x - from.x, y = to.y - from.y, z = to.z + from.z, across = x * x + y * y;
+    const G scale = G(1) / larger(z * z + across, G(1e-20f));
+    posture.d[0] =
+        clampBall(base, Vec3<G>{(x + x) * z * scale, (y + y) * z * scale, (z * z - across) * scale});
+    const Mat3<G> after = turnedFrame(base, rest, posture.d[0], G(0));
+    for (int b = 0; b < n; ++b) posture.joint[b] = after * within(before, posture.joint[b]);
+  }
+  template <class G>
+  static Vec3<G> within(const Mat3<G>& frame, const Vec3<G>& v) {
+    return {dot(frame.x, v), dot(frame.y, v), dot(frame.z, v)};
+  }
+  static void setLane(Vec3<F>& v, int i, const Vec3<float>& to) {
+    lane(v.x, i) = to.x, lane(v.y, i) = to.y, lane(v.z, i) = to.z;
+  }
+
+  // The first step of shapes, of all chains that start together: most are there after it. Those that are not
+  // are returned.
+  uint64_t stepTogether(State& state, size_t chain, uint64_t waiting) {
+    const F tolerance(this->options_.tolerance);
+    const auto begun = state.error <= tolerance;
+    if (any(!begun)) step(state);
+    state.iterations = select(begun, F(0), state.iterations);
+    auto there = state.error <= tolerance;
+    if ((bits(there) & waiting) == 0) return waiting;
+    Posture<F, N> turned = state.posture;
+    turnToward(state.target, turned);
+    const F error = length(state.target - turned.joint[this->bones() - 1]);
+    there = there & (error <= tolerance);
+    const uint64_t arrived = bits(there) & waiting;
+    if (waiting == (~uint64_t(0) >> (64 - kWidth<F>))) {
+      this->writeTogether(turned, error, state.iterations, F(float(Stop::tolerance)), chain);
+      return waiting & ~arrived;
+    }
+    for (uint64_t left = arrived; left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
+      writePose(turned, i, chain + i);
+      this->write(chain + i, lane(error, i), lane(state.iterations, i), Stop::tolerance);
+    }
+    return waiting & ~arrived;
+  }
+
+  void writePose(const Posture<F, N>& posture, int i, size_t chain) {
+    for (int b = 0; b < this->bones(); ++b)
+      this->writeBone(chain, b, laneOf(posture.d[b], i), lane(posture.twist[b], i),
+                      laneOf(posture.joint[b], i));
   }
 
   static void copyRows(const Posture<float, N>& from, Posture<F, N>& to, int i) {
@@ -405,13 +494,11 @@ class ActiveSet : private LimitedChain<F, N> {
   void finish(const Attempts& attempts, const State& state, int i, size_t chain) {
     float error = lane(state.error, i);
     const bool last = replaces(attempts, error);
-    for (int b = 0; b < this->bones(); ++b) {
-      if (last) {
-        this->writeBone(chain, b, laneOf(state.posture.d[b], i), lane(state.posture.twist[b], i),
-                        laneOf(state.posture.joint[b], i));
-      } else {
+    if (last) {
+      writePose(state.posture, i, chain);
+    } else {
+      for (int b = 0; b < this->bones(); ++b)
         this->writeBone(chain, b, attempts.d[b], attempts.twist[b], attempts.joint[b]);
-      }
     }
     if (!last) error = attempts.error;
     const float iterations = lane(state.iterations, i);

@@ -120,23 +120,26 @@ void pickSeeds(const Chain& chain, Model& model) {
   std::mt19937 random(1);
   std::vector<Pose> poses;
   std::vector<std::vector<DVec>> joints;
+  // Of shapes the length alone matters.
+  const auto compared = [&](const DVec& p) { return model.aimed ? DVec{std::sqrt(dot(p, p)), 0, 0} : p; };
   for (int i = 0; i < kPoses; ++i) {
     poses.push_back(randomPose(chain, random, 0.7));
+    if (model.aimed) poses.back().x[0] = poses.back().y[0] = 0;
     joints.push_back(jointsOf(chain, poses.back()));
   }
   const Vec3<float> rest = model.restJoints[model.bones - 1];
-  DVec last{rest.x, rest.y, rest.z};
+  DVec last = compared({rest.x, rest.y, rest.z});
   std::vector<double> distance(kPoses, 1e9);
-  model.seedRows = Rows(6 * model.bones, Model::kSeeds);
+  model.seedRows = Rows(7 * model.bones, Model::kSeeds);
   for (model.seeds = 0; model.seeds < Model::kSeeds; ++model.seeds) {
     for (int i = 0; i < kPoses; ++i) {
-      const DVec gap = joints[i].back() - last;
+      const DVec gap = compared(joints[i].back()) - last;
       distance[i] = std::min(distance[i], dot(gap, gap));
     }
     const auto farthest = std::max_element(distance.begin(), distance.end());
     if (*farthest < 1e-12) break;
     const size_t pick = farthest - distance.begin();
-    last = joints[pick].back();
+    last = compared(joints[pick].back());
     for (int b = 0; b < model.bones; ++b) {
       const float row[6] = {float(joints[pick][b].x), float(joints[pick][b].y), float(joints[pick][b].z),
                             poses[pick].x[b],         poses[pick].y[b],         poses[pick].twist[b]};
@@ -144,27 +147,35 @@ void pickSeeds(const Chain& chain, Model& model) {
         model.seedRows.at(3 * b + k, model.seeds) = row[k];
         model.seedRows.at(3 * (model.bones + b) + k, model.seeds) = row[3 + k];
       }
+      model.seedRows.at(6 * model.bones + b, model.seeds) =
+          float(std::sqrt(dot(joints[pick][b], joints[pick][b])));
     }
   }
 }
 
-void fillCells(Model& model) {
-  const auto middle = [](int i) { return (i + 0.5f) * 2 / Model::kCells - 1; };
-  const auto apart = [](const Vec3<float>& a, const Vec3<float>& b) { return dot(a - b, a - b); };
+// The seed whose tip is nearest, or -1 if all are as far as `least` (squared).
+int nearestSeed(const Model& model, const Vec3<float>& at, float least) {
   const int tip = model.bones - 1;
-  for (int z = 0; z < Model::kCells; ++z)
-    for (int y = 0; y < Model::kCells; ++y)
-      for (int x = 0; x < Model::kCells; ++x) {
-        const Vec3<float> at{middle(x), middle(y), middle(z)};
-        int nearest = -1;
-        float least = apart(at, model.restJoints[tip]);
-        for (int s = 0; s < model.seeds; ++s) {
-          const float distance = apart(at, {model.seedRows.at(3 * tip, s), model.seedRows.at(3 * tip + 1, s),
-                                            model.seedRows.at(3 * tip + 2, s)});
-          if (distance < least) least = distance, nearest = s;
-        }
-        model.seedCells.push_back(int8_t(nearest));
-      }
+  int nearest = -1;
+  for (int s = 0; s < model.seeds; ++s) {
+    const Vec3<float> place{model.seedRows.at(3 * tip, s), model.seedRows.at(3 * tip + 1, s),
+                            model.seedRows.at(3 * tip + 2, s)};
+    const float length = model.seedRows.at(6 * model.bones + tip, s);
+    const Vec3<float> gap = (model.aimed ? Vec3<float>{length, 0, 0} : place) - at;
+    if (dot(gap, gap) < least) least = dot(gap, gap), nearest = s;
+  }
+  return nearest;
+}
+
+void fillCells(Model& model) {
+  constexpr int n = Model::kCells, shells = n * n * n;
+  const auto middle = [](int i) { return (i + 0.5f) * 2 / n - 1; };
+  for (int cell = 0; cell < shells; ++cell) {
+    const Vec3<float> at{middle(cell % n), middle(cell / n % n), middle(cell / (n * n))};
+    const Vec3<float> rest = at - model.restJoints[model.bones - 1];
+    model.seedCells.push_back(int8_t(model.aimed ? nearestSeed(model, {(cell + 0.5f) / shells, 0, 0}, 1e9f)
+                                                 : nearestSeed(model, at, dot(rest, rest))));
+  }
 }
 
 }  // namespace
@@ -195,6 +206,7 @@ Model::Model(const Chain& chain) : bones(int(chain.bones.size())) {
     restJoints[i] = narrowed(joint);
   }
   if (limited) {
+    aimed = bone[0].kind == LimitKind::free && bone[0].turns;
     pickSeeds(chain, *this);
     fillCells(*this);
   }

@@ -73,13 +73,21 @@ struct Model {
   static constexpr int kSeeds = 64;
   int seeds = 0;
   Rows seedRows;
+  // The first bone turns freely: it is at rest in the seeds, which are shapes to be turned to their target,
+  // and seedRows have |p_1| .. |p_n| after the rest.
+  bool aimed = false;
   // Of the cells of the cube from -1 to 1, x first, kCells each way: the seed whose tip is nearest to the
-  // cell's middle, or -1 where the tip at rest is nearer.
+  // cell's middle, or -1 where the tip at rest is nearer. Of shapes: as many shells of |target| from 0 to 1.
   static constexpr int kCells = 16;
   std::vector<int8_t> seedCells;
 
   // Where a cold solve of a target begins: a seed, or -1 for rest.
   int seedNear(const Vec3<float>& target) const {
+    constexpr int kShells = kCells * kCells * kCells;
+    if (aimed) {
+      const float shell = std::sqrt(dot(target, target)) * kShells;
+      return seedCells[int(std::min(shell, kShells - 1.0f))];
+    }
     const auto cell = [](float x) { return int(std::clamp((x + 1) * (kCells / 2), 0.0f, kCells - 1.0f)); };
     return seedCells[cell(target.x) + kCells * (cell(target.y) + kCells * cell(target.z))];
   }

@@ -124,7 +124,7 @@ class LimitedChain {
     const auto going = options_.restPull > 0 ? finite : open & !near;
     if (any(!going)) {
       const F stop = select(finite, F(float(Stop::tolerance)), F(float(Stop::skipped)));
-      writeTogether(posture, error, stop, chain);
+      writeTogether(posture, error, F(0), stop, chain);
     }
     return going;
   }
@@ -149,6 +149,22 @@ class LimitedChain {
     }
   }
 
+  void writeTogether(const Posture<F, N>& posture, const F& error, const F& iterations, const F& stop,
+                     size_t chain) {
+    for (int b = 0; b < bones(); ++b) {
+      const Vec3<F> xy = stereographic(model_.bone[b], posture.d[b]);
+      batch_.pose.store(xy.x, 3 * b, chain);
+      batch_.pose.store(xy.y, 3 * b + 1, chain);
+      batch_.pose.store(posture.twist[b], 3 * b + 2, chain);
+      batch_.joints.store(posture.joint[b].x, 3 * b, chain);
+      batch_.joints.store(posture.joint[b].y, 3 * b + 1, chain);
+      batch_.joints.store(posture.joint[b].z, 3 * b + 2, chain);
+    }
+    batch_.outcome.store(error, 0, chain);
+    batch_.outcome.store(iterations, 1, chain);
+    batch_.outcome.store(stop, 2, chain);
+  }
+
   const Model& model_;
   const Options& options_;
   Batch& batch_;
@@ -170,21 +186,6 @@ class LimitedChain {
       posture.joint[b] = select(mask, arc.joint[b], posture.joint[b]);
     }
     error = select(mask, length(target - posture.joint[bones() - 1]), error);
-  }
-
-  void writeTogether(const Posture<F, N>& posture, const F& error, const F& stop, size_t chain) {
-    for (int b = 0; b < bones(); ++b) {
-      const Vec3<F> xy = stereographic(model_.bone[b], posture.d[b]);
-      batch_.pose.store(xy.x, 3 * b, chain);
-      batch_.pose.store(xy.y, 3 * b + 1, chain);
-      batch_.pose.store(posture.twist[b], 3 * b + 2, chain);
-      batch_.joints.store(posture.joint[b].x, 3 * b, chain);
-      batch_.joints.store(posture.joint[b].y, 3 * b + 1, chain);
-      batch_.joints.store(posture.joint[b].z, 3 * b + 2, chain);
-    }
-    batch_.outcome.store(error, 0, chain);
-    batch_.outcome.store(F(0), 1, chain);
-    batch_.outcome.store(stop, 2, chain);
   }
 };
 

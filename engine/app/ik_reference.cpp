@@ -77,7 +77,7 @@ reference::IkChain chainOf(const ik::Chain& chain, bool seeded) {
   }
   const auto pole = chain.pole ? std::optional<glm::dvec3>(*chain.pole) : std::nullopt;
   reference::IkChain result = reference::makeIkChain(bones, pole);
-  if (seeded) result.seeds = reference::makeSeeds(result.bones, 1);
+  if (seeded) result.seeds = reference::makeSeeds(result, 1);
   return result;
 }
 

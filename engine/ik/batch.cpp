@@ -105,6 +105,7 @@ struct Batch::Impl {
   bool positional, twists, ownState;
   Skeleton skeleton;
   shared::BatchConstants constants = {};
+  bool aimed = false;          // seeds are turned to the target
   bool quick = false;          // two dispatches: most chains are done by the first
   gpu::Kernel kernel, listed;  // the second one's, where there are two
   gpu::Buffer rig, seeds, unused;
@@ -162,9 +163,10 @@ Batch::Impl::Impl(Device& device, const Chain& of, uint32_t count, const Options
   std::vector<float> seedRecord;
   if (solver == Solver::activeSet && options.restarts) {
     const auto poses = seedPoses(skeleton, chain.pole, shared::SEEDS_MOST);
-    seedRecord = seedRecords(skeleton, poses);
+    aimed = aimsSeeds(skeleton, chain.pole);
+    seedRecord = seedRecords(skeleton, poses, aimed);
     constants.seeds = static_cast<uint32_t>(poses.size());
-    const std::vector<float> cells = seedCells(skeleton, poses);
+    const std::vector<float> cells = seedCells(skeleton, poses, aimed);
     seedRecord.insert(seedRecord.end(), cells.begin(), cells.end());
   }
   seeds = gpu::Buffer(*context, seedRecord.size() * sizeof(float), "ik seeds");
@@ -189,6 +191,7 @@ int Batch::Impl::quickSteps() const {
   const bool tracks = options.start == Start::previous;
   if (positional) return tracks ? 2 : 4;
   if (tracks) return 1;
+  if (aimed) return bones == 2 ? 2 : 1;
   return any<Free>(chain) ? 4 : 3;
 }
 
@@ -229,6 +232,7 @@ gpu::Kernel Batch::Impl::makeKernel(int pass) const {
                     {CONSTANT_PASS, pass},
                     {CONSTANT_STEPS, pass == PASS_QUICK ? quickSteps() : 0},
                     {CONSTANT_CHORDS, chords(pass)},
+                    {CONSTANT_AIMED, aimed},
                     {CONSTANT_PARALLEL, parallelWord(skeleton)},
                     {CONSTANT_PADDED, skeleton.isPadded()}};
   return {*context, info};

@@ -19,6 +19,11 @@ int kindOf(const Limit& limit) {
   return shared::LIMIT_CONE;  // a free ball is a cone as wide as can be
 }
 
+// Of aimed seeds lengths alone matter.
+glm::dvec3 compared(const glm::dvec3& joint, bool aimed) {
+  return aimed ? glm::dvec3(glm::length(joint), 0, 0) : joint;
+}
+
 void padToVec4(std::vector<float>& records) {
   while (records.size() % 4 != 0) records.push_back(0);
 }
@@ -89,7 +94,8 @@ void appendPose(const Skeleton& skeleton, const Skeleton::Pose& pose, std::vecto
   padToVec4(records);
 }
 
-std::vector<float> seedRecords(const Skeleton& skeleton, const std::vector<Skeleton::Pose>& seeds) {
+std::vector<float> seedRecords(const Skeleton& skeleton, const std::vector<Skeleton::Pose>& seeds,
+                               bool aimed) {
   std::vector<float> records;
   for (const Skeleton::Pose& pose : seeds) {
     appendPose(skeleton, pose, records);
@@ -98,26 +104,26 @@ std::vector<float> seedRecords(const Skeleton& skeleton, const std::vector<Skele
     for (const glm::dvec3& p : joints) squares += glm::dot(p, p);
     const glm::dvec3& tip = joints.back();
     const double own = glm::dot(tip, tip) + 0.1 * squares / static_cast<double>(joints.size());
-    for (const glm::dvec3& p : joints) append(records, p, &p == &tip ? own / 2 : 0);
+    for (const glm::dvec3& p : joints) append(records, compared(p, aimed), &p == &tip ? own / 2 : 0);
   }
   return records;
 }
 
-std::vector<float> seedCells(const Skeleton& skeleton, const std::vector<Skeleton::Pose>& seeds) {
+std::vector<float> seedCells(const Skeleton& skeleton, const std::vector<Skeleton::Pose>& seeds, bool aimed) {
   constexpr int n = shared::SEED_CELLS;
-  std::vector<glm::dvec3> tips = {skeleton.place(skeleton.rest()).back()};
-  for (const Skeleton::Pose& pose : seeds) tips.push_back(skeleton.place(pose).back());
+  std::vector<glm::dvec3> tips;
+  if (!aimed) tips.push_back(skeleton.place(skeleton.rest()).back());
+  for (const Skeleton::Pose& pose : seeds) tips.push_back(compared(skeleton.place(pose).back(), aimed));
   const auto middle = [](int i) { return (i + 0.5) * 2 / n - 1; };
   std::vector<float> cells;
-  for (int z = 0; z < n; ++z)
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x) {
-        const glm::dvec3 at(middle(x), middle(y), middle(z));
-        const auto nearest = std::min_element(tips.begin(), tips.end(), [&](const auto& a, const auto& b) {
-          return glm::dot(a - at, a - at) < glm::dot(b - at, b - at);
-        });
-        cells.push_back(static_cast<float>(nearest - tips.begin()) - 1);
-      }
+  for (int cell = 0; cell < n * n * n; ++cell) {
+    const glm::dvec3 at = aimed ? glm::dvec3((cell + 0.5) / (n * n * n), 0, 0)
+                                : glm::dvec3(middle(cell % n), middle(cell / n % n), middle(cell / (n * n)));
+    const auto nearest = std::min_element(tips.begin(), tips.end(), [&](const auto& a, const auto& b) {
+      return glm::dot(a - at, a - at) < glm::dot(b - at, b - at);
+    });
+    cells.push_back(static_cast<float>(nearest - tips.begin()) - (aimed ? 0.0f : 1.0f));
+  }
   return cells;
 }
 

@@ -16,8 +16,8 @@ std::pair<uint32_t, uint32_t> limitWords(const Skeleton&);
 uint32_t parallelWord(const Skeleton&);
 // Directions and twists, whole vec4.
 void appendPose(const Skeleton&, const Skeleton::Pose&, std::vector<float>& records);
-std::vector<float> seedRecords(const Skeleton&, const std::vector<Skeleton::Pose>&);
+std::vector<float> seedRecords(const Skeleton&, const std::vector<Skeleton::Pose>&, bool aimed);
 // The cells after the seeds.
-std::vector<float> seedCells(const Skeleton&, const std::vector<Skeleton::Pose>&);
+std::vector<float> seedCells(const Skeleton&, const std::vector<Skeleton::Pose>&, bool aimed);
 
 }  // namespace skitter::ik

@@ -50,9 +50,16 @@ double fold(const std::vector<dvec3>& places, const dvec3& pole) {
 
 }  // namespace
 
+// To which side a seed folds changes as it is turned.
+bool aimsSeeds(const Skeleton& skeleton, const std::optional<glm::vec3>& pole) {
+  const Skeleton::Joint& base = skeleton.joints()[0];
+  return !pole && base.length > 0 && std::holds_alternative<Free>(base.limit);
+}
+
 std::vector<Skeleton::Pose> seedPoses(const Skeleton& skeleton, const std::optional<glm::vec3>& pole,
                                       uint32_t most) {
   Random random;
+  const bool aimed = aimsSeeds(skeleton, pole);
   std::vector<Skeleton::Pose> candidates;
   std::vector<dvec3> tips;
   for (uint32_t c = 0; c < kCandidates; ++c) {
@@ -61,10 +68,11 @@ std::vector<Skeleton::Pose> seedPoses(const Skeleton& skeleton, const std::optio
       pose.directions.push_back(joint.length > 0 ? randomDirection(joint.limit, random) : dvec3(0, 0, 1));
       pose.twists.push_back(kPulled * random.within(joint.twistMin, joint.twistMax));
     }
+    if (aimed) pose.directions[0] = {0, 0, 1};
     const std::vector<dvec3> places = skeleton.place(pose);
     if (pole && fold(places, dvec3(*pole)) < 0) continue;
     candidates.push_back(pose);
-    tips.push_back(places.back());
+    tips.push_back(aimed ? dvec3(glm::length(places.back()), 0, 0) : places.back());
   }
   std::vector<Skeleton::Pose> seeds;
   std::vector<double> distance(candidates.size(), std::numeric_limits<double>::max());

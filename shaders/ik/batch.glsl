@@ -19,6 +19,7 @@ layout(constant_id = CONSTANT_PULL) const bool PULL = false;
 layout(constant_id = CONSTANT_PASS) const int PASS = PASS_WHOLE;
 layout(constant_id = CONSTANT_STEPS) const int STEPS = 0;
 layout(constant_id = CONSTANT_CHORDS) const int CHORDS = 0;
+layout(constant_id = CONSTANT_AIMED) const bool AIMED = false;
 
 LOAD4_BUFFER(BATCH_RIG, rig);
 LOAD4_BUFFER(BATCH_TARGET, targets);

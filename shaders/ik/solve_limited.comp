@@ -77,8 +77,9 @@ void advance(Limb limb, vec3 target, bool follows, int most, inout Attempt attem
 
 // The seed nearest to the target, or -1: rest.
 int seedAt(vec3 target) {
+  const int all = SEED_CELLS * SEED_CELLS * SEED_CELLS;
   ivec3 at = clamp(ivec3(floor((target + 1.0) * (0.5 * float(SEED_CELLS)))), 0, SEED_CELLS - 1);
-  int cell = at.x + SEED_CELLS * (at.y + SEED_CELLS * at.z);
+  int cell = AIMED ? int(min(length(target) * float(all), float(all - 1))) : at.x + SEED_CELLS * (at.y + SEED_CELLS * at.z);
   return int(LOAD4(seeds, int(constants.seeds) * seedStride(BONES, TWISTS) + cell / 4)[cell & 3]);
 }
 
@@ -110,6 +111,22 @@ void loadSeed(int seed, inout Pose pose) {
   int at = seed * seedStride(BONES, TWISTS);
   LOAD_SWINGS(pose.swing, seeds, at);
   LOAD_TWISTS(pose.twist, seeds, at + stateTwists(BONES));
+}
+
+// What of a joint seeds are compared by: those of a chain with a free base are shapes, which point anywhere.
+vec3 compared(vec3 joint) { return AIMED ? vec3(length(joint), 0.0, 0.0) : joint; }
+
+// What an attempt from a shape strives for: the target as far away, and nothing of where.
+vec3 goalOf(bool shape, vec3 target, Pose pose) { return shape ? length(target) * unit(pose.tip) : target; }
+
+// The swing of a free base that was at `s` with which the chain's tip points at the target.
+vec2 aimed(Limb limb, vec3 target, vec3 tip, vec2 s) {
+  vec3 to = rotateBack(limb.rest[0], unit(target)), from = rotateBack(limb.rest[0], unit(tip));
+  float w = (dot(s, from.xy) + from.z) * 2.0 / (1.0 + dot(s, s));
+  // Against where the tip would be with the base at rest.
+  vec2 over = to.xy + s * w - from.xy;
+  float below = to.z + w - from.z;
+  return clampSwing(limb, 0, below * over, below * below, 0.5 * (below * below + dot(over, over)));
 }
 
 // The set of all seeds without one.
@@ -156,7 +173,7 @@ void main() {
   // What takes the place of a pose that is seen must be worth the jump.
   float worth = PREVIOUS && !folded ? WORTH_A_JUMP : 1.0;
   vec3 start[BONES];  // where each bone ended
-  for (int i = 0; i < BONES; ++i) start[i] = i + 1 < BONES ? pose.joint[min(i + 1, BONES - 1)] : pose.tip;
+  for (int i = 0; i < BONES; ++i) start[i] = compared(i + 1 < BONES ? pose.joint[min(i + 1, BONES - 1)] : pose.tip);
   Pose best;  // of the attempts before; of this one too where a step may make it worse
   copyIf(true, best, pose);
   float bestError = ATTEMPTS_ALONE_IMPROVE ? 1e30 : error;
@@ -164,6 +181,8 @@ void main() {
   ivec4 queue = ivec4(0);  // the nearest seeds of those
   int queued = 0;
   bool first = true, inVain = false;
+  bool shape = false;   // the attempt is made from a seed that is then aimed
+  vec3 goal = target;
   if (!PREVIOUS && PASS != PASS_WHOLE) {
     int nearest = seedAt(target);
     bool seeded = nearest >= 0 && error > constants.tolerance && !folded;
@@ -171,7 +190,9 @@ void main() {
     loadSeed(max(nearest, 0), seed);
     copyIf(seeded, pose, seed);
     forwardKinematics(limb, pose);
-    error = distance(target, pose.tip);
+    shape = AIMED && seeded;
+    goal = goalOf(shape, target, pose);
+    error = distance(goal, pose.tip);
     untried &= seeded ? allBut(nearest) : untried;
   }
   // A chain folded to the wrong side begins at a seed.
@@ -181,12 +202,24 @@ void main() {
   Attempt attempt = Attempt(open && !again && (PULL || error > constants.tolerance), error, 0, 0);
   if (PASS == PASS_QUICK) {
     [[unroll]] for (int i = 0; i < STEPS; ++i)
-      advance(limb, target, follows, follows ? spent : budget, attempt, pose, best, error, bestError, damping, k);
+      advance(limb, goal, follows, follows ? spent : budget, attempt, pose, best, error, bestError, damping, k);
+    if (AIMED && !PREVIOUS) {
+      vec2 turned = aimed(limb, target, pose.tip, pose.swing[0]);
+      pose.swing[0] = shape ? turned : pose.swing[0];
+      forwardKinematics(limb, pose);
+      error = distance(target, pose.tip);
+    }
     needsMore = needsMore || again || attempt.running || (open && error > constants.tolerance);
   }
   while (PASS != PASS_QUICK && open) {
     while (attempt.running)
-      advance(limb, target, follows, follows ? spent : budget, attempt, pose, best, error, bestError, damping, k);
+      advance(limb, goal, follows, follows ? spent : budget, attempt, pose, best, error, bestError, damping, k);
+    if (AIMED) {
+      vec2 turned = aimed(limb, target, pose.tip, pose.swing[0]);
+      pose.swing[0] = shape ? turned : pose.swing[0];
+      forwardKinematics(limb, pose);
+      error = distance(target, pose.tip);
+    }
     open = open && follows && k < budget && (again || error > constants.tolerance);
     if (open) {
       bool keep = !again && error < (first ? bestError : worth * bestError);
@@ -194,7 +227,7 @@ void main() {
       bestError = keep ? error : bestError;
       worth = keep && !first ? 1.0 : worth;
       first = first && again;
-      if (queued == 0) findSeeds(target, start, untried, queue, queued);
+      if (queued == 0) findSeeds(compared(target), start, untried, queue, queued);
       int nearest = queue.x;
       bool seeded = queued > 0 && (k < spent || bestError > 1e29);
       queue = queue.yzww;
@@ -207,7 +240,9 @@ void main() {
       follows = seeded;
       inVain = inVain || seeded;
       forwardKinematics(limb, pose);
-      error = distance(target, pose.tip);
+      shape = AIMED && seeded;
+      goal = goalOf(shape, target, pose);
+      error = distance(goal, pose.tip);
       damping = 1.0;
       again = false;
       attempt = Attempt(true, error, 0, 0);

@@ -58,6 +58,7 @@ BATCH int CONSTANT_PADDED = 17;    // a bone may have no length
 BATCH int CONSTANT_STEPS = 18;     // made in a row, before any in a loop
 BATCH int CONSTANT_PARALLEL = 19;  // a bit a bone: a hinge about the x axis of the bone before
 BATCH int CONSTANT_CHORDS = 20;    // chord steps after a step, at most
+BATCH int CONSTANT_AIMED = 21;     // seeds are turned about the base to point at the target
 
 // One dispatch solves all, or a quick one does what most chains need and lists those that need more, which a
 // second one then solves from the start: on devices that mask lanes, rare code is paid for by all.
@@ -74,11 +75,10 @@ BATCH_FUNCTION int stateStride(int bones, bool twists) {
   return (bones + 1) / 2 + (twists ? (bones + 3) / 4 : 0);
 }
 // seed: directions and twists as in the state, then p_1 .. p_n, lengths in units of the reach; beside the
-// last one
-// (|p_n|^2 + 0.1 mean |p_i|^2) / 2.
+// last one (|p_n|^2 + 0.1 mean |p_i|^2) / 2. Where seeds are aimed (|p_i|, 0, 0) stands for p_i.
 BATCH_FUNCTION int seedStride(int bones, bool twists) { return stateStride(bones, twists) + bones; }
 // After all seeds, a float a cell of the cube from -1 to 1, x first: the seed whose tip is nearest to its
-// middle, or -1: rest.
+// middle, or -1: rest. Where seeds are aimed, as many cells of |target|, from 0 to 1.
 BATCH int SEED_CELLS = 16;  // each way
 // report: error, iterations, stop + STOPS * (solves to come without restarts + PAUSES * the next pause),
 // damping.

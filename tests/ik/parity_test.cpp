@@ -124,6 +124,12 @@ TEST_P(StartTest, FromRest) {
   }
 }
 
+TEST_P(StartTest, FromSeedsThatAreAimed) {
+  Random random(450);
+  const ik::Chain chain = randomChain("free-base", 4, random);
+  expectParity(randomRun(device(), "free-base", chain, chains, {}, 450), solveTies);
+}
+
 TEST_P(StartTest, AboutBasesThatTurn) {
   uint64_t seed = 500;
   for (const char* limits : {"free", "mixed"}) {

@@ -166,7 +166,7 @@ TEST(IkSolve, freeChainsPointAtTargetsOutOfReach) {
 
 TEST(IkSolve, limitedChainsComeAsNearAsTheyCan) {
   IkChain chain = chainOf(coneSpec(6, 80 * degree));
-  chain.seeds = makeSeeds(chain.bones, 1);
+  chain.seeds = makeSeeds(chain, 1);
   for (const bool restarts : {false, true}) {
     const IkResult result = solve(chain, {.solver = IkSolver::activeSet, .restarts = restarts}, {0, 1.3, 0});
     EXPECT_EQ(result.stop, IkStop::unreachable);
@@ -242,8 +242,7 @@ TEST(IkSolve, startPoseIsClampedFirst) {
 TEST(IkSeeds, areLegalFarApartAndTheSameAgain) {
   for (const ChainSpec& spec : {coneSpec(4, 1.5), ellipseSpec(9), hingeSpec(4), mixedSpec()}) {
     const IkChain chain = chainOf(spec);
-    const auto seeds = makeSeeds(chain.bones, 5), again = makeSeeds(chain.bones, 5),
-               few = makeSeeds(chain.bones, 5, 7);
+    const auto seeds = makeSeeds(chain, 5), again = makeSeeds(chain, 5), few = makeSeeds(chain, 5, 7);
     EXPECT_EQ(seeds.size(), 64u);
     EXPECT_EQ(few.size(), 7u);
     std::vector<glm::dvec3> tips;
@@ -251,10 +250,36 @@ TEST(IkSeeds, areLegalFarApartAndTheSameAgain) {
       EXPECT_EQ(seeds[s].swing, again[s].swing);
       const IkState state = stateAt(chain, seeds[s]);
       EXPECT_LE(judge(spec, state.joints, rotationsOf(chain, state)).beyond, 1e-9);
-      for (const glm::dvec3& tip : tips) EXPECT_GT(glm::length(tip - state.joints.back()), 0.01);
-      tips.push_back(state.joints.back());
+      // Of those that are aimed the distance from the base is told apart.
+      const bool shapes = aimsSeeds(chain);
+      const glm::dvec3 own = state.joints.back();
+      const glm::dvec3 compared = shapes ? glm::dvec3(glm::length(own), 0, 0) : own;
+      for (const glm::dvec3& tip : tips) EXPECT_GT(glm::length(tip - compared), shapes ? 0.005 : 0.01);
+      tips.push_back(compared);
+      if (shapes) {
+        EXPECT_EQ(seeds[s].swing[0], glm::dvec2(0));
+      }
     }
   }
+}
+
+TEST(IkSeeds, thatAreAimedPointAtTheTarget) {
+  const ChainSpec spec = hingeSpec(5);
+  const IkChain chain = chainOf(spec);
+  ASSERT_TRUE(aimsSeeds(chain));
+  IkRandom random(9);
+  int exact = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const IkState start = stateAt(chain, randomLegalPose(chain.bones, random));
+    const glm::dvec3 target = stateAt(chain, randomLegalPose(chain.bones, random)).joints.back();
+    const IkState turned = aimed(chain, start, target);
+    EXPECT_LE(judge(spec, turned.joints, rotationsOf(chain, turned)).beyond, 1e-9);
+    for (size_t i = 1; i < start.joints.size(); ++i)
+      EXPECT_NEAR(glm::length(turned.joints[i]), glm::length(start.joints[i]), 1e-12);
+    const double least = std::abs(glm::length(start.joints.back()) - glm::length(target));
+    exact += turned.error(target) <= least + 1e-9;
+  }
+  EXPECT_GE(exact, 980) << "a free ball turns up to 3.1 rad";
 }
 
 // Of 1000 tips of legal poses.
@@ -276,7 +301,7 @@ Share shareOf(const IkChain& chain, const IkSettings& settings) {
 TEST(IkRestarts, leaveTheLocalMinimaOfHinges) {
   IkChain chain = chainOf(hingeSpec(4));
   EXPECT_LT(shareOf(chain, {}).solved, 980);
-  chain.seeds = makeSeeds(chain.bones, 7);
+  chain.seeds = makeSeeds(chain, 7);
   EXPECT_LT(shareOf(chain, {.restarts = false}).solved, 980);
   const Share share = shareOf(chain, {});
   EXPECT_GE(share.solved, 998);
@@ -285,7 +310,7 @@ TEST(IkRestarts, leaveTheLocalMinimaOfHinges) {
 
 TEST(IkRestarts, pauseLongerAndLongerAfterAttemptsInVain) {
   IkChain chain = chainOf(coneSpec(4, 0.5));
-  chain.seeds = makeSeeds(chain.bones, 7);
+  chain.seeds = makeSeeds(chain, 7);
   IkState state = restState(chain);
   IkMemory memory;
   std::vector<int> restarted;  // the solves that try seeds
@@ -302,7 +327,7 @@ TEST(IkRestarts, pauseLongerAndLongerAfterAttemptsInVain) {
 // seed.
 TEST(IkRestarts, outOfReachTheChainStaysWhereItIs) {
   IkChain chain = chainOf(coneSpec(4, 0.6));
-  chain.seeds = makeSeeds(chain.bones, 7);
+  chain.seeds = makeSeeds(chain, 7);
   IkState state = restState(chain);
   IkMemory memory;
   for (int tick = 0; tick < 400; ++tick) {
@@ -368,7 +393,7 @@ Track track(const IkChain& chain, int ticks) {
 TEST(IkSolve, threeIterationsATickTrackAMovingTarget) {
   for (const ChainSpec& spec : {coneSpec(4, 90 * degree), coneSpec(9, 60 * degree), ellipseSpec(4)}) {
     IkChain chain = chainOf(spec);
-    chain.seeds = makeSeeds(chain.bones, 7);
+    chain.seeds = makeSeeds(chain, 7);
     const Track result = track(chain, 1000);
     EXPECT_GE(result.within, result.ticks - 1);
     EXPECT_LE(result.leaps, 2);
@@ -408,7 +433,7 @@ TEST(IkPole, limitedChainsStartOnItsSide) {
     bone.cone = 1.2;
   }
   IkChain chain = chainOf(spec, pole);
-  chain.seeds = makeSeeds(chain.bones, 7);
+  chain.seeds = makeSeeds(chain, 7);
   IkRandom random(34);
   int away = 0, kept = 0;
   for (int trial = 0; trial < 300; ++trial) {

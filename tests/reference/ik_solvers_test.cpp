@@ -92,7 +92,7 @@ class LimitedChains : public testing::TestWithParam<Limited> {};
 
 TEST_P(LimitedChains, reachTipsOfLegalPoses) {
   IkChain chain = chainOf(GetParam().spec);
-  chain.seeds = reference::makeSeeds(chain.bones, 7);
+  chain.seeds = reference::makeSeeds(chain, 7);
   reference::IkRandom random(12);
   constexpr int trials = 400;
   int solved = 0, iterations = 0;
