@@ -23,7 +23,8 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   const nlohmann::json run = json("run.json");
   EXPECT_EQ(keysOf(run), (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
                                                 "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity",
-                                                "herds", "stateHash"}));
+                                                "herds", "sleeping", "stateHash"}));
+  EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
   EXPECT_EQ(run.at("agents"), 20);
   EXPECT_EQ(run.at("ticks"), 30);
   EXPECT_EQ(run.at("seed"), 7);

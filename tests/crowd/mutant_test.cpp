@@ -27,7 +27,7 @@ TEST_P(MutantTest, IsRefused) {
   Scene scene = sceneOf(mutant.sleeping ? 20 : 64, 1, 1, mutant.controller);
   if (mutant.sleeping) scene.herds[0].goal.kind = Goal::Kind::none;
   Crowd crowd(device(), ground, scene,
-              CrowdOptions{.sleep = mutant.sleeping, .footfalls = UINT32_MAX, .shaders = {mutant.shader}});
+              CrowdOptions{.footfalls = UINT32_MAX, .sleep = mutant.sleeping, .shaders = {mutant.shader}});
   if (mutant.sleeping) simulate(device(), crowd, 100);
   bool found = false;
   for (const validation::StageResult& stage : replay(device(), crowd, ground, mutant.sleeping ? 120 : 60)) {
