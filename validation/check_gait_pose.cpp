@@ -20,7 +20,7 @@ void checkPoseGait(const Setting& setting, const Moment& moment, Judge& judge) {
                  {got.phase, 0, 0, 0});
   sample.compare("phase outside [0, 1)", got.phase >= 0 && got.phase < 1 ? 0 : 1, 0);
   sample.same("masks", 0, got.lift | got.reaim | got.air);
-  judge.add(moment.n, moment.agent, -1, sample);
+  judge.add(moment.n, moment.number(), -1, sample);
 }
 
 }  // namespace skitter::validation

@@ -51,7 +51,7 @@ void checkPoseSwing(const Setting& setting, const Moment& moment, Judge& judge) 
     sample.same("reach error", 0, chain.reachError);
     sample.same("error before solving", 0, chain.errorBefore);
     sample.same("damping", 1, chain.damping);
-    judge.add(moment.n, moment.agent, static_cast<int>(l), sample, tie);
+    judge.add(moment.n, moment.number(), static_cast<int>(l), sample, tie);
   }
 }
 

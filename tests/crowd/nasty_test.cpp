@@ -191,8 +191,8 @@ TEST_P(NastyTest, ErrorsAreThoseOfTheChains) {
     const auto entry = static_cast<size_t>(shared::chainDirections(herd.bones));
     for (size_t agent = 0; agent < 65; ++agent)
       for (size_t leg = 0; leg < legs; ++leg) {
-        const auto record = static_cast<size_t>(
-            shared::legRecord(static_cast<int>(agent), static_cast<int>(leg), herd.legs));
+        const auto record =
+            static_cast<size_t>(shared::legRecord(static_cast<int>(agent), static_cast<int>(leg), herd.legs));
         ASSERT_EQ(errors[agent * ((legs + 3) / 4 * 4) + leg], chains[4 * (record * stride + entry) + 3])
             << "agent " << agent << ", leg " << leg;
       }
