@@ -28,6 +28,13 @@ void appendRecords(const gpu::Context& context, const Page& page, const gpu::Buf
   const auto anAgent = static_cast<uint64_t>(std::max(1, legs));
   const uint64_t held = legs > 0 ? crowd::wholeBlocks(page.agents) * anAgent : page.agents;
   const uint64_t each = buffer.size() / held;
+  const size_t end = records.size();
+  records.resize(end + here.count * anAgent * each / sizeof(float));
+  const auto bytes = std::as_writable_bytes(std::span(records).subspan(end));
+  if (legs == 0 && sample.stride == 1) {
+    gpu::downloadBytes(context, buffer, bytes, here.first * each);
+    return;
+  }
   std::vector<uint64_t> places;
   places.reserve(here.count * anAgent);
   for (uint32_t i = 0; i < here.count; ++i)
@@ -35,9 +42,6 @@ void appendRecords(const gpu::Context& context, const Page& page, const gpu::Buf
       const auto agent = static_cast<int>(here.first + i * sample.stride);
       places.push_back(static_cast<uint64_t>(legs > 0 ? shared::legRecord(agent, leg, legs) : agent));
     }
-  const size_t end = records.size();
-  records.resize(end + places.size() * each / sizeof(float));
-  const auto bytes = std::as_writable_bytes(std::span(records).subspan(end));
   if (sample.stride > 1) {
     for (uint64_t& place : places) place *= each;
     gpu::downloadPieces(context, buffer, bytes, places, each);

@@ -1,8 +1,8 @@
 #ifndef HEIGHTFIELD_GLSL
 #define HEIGHTFIELD_GLSL
 
-// Height and gradient (h, gx, gz) at world (x, z). Four fetches and a lerp written out: a sampler's own filter
-// has 8-bit weights on real GPUs.
+// Height and gradient (h, gx, gz) at world (x, z). Four texels and a lerp written out: a sampler's own filter
+// has 8-bit weights on real GPUs. They are gathered from the corner between them, half a texel from any others.
 vec3 heightAt(sampler2D heights, vec2 origin, vec2 inverseSpacing, vec2 world) {
   ivec2 size = textureSize(heights, 0);
   vec2 u = clamp((world - origin) * inverseSpacing, vec2(0.0), vec2(size - 1));

@@ -10,7 +10,7 @@ namespace skitter::shared {
 #endif
 
 BINDING BINDING_PARAMETERS = 0;  // uniform block Parameters
-BINDING BINDING_HEIGHTS = 1;     // R32F image, sampled by texelFetch
+BINDING BINDING_HEIGHTS = 1;     // R32F image, sampled by textureGather
 BINDING BINDING_RIG = 2;
 // Legs that begin a step: uint, leg record * 2 + (1 if aimed anew); later in the tick, legs that ik's first
 // dispatch leaves: uint, leg record. Of clip: agents that fade, uint.
