@@ -27,6 +27,7 @@ void iterate(Limb limb, vec3 target, bool lost, inout Pose pose, inout float err
     // What a chord step does not bring there is listed.
     int which = PASS == PASS_QUICK ? CHORDS_NEAR : CHORDS_BETTER;
     activeSet(limb, target, lost, CHORDS, which, pull, constants.tolerance, pose, error, damping);
+    forwardKinematics(limb, pose);
     return;
   }
   if (SOLVER == SOLVER_FABRIK) fabrikIteration(limb, target, pose);

@@ -69,8 +69,9 @@ const int CHORDS_NEAR = 1;
 const int CHORDS_BETTER = 2;
 const float NEAR = 0.1;
 
-// From `pose`, whose forward kinematics are done, one step and at most `chords` chord steps. On return `pose` and
-// `error` are the new ones if they are better. A `lost` target, one that is not finite, keeps the pose to the bit.
+// From `pose`, whose forward kinematics are done and end at `error` from the target, one step and at most `chords` chord
+// steps. On return swings, twists and tip of `pose`, and `error`, are the new ones if they are better. A `lost` target, one
+// that is not finite, keeps the pose to the bit.
 void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float restPull, float tolerance,
                inout Pose pose, inout float error, inout float damping) {
   Columns c;
@@ -78,9 +79,8 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float r
   vec2 pull[BONES], x[BONES];
   float twist[BONES], end[BONES], free[BONES], twistEnd[BONES], twistFree[BONES];
   vec3 e = target - pose.tip;
-  float e2 = dot(e, e);
-  Symmetric m = Symmetric(vec3((0.25 * min(e2, 0.25) + 1e-5) * damping), vec3(0.0));
-  e *= min(1.0, 0.5 * inversesqrt(max(e2, 1e-20)));
+  Symmetric m = Symmetric(vec3((0.25 * min(error * error, 0.25) + 1e-5) * damping), vec3(0.0));
+  e *= error > 0.5 ? 0.5 / error : 1.0;
   for (int i = 0; i < BONES; ++i) {
     addOuter(m, c, i);
     pull[i] = towardRest(pose.swing[i], restPull * limb.stiffness[i]);
@@ -88,7 +88,7 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float r
     free[i] = twistFree[i] = 1.0;
     end[i] = twistEnd[i] = 0.0;
   }
-  Symmetric inverse = inverseOf(m);
+  Inverse inverse = inverseOf(m);
   vec3 lambda = times(inverse, e);
   Way way[BONES];
   for (int i = 0; i < BONES; ++i) way[i] = wayOf(limb, i, pose.swing[i], c);
@@ -113,7 +113,7 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float r
       turnTwist(limb, i, twist[i], trial.twist[i]);
     }
   }
-  forwardKinematics(limb, trial);
+  trial.tip = tipOf(limb, trial);
   bool going = true;
   for (int chord = 0; chord < chords; ++chord) {
     e = target - trial.tip;
@@ -130,7 +130,7 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float r
         turnTwist(limb, i, twist[i], next.twist[i]);
       }
     }
-    forwardKinematics(limb, next);
+    next.tip = tipOf(limb, next);
     going = which != CHORDS_BETTER || (going && distance(target, next.tip) < left);
     keepIf(going, trial, next);
   }

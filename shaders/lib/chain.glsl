@@ -50,21 +50,34 @@ vec3 fromStereographic(vec2 s) {
 // (X, Y) within the limit of the direction n (d.x, d.y), n (1 + d.z).
 vec2 clampSwing(Limb limb, int i, vec2 xy, float below, float n) {
   if (isKind(i, LIMIT_HINGE)) return clampHinge(xy.y, below, limb.ends[i].xy);
-  vec2 lean = leanOf(xy, below, n);
-  return clampBall(xy, below, lean, isKind(i, LIMIT_ELLIPSE) ? ellipseEdge(limb.ends[i], lean) : limb.edge[i]);
+  float s2 = dot(xy, xy), edge = limb.edge[i];
+  bool against = isAgainst(s2, below, n);
+  if (isKind(i, LIMIT_ELLIPSE)) edge = ellipseEdge(limb.ends[i], against ? vec2(1.0, 0.0) : xy * inversesqrt(max(s2, 1e-20)));
+  return clampBall(xy, below, s2, against, edge);
 }
 vec2 clampSwing(Limb limb, int i, vec3 d) { return clampSwing(limb, i, d.xy, 1.0 + d.z, 1.0); }
+
+// Cosine and sine from the tangent of half the angle.
+vec2 cosineSineOf(float tangent) {
+  float k = 2.0 / (1.0 + tangent * tangent);
+  return vec2(k - 1.0, k * tangent);
+}
 
 // A bone's direction, in its turned frame.
 vec3 alongBone(Limb limb, int i, Frame f) {
   return isKind(i, LIMIT_HINGE) ? limb.ends[i].z * f.x + limb.ends[i].w * f.z : f.z;
 }
 
-// A_i from F_(i-1). From one hinge to another about the same axis it is a turn about that.
-Frame carried(Limb limb, int i, Frame f) {
-  Frame c = limb.carry[i];
-  if ((PARALLEL >> uint(i) & 1u) != 0u) return Frame(f.x, c.y.y * f.y + c.y.z * f.z, c.z.y * f.y + c.z.z * f.z);
-  return Frame(rotate(f, c.x), rotate(f, c.y), rotate(f, c.z));
+// `turn` carried by F_(i-1). From one hinge to another about the same axis that is a turn about it.
+Frame carried(int i, Frame f, Frame turn) {
+  if ((PARALLEL >> uint(i) & 1u) != 0u)
+    return Frame(f.x, turn.y.y * f.y + turn.y.z * f.z, turn.z.y * f.y + turn.z.z * f.z);
+  return Frame(rotate(f, turn.x), rotate(f, turn.y), rotate(f, turn.z));
+}
+
+vec3 carried(int i, Frame turn, vec3 v) {
+  if ((PARALLEL >> uint(i) & 1u) != 0u) return vec3(v.x, turn.y.yz * v.y + turn.z.yz * v.z);
+  return rotate(turn, v);
 }
 
 // F_i from A_i: the shortest rotation of the rest direction onto the bone, then its twist.
@@ -72,43 +85,55 @@ Frame turnedFrame(int i, Frame a, vec2 s, float twist) {
   vec3 w = (s.x * a.x + s.y * a.y + a.z) * (2.0 / (1.0 + dot(s, s)));
   Frame f = Frame(a.x - s.x * w, a.y - s.y * w, w - a.z);
   if (isKind(i, LIMIT_TWIST)) {
-    float k = 2.0 / (1.0 + twist * twist), c = k - 1.0, sine = k * twist;
-    f = Frame(c * f.x + sine * f.y, c * f.y - sine * f.x, f.z);
+    vec2 t = cosineSineOf(twist);
+    f = Frame(t.x * f.x + t.y * f.y, t.x * f.y - t.y * f.x, f.z);
   }
   return f;
 }
 
-// FK of bone i: `f` goes from F_(i-1) to F_i, p from p_i to p_(i+1).
-void place(Limb limb, int i, inout Frame f, inout vec3 p, inout Pose pose) {
+// Bone i in its turned frame F_i: p goes from p_i to p_(i+1).
+void place(Limb limb, int i, Frame f, inout vec3 p, inout Pose pose) {
   vec2 s = pose.swing[i];
-  Frame a = carried(limb, i, f);
-  f = turnedFrame(i, a, s, pose.twist[i]);
+  Frame swung = f;
+  if (isKind(i, LIMIT_TWIST)) {
+    vec2 t = cosineSineOf(pose.twist[i]);
+    swung = Frame(t.x * f.x - t.y * f.y, t.x * f.y + t.y * f.x, f.z);
+  }
   pose.joint[i] = p;
-  pose.frame[i] = a;
-  pose.aboutX[i] = a.y - s.y * a.z;
-  pose.aboutY[i] = s.x * a.z - a.x;
+  pose.aboutX[i] = swung.y + s.y * f.z;
+  pose.aboutY[i] = -swung.x - s.x * f.z;
   pose.aboutBone[i] = f.z;
   p += limb.bone[i] * alongBone(limb, i, f);
 }
 
+// Each bone's turn is made in the frame of the bone before, so that none waits for another; then they are carried.
 void forwardKinematics(Limb limb, inout Pose pose) {
   Frame f = noTurn();
   vec3 p = vec3(0.0);
-  for (int i = 0; i < BONES; ++i) place(limb, i, f, p, pose);
+  for (int i = 0; i < BONES; ++i) {
+    Frame turn = turnedFrame(i, limb.carry[i], pose.swing[i], pose.twist[i]);
+    pose.frame[i] = carried(i, f, limb.carry[i]);
+    f = i == 0 ? turn : carried(i, f, turn);
+    place(limb, i, f, p, pose);
+  }
   pose.tip = p;
 }
 
+// Where forward kinematics put the tip. From the tip on only one vector is carried along the chain.
+vec3 tipOf(Limb limb, Pose pose) {
+  vec3 v = vec3(0.0);
+  for (int i = BONES - 1; i >= 0; --i) {
+    v += limb.bone[i] * alongBone(limb, i, noTurn());
+    v = carried(i, turnedFrame(i, limb.carry[i], pose.swing[i], pose.twist[i]), v);
+  }
+  return v;
+}
+
+// What forward kinematics start from, and the tip.
 void keepIf(bool keep, inout Pose best, Pose candidate) {
   for (int i = 0; i < BONES; ++i) {
     best.swing[i] = keep ? candidate.swing[i] : best.swing[i];
     best.twist[i] = keep ? candidate.twist[i] : best.twist[i];
-    best.joint[i] = keep ? candidate.joint[i] : best.joint[i];
-    best.frame[i].x = keep ? candidate.frame[i].x : best.frame[i].x;
-    best.frame[i].y = keep ? candidate.frame[i].y : best.frame[i].y;
-    best.frame[i].z = keep ? candidate.frame[i].z : best.frame[i].z;
-    best.aboutX[i] = keep ? candidate.aboutX[i] : best.aboutX[i];
-    best.aboutY[i] = keep ? candidate.aboutY[i] : best.aboutY[i];
-    best.aboutBone[i] = keep ? candidate.aboutBone[i] : best.aboutBone[i];
   }
   best.tip = keep ? candidate.tip : best.tip;
 }
@@ -134,13 +159,12 @@ vec4 swung(Limb limb, int i, vec4 parent, Pose pose) {
 
 // A straight chain with its target nearer on the same line would never bend: bend it first.
 bool deadlocked(vec3 target, Pose pose) {
-  vec3 line = unit(pose.tip);
-  float off = 0.0;
+  float off = 0.0, span = dot(pose.tip, pose.tip);
   for (int i = 1; i < BONES; ++i) {
-    vec3 away = cross(line, pose.joint[i]);
+    vec3 away = cross(pose.tip, pose.joint[i]);
     off = max(off, dot(away, away));
   }
-  return off < 1e-6 && length(target) < 0.999 * length(pose.tip);
+  return off < 1e-6 * span && dot(target, target) < 0.998001 * span;
 }
 
 void bend(Limb limb, inout Pose pose) {

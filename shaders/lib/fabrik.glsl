@@ -14,7 +14,8 @@ void fabrikIteration(Limb limb, vec3 target, inout Pose pose) {
   Frame f = noTurn();
   vec3 p = vec3(0.0);
   for (int i = 0; i < BONES; ++i) {
-    vec3 v = q[i] - p, d = unit(rotateBack(carried(limb, i, f), v));
+    Frame a = carried(i, f, limb.carry[i]);
+    vec3 v = q[i] - p, d = unit(rotateBack(a, v));
     bool aimed = length(v) >= 1e-6 && limb.bone[i] > 0.0;
     if (isKind(i, LIMIT_HINGE)) {
       aimed = aimed && dot(d.yz, d.yz) > 1e-12;
@@ -22,6 +23,8 @@ void fabrikIteration(Limb limb, vec3 target, inout Pose pose) {
     }
     vec2 s = clampSwing(limb, i, d);
     pose.swing[i] = aimed ? s : pose.swing[i];
+    pose.frame[i] = a;
+    f = turnedFrame(i, a, pose.swing[i], pose.twist[i]);
     place(limb, i, f, p, pose);
   }
   pose.tip = p;

@@ -50,16 +50,15 @@ float ellipseEdge(vec4 ellipse, vec2 lean) {
   return half_.y / half_.x;
 }
 
-// Directions are divided into (X, Y) here: `xy` and `below` are n (d.x, d.y) and n (1 + d.z), n not 0. The way a
-// direction leans; straight against the rest direction every way is as good: one of them, not what rounding says.
-vec2 leanOf(vec2 xy, float below, float n) {
-  float s2 = dot(xy, xy);
-  return s2 < 1e-6 * n * n && below < n ? vec2(1.0, 0.0) : xy * inversesqrt(max(s2, 1e-20));
-}
+// Directions are divided into (X, Y) here: `xy` and `below` are n (d.x, d.y) and n (1 + d.z), n not 0. Straight against
+// the rest direction every way to lean is as good: one of them, not what rounding says.
+bool isAgainst(float s2, float below, float n) { return s2 < 1e-6 * n * n && below < n; }
 
-// `edge`: tan(theta_max / 2) toward `lean`.
-vec2 clampBall(vec2 xy, float below, vec2 lean, float edge) {
-  return dot(xy, xy) > edge * edge * below * below ? edge * lean : xy / max(below, 1e-6);
+// `edge`: tan(theta_max / 2) toward where the direction leans; s2: of `xy`.
+vec2 clampBall(vec2 xy, float below, float s2, bool against, float edge) {
+  bool outside = s2 > edge * edge * below * below;
+  float over = outside ? sqrt(max(s2, 1e-20)) : max(below, 1e-6);
+  return against ? vec2(edge, 0.0) : xy * ((outside ? edge : 1.0) / over);
 }
 
 // `range`: tangents of half the least and the greatest angle.

@@ -7,19 +7,26 @@ struct Symmetric {
   vec3 diagonal, mixed;
 };
 
-// By cofactors.
-Symmetric inverseOf(Symmetric m) {
+// The inverse, by cofactors: `over` times a symmetric matrix, for what is multiplied by that need not wait for the
+// division.
+struct Inverse {
+  Symmetric adjugate;
+  float over;
+};
+
+Inverse inverseOf(Symmetric m) {
   vec3 d = m.diagonal, o = m.mixed;
   vec3 c0 = vec3(d.y * d.z - o.z * o.z, o.y * o.z - o.x * d.z, o.x * o.z - o.y * d.y);
-  float k = 1.0 / dot(vec3(d.x, o.x, o.y), c0);
-  return Symmetric(k * vec3(c0.x, d.x * d.z - o.y * o.y, d.x * d.y - o.x * o.x),
-                   k * vec3(c0.yz, o.x * o.y - d.x * o.z));
+  return Inverse(Symmetric(vec3(c0.x, d.x * d.z - o.y * o.y, d.x * d.y - o.x * o.x), vec3(c0.yz, o.x * o.y - d.x * o.z)),
+                 1.0 / dot(vec3(d.x, o.x, o.y), c0));
 }
 
 vec3 times(Symmetric m, vec3 v) {
   return m.diagonal * v + vec3(m.mixed.x * v.y + m.mixed.y * v.z, m.mixed.x * v.x + m.mixed.z * v.z,
                                m.mixed.y * v.x + m.mixed.z * v.y);
 }
+
+vec3 times(Inverse m, vec3 v) { return times(m.adjugate, v) * m.over; }
 
 void addOuter(inout Symmetric m, vec3 c, float weight) {
   vec3 w = weight * c;

@@ -109,6 +109,7 @@ void main() {
     // FABRIK, or the solver that the herd names, brings a chain near that is far from its target (a start, a jump).
     Pose trial;
     keepIf(true, trial, pose);
+    forwardKinematics(limb, trial);
     for (int i = 0; i < APPROACH_ITERATIONS && error > parameters.approachError; ++i) {
       approach(limb, target, trial);
       float e = distance(target, trial.tip);
@@ -116,6 +117,7 @@ void main() {
       keepIf(better, pose, trial);
       error = better ? e : error;
     }
+    forwardKinematics(limb, pose);
   }
   if (POLISH_ITERATIONS > 0) {
     float pull = POLISH_ITERATIONS > 1 && error < parameters.pullError ? parameters.restPull : 0.0;
@@ -127,6 +129,7 @@ void main() {
   STORE4(chainsOut, at + chainDirections(BONES), vec4(tip, error * reach));
   STORE4(chainsOut, at + chainDirections(BONES) + 1, vec4(damping, before * reach, 0.0, 0.0));
 #ifdef PLANTED
+  forwardKinematics(limb, pose);
   for (int i = 0; i < BONES; ++i) {
     vec4 q = shortestArc(clipBone[i], pose.aboutBone[i]);
     vec3 move = root.xyz + reach * pose.joint[i] - rotate(q, root.xyz + reach * clipJoint[i]);

@@ -54,7 +54,7 @@ void main() {
   Frame f = noTurn();
   for (int i = 0; i < BONES; ++i) {
     vec3 along = joint[i + 1] - joint[i];
-    Frame a = carried(limb, i, f);
+    Frame a = carried(i, f, limb.carry[i]);
     vec3 d = rotateBack(a, unit(along));
     swings[i] = dot(along, along) > 1e-16 ? d.xy / (1.0 + max(d.z, -0.999)) : vec2(0.0);
     f = turnedFrame(i, a, swings[i], 0.0);
