@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "lib/load4.glsl"
 
 // Multiplications and additions in chains that do not wait for each other: as many as keep a pipeline full, and no
@@ -13,7 +14,8 @@ void main() {
   float scale = 0.999, more = 1e-3 + float(gl_LocalInvocationID.x) * 1e-6;
   vec4 a = vec4(1.0, 2.0, 3.0, 4.0) * more, b = a + 1.0, c = b + 1.0;
   for (int i = 0; i < ROUNDS; ++i) {
-    for (int k = 0; k < 16; ++k) {
+    // What a loop carries goes through memory at each turn where lanes are masked.
+    [[unroll]] for (int k = 0; k < 64; ++k) {
       a = a * scale + more;
       b = b * scale + more;
       c = c * scale + more;
