@@ -4,6 +4,7 @@
 // --agents=N takes N of them, not 10,000. scripts/compare-builds holds two builds against each other with it.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <memory>
@@ -42,36 +43,37 @@ struct Run {
   std::string fault;  // empty if its tick agrees with the reference
 };
 
-CrowdOptions options() {
+CrowdOptions options(bool fuse) {
   CrowdOptions made;
+  made.fuse = fuse;
   made.measure = false;
   made.timestamps = true;
   return made;
 }
 
-Run makeRun(const std::string& key, const std::string& controller, Who who, uint32_t agents) {
+Run makeRun(const std::string& key, const std::string& controller, Who who, uint32_t agents, bool fuse) {
   Scene scene = builtinScene();
   scene.herds.front().controller = controller;
   scene.herds.front().agents = agents;
-  Run run{key, std::make_unique<Crowd>(device(), scene.loadTerrain(), scene, options()), nullptr, {}};
+  Run run{key, std::make_unique<Crowd>(device(), scene.loadTerrain(), scene, options(fuse)), nullptr, {}};
   const auto walk = bench::deviceContestant(device(), *run.crowd, kDt);
   for (int i = 0; i < kWarmUp; ++i) walk->tick();
   const uint64_t next = run.crowd->tick() + 1;
   run.contestant = who == Who::device ? bench::deviceContestant(device(), *run.crowd, kDt)
                                       : bench::cpuContestant(*run.crowd, who == Who::scalar, 1, true);
   for (const validation::StageResult& check : bench::checkTick(
-           *run.crowd, *run.contestant, next, bench::demandOf(*run.crowd, options()), scene.seed))
+           *run.crowd, *run.contestant, next, bench::demandOf(*run.crowd, options(fuse)), scene.seed))
     if (!check.pass) run.fault += check.name + ": " + check.worst + "; ";
   return run;
 }
 
 // The last one is kept: the stages of a tick are timed one after the other.
-Run& runOf(const std::string& controller, Who who, uint32_t agents) {
+Run& runOf(const std::string& controller, Who who, uint32_t agents, bool fuse) {
   static Run run;
-  const std::string key = controller + whoNames[int(who)] + std::to_string(agents);
+  const std::string key = controller + whoNames[int(who)] + std::to_string(agents) + (fuse ? "" : " apart");
   if (run.key != key) {
     run = {};
-    run = makeRun(key, controller, who, agents);
+    run = makeRun(key, controller, who, agents, fuse);
   }
   return run;
 }
@@ -79,13 +81,14 @@ Run& runOf(const std::string& controller, Who who, uint32_t agents) {
 double millisecondsOf(const std::vector<StageTime>& times, const std::string& stage) {
   double sum = 0;
   for (const StageTime& time : times)
-    if (stage.empty() || time.stage == stage) sum += time.milliseconds;
+    if (stage.empty() || crowd::makes(stage, time.stage)) sum += time.milliseconds;
   return sum;
 }
 
-void timeStage(benchmark::State& state, const std::string& controller, const std::string& stage, Who who) {
+void timeStage(benchmark::State& state, const std::string& controller, const std::string& stage, Who who,
+               bool fuse) {
   const auto agents = static_cast<uint32_t>(state.range(0));
-  Run& run = runOf(controller, who, agents);
+  Run& run = runOf(controller, who, agents, fuse);
   if (!run.fault.empty()) {
     state.SkipWithError(("differs from the reference: " + run.fault).c_str());
     return;
@@ -105,9 +108,10 @@ void timeStage(benchmark::State& state, const std::string& controller, const std
   state.counters["an_agent_ns"] = 1e9 * seconds / (static_cast<double>(state.iterations()) * agents);
 }
 
-void add(const std::string& controller, const std::string& stage, Who who, int64_t agents) {
-  benchmark::RegisterBenchmark((controller + "/" + stage + "/" + whoNames[int(who)]).c_str(),
-                               [=](benchmark::State& state) { timeStage(state, controller, stage, who); })
+void add(const std::string& controller, const std::string& stage, Who who, bool fuse, int64_t agents) {
+  benchmark::RegisterBenchmark(
+      (controller + "/" + stage + "/" + whoNames[int(who)]).c_str(),
+      [=](benchmark::State& state) { timeStage(state, controller, stage, who, fuse); })
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond)
       ->Iterations(kTicks)
@@ -117,8 +121,16 @@ void add(const std::string& controller, const std::string& stage, Who who, int64
 void addAll(int64_t agents) {
   for (const std::string controller : {"adaptive", "clip"})
     for (const Who who : {Who::device, Who::simd, Who::scalar}) {
-      for (const crowd::Stage& stage : crowd::stagesOf(crowd::controllerNamed(controller), options()))
-        add(controller, stage.name, who, agents);
+      const auto stagesOf = [&](bool fuse) {
+        return crowd::stagesOf(crowd::controllerNamed(controller), options(fuse));
+      };
+      const std::vector<crowd::Stage> fused = stagesOf(true);
+      for (const crowd::Stage& stage : fused) add(controller, stage.name, who, true, agents);
+      // Those that are made at once, one by one.
+      for (const crowd::Stage& stage : stagesOf(false))
+        if (std::none_of(fused.begin(), fused.end(),
+                         [&](const crowd::Stage& f) { return std::string_view(f.name) == stage.name; }))
+          add(controller, stage.name, who, false, agents);
     }
 }
 

@@ -9,6 +9,7 @@
 #include "bench/ik/clock.h"
 #include "bench/statistics.h"
 #include "crowd/herd.h"
+#include "crowd/stage.h"
 #include "validation/herd_facts.h"
 #include "validation/replay.h"
 
@@ -81,7 +82,7 @@ std::vector<validation::StageResult> checkTick(const Crowd& crowd, Contestant& c
     replay.tick(tick, before[h], after[h]);
     for (const validation::StageResult& result : replay.results())
       if (std::any_of(timed.begin(), timed.end(),
-                      [&](const StageDemand& d) { return d.stage == result.name; }))
+                      [&](const StageDemand& d) { return crowd::makes(d.stage, result.name); }))
         results.push_back(result);
   }
   return results;

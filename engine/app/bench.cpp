@@ -12,6 +12,7 @@
 #include "bench/crowd/peaks.h"
 #include "bench/ik/machine.h"
 #include "commands.h"
+#include "crowd/stage.h"
 #include "part_file.h"
 #include "progress.h"
 #include "scene_options.h"
@@ -68,10 +69,12 @@ double sumOf(const std::vector<StageTime>& stages) {
   return sum;
 }
 
-const StageTime* find(const std::vector<StageTime>& stages, const std::string& name) {
+// What a stage of the device, or the stages that it makes at once, take an opponent.
+StageTime sameOf(const std::vector<StageTime>& stages, const std::string& name) {
+  StageTime same{name};
   for (const StageTime& stage : stages)
-    if (stage.stage == name) return &stage;
-  return nullptr;
+    if (crowd::makes(name, stage.stage)) same.milliseconds += stage.milliseconds;
+  return same;
 }
 
 void printResults(const Match& match, bool cpu) {
@@ -99,7 +102,7 @@ void printStages(const Match& match, const Peaks& peaks, bool cpu) {
   const Result& device = match.results.front();
   const double sum = std::max(sumOf(device.stages), 1e-9);
   const double threads = cpu ? std::max(1u, std::thread::hardware_concurrency()) : 1;
-  fmt::print("\n{:<10}{:>11}{:>8}{:>10}{:>10}{:>10}{:>13}", "stage", cpu ? "core-ms" : "ms", "share", "MB",
+  fmt::print("\n{:<10}{:>11}{:>8}{:>10}{:>10}{:>10}{:>15}", "stage", cpu ? "core-ms" : "ms", "share", "MB",
              "Mop", "of copy", "of arithmetic");
   for (size_t i = 1; i < match.results.size(); ++i) fmt::print("{:>22}", match.results[i].name);
   fmt::print("\n");
@@ -108,15 +111,16 @@ void printStages(const Match& match, const Peaks& peaks, bool cpu) {
                                     [&](const StageDemand& d) { return d.stage == stage.stage; });
     if (asked == match.demands.end()) continue;
     const double milliseconds = millisecondsOf(stage, device, cpu), seconds = 1e-3 * milliseconds / threads;
-    fmt::print("{:<10}{:>11.3f}{:>7.1f}%{:>10.3f}{:>10.3f}{:>9.1f}%{:>12.1f}%", stage.stage, milliseconds,
+    fmt::print("{:<10}{:>11.3f}{:>7.1f}%{:>10.3f}{:>10.3f}{:>9.1f}%{:>14.1f}%", stage.stage, milliseconds,
                100 * stage.milliseconds / sum, 1e-6 * asked->bytes, 1e-6 * asked->operations,
                100 * asked->bytes / seconds / peaks.bytesPerSecond,
                100 * asked->operations / seconds / peaks.operationsPerSecond);
     for (size_t i = 1; i < match.results.size(); ++i) {
       const Result& other = match.results[i];
-      const StageTime* same = find(other.stages, stage.stage);
-      fmt::print("{:>22}",
-                 same == nullptr ? "" : fmt::format("{:.3f} core-ms", millisecondsOf(*same, other, true)));
+      const StageTime same = sameOf(other.stages, stage.stage);
+      fmt::print("{:>22}", same.milliseconds > 0
+                               ? fmt::format("{:.3f} core-ms", millisecondsOf(same, other, true))
+                               : "");
     }
     fmt::print("\n");
   }

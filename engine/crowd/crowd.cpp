@@ -109,7 +109,7 @@ bool isNamed(const Stage& stage, std::string_view name) { return stage.name == n
 bool watchesGround(const Impl& crowd) { return crowd.watchUntil > 0 && crowd.tick <= crowd.watchUntil; }
 
 const gpu::Kernel& kernelOf(const Impl& crowd, const crowd::Herd& herd, size_t index) {
-  return herd.watchingGait && watchesGround(crowd) && isNamed(herd.stages[index], "gait")
+  return herd.watchingGait && watchesGround(crowd) && crowd::makes(herd.stages[index].name, "gait")
              ? herd.watchingGait
              : herd.kernels[index];
 }
@@ -206,7 +206,8 @@ void settle(Impl& crowd) {
     for (const crowd::Herd& herd : crowd.herds)
       for (size_t i = 0; i < herd.kernels.size(); ++i) {
         warmUp(herd.kernels[i], herd, i);
-        if (herd.watchingGait && isNamed(herd.stages[i], "gait")) warmUp(herd.watchingGait, herd, i);
+        if (herd.watchingGait && crowd::makes(herd.stages[i].name, "gait"))
+          warmUp(herd.watchingGait, herd, i);
         if (herd.restKernels[i]) warmUp(herd.restKernels[i], herd, i);
       }
     recordStage(crowd, "wake", 0, cmd);
@@ -233,6 +234,16 @@ shared::Parameters parametersOf(const Impl& crowd, const crowd::Herd& herd, floa
   return parameters;
 }
 
+void setParameters(const Impl& crowd, float dt, crowd::Herd& herd) {
+  herd.parameters = parametersOf(crowd, herd, dt);
+  crowd::ParameterBlock block{herd.parameters, {}};
+  constexpr size_t aLeg = 4 * shared::RIG_LEG_STRIDE;
+  const auto stride = 4 * static_cast<size_t>(shared::rigStride(herd.bones));
+  for (size_t leg = 0; leg < static_cast<size_t>(herd.legs); ++leg)
+    std::copy_n(&herd.rigRecords[leg * stride], aLeg, &block.rigLegs[leg * aLeg]);
+  std::memcpy(herd.parameterBlock.bytes().data(), &block, sizeof block);
+}
+
 void setTick(Impl& crowd, float dt) {
   if (!(dt > 0) || !std::isfinite(dt))
     throw inputError("dt " + std::to_string(dt) + ": expected a finite time above 0");
@@ -241,10 +252,7 @@ void setTick(Impl& crowd, float dt) {
     throw inputError("dt changed from " + std::to_string(crowd.dt) + " to " + std::to_string(dt) +
                      ": steps are timed in ticks, so a crowd keeps its first dt");
   crowd.dt = dt;
-  for (crowd::Herd& herd : crowd.herds) {
-    herd.parameters = parametersOf(crowd, herd, dt);
-    std::memcpy(herd.parameterBlock.bytes().data(), &herd.parameters, sizeof herd.parameters);
-  }
+  for (crowd::Herd& herd : crowd.herds) setParameters(crowd, dt, herd);
 }
 
 }  // namespace
@@ -286,6 +294,9 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     herd.legs = herd.rig.legCount();
     herd.bones = herd.rig.maxBones();
     herd.groups = herd.rig.groupCount();
+    if (herd.legs > shared::MOST_LEGS)
+      throw inputError(herd.rig.name + ": " + std::to_string(herd.legs) + " legs, expected at most " +
+                       std::to_string(shared::MOST_LEGS));
     herd.ik = crowd::ikPlanFor(from.solver);
     if (herd.controller == crowd::Controller::planted && from.solver != "active-set")
       throw inputError("solver '" + from.solver + "': controller planted has active-set alone");
@@ -296,10 +307,9 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     herd.rigBuffer = gpu::Buffer(context, herd.rigRecords.size() * sizeof(float), "rig");
     gpu::upload(context, herd.rigBuffer, herd.rigRecords);
     if (crowd::needsClips(herd.controller)) loadClips(context, from, herd);
-    herd.parameters = parametersOf(crowd, herd, 1.0f / 60);
     herd.parameterBlock =
-        gpu::HostBuffer(context, sizeof herd.parameters, gpu::HostUse::upload, "parameters");
-    std::memcpy(herd.parameterBlock.bytes().data(), &herd.parameters, sizeof herd.parameters);
+        gpu::HostBuffer(context, sizeof(crowd::ParameterBlock), gpu::HostUse::upload, "parameters");
+    setParameters(crowd, 1.0f / 60, herd);
     herd.stages = crowd::stagesOf(herd.controller, options);
     needed += crowd::bytesOf(crowd, herd, from.agents);
   }
@@ -342,7 +352,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
     if (!hasStage(crowd, name)) continue;
     crowd.timer.next(cmd, last = name.data());
     recordStage(crowd, name, tick, cmd);
-    if (name == "gait" || name == "wake")
+    if (crowd::makes(name, "gait") || name == "wake")
       gpu::computeToIndirectAndCompute(cmd);
     else
       gpu::computeToCompute(cmd);

@@ -1,4 +1,6 @@
 #include "crowd/stage.h"
+#include "embedded/body_gait_comp_storage.h"
+#include "embedded/body_gait_comp_texel.h"
 #include "embedded/gait_comp_storage.h"
 #include "embedded/gait_comp_texel.h"
 #include "embedded/gait_loop_comp_storage.h"
@@ -16,10 +18,28 @@ Stage gaitStage() {
           {embedded::gait_comp_texel(), embedded::gait_comp_storage()},
           {{BINDING_PARAMETERS, uniform},
            {BINDING_HEIGHTS, heights},
-           {BINDING_RIG, load4},
            {BINDING_BODY, load4},
            {BINDING_STEP, load4},
            {BINDING_ERROR, load4},
+           {BINDING_GAIT, load4},
+           {BINDING_GAIT_OUT, store},
+           {BINDING_LIST, store},
+           {BINDING_COUNTERS, store}},
+          Stage::Over::agents};
+}
+
+Stage bodyAndGaitStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"body+gait",
+          {embedded::body_gait_comp_texel(), embedded::body_gait_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_HEIGHTS, heights},
+           {BINDING_STEER, load4},
+           {BINDING_STEP, load4},
+           {BINDING_ERROR, load4},
+           {BINDING_BODY, load4},
+           {BINDING_BODY_OUT, store},
            {BINDING_GAIT, load4},
            {BINDING_GAIT_OUT, store},
            {BINDING_LIST, store},

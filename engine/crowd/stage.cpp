@@ -1,5 +1,6 @@
 #include "crowd/stage.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string_view>
@@ -34,6 +35,20 @@ std::vector<Stage> everyStageOf(Controller controller) {
           swingStage(),    ikStage(),   poseStage(), measureStage(), footfallStage()};
 }
 
+// Puts stages of a row that pay to be made at once together, but for those that are given another shader.
+void fuse(const CrowdOptions& options, std::vector<Stage>& stages) {
+  const Stage fused = bodyAndGaitStage();
+  const auto isPart = [&](const Stage& stage) { return makes(fused.name, stage.name); };
+  const bool given =
+      std::any_of(options.shaders.begin(), options.shaders.end(), [&](const StageShader& shader) {
+        return shader.stage != fused.name && makes(fused.name, shader.stage);
+      });
+  const auto first = std::find_if(stages.begin(), stages.end(), isPart);
+  if (given || first == stages.end()) return;
+  *first = fused;
+  stages.erase(first + 1);
+}
+
 }  // namespace
 
 Controller controllerNamed(const std::string& name) {
@@ -46,13 +61,15 @@ Controller controllerNamed(const std::string& name) {
 }
 
 const std::vector<const char*>& frame() {
-  static const std::vector<const char*> names = {"navigate", "wake", "body", "clip",    "gait",    "foothold",
-                                                 "swing",    "ik",   "pose", "measure", "footfall"};
+  static const std::vector<const char*> names = {"navigate", "wake", "body",     "body+gait",
+                                                 "clip",     "gait", "foothold", "swing",
+                                                 "ik",       "pose", "measure",  "footfall"};
   return names;
 }
 
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) {
   std::vector<Stage> stages = everyStageOf(controller);
+  if (options.fuse && controller == Controller::adaptive) fuse(options, stages);
   std::erase_if(stages, [&](const Stage& stage) {
     const std::string_view name = stage.name;
     if (name == "wake") return !options.sleep;
@@ -68,6 +85,12 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) 
   return stages;
 }
 
+bool makes(std::string_view stage, std::string_view part) {
+  for (size_t plus; (plus = stage.find('+')) != stage.npos; stage.remove_prefix(plus + 1))
+    if (stage.substr(0, plus) == part) return true;
+  return stage == part;
+}
+
 bool isOfTheAwake(const Stage& stage) {
   return stage.over == Stage::Over::agents || stage.over == Stage::Over::legs ||
          stage.over == Stage::Over::joints;
@@ -77,7 +100,7 @@ StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const He
   using namespace shared;
   gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
   const bool isIk = std::strcmp(stage.name, "ik") == 0;
-  const bool isGait = herd.controller == Controller::adaptive && std::strcmp(stage.name, "gait") == 0;
+  const bool isGait = herd.controller == Controller::adaptive && makes(stage.name, "gait");
   if (isIk && herd.ik.solver != SOLVER_FABRIK) info.code = comparedIkCode();
   for (const StageShader& other : options.shaders)
     if (other.stage == stage.name) info.code = {other.texel, other.storage};

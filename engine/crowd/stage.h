@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "crowd/controller.h"
@@ -30,6 +31,10 @@ const std::vector<const char*>& frame();
 // A controller's stages, in that order, less those that make what nobody asked for.
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options);
 
+// Whether a stage of that name is the other, or makes several at once, as "body+gait" does, the other among
+// them.
+bool makes(std::string_view stage, std::string_view part);
+
 // Whether it passes over those who sleep.
 bool isOfTheAwake(const Stage& stage);
 
@@ -52,6 +57,7 @@ Stage bodyStage();
 Stage blindBodyStage();
 Stage clipStage();
 Stage gaitStage();
+Stage bodyAndGaitStage();
 Stage loopGaitStage();
 Stage keyPoseGaitStage();
 Stage footholdStage();

@@ -13,6 +13,9 @@ namespace skitter::shared {
 #define SKITTER_FUNCTION
 #endif
 
+// Legs that a creature may have.
+SKITTER_CONST int MOST_LEGS = 24;
+
 // Invocations a work group in every stage.
 SKITTER_CONST int WORK_GROUP = 64;
 

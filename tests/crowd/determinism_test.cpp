@@ -29,6 +29,12 @@ TEST_F(DeterminismTest, MeasuringAndTimingDoNotShow) {
   EXPECT_EQ(hashAfter(device(), {.measure = false}, 60), hashAfter(device(), {.timestamps = true}, 60));
 }
 
+TEST_F(DeterminismTest, StagesMadeAtOnceDoNotShow) {
+  for (const bool sleep : {false, true})
+    EXPECT_EQ(hashAfter(device(), {.sleep = sleep}, 90),
+              hashAfter(device(), {.sleep = sleep, .fuse = false}, 90));
+}
+
 TEST_F(DeterminismTest, LoadPathsAgreeToTheBit) {
   Device texel = Device::create(validatedRequest(LoadPath::texel));
   Device storage = Device::create(validatedRequest(LoadPath::storage));

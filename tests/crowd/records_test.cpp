@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "crowd/herd.h"
 #include "crowd/stage.h"
 #include "shared/bindings.h"
 #include "shared/parameters.h"
@@ -54,13 +55,13 @@ const std::map<std::string, size_t>& parameterOffsets() {
 }
 
 std::vector<crowd::Stage> everyStage() {
-  return {crowd::navigateStage(),    crowd::bodyStage(),        crowd::gaitStage(),
-          crowd::footholdStage(),    crowd::swingStage(),       crowd::ikStage(),
-          crowd::poseStage(),        crowd::measureStage(),     crowd::blindBodyStage(),
-          crowd::loopGaitStage(),    crowd::loopSwingStage(),   crowd::clipStage(),
-          crowd::clipSwingStage(),   crowd::clipPoseStage(),    crowd::plantedSwingStage(),
-          crowd::plantedIkStage(),   crowd::plantedPoseStage(), crowd::footfallStage(),
-          crowd::keyPoseGaitStage(), crowd::keyPoseSwingStage()};
+  return {crowd::navigateStage(),     crowd::bodyStage(),        crowd::gaitStage(),
+          crowd::bodyAndGaitStage(),  crowd::footholdStage(),    crowd::swingStage(),
+          crowd::ikStage(),           crowd::poseStage(),        crowd::measureStage(),
+          crowd::blindBodyStage(),    crowd::loopGaitStage(),    crowd::loopSwingStage(),
+          crowd::clipStage(),         crowd::clipSwingStage(),   crowd::clipPoseStage(),
+          crowd::plantedSwingStage(), crowd::plantedIkStage(),   crowd::plantedPoseStage(),
+          crowd::footfallStage(),     crowd::keyPoseGaitStage(), crowd::keyPoseSwingStage()};
 }
 
 TEST(Records, ParametersLieWhereBothSidesThink) {
@@ -77,7 +78,14 @@ TEST(Records, ParametersLieWhereBothSidesThink) {
       for (const auto& [member, offset] : parameterOffsets())
         EXPECT_EQ(offsets.at(member), offset) << stage.name << ": " << member;
     }
-  EXPECT_EQ(found, 30);
+  EXPECT_EQ(found, 32);
+}
+
+TEST(Records, LegsFollowTheParameters) {
+  for (const crowd::Stage& stage : {crowd::bodyStage(), crowd::gaitStage(), crowd::bodyAndGaitStage()})
+    EXPECT_EQ(layoutOf(stage.code.storage).offsets.at("ParametersBlock").at("rigLegs"),
+              offsetof(crowd::ParameterBlock, rigLegs))
+        << stage.name;
 }
 
 TEST(Records, PushConstantsAndStrides) {

@@ -31,6 +31,7 @@ struct CrowdOptions {
                             // leg; 0: none
   bool sleep = false;  // who has stood still for seconds is passed over, without a breath, until its goal or
                        // the ground moves: standing crowds cost next to nothing
+  bool fuse = true;  // stages that are quicker made at once are: the same records, in fewer passes over them
   bool timestamps = false;                // time every stage on the device
   uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments

@@ -1,0 +1,97 @@
+#ifndef BODY_STAGE_GLSL
+#define BODY_STAGE_GLSL
+// Stage body, for entry points that make it alone or together with gait; they declare its bindings.
+#include "lib/body.glsl"
+#include "lib/heightfield.glsl"
+
+float groundAt(vec2 world) {
+  return heightAt(heights, vec2(parameters.originX, parameters.originZ),
+                  vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), world).x;
+}
+
+Body makeBody(int agent) {
+  int at = agent * BODY_STRIDE;
+  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  vec2 velocity = LOAD4(steers, agent).xy;
+  float dt = parameters.dt;
+
+  // Ground points are summed relative to the old position; the new one differs by `moved`.
+  float follow = 1.0;
+  PlaneSums sums = PlaneSums(vec3(0.0), vec3(0.0), vec2(0.0));
+#ifdef BLIND
+  // Legs that do not know where they stand: the body lies on the ground below their homes.
+  [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
+    vec3 home = rotate(body.orientation, RIG_LEG(leg, 1).xyz);
+    addPoint(sums, vec3(home.x, groundAt(worldOf(body.local, body.tile) + home.xz) - body.local.y, home.z));
+  }
+#else
+  [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
+    int stepAt = legRecord(agent, leg, LEGS) * STEP_STRIDE;
+    Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
+                        LOAD4(steps, stepAt + 3));
+    float u = stepProgress(s, constants.tick - 1.0);
+    vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
+    vec3 liftOff = fromTile(s.liftOff, s.tile, body.local, body.tile);
+    vec4 root = RIG_LEG(leg, 0);
+    float error = LOAD4(errors, agent * errorStride(LEGS) + leg / 4)[leg % 4];
+    float slow = followFactor(parameters, rotate(body.orientation, root.xyz), landing, root.w, error, velocity);
+    follow = u >= 1.0 ? min(follow, slow) : follow;
+    addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));
+  }
+#endif
+
+  follow = max(follow, parameters.followLeast);
+
+  float commanded = length(velocity);
+  bool going = commanded > 1e-4 * parameters.legLength;
+  vec2 wanted = going ? velocity / commanded : body.heading;
+  body.turnRate = turnRateToward(parameters, body.heading, wanted, body.turnRate, follow);
+  body.heading = unit(turn(body.turnRate * dt, vec3(body.heading.x, 0.0, body.heading.y)).xz);
+  float speed = follow * commanded * max(0.0, dot(wanted, body.heading));
+  body.speed += clamp(speed - body.speed, -parameters.braking * dt, parameters.acceleration * dt);
+  vec2 moved = body.heading * (body.speed * dt);
+
+  vec3 plane = fitPlane(parameters, sums, float(LEGS));
+  vec2 slope = plane.xy;
+  float planeHeight = body.local.y + plane.z + dot(slope, moved);
+
+#ifdef BLIND
+  vec3 settled = unit(vec3(-slope.x, 1.0, -slope.y));
+  float breath = 0.0;
+#else
+  vec3 settled = leaningNormal(parameters, slope, body.heading, body.speed * body.turnRate);
+  float breath = breathing(LOAD4(gaits, agent * GAIT_STRIDE).x) * min(1.0, body.still / parameters.settleTime);
+#endif
+  vec3 normal = rotate(body.orientation, vec3(0.0, 1.0, 0.0));
+  normal = unit(mix(normal, settled, parameters.tiltBlend));
+  vec3 forward = forwardAxis(normal, body.heading);
+  vec4 orientation = quaternionFromColumns(cross(normal, forward), normal, forward);
+  body.orientation = dot(orientation, body.orientation) < 0.0 ? -orientation : orientation;
+
+  body.local.xz += moved;
+  vec2 crossed = floor(body.local.xz / TILE_SIZE);
+  body.tile += crossed;
+  body.local.xz -= crossed * TILE_SIZE;
+
+  vec2 world = worldOf(body.local, body.tile);
+  float height = planeHeight + parameters.breathHeight * breath;
+  [[unroll]] for (int k = -1; k <= 1; ++k) {
+    vec3 belly = parameters.bodyHeight * normal + float(k) * parameters.bodyRadius * forward;
+    height = max(height, groundAt(world + belly.xz) + parameters.bellyClearance - belly.y);
+  }
+  body.local.y = mix(body.local.y + dot(slope, moved), height, parameters.heightBlend);
+
+  body.surfaceSpeed = body.speed * inversesqrt(max(dot(forward.xz, forward.xz), 1e-20));
+  float l = parameters.legLength;
+  bool still = commanded < 1e-2 * l && body.speed < 1e-2 * l && abs(body.turnRate) < 1e-2;
+  body.still = still ? body.still + dt : 0.0;
+  body.follow = follow;
+
+  STORE4(bodiesOut, at, vec4(body.local, body.heading.x));
+  STORE4(bodiesOut, at + 1, vec4(body.tile, body.heading.y, body.speed));
+  STORE4(bodiesOut, at + 2, body.orientation);
+  STORE4(bodiesOut, at + 3, vec4(body.turnRate, body.still, body.follow, body.surfaceSpeed));
+  return body;
+}
+
+#endif

@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// body and gait of an agent in one go, which reads its legs' steps once.
+#include "stages/awake.glsl"
+
+layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
+LOAD4_BUFFER(BINDING_STEER, steers);
+LOAD4_BUFFER(BINDING_GAIT, gaits);
+LOAD4_BUFFER(BINDING_STEP, steps);
+LOAD4_BUFFER(BINDING_ERROR, errors);
+LOAD4_BUFFER(BINDING_BODY, bodies);
+STORE4_BUFFER(BINDING_BODY_OUT, bodiesOut);
+STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
+layout(set = 0, binding = BINDING_LIST, std430) writeonly buffer ListBlock { uint list[]; };
+layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+#include "stages/body.glsl"
+#include "stages/gait.glsl"
+
+void main() {
+  int agent = agentAt(int(gl_GlobalInvocationID.x));
+  if (agent < 0) return;
+  makeGait(agent, makeBody(agent));
+}

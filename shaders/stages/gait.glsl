@@ -1,0 +1,98 @@
+#ifndef GAIT_STAGE_GLSL
+#define GAIT_STAGE_GLSL
+// Stage gait, for entry points that make it alone or together with body; they declare its bindings.
+#include "lib/gait.glsl"
+#include "lib/heightfield.glsl"
+#include "lib/hermite.glsl"
+
+// In the ticks after an edit of the heights; else no height is looked up here.
+layout(constant_id = CONSTANT_WATCH) const int WATCH = 0;
+// Not a uniform: branched on by itself, lavapipe inlines its value and rebuilds the kernel in every dispatch.
+layout(constant_id = CONSTANT_REACH) const int REACH = 0;
+
+// Height of the ground above a point relative to the body.
+float above(vec3 point, Body body) {
+  vec2 world = worldOf(body.local, body.tile) + point.xz;
+  float ground = heightAt(heights, vec2(parameters.originX, parameters.originZ),
+                          vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), world).x;
+  return ground - (body.local.y + point.y);
+}
+
+void makeGait(int agent, Body body) {
+  Stride stride = strideFor(parameters, body.surfaceSpeed, body.turnRate, float(GROUPS));
+  float stance = stride.cycle - stride.swing;
+  float phase = LOAD4(gaits, agent * GAIT_STRIDE).x + parameters.dt / stride.cycle;
+  phase -= floor(phase);
+
+  uint air = 0u, wants = 0u, again = 0u;
+  // The leg that must lift and has stood longest goes first, and its neighbours wait for it.
+  uint first = 0u, yields = 0u;
+  float stoodSince = 3e38;
+  bool settled = body.still >= parameters.settleTime;
+  [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
+    int stepAt = legRecord(agent, leg, LEGS) * STEP_STRIDE;
+    Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
+                        LOAD4(steps, stepAt + 3));
+    vec4 root = RIG_LEG(leg, 0), home = RIG_LEG(leg, 1), order = RIG_LEG(leg, 2);
+    float flown = constants.tick - 1.0 - s.firstTick;
+    float u = clamp(flown / s.ticks, 0.0, 1.0);
+    vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
+    vec3 foot = rotateBack(body.orientation, landing);
+    bool moved = WATCH != 0 && !s.lastResort && abs(above(landing, body)) > parameters.groundTolerance;
+    if (u >= 1.0) {
+      float stretch = length(foot - root.xyz) / root.w;
+      float off = distance(foot.xz, home.xz);
+      float error = LOAD4(errors, agent * errorStride(LEGS) + leg / 4)[leg % 4];
+      bool must = stretch < parameters.rootShare || stretch > parameters.stretchLift ||
+                  off > parameters.strayShare * stride.halfStride || error > parameters.errorLift * root.w;
+      bool far = off > (REACH != 0 ? REACH_SHARE : parameters.liftShare) * stride.halfStride;
+      bool open = REACH != 0 || windowOpen(parameters, phase, home.w, order.x, stride, float(GROUPS));
+      wants |= !settled && open && (far || must || s.lastResort) ? 1u << leg : 0u;
+      // Who stands still steps only off ground that moves.
+      must = moved || (!settled && (must || (REACH != 0 && far)));
+      if (must && s.firstTick + s.ticks < stoodSince) {
+        stoodSince = s.firstTick + s.ticks;
+        first = 1u << leg;
+        yields = uint(order.y);
+      }
+    } else {
+      air |= 1u << leg;
+      vec3 predicted = predictLanding(home.xyz, body.turnRate, body.surfaceSpeed, (s.ticks - flown) * parameters.dt, stance);
+      bool strayed = distance(predicted.xz, foot.xz) > parameters.reaimDistance;
+      bool anew = strayed && u < parameters.reaimLatest;
+      if (WATCH != 0) {
+        Swing flight = Swing(fromTile(s.liftOff, s.tile, body.local, body.tile), landing, s.lift, s.startTangent);
+        float way = easedTime(u, startRate(flight));
+        for (int i = 0; i < AHEAD; ++i) {
+          vec3 ahead = swingPoint(flight, mix(way, 1.0, float(i) / float(AHEAD)));
+          moved = moved || above(ahead, body) > parameters.groundTolerance;
+        }
+      }
+      again |= (anew || moved) && flown >= 4.0 ? 1u << leg : 0u;
+    }
+  }
+
+  uint lift = (yields & air) == 0u ? first : 0u;
+  wants &= ~yields;
+  [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
+    uint neighbours = uint(RIG_LEG(leg, 2).y);
+    lift |= (neighbours & (air | lift)) == 0u ? wants & (1u << leg) : 0u;
+  }
+
+  STORE4(gaitsOut, agent * GAIT_STRIDE, vec4(phase, float(lift), float(again), stride.ticks));
+  STORE4(gaitsOut, agent * GAIT_STRIDE + 1, vec4(stride.halfStride, stride.cycle, float(air), 0.0));
+
+  // Few legs begin a step in a tick: they are listed, and foothold runs over the list alone.
+  uint begin = lift | again;
+  if (begin != 0u) {
+    uint next = atomicAdd(counters[COUNTER_LISTED], bitCount(begin));
+    atomicMax(counters[COUNTER_DISPATCH_X], (next + bitCount(begin) + WORK_GROUP - 1u) / WORK_GROUP);
+    for (; begin != 0u; begin &= begin - 1u) {
+      int leg = findLSB(begin);
+      list[next] = uint(legRecord(agent, leg, LEGS)) * 2u + ((again >> leg) & 1u);
+      ++next;
+    }
+  }
+}
+
+#endif
