@@ -69,9 +69,9 @@ const int CHORDS_NEAR = 1;
 const int CHORDS_BETTER = 2;
 const float NEAR = 0.1;
 
-// From `pose`, whose forward kinematics are done, one step and at most `chords` chord
-// steps. On return swings, twists and tip of `pose`, and `error`, are the new ones if they are better. A `lost` target, one
-// that is not finite, keeps the pose to the bit.
+// From `pose`, whose forward kinematics are done, one step and at most `chords` chord steps. On return swings, twists and
+// tip of `pose`, and `error`, are the new ones if they are better. A `lost` target, one that is not finite, keeps the pose
+// to the bit.
 void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float restPull, float tolerance,
                inout Pose pose, inout float error, inout float damping) {
   Columns c;
@@ -79,7 +79,7 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float r
   vec2 pull[BONES], x[BONES];
   float twist[BONES], end[BONES], free[BONES], twistEnd[BONES], twistFree[BONES];
   vec3 e = target - pose.tip;
-  // Not the error's square: where a compiler sees the root it takes it back, and solves otherwise in one kernel than in another.
+  // Not the error's square: a compiler takes the root back where it sees it, in one kernel and not in another.
   float e2 = dot(e, e);
   Symmetric m = Symmetric(vec3((0.25 * min(e2, 0.25) + 1e-5) * damping), vec3(0.0));
   e *= min(1.0, 0.5 * inversesqrt(max(e2, 1e-20)));
