@@ -221,9 +221,11 @@ void main() {
       forwardKinematics(limb, pose);
       error = distance(target, pose.tip);
     }
-    open = open && follows && k < budget && (again || error > constants.tolerance);
+    bool better = error < (first ? bestError : worth * bestError);
+    // An attempt that arrives without being worth the jump leaves the chain where it was, not there yet.
+    open = open && follows && k < budget && (again || error > constants.tolerance || !better);
     if (open) {
-      bool keep = !again && error < (first ? bestError : worth * bestError);
+      bool keep = !again && better;
       copyIf(keep, best, pose);
       bestError = keep ? error : bestError;
       worth = keep && !first ? 1.0 : worth;
