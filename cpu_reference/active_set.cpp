@@ -115,7 +115,9 @@ void chordStep(std::vector<JointColumns>& joints, const glm::dvec3& lambda, Post
 void activeSet(const ActiveSet& how, const glm::dvec3& target, Posture& posture, double& damping) {
   glm::dvec3 e = target - posture.tip();
   const double before = glm::length(e);
-  const double mu = (0.25 * std::min(before * before, 0.25) + 1e-5) * damping;
+  const double square = before * before;
+  const double open = how.ifNear ? std::min(square * (0.25 + square), 1.0) : 0.25 * std::min(square, 0.25);
+  const double mu = (open + 1e-5) * damping;
   if (before > 0.5) e *= 0.5 / before;
 
   std::vector<JointColumns> joints = columnsAt(posture, posture.tip());

@@ -9,7 +9,8 @@ struct ActiveSet {
   double pullError = 2e-3;  // it is below this error, share of the reach
   double tolerance = 9e-4;  // a step that ends within it is kept even if it ends further away
   int chords = 0;           // chord steps after the step
-  bool ifNear = false;  // of those, none from beyond 0.1 or within the tolerance, and none that leads away
+  bool ifNear = false;  // of those, none from beyond 0.1 or within the tolerance, and none that leads away;
+                        // and more damping out of reach
 };
 
 // One step of damped least squares over the joint angles toward `target`, in which a joint that meets its

@@ -133,7 +133,7 @@ class ActiveSet : private LimitedChain<F, N> {
       if (b + 1 < this->bones()) frame = product(turned, this->model_.bone[b + 1].carry);
     }
     const F square = state.error * state.error;
-    const F damping = (F(0.25f) * smaller(square, F(0.25f)) + F(1e-5f)) * state.damping;
+    const F damping = (smaller(square * (square + F(0.25f)), F(1)) + F(1e-5f)) * state.damping;
     const Vec3<F> e = state.goal - state.posture.joint[this->bones() - 1];
     const Vec3<F> part = e * smaller(F(1), F(0.5f) * rsqrt(larger(square, F(1e-20f))));
     if (this->options_.restPull > 0) {

@@ -81,7 +81,9 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float r
   vec3 e = target - pose.tip;
   // Not the error's square: a compiler takes the root back where it sees it, in one kernel and not in another.
   float e2 = dot(e, e);
-  Symmetric m = Symmetric(vec3((0.25 * min(e2, 0.25) + 1e-5) * damping), vec3(0.0));
+  // Chord steps from afar would tremble with the second.
+  float mu = which == CHORDS_ALL ? 0.25 * min(e2, 0.25) : min(e2 * (0.25 + e2), 1.0);
+  Symmetric m = Symmetric(vec3((mu + 1e-5) * damping), vec3(0.0));
   e *= min(1.0, 0.5 * inversesqrt(max(e2, 1e-20)));
   for (int i = 0; i < BONES; ++i) {
     addOuter(m, c, i);
