@@ -119,7 +119,7 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float r
   }
   trial.tip = tipOf(limb, trial);
   bool going = true;
-  for (int chord = 0; chord < chords; ++chord) {
+  [[unroll]] for (int chord = 0; chord < chords; ++chord) {
     e = target - trial.tip;
     float left = length(e);
     lambda = times(inverse, which == CHORDS_ALL || (left > tolerance && left <= NEAR) ? e : vec3(0.0));
