@@ -43,14 +43,6 @@ float foldOf(vec3 pole, Pose pose) {
   return dot(sum, pole);
 }
 
-// Copies what a pose is made of, without what follows from it.
-void copyIf(bool copied, inout Pose to, Pose from) {
-  for (int i = 0; i < BONES; ++i) {
-    to.swing[i] = copied ? from.swing[i] : to.swing[i];
-    if (isKind(i, LIMIT_TWIST)) to.twist[i] = copied ? from.twist[i] : to.twist[i];
-  }
-}
-
 // How far an attempt has come.
 struct Attempt {
   bool running;
@@ -64,7 +56,7 @@ void advance(Limb limb, vec3 target, bool follows, int most, inout Attempt attem
   iterate(limb, target, !attempt.running, pose, error, damping);
   k += attempt.running ? 1 : 0;
   if (!ATTEMPTS_ALONE_IMPROVE) {
-    copyIf(error < bestError, best, pose);
+    keepIf(error < bestError, best, pose);
     bestError = min(error, bestError);
   }
   bool arrived = error <= constants.tolerance;
@@ -176,7 +168,7 @@ void main() {
   vec3 start[BONES];  // where each bone ended
   for (int i = 0; i < BONES; ++i) start[i] = compared(i + 1 < BONES ? pose.joint[min(i + 1, BONES - 1)] : pose.tip);
   Pose best;  // of the attempts before; of this one too where a step may make it worse
-  copyIf(true, best, pose);
+  keepIf(true, best, pose);
   float bestError = ATTEMPTS_ALONE_IMPROVE ? 1e30 : error;
   uvec2 untried = uvec2(0xffffffffu);
   ivec4 queue = ivec4(0);  // the nearest seeds of those
@@ -189,7 +181,7 @@ void main() {
     bool seeded = nearest >= 0 && error > constants.tolerance && !folded;
     Pose seed;
     loadSeed(max(nearest, 0), seed);
-    copyIf(seeded, pose, seed);
+    keepIf(seeded, pose, seed);
     forwardKinematics(limb, pose);
     shape = AIMED && seeded;
     goal = goalOf(shape, target, pose);
@@ -226,7 +218,7 @@ void main() {
     open = open && follows && k < budget && (again || error > constants.tolerance || !better);
     if (open) {
       bool keep = !again && better;
-      copyIf(keep, best, pose);
+      keepIf(keep, best, pose);
       bestError = keep ? error : bestError;
       worth = keep && !first ? 1.0 : worth;
       first = first && again;
@@ -238,7 +230,7 @@ void main() {
       untried &= allBut(nearest);
       loadSeed(nearest, pose);
       // No more attempts: the best pose so far has what is left.
-      copyIf(!seeded, pose, best);
+      keepIf(!seeded, pose, best);
       bestError = seeded ? bestError : 1e30;
       follows = seeded;
       inVain = inVain || seeded;
@@ -253,7 +245,7 @@ void main() {
   }
   bool jumped = !first && error < worth * bestError && bestError < 1e30;
   if (PASS != PASS_QUICK && !(error < (first ? bestError : worth * bestError))) {
-    copyIf(true, pose, best);
+    keepIf(true, pose, best);
     forwardKinematics(limb, pose);
     error = distance(target, pose.tip);
   }
