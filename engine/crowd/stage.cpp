@@ -119,6 +119,10 @@ StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const He
     info.constants.emplace_back(CONSTANT_APPROACH_ITERATIONS, herd.ik.approach);
     info.constants.emplace_back(CONSTANT_POLISH_ITERATIONS, herd.ik.polish);
     info.constants.emplace_back(CONSTANT_SOLVER, herd.ik.solver);
+    const bool padded = std::any_of(herd.rig.legs.begin(), herd.rig.legs.end(), [&](const Leg& leg) {
+      return static_cast<int>(leg.bones.size()) < herd.bones;
+    });
+    info.constants.emplace_back(CONSTANT_PADDED, padded);
   }
   if (isGait) info.constants.emplace_back(CONSTANT_REACH, herd.reachTriggered ? 1 : 0);
 

@@ -143,7 +143,7 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float r
   bool kept = !lost && (after <= 1.0001 * error || after <= tolerance);
   keepIf(kept, pose, trial);
   error = kept ? after : error;
-  damping = lost ? damping : (kept ? max(damping / 10.0, 1.0) : min(16.0 * damping, 4096.0));
+  damping = lost ? damping : dampingAfter(kept, damping);
 }
 
 #endif

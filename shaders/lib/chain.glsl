@@ -80,10 +80,15 @@ vec3 carried(int i, Frame turn, vec3 v) {
   return rotate(turn, v);
 }
 
-// F_i from A_i: the shortest rotation of the rest direction onto the bone, then its twist.
+// `a` by the shortest rotation of the rest direction onto the bone; k: 2 / (1 + X^2 + Y^2).
+Frame swungFrame(Frame a, vec2 s, float k) {
+  vec3 w = (s.x * a.x + s.y * a.y + a.z) * k;
+  return Frame(a.x - s.x * w, a.y - s.y * w, w - a.z);
+}
+
+// F_i from A_i: swung, then twisted.
 Frame turnedFrame(int i, Frame a, vec2 s, float twist) {
-  vec3 w = (s.x * a.x + s.y * a.y + a.z) * (2.0 / (1.0 + dot(s, s)));
-  Frame f = Frame(a.x - s.x * w, a.y - s.y * w, w - a.z);
+  Frame f = swungFrame(a, s, 2.0 / (1.0 + dot(s, s)));
   if (isKind(i, LIMIT_TWIST)) {
     vec2 t = cosineSineOf(twist);
     f = Frame(t.x * f.x + t.y * f.y, t.x * f.y - t.y * f.x, f.z);

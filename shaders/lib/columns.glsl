@@ -37,7 +37,7 @@ vec2 stepOf(Columns c, int i, vec3 lambda) {
 }
 
 // The step toward rest of a bone at `s`, as far as `share` of its sine.
-vec2 towardRest(vec2 s, float share) { return s * (-2.0 * share / (1.0 + dot(s, s))); }
+vec2 towardRest(vec2 s, float share) { return s * (-share * (2.0 / (1.0 + dot(s, s)))); }
 
 // A bone's direction after a step along the columns, not yet divided: n (d.x, d.y), n (1 + d.z), n.
 vec4 stepped(vec2 s, vec2 x) {
@@ -48,6 +48,11 @@ vec4 stepped(vec2 s, vec2 x) {
 vec2 turned(Limb limb, int i, vec2 s, vec2 x) {
   vec4 to = stepped(s, x);
   return clampSwing(limb, i, to.xy, to.z, to.w);
+}
+
+// Of the next solve, as Levenberg and Marquardt have it.
+float dampingAfter(bool kept, float damping) {
+  return kept ? max(damping / 10.0, 1.0) : min(16.0 * damping, 4096.0);
 }
 
 void turnTwist(Limb limb, int i, float x, inout float twist) {

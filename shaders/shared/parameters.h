@@ -98,7 +98,7 @@ struct Parameters {
   float springPull;       // V of x, 1/s
   float springCarry;      // V of V
   // ik
-  float approachError;  // share of the reach beyond which the approach iterates
+  float approachError;  // share of the reach, at most a half, beyond which the approach iterates
   float restPull;       // share of the angle from rest taken back a step once on target
   float pullError;      // share of the reach below which the rest pull acts
   float ikTolerance;    // share of the reach that counts as arrived

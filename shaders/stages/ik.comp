@@ -5,6 +5,7 @@
 #include "stages/awake.glsl"
 #include "shared/ik_batch.h"
 #include "lib/active_set.glsl"
+#include "lib/unheld_step.glsl"
 #include "lib/fabrik.glsl"
 #include "lib/limb.glsl"
 // What is there to be compared stays out of what ships: some drivers take long over code that is never run.
@@ -46,6 +47,21 @@ void enlist(int record) {
   atomicMax(counters[COUNTER_IK_DISPATCH_X], place / uint(WORK_GROUP) + 1u);
 }
 
+float pullAt(float error) { return POLISH_ITERATIONS > 1 && error < parameters.pullError ? parameters.restPull : 0.0; }
+
+void polish(Limb limb, vec3 target, bool lost, Pose unheld, inout Pose pose, inout float error, inout float damping) {
+  // What the first dispatch would have made of it, to the bit, where it could have.
+  float unheldError = error, unheldDamping = damping;
+  bool clear = PASS == PASS_LISTED && !lost && error <= parameters.approachError &&
+               unheldStep(limb, target, POLISH_ITERATIONS - 1, pullAt(error), parameters.ikTolerance, unheld, unheldError,
+                          unheldDamping);
+  activeSet(limb, target, lost, POLISH_ITERATIONS - 1, CHORDS_ALL, pullAt(error), parameters.ikTolerance, pose, error,
+            damping);
+  keepIf(clear, pose, unheld);
+  error = clear ? unheldError : error;
+  damping = clear ? unheldDamping : damping;
+}
+
 #ifdef PLANTED
 vec4 shortestArc(vec3 from, vec3 to) {
   vec4 q = vec4(cross(from, to), 1.0 + dot(from, to));
@@ -65,12 +81,16 @@ void main() {
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
   int at = record * chainStride(BONES), rigAt = leg * rigStride(BONES);
 
+  // What is far away in memory is asked for first, and waited for while the rig, which is near, is read.
+  Pose pose;
+  LOAD_SWINGS(pose.swing, chains, at);
+  vec4 orientation = LOAD4(bodies, agent * BODY_STRIDE + 2);
+  vec3 foot = LOAD4(feet, record).xyz;
+  float damping = LOAD4(chains, at + chainDirections(BONES) + 1).x;
   Limb limb;
   LOAD_LIMB(limb, rig, rigAt + RIG_LEG_STRIDE);
   vec4 root = LOAD4(rig, rigAt);
   float reach = root.w;
-  Pose pose;
-  LOAD_SWINGS(pose.swing, chains, at);
   forwardKinematics(limb, pose);
 #ifdef PLANTED
   // The clip's pose, which what is solved is held against, and its root.
@@ -84,22 +104,22 @@ void main() {
   }
 #endif
 
-  vec4 orientation = LOAD4(bodies, agent * BODY_STRIDE + 2);
-  vec3 target = (rotateBack(orientation, LOAD4(feet, record).xyz) - root.xyz) / reach;
+  vec3 target = (rotateBack(orientation, foot) - root.xyz) / reach;
   bool lost = !finite(target);
   target = lost ? pose.tip : target;
-  float damping = LOAD4(chains, at + chainDirections(BONES) + 1).x;
   float before = distance(target, pose.tip), error = before;
   bool stuck = deadlocked(target, pose);
 
   if (PASS == PASS_QUICK) {
-    // What few chains need is left to the second dispatch, which begins anew: on a device that masks lanes a loop's
-    // body is run once even if no lane enters it.
-    if (lost || stuck || error > parameters.approachError) {
+    // What few chains need is left to the second dispatch, which begins anew: a device that masks lanes makes every
+    // path for every lane.
+    bool near = !lost && !stuck && error <= parameters.approachError;
+    bool clear =
+        unheldStep(limb, target, POLISH_ITERATIONS - 1, pullAt(error), parameters.ikTolerance, pose, error, damping);
+    if (!(near && clear)) {
       enlist(record);
       return;
     }
-    lost = false;
   } else {
     if (lost) atomicAdd(counters[COUNTER_NOT_FINITE], 1u);
     for (; stuck; stuck = false) {
@@ -118,10 +138,7 @@ void main() {
       error = better ? e : error;
     }
     forwardKinematics(limb, pose);
-  }
-  if (POLISH_ITERATIONS > 0) {
-    float pull = POLISH_ITERATIONS > 1 && error < parameters.pullError ? parameters.restPull : 0.0;
-    activeSet(limb, target, lost, POLISH_ITERATIONS - 1, CHORDS_ALL, pull, parameters.ikTolerance, pose, error, damping);
+    if (POLISH_ITERATIONS > 0) polish(limb, target, lost, pose, pose, error, damping);
   }
 
   STORE_SWINGS(chainsOut, at, pose.swing);
