@@ -117,6 +117,7 @@ nlohmann::ordered_json describe(const DeviceReport& report, const std::optional<
             {"shaderDrawParameters", features.shaderDrawParameters},
             {"fillModeNonSolid", features.fillModeNonSolid},
             {"samplerAnisotropy", features.samplerAnisotropy},
+            {"shaderInt64", features.shaderInt64},
             {"presentation", features.presentation}}},
           {"lacks", report.lacks},
           {"suitable", report.suitable},

@@ -83,6 +83,7 @@ void inspectFeatures(const vk::raii::PhysicalDevice& physical, bool adopted, Dev
   report.features.shaderDrawParameters = v11.shaderDrawParameters;
   report.features.fillModeNonSolid = core.fillModeNonSolid;
   report.features.samplerAnisotropy = core.samplerAnisotropy;
+  report.features.shaderInt64 = core.shaderInt64;
   report.features.presentation = hasExtension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
 }
 
@@ -151,6 +152,7 @@ void listLacks(bool adopted, DeviceReport& report) {
   lack(adopted || features.shaderDrawParameters, "shaderDrawParameters");
   lack(adopted || features.fillModeNonSolid, "fillModeNonSolid");
   lack(adopted || features.samplerAnisotropy, "samplerAnisotropy");
+  lack(adopted || features.shaderInt64, "shaderInt64");
   lack(adopted || features.presentation, "windows (VK_KHR_swapchain)");
   lack(limits.timestampBits > 0, "timestamps");
   lack(limits.texelRgba32f, "RGBA32F texel buffers");
@@ -229,8 +231,11 @@ Candidate inspect(vk::raii::PhysicalDevice physical, uint32_t index, const Devic
     inspectFeatures(device, queueFamily.has_value(), report);
     inspectQueue(device, queueFamily, candidate);
     listLacks(queueFamily.has_value(), report);
-    if (wantedLoads(request.loads) == LoadPath::texel && !report.limits.texelRgba32f) {
-      report.refusals.push_back("has no RGBA32F texel buffers, which were asked for");
+    if (wantedLoads(request.loads) == LoadPath::texel) {
+      if (!report.limits.texelRgba32f)
+        report.refusals.push_back("has no RGBA32F texel buffers, which were asked for");
+      if (!queueFamily && !report.features.shaderInt64)
+        report.refusals.push_back("has no shaderInt64 for the texel buffers that were asked for");
     }
     if (request.presentation && !report.features.presentation) {
       report.refusals.push_back("has no VK_KHR_swapchain, which showing a window needs");

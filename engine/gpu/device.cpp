@@ -23,7 +23,8 @@ vk::raii::Device makeDevice(const gpu::Candidate& candidate, bool presentation) 
       .features = {.multiDrawIndirect = has.multiDrawIndirect,
                    .drawIndirectFirstInstance = has.drawIndirectFirstInstance,
                    .fillModeNonSolid = has.fillModeNonSolid,
-                   .samplerAnisotropy = has.samplerAnisotropy}};
+                   .samplerAnisotropy = has.samplerAnisotropy,
+                   .shaderInt64 = has.shaderInt64}};
 
   std::vector<const char*> extensions;
   if (presentation) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
@@ -45,7 +46,7 @@ vk::raii::Device makeDevice(const gpu::Candidate& candidate, bool presentation) 
 
 std::unique_ptr<gpu::Context> open(gpu::Context::Parts parts, std::optional<LoadPath> requested) {
   auto context = std::make_unique<gpu::Context>(std::move(parts));
-  context->setLoads(gpu::chooseLoads(context->limits(), gpu::wantedLoads(requested),
+  context->setLoads(gpu::chooseLoads(context->limits(), context->features(), gpu::wantedLoads(requested),
                                      [&] { return gpu::measureLoads(*context); }));
   return context;
 }

@@ -76,13 +76,16 @@ std::optional<LoadPath> wantedLoads(std::optional<LoadPath> requested) {
   throw inputError(fmt::format("SKITTER_LOADS is \"{}\", expected texel or storage", name));
 }
 
-LoadChoice chooseLoads(const DeviceLimits& limits, std::optional<LoadPath> wanted,
+LoadChoice chooseLoads(const DeviceLimits& limits, const DeviceFeatures& features,
+                       std::optional<LoadPath> wanted,
                        const std::function<std::optional<LoadCost>()>& measure) {
   if (wanted) return {.path = *wanted, .why = "asked for"};
   if (!limits.texelRgba32f) return {.why = "there are no RGBA32F texel buffers"};
   if (limits.maxTexelBufferElements < kEnoughTexels) {
     return {.why = fmt::format("texel buffers reach no further than {} vec4", limits.maxTexelBufferElements)};
   }
+  if (!features.shaderInt64)
+    return {.why = "shaderInt64, which texel buffers go with, is missing or not known to be enabled"};
   const std::optional<LoadCost> cost = measure();
   if (!cost) return {.why = "there are no timestamps to measure by"};
   const double ratio = cost->storage / cost->texel;

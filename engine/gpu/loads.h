@@ -16,7 +16,7 @@ std::optional<LoadPath> wantedLoads(std::optional<LoadPath> requested);
 
 // `measure` is called only where both paths are possible and none is wanted; it gives nothing where the
 // device's time cannot be told.
-LoadChoice chooseLoads(const DeviceLimits&, std::optional<LoadPath> wanted,
+LoadChoice chooseLoads(const DeviceLimits&, const DeviceFeatures&, std::optional<LoadPath> wanted,
                        const std::function<std::optional<LoadCost>()>& measure);
 
 // Reads records by both paths in turns, the best of several: a few milliseconds. CPU time of all threads on a

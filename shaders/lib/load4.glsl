@@ -1,10 +1,14 @@
 #ifndef SKITTER_LOAD4
 #define SKITTER_LOAD4
+#if LOAD4_TEXEL
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#endif
 
 // Records of vec4, read by LOAD4 and written by STORE4. Reads go through an RGBA32F texel buffer or a storage
 // buffer, as LOAD4_TEXEL says, whichever a device is measured to be quicker at (engine/gpu/loads.h); on some
-// devices texel buffers are too small. LOAD4 is the sole declaration that differs, so both variants compute the
-// same bits.
+// devices texel buffers are too small. A device that is quicker by texels reaches storage buffers lane by lane
+// and number by number, so there a vec4 is written as two numbers of 64 bits. Nothing else differs, so both
+// variants compute the same bits.
 //
 //   LOAD4_BUFFER(0, legs)           declares; set 0, binding 0
 //   vec4 a = LOAD4(legs, i);
@@ -20,14 +24,17 @@
 #if LOAD4_TEXEL
 #define LOAD4_BUFFER(bindingNumber, name) layout(set = 0, binding = bindingNumber) uniform samplerBuffer name;
 #define LOAD4(name, i) texelFetch(name, int(i))
+u64vec2 pairsOf(uvec4 v) { return u64vec2(packUint2x32(v.xy), packUint2x32(v.zw)); }
+#define STORE4_BUFFER(bindingNumber, name) \
+  layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store4 { u64vec2 record[]; } name;
+#define STORE4(name, i, value) name.record[i] = pairsOf(floatBitsToUint(value))
 #else
 #define LOAD4_BUFFER(bindingNumber, name) \
   layout(set = 0, binding = bindingNumber, std430) readonly buffer name##Load4 { vec4 record[]; } name;
 #define LOAD4(name, i) (name.record[i])
-#endif
-
 #define STORE4_BUFFER(bindingNumber, name) \
   layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store4 { vec4 record[]; } name;
 #define STORE4(name, i, value) name.record[i] = (value)
+#endif
 
 #endif

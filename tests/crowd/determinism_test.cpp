@@ -36,6 +36,7 @@ TEST_F(DeterminismTest, StagesMadeAtOnceDoNotShow) {
 }
 
 TEST_F(DeterminismTest, LoadPathsAgreeToTheBit) {
+  if (!hasTexelPath()) GTEST_SKIP() << "the device has one load path only";
   Device texel = Device::create(validatedRequest(LoadPath::texel));
   Device storage = Device::create(validatedRequest(LoadPath::storage));
   EXPECT_EQ(hashAfter(texel, {}, 60), hashAfter(storage, {}, 60));

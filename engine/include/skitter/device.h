@@ -15,9 +15,9 @@ namespace gpu {
 class Context;
 }
 
-// How shaders read records (LOAD4 in shaders/lib/load4.glsl).
+// How shaders read records, and write them (shaders/lib/load4.glsl).
 enum class LoadPath {
-  texel,    // RGBA32F texel buffers
+  texel,    // RGBA32F texel buffers; written by 64 bits (needs shaderInt64)
   storage,  // storage buffers
 };
 
@@ -64,6 +64,7 @@ struct DeviceFeatures {
   bool shaderDrawParameters = false;
   bool fillModeNonSolid = false;  // wireframe overlays
   bool samplerAnisotropy = false;
+  bool shaderInt64 = false;   // without it records are not read through texel buffers
   bool presentation = false;  // VK_KHR_swapchain
 };
 
@@ -133,7 +134,8 @@ class Device {
   // with those three features enabled; the queue is used from the calling threads only and the caller keeps
   // its own submissions to it apart from ours, the first of which this call makes (see create()). The handles
   // must come from the Vulkan loader (GLFW, SDL and volk all use it). Throws Error(device) when the physical
-  // device is unsuitable.
+  // device is unsuitable. Records are read through texel buffers only if `loads` says so; the device must
+  // then have shaderInt64 enabled.
   static Device adopt(VkInstance, VkPhysicalDevice, VkDevice, uint32_t queueFamily, VkQueue,
                       PFN_vkGetInstanceProcAddr, std::optional<LoadPath> loads = {});
 
