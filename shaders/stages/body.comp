@@ -15,6 +15,7 @@ STORE4_BUFFER(BINDING_BODY_OUT, bodiesOut);
 #include "stages/body.glsl"
 
 void main() {
+  loadRigLegs();
   int agent = agentAt(int(gl_GlobalInvocationID.x));
   if (agent >= 0) makeBody(agent);
 }

@@ -2,6 +2,7 @@
 #define BODY_STAGE_GLSL
 // Stage body, for entry points that make it alone or together with gait; they declare its bindings.
 #include "lib/body.glsl"
+#include "stages/rig_legs.glsl"
 #include "lib/heightfield.glsl"
 
 float groundAt(vec2 world) {

@@ -2,6 +2,7 @@
 #define GAIT_STAGE_GLSL
 // Stage gait, for entry points that make it alone or together with body; they declare its bindings.
 #include "lib/gait.glsl"
+#include "stages/rig_legs.glsl"
 #include "lib/heightfield.glsl"
 #include "lib/hermite.glsl"
 

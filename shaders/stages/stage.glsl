@@ -11,10 +11,12 @@ layout(constant_id = CONSTANT_LEGS) const int LEGS = 8;
 layout(constant_id = CONSTANT_BONES) const int BONES = 4;
 layout(constant_id = CONSTANT_GROUPS) const int GROUPS = 2;
 
-layout(std140, set = 0, binding = BINDING_PARAMETERS) uniform ParametersBlock {
-  Parameters parameters;
-  vec4 rigLegs[MOST_LEGS * RIG_LEG_STRIDE];
-};
-// Of the rig's record of a leg that is the same for every invocation.
-#define RIG_LEG(leg, i) rigLegs[(leg) * RIG_LEG_STRIDE + (i)]
 layout(push_constant) uniform TickBlock { TickConstants constants; };
+#ifndef WITHOUT_PARAMETERS
+layout(std140, set = 0, binding = BINDING_PARAMETERS) uniform ParametersBlock {
+  Parameters uniformParameters;
+  vec4 uniformLegs[MOST_LEGS * RIG_LEG_STRIDE];
+};
+// Read at once, before any branch: below one, a device that masks lanes gathers a uniform lane by lane.
+Parameters parameters = uniformParameters;
+#endif

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#define WITHOUT_PARAMETERS
 #include "stages/stage.glsl"
 
 layout(constant_id = CONSTANT_JOINTS) const int JOINTS = 1;
