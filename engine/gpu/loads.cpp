@@ -25,7 +25,8 @@ constexpr double kMargin = 1.6;
 constexpr uint32_t kRecords = 16384, kStride = 4;  // 1 MiB: as much as the smallest texel buffer view reaches
 constexpr uint32_t kGroup = 64;
 constexpr uint32_t kFewestGroups = 4 * kRecords / kGroup, kMostGroups = 1u << 20;
-constexpr int kTurns = 5;
+constexpr int kTurns = 5, kMostTurns = 50;
+constexpr double kClear = 1.25;         // a ratio this far from the margin needs no further turns
 constexpr double kLeastSeconds = 2e-4;  // what is over sooner tells of the dispatch, not of the loads
 
 double cpuSeconds() {
@@ -109,7 +110,10 @@ std::optional<LoadCost> measureLoads(Context& context) {
   const uint32_t most = std::min(context.limits().maxComputeWorkGroupCountX, kMostGroups);
   for (uint32_t groups = kFewestGroups;; groups = std::min(most, groups * 4)) {
     double texelBest = std::numeric_limits<double>::max(), storageBest = texelBest;
-    for (int i = 0; i < kTurns; ++i) {
+    const auto clear = [&] {
+      return storageBest < texelBest * kMargin / kClear || storageBest > texelBest * kMargin * kClear;
+    };
+    for (int i = 0; i < kTurns || (i < kMostTurns && !clear()); ++i) {
       texelBest = std::min(texelBest, texel.seconds(groups));
       storageBest = std::min(storageBest, storage.seconds(groups));
     }
