@@ -48,7 +48,6 @@ Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Fo
   glm::dvec3 target = ikTarget(limb, body, foot.target);
   const bool finite = std::isfinite(target.x) && std::isfinite(target.y) && std::isfinite(target.z);
   if (!finite) target = posture.tip();
-  chain.errorBefore = glm::length(target - posture.tip()) * limb.reach;
   if (finite) {
     breakDeadlock(target, posture);
     approach(plan, tuning.approachError, target, posture);

@@ -131,7 +131,6 @@ struct Chain {
   glm::dvec3 tip{0};                   // relative
   double reachError = 0;               // metres
   double damping = 1;
-  double errorBefore = 0;  // metres, of the warm start
 };
 
 struct BonePose {

@@ -20,8 +20,6 @@ Scene crossing(const std::string& controller, uint32_t agents, double speed, uin
 std::vector<AgentState> agentsOf(const HerdState& state, const Rig& rig) {
   using namespace shared;
   const auto legs = static_cast<size_t>(rig.legCount());
-  const auto stride = static_cast<size_t>(chainStride(rig.maxBones()));
-  const auto tip = static_cast<size_t>(chainDirections(rig.maxBones()));
   std::vector<AgentState> agents(state.agents);
   for (size_t a = 0; a < agents.size(); ++a) {
     AgentState& agent = agents[a];
@@ -29,7 +27,7 @@ std::vector<AgentState> agentsOf(const HerdState& state, const Rig& rig) {
     agent.position = {double{body[4]} * TILE_SIZE + body[0], body[1], double{body[5]} * TILE_SIZE + body[2]};
     agent.heading = {body[3], body[6]};
     for (size_t leg = a * legs; leg < (a + 1) * legs; ++leg) {
-      const float* at = state.chain.data() + 4 * (leg * stride + tip);
+      const float* at = state.tip.data() + 4 * leg * TIP_STRIDE;
       agent.legs.push_back(
           {agent.position + glm::dvec3(at[0], at[1], at[2]), state.foot[4 * leg * FOOT_STRIDE + 3] >= 1});
     }

@@ -76,7 +76,7 @@ void checkPlantedSwing(const Setting& setting, const Moment& moment, Judge& judg
     Sample common;
     common.finite("foot", records(moment.after.foot, leg, shared::FOOT_STRIDE));
     common.finite("step", records(moment.after.step, leg, shared::STEP_STRIDE));
-    common.finite("start", records(moment.after.start, leg, shared::chainStride(setting.bones)));
+    common.finite("start", records(moment.after.start, leg, shared::startStride(setting.bones)));
     const reference::PlantedStart start = startOf(moment.after, leg, setting.bones);
     compareDirections(clipLeg, legBounds, start.directions, common);
     common.compare(

@@ -28,7 +28,7 @@ void checkPoseSwing(const Setting& setting, const Moment& moment, Judge& judge) 
     Sample sample;
     sample.finite("foot", records(moment.after.foot, leg, shared::FOOT_STRIDE));
     sample.finite("chain", records(moment.after.chain, leg, shared::chainStride(setting.bones)));
-    sample.finite("spring", records(moment.after.spring, leg, shared::chainDirections(setting.bones)));
+    sample.finite("spring", records(moment.after.spring, leg, shared::chainStride(setting.bones)));
     for (size_t i = 0; i < limb.bones.size(); ++i) {
       const glm::dvec2 &want = expected.chain.directions[i], &found = chain.directions[i];
       sample.compare("direction", glm::length(want - found), bound.directions[i], {want, i, 0},
@@ -49,8 +49,6 @@ void checkPoseSwing(const Setting& setting, const Moment& moment, Judge& judge) 
       sample.same("stance", expected.foot.progress, foot.progress);
     }
     sample.same("reach error", 0, chain.reachError);
-    sample.same("error before solving", 0, chain.errorBefore);
-    sample.same("damping", 1, chain.damping);
     judge.add(moment.n, moment.number(), static_cast<int>(l), sample, tie);
   }
 }

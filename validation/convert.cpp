@@ -155,7 +155,7 @@ reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones
   for (int l = 0; l < legs; ++l) {
     const size_t base = at(static_cast<size_t>(l), shared::keyStride(bones, poses.keys));
     const auto directions = [&](int pose) {
-      return pairsOf(poses.records, base + 1 + at(static_cast<size_t>(pose), shared::chainDirections(bones)),
+      return pairsOf(poses.records, base + 1 + at(static_cast<size_t>(pose), shared::chainStride(bones)),
                      bones);
     };
     const glm::dvec4 contact = load(poses.records, base);
@@ -274,16 +274,31 @@ void putFoot(HerdState& state, size_t leg, const reference::Foot& foot) {
   store(state.foot, at(leg, shared::FOOT_STRIDE), {foot.target, foot.progress});
 }
 
+namespace {
+
+// The first float of a leg's pair.
+size_t solveOf(const HerdState& state, size_t leg, int bones) {
+  const size_t legs = state.chain.size() / (state.agents * at(4, shared::chainStride(bones)));
+  const auto agent = static_cast<int>(leg / legs), own = static_cast<int>(leg % legs);
+  return 2 * static_cast<size_t>(shared::solvePair(agent, own, static_cast<int>(legs)));
+}
+
+}  // namespace
+
 reference::Chain chainOf(const HerdState& state, size_t leg, int bones) {
   const size_t base = at(leg, shared::chainStride(bones));
   reference::Chain chain;
   chain.directions = pairsOf(state.chain, base, bones);
-  const size_t end = base + static_cast<size_t>(shared::chainDirections(bones));
-  const glm::dvec4 tip = load(state.chain, end), solve = load(state.chain, end + 1);
-  chain.tip = tip;
-  chain.reachError = tip.w;
-  chain.damping = solve.x;
-  chain.errorBefore = solve.y;
+  if (!state.tip.empty()) {
+    const glm::dvec4 tip = load(state.tip, at(leg, shared::TIP_STRIDE));
+    chain.tip = tip;
+    chain.reachError = tip.w;
+  }
+  if (!state.solve.empty()) {
+    const float* solve = &state.solve[solveOf(state, leg, bones)];
+    chain.reachError = double{solve[0]};
+    chain.damping = double{solve[1]};
+  }
   return chain;
 }
 
@@ -294,13 +309,16 @@ void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& c
     const glm::dvec2 second = b + 1 < bones ? chain.directions[first + 1] : glm::dvec2(0);
     store(state.chain, base + first / 2, {chain.directions[first], second});
   }
-  const size_t end = base + static_cast<size_t>(shared::chainDirections(bones));
-  store(state.chain, end, {chain.tip, chain.reachError});
-  store(state.chain, end + 1, {chain.damping, chain.errorBefore, 0, 0});
+  if (!state.tip.empty()) store(state.tip, at(leg, shared::TIP_STRIDE), {chain.tip, chain.reachError});
+  if (!state.solve.empty()) {
+    float* solve = &state.solve[solveOf(state, leg, bones)];
+    solve[0] = static_cast<float>(chain.reachError);
+    solve[1] = static_cast<float>(chain.damping);
+  }
 }
 
 reference::KeyPoses::Directions springOf(const HerdState& state, size_t leg, int bones) {
-  return pairsOf(state.spring, at(leg, shared::chainDirections(bones)), bones);
+  return pairsOf(state.spring, at(leg, shared::chainStride(bones)), bones);
 }
 
 reference::BonePose boneOf(const HerdState& state, size_t entry) {

@@ -66,13 +66,13 @@ reference::Plant plantOf(const HerdState& state, size_t leg) {
 }
 
 reference::PlantedStart startOf(const HerdState& state, size_t leg, int bones) {
-  const size_t base = at(leg, shared::chainStride(bones));
+  const size_t base = at(leg, shared::startStride(bones));
   reference::PlantedStart start;
   for (int b = 0; b < bones; ++b) {
     const glm::dvec4 pair = load(state.start, base + static_cast<size_t>(b) / 2);
     start.directions.push_back(b % 2 == 0 ? glm::dvec2(pair.x, pair.y) : glm::dvec2(pair.z, pair.w));
   }
-  start.root = load(state.start, base + static_cast<size_t>(shared::chainDirections(bones)));
+  start.root = load(state.start, base + static_cast<size_t>(shared::chainStride(bones)));
   return start;
 }
 

@@ -30,6 +30,8 @@ constexpr Kept pose{&HerdState::pose, "pose of a sleeper", false};
 constexpr Kept step{&HerdState::step, "step of a sleeper", true};
 constexpr Kept foot{&HerdState::foot, "foot of a sleeper", true};
 constexpr Kept chain{&HerdState::chain, "chain of a sleeper", true};
+constexpr Kept tip{&HerdState::tip, "tip of a sleeper", true};
+constexpr Kept solve{&HerdState::solve, "solve of a sleeper", false};
 constexpr Kept start{&HerdState::start, "start of a sleeper", true};
 constexpr Kept fix{&HerdState::fix, "fix of a sleeper", true};
 constexpr Kept spring{&HerdState::spring, "spring of a sleeper", true};
@@ -39,21 +41,21 @@ const Stages& stagesOf(crowd::Controller controller) {
   static const Stages adaptive = {
       {"navigate", checkNavigate},         {"body", checkBody, {kept::body}},
       {"gait", checkGait, {kept::gait}},   {"foothold", checkFoothold, {kept::step}},
-      {"swing", checkSwing, {kept::foot}}, {"ik", checkIk, {kept::chain}},
+      {"swing", checkSwing, {kept::foot}}, {"ik", checkIk, {kept::chain, kept::tip, kept::solve}},
       {"pose", checkPose, {kept::pose}},   {"measure", checkMeasure},
       {"footfall", checkFootfall}};
   static const Stages loop = {{"navigate", checkNavigate},
                               {"body", checkBlindBody, {kept::body}},
                               {"gait", checkLoopGait, {kept::gait}},
                               {"swing", checkLoopSwing, {kept::foot}},
-                              {"ik", checkIk, {kept::chain}},
+                              {"ik", checkIk, {kept::chain, kept::tip, kept::solve}},
                               {"pose", checkPose, {kept::pose}},
                               {"measure", checkMeasure},
                               {"footfall", checkFootfall}};
   static const Stages clip = {{"navigate", checkNavigate},
                               {"body", checkBlindBody, {kept::body}},
                               {"clip", checkClip, {kept::play}},
-                              {"swing", checkClipSwing, {kept::foot, kept::chain}},
+                              {"swing", checkClipSwing, {kept::foot, kept::chain, kept::tip}},
                               {"pose", checkClipPose, {kept::pose}},
                               {"measure", checkMeasure},
                               {"footfall", checkFootfall}};
@@ -61,14 +63,14 @@ const Stages& stagesOf(crowd::Controller controller) {
                                  {"body", checkBlindBody, {kept::body}},
                                  {"clip", checkClip, {kept::play}},
                                  {"swing", checkPlantedSwing, {kept::step, kept::foot, kept::start}},
-                                 {"ik", checkPlantedIk, {kept::chain, kept::fix}},
+                                 {"ik", checkPlantedIk, {kept::chain, kept::tip, kept::fix}},
                                  {"pose", checkPlantedPose, {kept::pose}},
                                  {"measure", checkMeasure},
                                  {"footfall", checkFootfall}};
   static const Stages pose = {{"navigate", checkNavigate},
                               {"body", checkBlindBody, {kept::body}},
                               {"gait", checkPoseGait, {kept::gait}},
-                              {"swing", checkPoseSwing, {kept::foot, kept::chain, kept::spring}},
+                              {"swing", checkPoseSwing, {kept::foot, kept::chain, kept::tip, kept::spring}},
                               {"pose", checkPose, {kept::pose}},
                               {"measure", checkMeasure},
                               {"footfall", checkFootfall}};
@@ -106,6 +108,9 @@ void expectSizes(const Setting& setting, const HerdState& state) {
   expect("step records", state.step, legs, shared::STEP_STRIDE);
   expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
   expect("chain records", state.chain, legs, shared::chainStride(setting.bones));
+  if (!state.tip.empty()) expect("tip records", state.tip, legs, shared::TIP_STRIDE);
+  if (crowd::continuesSolves(setting.controller))
+    expect("solve records", state.solve, 1, shared::solveStride(setting.legs));
   const size_t bones = static_cast<size_t>(setting.bones);
   const bool clips = crowd::playsClips(setting.controller);
   if (clips) expect("play records", state.play, 1, shared::PLAY_STRIDE);
@@ -114,11 +119,11 @@ void expectSizes(const Setting& setting, const HerdState& state) {
   else if (!state.pose.empty())
     expect("pose records", state.pose, 1 + legs * bones, shared::POSE_STRIDE);
   if (setting.controller == crowd::Controller::planted) {
-    expect("start records", state.start, legs, shared::chainStride(setting.bones));
+    expect("start records", state.start, legs, shared::startStride(setting.bones));
     expect("fix records", state.fix, legs * bones, shared::FIX_STRIDE);
   }
   if (setting.controller == crowd::Controller::pose)
-    expect("spring records", state.spring, legs, shared::chainDirections(setting.bones));
+    expect("spring records", state.spring, legs, shared::chainStride(setting.bones));
   if (state.metric.empty() || agents == 0) return;
   expect("metric records", state.metric, 1, shared::METRIC_STRIDE);
   const auto floats = static_cast<size_t>(4 * shared::watchStride(setting.legs));
@@ -150,9 +155,10 @@ HerdState sampled(const HerdState& whole, const AgentSample& sample) {
   part.watched = whole.watched;
   part.sleep = whole.sleep;
   for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride) ++part.agents;
-  for (const auto records : {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait,
-                             &HerdState::step, &HerdState::foot, &HerdState::chain, &HerdState::pose,
-                             &HerdState::play, &HerdState::start, &HerdState::fix, &HerdState::spring}) {
+  for (const auto records :
+       {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait, &HerdState::step,
+        &HerdState::foot, &HerdState::chain, &HerdState::tip, &HerdState::solve, &HerdState::pose,
+        &HerdState::play, &HerdState::start, &HerdState::fix, &HerdState::spring}) {
     const std::vector<float>& from = whole.*records;
     const size_t each = from.size() / std::max(1u, whole.agents);
     for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride)

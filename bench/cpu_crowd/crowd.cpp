@@ -35,6 +35,7 @@ void check(const validation::HerdFacts& facts, const HerdState& start, const Opt
   expectSize("step", start.step, agents * legs, shared::STEP_STRIDE);
   expectSize("foot", start.foot, agents * legs, shared::FOOT_STRIDE);
   expectSize("chain", start.chain, agents * legs, shared::chainStride(facts.rig.maxBones()));
+  expectSize("solve", start.solve, agents, shared::solveStride(int(legs)));
 }
 
 }  // namespace
@@ -79,6 +80,8 @@ HerdState CpuCrowd::state() const {
   make(state.step, agents * legs, shared::STEP_STRIDE);
   make(state.foot, agents * legs, shared::FOOT_STRIDE);
   make(state.chain, agents * legs, shared::chainStride(int(bones)));
+  make(state.tip, agents * legs, shared::TIP_STRIDE);
+  make(state.solve, agents, shared::solveStride(int(legs)));
   const ClipTable& clips = impl_->world.clips;
   if (!clips.clips.empty()) make(state.play, agents, shared::PLAY_STRIDE);
   if (impl_->options.poses && clips.clips.empty())

@@ -41,7 +41,7 @@ class HerdKernel final : public Kernel {
       const int at = int(i % kAgents);
       copyLane<float, F>(readAgent(start, agent), 0, agentBlocks_[block], at);
       for (size_t l = 0; l < legs_; ++l) {
-        Leg<float, kBones<N>> leg = readLeg<kBones<N>>(start, agent * legs_ + l, world_.bones);
+        Leg<float, kBones<N>> leg = readLeg<kBones<N>>(start, agent, l, legs_, world_.bones);
         leg.chain.tip = tipOf(world_.legs[l], directionsOf<float, N>(world_.legs[l], leg.chain));
         copyLane<float, F>(leg, 0, legsOf(block)[l], at);
       }
@@ -82,7 +82,7 @@ class HerdKernel final : public Kernel {
         Leg<float, kBones<N>> leg;
         copyLane<F, float>(legBlocks_[block * legs_ + l], at, leg, 0);
         leg.chain.tip = tipInWorld(world_.legs[l], a.orientation, leg.chain.tip);
-        writeLeg(leg, agent * legs_ + l, world_.bones, state);
+        writeLeg(leg, agent, l, legs_, world_.bones, state);
       }
       if (poses_.empty()) continue;
       for (size_t i = 0; i < poseCount(); ++i) {

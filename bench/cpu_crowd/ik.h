@@ -299,7 +299,6 @@ template <class F, int N, class Rare>
   F error = length(target - tip);
   const auto usual = finite(target) & !deadlocked(leg, target, d, tip) & (error <= F(world.q.approachError));
   if (any(!usual)) rare(bits(!usual));
-  chain.before = error * leg.reach;
   const F pull = select(error < F(world.q.pullError), F(world.chords > 0 ? world.q.restPull : 0), F(0));
   activeSet(leg, target, {pull, world.q.ikTolerance, world.chords}, d, tip, error, chain.damping);
   store(leg, d, tip, error, chain);
@@ -341,10 +340,8 @@ void ikWhole(const World& world, const LegModel& leg, const Mat3<float>& r, cons
   Directions<float, N> d = directionsOf<float, N>(leg, chain);
   Vec3<float> tip = chain.tip;
   const Vec3<float> target = targetOf(leg, r, foot);
-  chain.before = 0;
   if (!finite(target)) return store(leg, d, tip, 0.0f, chain);
   float error = length(target - tip);
-  chain.before = error * leg.reach;
   if (deadlocked(leg, target, d, tip)) {
     bend(leg, d);
     tip = tipOf(leg, d);

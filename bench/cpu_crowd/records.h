@@ -54,11 +54,11 @@ inline Vec3<float> tipInWorld(const LegModel& leg, const Quaternion<float>& orie
 }
 
 template <int N>
-Leg<float, N> readLeg(const HerdState& state, size_t leg, int bones) {
+Leg<float, N> readLeg(const HerdState& state, size_t agent, size_t l, size_t legs, int bones) {
+  const size_t leg = agent * legs + l;
   const float* s = recordAt(state.step, leg, shared::STEP_STRIDE);
   const float* foot = recordAt(state.foot, leg, shared::FOOT_STRIDE);
   const float* directions = recordAt(state.chain, leg, shared::chainStride(bones));
-  const float* tip = directions + 4 * shared::chainDirections(bones);
   Leg<float, N> to{};
   to.step = {{s[0], s[1], s[2]},  s[3],  {s[4], s[5], s[6]},    s[7],
              {s[8], s[9], s[10]}, s[11], {s[12], s[13], s[14]}, s[15]};
@@ -67,15 +67,15 @@ Leg<float, N> readLeg(const HerdState& state, size_t leg, int bones) {
     to.chain.x[b] = directions[2 * b];
     to.chain.y[b] = directions[2 * b + 1];
   }
-  to.chain.tip = {tip[0], tip[1], tip[2]};
-  to.chain.error = tip[3];
-  to.chain.damping = tip[4];
-  to.chain.before = tip[5];
+  const float* solve = state.solve.data() + 2 * shared::solvePair(int(agent), int(l), int(legs));
+  to.chain.error = solve[0];
+  to.chain.damping = solve[1];
   return to;
 }
 
 template <int N>
-void writeLeg(const Leg<float, N>& from, size_t leg, int bones, HerdState& state) {
+void writeLeg(const Leg<float, N>& from, size_t agent, size_t l, size_t legs, int bones, HerdState& state) {
+  const size_t leg = agent * legs + l;
   const Step<float>& s = from.step;
   const float step[] = {s.landing.x,      s.landing.y,      s.landing.z,      s.tileX,
                         s.liftOff.x,      s.liftOff.y,      s.liftOff.z,      s.tileZ,
@@ -90,9 +90,11 @@ void writeLeg(const Leg<float, N>& from, size_t leg, int bones, HerdState& state
     directions[2 * b] = from.chain.x[b];
     directions[2 * b + 1] = from.chain.y[b];
   }
-  const float tip[] = {from.chain.tip.x, from.chain.tip.y,   from.chain.tip.z,
-                       from.chain.error, from.chain.damping, from.chain.before};
-  std::copy(std::begin(tip), std::end(tip), directions + 4 * shared::chainDirections(bones));
+  const float tip[] = {from.chain.tip.x, from.chain.tip.y, from.chain.tip.z, from.chain.error};
+  std::copy(std::begin(tip), std::end(tip), recordAt(state.tip, leg, shared::TIP_STRIDE));
+  float* solve = state.solve.data() + 2 * shared::solvePair(int(agent), int(l), int(legs));
+  solve[0] = from.chain.error;
+  solve[1] = from.chain.damping;
 }
 
 inline void writePose(const BonePose<float>& pose, size_t entry, HerdState& state) {

@@ -93,8 +93,6 @@ void appendAgent(const HerdState& state, const crowd::Herd& herd, size_t agent, 
   };
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const auto legs = static_cast<size_t>(rig.legCount()), bones = static_cast<size_t>(rig.maxBones());
-  const auto chainSize = static_cast<size_t>(chainStride(rig.maxBones()));
-  const auto tipAt = static_cast<size_t>(chainDirections(rig.maxBones()));
 
   const float* body = vec4(state.body, agent * BODY_STRIDE);
   const double position[3] = {double{body[4]} * TILE_SIZE + body[0], body[1],
@@ -113,7 +111,7 @@ void appendAgent(const HerdState& state, const crowd::Herd& herd, size_t agent, 
       values.rotations.insert(values.rotations.end(), placed.rotation, placed.rotation + 4);
       pushJoint(placed.start);
     }
-    pushJoint(vec4(state.chain, leg * chainSize + tipAt));
+    pushJoint(vec4(state.tip, leg * TIP_STRIDE));
     values.rotations.insert(values.rotations.end(), 4 * (bones - own), nan);
     values.joints.insert(values.joints.end(), 3 * (bones - own), nan);
     values.stance.push_back(vec4(state.foot, leg * FOOT_STRIDE)[3] >= 1 ? 1 : 0);

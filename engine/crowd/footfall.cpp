@@ -14,7 +14,7 @@ Stage footfallStage() {
            {BINDING_COUNTERS, store},
            {BINDING_BODY, load4},
            {BINDING_FOOT, load4},
-           {BINDING_CHAIN, load4},
+           {BINDING_TIP, load4},
            {BINDING_FLIGHT, load4},
            {BINDING_FLIGHT_OUT, store},
            {BINDING_FOOTFALL_OUT, store}},

@@ -27,7 +27,8 @@ struct Page {
   uint32_t firstAgent = 0;
   uint32_t agents = 0;
   gpu::Buffer goal, steer, body, gait, step, foot, chain;
-  gpu::Buffer error;             // none where clips are played
+  gpu::Buffer solve;             // where ik continues its solves
+  gpu::Buffer tip;               // of one agent alone unless somebody looks at tips
   gpu::Buffer pose;              // none unless poses are wanted
   gpu::Buffer metric, watch;     // none unless fidelity is measured
   gpu::Buffer play, start, fix;  // where clips are played, the latter two where they are planted

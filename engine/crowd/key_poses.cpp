@@ -95,7 +95,7 @@ void push(std::vector<float>& records, double a, double b, double c, double d) {
 }
 
 void pushDirections(std::vector<float>& records, Directions directions, int maxBones) {
-  directions.resize(2 * static_cast<size_t>(shared::chainDirections(maxBones)));
+  directions.resize(2 * static_cast<size_t>(shared::chainStride(maxBones)));
   for (size_t i = 0; i < directions.size(); i += 2)
     push(records, directions[i].x, directions[i].y, directions[i + 1].x, directions[i + 1].y);
 }

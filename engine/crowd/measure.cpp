@@ -16,6 +16,7 @@ Stage measureStage() {
            {BINDING_BODY, load4},
            {BINDING_FOOT, load4},
            {BINDING_CHAIN, load4},
+           {BINDING_TIP, load4},
            {BINDING_WATCH, load4},
            {BINDING_WATCH_OUT, store},
            {BINDING_METRIC, load4},

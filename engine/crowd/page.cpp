@@ -56,9 +56,12 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
     case BINDING_CHAIN:
     case BINDING_CHAIN_OUT:
       return {binding, &page.chain};
-    case BINDING_ERROR:
-    case BINDING_ERROR_OUT:
-      return {binding, &page.error};
+    case BINDING_SOLVE:
+    case BINDING_SOLVE_OUT:
+      return {binding, &page.solve};
+    case BINDING_TIP:
+    case BINDING_TIP_OUT:
+      return {binding, &page.tip};
     case BINDING_POSE:
     case BINDING_POSE_OUT:
       return {binding, &page.pose};
@@ -148,14 +151,21 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
       ofLegs("foot", &Page::foot, FOOT_STRIDE, &SpawnRecords::foot),
       ofLegs("chain", &Page::chain, chainStride(rig.maxBones()), &SpawnRecords::chain),
       {"list", &Page::list, legs * sizeof(uint32_t)}};
-  if (!clips) buffers.push_back({"error", &Page::error, vec4s(1, errorStride(rig.legCount()))});
+  PageBuffer tip = ofLegs("tip", &Page::tip, TIP_STRIDE, &SpawnRecords::tip);
+  if (!keepsTips(options)) {
+    tip.most = tip.bytes;
+    tip.spawned = nullptr;
+  }
+  buffers.push_back(tip);
+  if (continuesSolves(herd.controller))
+    buffers.push_back({"solve", &Page::solve, vec4s(1, solveStride(rig.legCount())), &SpawnRecords::solve});
   if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE), &SpawnRecords::play});
   if (planted) {
-    buffers.push_back(ofLegs("start", &Page::start, chainStride(rig.maxBones())));
+    buffers.push_back(ofLegs("start", &Page::start, startStride(rig.maxBones())));
     buffers.push_back(ofLegs("fix", &Page::fix, rig.maxBones() * FIX_STRIDE));
   }
   if (herd.controller == Controller::pose)
-    buffers.push_back(ofLegs("spring", &Page::spring, chainDirections(rig.maxBones())));
+    buffers.push_back(ofLegs("spring", &Page::spring, chainStride(rig.maxBones())));
   if (options.pose)
     buffers.push_back({"pose", &Page::pose,
                        clips ? vec4s(static_cast<uint64_t>(herd.clips.joints), MATRIX_STRIDE)

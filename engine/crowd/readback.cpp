@@ -86,6 +86,8 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
     append(page.step, state.step, herd.legs);
     append(page.foot, state.foot, herd.legs);
     append(page.chain, state.chain, herd.legs);
+    append(page.solve, state.solve);
+    if (crowd::keepsTips(impl_->options)) append(page.tip, state.tip, herd.legs);
     append(page.pose, state.pose);
     append(page.metric, state.metric);
     append(page.play, state.play);
@@ -162,6 +164,7 @@ uint64_t Crowd::stateHash() const {
                                                  {&Page::gait},
                                                  {&Page::step, herd.legs},
                                                  {&Page::chain, herd.legs},
+                                                 {&Page::solve},
                                                  {&Page::play},
                                                  {&Page::spring, herd.legs}};
     // Record by record over the herd, not page by page: how agents are paged must not show.

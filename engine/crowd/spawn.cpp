@@ -74,12 +74,12 @@ Spawner::Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield&
 void Spawner::pushDirections(size_t leg, Writer& chain) const {
   const int bones = rig_.maxBones();
   if (keyPoses_.keys == 0) {
-    for (int i = 0; i < shared::chainDirections(bones); ++i) chain.push(0, 0, 0, 0);
+    for (int i = 0; i < shared::chainStride(bones); ++i) chain.push(0, 0, 0, 0);
     return;
   }
   const auto stride = 4 * static_cast<size_t>(shared::keyStride(bones, keyPoses_.keys));
   const float* standing = &keyPoses_.records[leg * stride + 4];
-  for (int i = 0; i < shared::chainDirections(bones); ++i, standing += 4)
+  for (int i = 0; i < shared::chainStride(bones); ++i, standing += 4)
     chain.push(standing[0], standing[1], standing[2], standing[3]);
 }
 
@@ -133,10 +133,11 @@ void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRe
   using namespace shared;
   Writer goal(records.goal, GOAL_STRIDE), body(records.body, BODY_STRIDE), gait(records.gait, GAIT_STRIDE),
       step(records.step, STEP_STRIDE), foot(records.foot, FOOT_STRIDE),
-      chain(records.chain, chainStride(rig_.maxBones())), play(records.play, PLAY_STRIDE);
+      chain(records.chain, chainStride(rig_.maxBones())), tip(records.tip, TIP_STRIDE),
+      solve(records.solve, solveStride(rig_.legCount())), play(records.play, PLAY_STRIDE);
   for (uint32_t record = from; record < to; ++record) {
     const uint32_t agent = first + record;
-    for (Writer* each : {&goal, &body, &gait, &play}) each->seek(static_cast<int>(record));
+    for (Writer* each : {&goal, &body, &gait, &solve, &play}) each->seek(static_cast<int>(record));
     const Placement p = place(agent);
     const float kind = herd_.goal.kind == Goal::Kind::cross   ? shared::GOAL_CROSS
                        : herd_.goal.kind == Goal::Kind::point ? shared::GOAL_POINT
@@ -173,8 +174,10 @@ void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRe
       play.push(frame.x, frame.y, frame.x, frame.y);
     }
 
+    for (int i = 0; i < solveStride(rig_.legCount()) && !records.solve.empty(); ++i) solve.push(0, 1, 0, 1);
+
     for (size_t l = 0; l < rig_.legs.size(); ++l) {
-      for (Writer* each : {&step, &foot, &chain})
+      for (Writer* each : {&step, &foot, &chain, &tip})
         each->seek(legRecord(static_cast<int>(record), static_cast<int>(l), rig_.legCount()));
       const Leg& leg = rig_.legs[l];
       const glm::vec3 home = q * leg.home;
@@ -187,8 +190,7 @@ void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRe
       step.push(0, 0, 0, 1);
       foot.push(home.x, landing.y - height, home.z, 1);
       pushDirections(l, chain);
-      chain.push(home.x, home.y, home.z, 0);
-      chain.push(1, 0, 0, 0);
+      if (!records.tip.empty()) tip.push(home.x, landing.y - height, home.z, 0);
     }
   }
 }

@@ -77,7 +77,7 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) 
     if (name == "measure") return !options.measure;
     if (name == "footfall") return options.footfalls == 0;
     // Of a clip as it is, feet are looked at by measure alone.
-    if (name == "swing" && controller == Controller::clip) return !options.measure && options.footfalls == 0;
+    if (name == "swing" && controller == Controller::clip) return !keepsTips(options);
     return false;
   });
   for (Stage& stage : stages)
@@ -89,6 +89,10 @@ bool makes(std::string_view stage, std::string_view part) {
   for (size_t plus; (plus = stage.find('+')) != stage.npos; stage.remove_prefix(plus + 1))
     if (stage.substr(0, plus) == part) return true;
   return stage == part;
+}
+
+bool keepsTips(const CrowdOptions& options) {
+  return options.tips || options.measure || options.footfalls > 0;
 }
 
 bool isOfTheAwake(const Stage& stage) {
@@ -105,6 +109,8 @@ StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const He
   for (const StageShader& other : options.shaders)
     if (other.stage == stage.name) info.code = {other.texel, other.storage};
   info.constants = {{CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
+  if (isIk || (herd.controller == Controller::pose && makes(stage.name, "swing")))
+    info.constants.emplace_back(CONSTANT_TIPS, keepsTips(options));
   if (options.sleep) {
     const bool breathes = herd.controller == Controller::adaptive;
     info.constants.emplace_back(CONSTANT_SLEEP, breathes ? SLEEP_BREATHED_OUT : SLEEP_STILL);

@@ -35,6 +35,9 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options);
 // them.
 bool makes(std::string_view stage, std::string_view part);
 
+// Whether ik, or what takes its place, writes the tips.
+bool keepsTips(const CrowdOptions& options);
+
 // Whether it passes over those who sleep.
 bool isOfTheAwake(const Stage& stage);
 

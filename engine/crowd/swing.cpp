@@ -51,7 +51,8 @@ Stage clipSwingStage() {
            {BINDING_CLIP_ROW, load4},
            {BINDING_CLIP_LEG, load4},
            {BINDING_FOOT_OUT, store},
-           {BINDING_CHAIN_OUT, store}},
+           {BINDING_CHAIN_OUT, store},
+           {BINDING_TIP_OUT, store}},
           Stage::Over::legs};
 }
 
@@ -89,7 +90,8 @@ Stage keyPoseSwingStage() {
            {BINDING_SPRING, load4},
            {BINDING_FOOT_OUT, store},
            {BINDING_CHAIN_OUT, store},
-           {BINDING_SPRING_OUT, store}},
+           {BINDING_SPRING_OUT, store},
+           {BINDING_TIP_OUT, store}},
           Stage::Over::legs};
 }
 

@@ -12,6 +12,7 @@ namespace skitter::gpu {
 
 enum class BindingKind {
   load4,    // LOAD4_BUFFER: a texel buffer or a storage buffer, as the context says
+  load2,    // LOAD2_BUFFER, likewise
   store,    // STORE4_BUFFER, or any storage buffer
   uniform,  // a uniform buffer
   heights,  // a sampler2D that is only ever fetched from: nearest, clamped
@@ -49,8 +50,8 @@ class BindingLayout {
   vk::raii::PipelineLayout pipelineLayout_ = nullptr;
 };
 
-// What one declared binding is bound to. A load4 takes a Buffer; a store or uniform a Buffer or HostBuffer; a
-// heights or texture an Image in state sampled. Everything bound outlives the Bindings.
+// What one declared binding is bound to. A load4 or load2 takes a Buffer; a store or uniform a Buffer or
+// HostBuffer; a heights or texture an Image in state sampled. Everything bound outlives the Bindings.
 struct Binding {
   uint32_t binding;
   std::variant<const Buffer*, const HostBuffer*, const Image*> resource;

@@ -262,7 +262,7 @@ void main() {
     bool paused = inVain && !arrived && !jumped && worth < 1.0;
     pause = paused ? nextPause : max(pause - 1.0, 0.0);
     nextPause = arrived || jumped ? 0.0 : (paused ? clamp(2.0 * nextPause, 1.0, LONGEST_PAUSE) : nextPause);
-    STORE_SWINGS(statesOut, at, pose.swing);
+    STORE_SWINGS(statesOut, at, pose.swing, false);
     STORE_TWISTS(statesOut, at + stateTwists(BONES), pose.twist);
   }
   for (int i = 1; i <= BONES; ++i) {

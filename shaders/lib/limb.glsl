@@ -26,10 +26,17 @@
       swing[min(i_ + 1, BONES - 1)] = vec2(isKind(i_ + 1, LIMIT_HINGE) ? 0.0 : a_.z, a_.w); \
   }
 
-#define STORE_SWINGS(chains, at, swing)                                     \
-  for (int i_ = 0; i_ < BONES; i_ += 2) {                                   \
-    vec2 second_ = i_ + 1 < BONES ? swing[min(i_ + 1, BONES - 1)] : vec2(0.0); \
-    STORE4(chains, (at) + i_ / 2, vec4(swing[i_], second_));                \
+// `even`: whether `at` is known to be.
+#define STORE_SWINGS(chains, at, swing, even)                               \
+  for (int i_ = 0; i_ < BONES; i_ += 4) {                                   \
+    vec4 a_ = vec4(swing[i_], i_ + 1 < BONES ? swing[min(i_ + 1, BONES - 1)] : vec2(0.0)); \
+    vec4 b_ = vec4(swing[min(i_ + 2, BONES - 1)], i_ + 3 < BONES ? swing[min(i_ + 3, BONES - 1)] : vec2(0.0)); \
+    if ((even) && i_ + 2 < BONES) {                                         \
+      STORE4_TWO(chains, (at) + i_ / 2, a_, b_);                            \
+    } else {                                                                \
+      STORE4(chains, (at) + i_ / 2, a_);                                    \
+      if (i_ + 2 < BONES) STORE4(chains, (at) + i_ / 2 + 1, b_);            \
+    }                                                                       \
   }
 
 #define LOAD_TWISTS(twist, chains, at)                                      \

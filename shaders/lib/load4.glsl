@@ -14,6 +14,8 @@
 //   vec4 a = LOAD4(legs, i);
 //   STORE4_BUFFER(1, joints)
 //   STORE4(joints, i, a);
+//   STORE4_TWO(joints, i, a, b);    a and b at i and i + 1, i even: dearer apart on such a device
+// Records of vec2 likewise, by LOAD2 and STORE2.
 //
 // One VkBuffer may be bound both ways in a dispatch if each record is read only by the invocation that writes
 // it, and before it does.
@@ -24,17 +26,32 @@
 #if LOAD4_TEXEL
 #define LOAD4_BUFFER(bindingNumber, name) layout(set = 0, binding = bindingNumber) uniform samplerBuffer name;
 #define LOAD4(name, i) texelFetch(name, int(i))
-u64vec2 pairsOf(uvec4 v) { return u64vec2(packUint2x32(v.xy), packUint2x32(v.zw)); }
-#define STORE4_BUFFER(bindingNumber, name) \
-  layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store4 { u64vec2 record[]; } name;
-#define STORE4(name, i, value) name.record[i] = pairsOf(floatBitsToUint(value))
+#define LOAD2_BUFFER(bindingNumber, name) LOAD4_BUFFER(bindingNumber, name)
+#define LOAD2(name, i) texelFetch(name, int(i)).xy
+uint64_t bitsOf(vec2 v) { return packUint2x32(floatBitsToUint(v)); }
+u64vec2 bitsOf(vec4 v) { return u64vec2(bitsOf(v.xy), bitsOf(v.zw)); }
+#define STORE4_BUFFER(bindingNumber, name)                                                                         \
+  layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store4 { u64vec2 record[]; } name; \
+  layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store8 { u64vec4 record[]; } name##Two;
+#define STORE4(name, i, value) name.record[i] = bitsOf(value)
+#define STORE4_TWO(name, i, a, b) name##Two.record[uint(i) / 2u] = u64vec4(bitsOf(a), bitsOf(b))
+#define STORE2_BUFFER(bindingNumber, name) \
+  layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store2 { uint64_t record[]; } name;
+#define STORE2(name, i, value) name.record[i] = bitsOf(value)
 #else
 #define LOAD4_BUFFER(bindingNumber, name) \
   layout(set = 0, binding = bindingNumber, std430) readonly buffer name##Load4 { vec4 record[]; } name;
 #define LOAD4(name, i) (name.record[i])
+#define LOAD2_BUFFER(bindingNumber, name) \
+  layout(set = 0, binding = bindingNumber, std430) readonly buffer name##Load2 { vec2 record[]; } name;
+#define LOAD2(name, i) (name.record[i])
 #define STORE4_BUFFER(bindingNumber, name) \
   layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store4 { vec4 record[]; } name;
 #define STORE4(name, i, value) name.record[i] = (value)
+#define STORE4_TWO(name, i, a, b) STORE4(name, i, a), STORE4(name, (i) + 1, b)
+#define STORE2_BUFFER(bindingNumber, name) \
+  layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store2 { vec2 record[]; } name;
+#define STORE2(name, i, value) name.record[i] = (value)
 #endif
 
 #endif

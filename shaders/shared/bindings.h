@@ -56,11 +56,13 @@ BINDING BINDING_FOOTFALL_OUT = 39;
 BINDING BINDING_SPRING = 40;
 BINDING BINDING_SPRING_OUT = 41;
 BINDING BINDING_KEY = 42;  // constant
-BINDING BINDING_ERROR = 43;
-BINDING BINDING_ERROR_OUT = 44;
+BINDING BINDING_SOLVE = 43;
+BINDING BINDING_SOLVE_OUT = 44;
 // Blocks with somebody awake, where agents may sleep.
 BINDING BINDING_AWAKE = 45;
 BINDING BINDING_AWAKE_OUT = 46;
+BINDING BINDING_TIP = 47;
+BINDING BINDING_TIP_OUT = 48;
 
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
@@ -78,6 +80,7 @@ BINDING CONSTANT_SEARCH_STEPS = 22;  // 2 to their power is more than a clip has
 BINDING CONSTANT_REACH = 23;         // gait steps when out of reach, without a rhythm
 BINDING CONSTANT_WATCH = 24;  // gait looks at the ground under every foot: the heights were edited lately
 BINDING CONSTANT_SLEEP = 25;  // SLEEP_
+BINDING CONSTANT_TIPS = 26;   // tips are written
 #undef BINDING
 
 // Push constants of every stage.

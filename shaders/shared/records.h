@@ -6,6 +6,7 @@
 
 #ifdef __cplusplus
 namespace skitter::shared {
+using uint = unsigned;
 #define SKITTER_CONST inline constexpr
 #define SKITTER_FUNCTION inline constexpr
 #else
@@ -22,15 +23,18 @@ SKITTER_CONST int WORK_GROUP = 64;
 // Leg records are laid out in blocks of BLOCK agents: within a block those of the first legs, one an agent,
 // then those of the second legs, and so on. So a stage over agents walks through memory from end to end,
 // where agents leg by leg would be many cache lines apart. The last block of a page is whole, whatever its
-// agents; what is beyond them is never read.
+// agents; what is beyond them is never read. Numbers are not negative, and divided as such: it takes fewer
+// instructions.
 SKITTER_CONST int BLOCK = 8;
 SKITTER_FUNCTION int legRecord(int agent, int leg, int legs) {
-  return (agent / BLOCK * legs + leg) * BLOCK + agent % BLOCK;
+  return int((uint(agent) / uint(BLOCK) * uint(legs) + uint(leg)) * uint(BLOCK) + uint(agent) % uint(BLOCK));
 }
 SKITTER_FUNCTION int agentOfRecord(int record, int legs) {
-  return record / (BLOCK * legs) * BLOCK + record % BLOCK;
+  return int(uint(record) / uint(BLOCK * legs) * uint(BLOCK) + uint(record) % uint(BLOCK));
 }
-SKITTER_FUNCTION int legOfRecord(int record, int legs) { return record / BLOCK % legs; }
+SKITTER_FUNCTION int legOfRecord(int record, int legs) {
+  return int(uint(record) / uint(BLOCK) % uint(legs));
+}
 // Metres; body positions are tile * TILE_SIZE + local, 0 <= local < TILE_SIZE.
 SKITTER_CONST float TILE_SIZE = 16.0;
 
@@ -80,14 +84,16 @@ SKITTER_CONST int FOOT_STRIDE = 1;
 
 // chain, per leg, written by ik.
 //   [0 .. ceil(bones/2)-1] stereographic directions X, Y of two bones each
-//   [n]   tip relative to the body's position, world axes, x, y, z; reach error (m)
-//   [n+1] damping of the next solve, error before solving (m), unused, unused
-SKITTER_FUNCTION int chainDirections(int bones) { return (bones + 1) / 2; }
-SKITTER_FUNCTION int chainStride(int bones) { return (bones + 1) / 2 + 2; }
+SKITTER_FUNCTION int chainStride(int bones) { return (bones + 1) / 2; }
 
-// error, per agent, written by ik: the reach error of each leg (m) once more, four a vec4. Who reads all of
-// an agent's would fetch a cache line a leg for them from its chains.
-SKITTER_FUNCTION int errorStride(int legs) { return (legs + 3) / 4; }
+// solve, per agent, written by ik: of each leg a pair, two a vec4, for body and gait read all of an agent's.
+//   reach error (m), damping of the next solve
+SKITTER_FUNCTION int solveStride(int legs) { return (legs + 1) / 2; }
+SKITTER_FUNCTION int solvePair(int agent, int leg, int legs) { return agent * 2 * solveStride(legs) + leg; }
+
+// tip, per leg, written by ik where somebody looks at it (CrowdOptions::tips): it follows from the chain.
+//   [0] tip relative to the body's position, world axes, x, y, z; reach error (m)
+SKITTER_CONST int TIP_STRIDE = 1;
 
 // pose, per agent, written by pose: 1 + legs * bones entries of
 //   [0] R, quaternion xyzw, world from rest
@@ -101,14 +107,15 @@ SKITTER_CONST int POSE_STRIDE = 2;
 //   [2] of both: frame, fraction to the next one          frames count through all clips of the herd
 SKITTER_CONST int PLAY_STRIDE = 3;
 
-// start, per leg, written by swing of planted: a chain record whose
-//   [n]   is the clip's root x, y, z (model), unused
+// start, per leg, written by swing of planted: a chain record, and
+//   [n] the clip's root x, y, z (model), unused
+SKITTER_FUNCTION int startStride(int bones) { return chainStride(bones) + 1; }
 // fix, per leg, written by ik of planted: a bone
 //   [0] q, quaternion xyzw, model
 //   [1] move x, y, z (model), unused
 SKITTER_CONST int FIX_STRIDE = 2;
 // spring, per leg, of controller pose, written by swing, which writes its chain too.
-//   [0 .. ceil(bones/2)-1] rates of the directions X, Y of two bones each (1/s)
+//   as a chain record, rates of the directions X, Y (1/s)
 // step, of planted, written by swing.
 //   [0] lock x, y, z, tile x   [1] offset o x, y, z, tile z   [2] 0, 0, 0, 1 if locked   [3] unused
 // pose, per agent, of clip and planted, written by pose: an entry a joint of
@@ -125,7 +132,7 @@ SKITTER_CONST int MATRIX_STRIDE = 3;
 // key, per leg, of controller pose, constant.
 //   [0] phase at which the foot begins to stand, share of the cycle for which it does, unused x 2
 //   then directions as in a chain record: of the standing pose, and of each key pose followed by its tangents
-SKITTER_FUNCTION int keyStride(int bones, int keys) { return 1 + (1 + 2 * keys) * chainDirections(bones); }
+SKITTER_FUNCTION int keyStride(int bones, int keys) { return 1 + (1 + 2 * keys) * chainStride(bones); }
 
 // Ticks in a row for which an agent is watched.
 SKITTER_CONST int WATCH_TICKS = 128;

@@ -34,7 +34,7 @@ Body makeBody(int agent) {
     vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
     vec3 liftOff = fromTile(s.liftOff, s.tile, body.local, body.tile);
     vec4 root = RIG_LEG(leg, 0);
-    float error = LOAD4(errors, agent * errorStride(LEGS) + leg / 4)[leg % 4];
+    float error = LOAD4(solves, agent * solveStride(LEGS) + leg / 2)[leg % 2 * 2];
     float slow = followFactor(parameters, rotate(body.orientation, root.xyz), landing, root.w, error, velocity);
     follow = u >= 1.0 ? min(follow, slow) : follow;
     addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));
@@ -88,10 +88,8 @@ Body makeBody(int agent) {
   body.still = still ? body.still + dt : 0.0;
   body.follow = follow;
 
-  STORE4(bodiesOut, at, vec4(body.local, body.heading.x));
-  STORE4(bodiesOut, at + 1, vec4(body.tile, body.heading.y, body.speed));
-  STORE4(bodiesOut, at + 2, body.orientation);
-  STORE4(bodiesOut, at + 3, vec4(body.turnRate, body.still, body.follow, body.surfaceSpeed));
+  STORE4_TWO(bodiesOut, at, vec4(body.local, body.heading.x), vec4(body.tile, body.heading.y, body.speed));
+  STORE4_TWO(bodiesOut, at + 2, body.orientation, vec4(body.turnRate, body.still, body.follow, body.surfaceSpeed));
   return body;
 }
 

@@ -4,7 +4,7 @@
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_FOOT, feet);
-LOAD4_BUFFER(BINDING_CHAIN, chains);
+LOAD4_BUFFER(BINDING_TIP, tips);
 LOAD4_BUFFER(BINDING_FLIGHT, flights);
 STORE4_BUFFER(BINDING_FLIGHT_OUT, flightsOut);
 STORE4_BUFFER(BINDING_FOOTFALL_OUT, footfalls);
@@ -16,7 +16,7 @@ void main() {
   if (agent >= int(constants.count)) return;
   vec3 local = LOAD4(bodies, agent * BODY_STRIDE).xyz;
   vec2 tile = LOAD4(bodies, agent * BODY_STRIDE + 1).xy;
-  vec3 tip = LOAD4(chains, record * chainStride(BONES) + chainDirections(BONES)).xyz + local;
+  vec3 tip = LOAD4(tips, record).xyz + local;
   bool planted = LOAD4(feet, record).w >= 1.0;
   vec4 before = LOAD4(flights, record);
   STORE4(flightsOut, record, vec4(tip, planted ? 0.0 : 1.0));

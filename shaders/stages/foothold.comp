@@ -113,8 +113,6 @@ void main() {
   }
   m0 = again ? m0 : lift;
 
-  STORE4(stepsOut, stepAt, vec4(p1 + body.local, body.tile.x));
-  STORE4(stepsOut, stepAt + 1, vec4(p0 + body.local, body.tile.y));
-  STORE4(stepsOut, stepAt + 2, vec4(lift, constants.tick - 1.0));
-  STORE4(stepsOut, stepAt + 3, vec4(m0, lastResort ? -ticks : ticks));
+  STORE4_TWO(stepsOut, stepAt, vec4(p1 + body.local, body.tile.x), vec4(p0 + body.local, body.tile.y));
+  STORE4_TWO(stepsOut, stepAt + 2, vec4(lift, constants.tick - 1.0), vec4(m0, lastResort ? -ticks : ticks));
 }

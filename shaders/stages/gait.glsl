@@ -43,7 +43,7 @@ void makeGait(int agent, Body body) {
     if (u >= 1.0) {
       float stretch = length(foot - root.xyz) / root.w;
       float off = distance(foot.xz, home.xz);
-      float error = LOAD4(errors, agent * errorStride(LEGS) + leg / 4)[leg % 4];
+      float error = LOAD4(solves, agent * solveStride(LEGS) + leg / 2)[leg % 2 * 2];
       bool must = stretch < parameters.rootShare || stretch > parameters.stretchLift ||
                   off > parameters.strayShare * stride.halfStride || error > parameters.errorLift * root.w;
       bool far = off > (REACH != 0 ? REACH_SHARE : parameters.liftShare) * stride.halfStride;
@@ -80,8 +80,8 @@ void makeGait(int agent, Body body) {
     lift |= (neighbours & (air | lift)) == 0u ? wants & (1u << leg) : 0u;
   }
 
-  STORE4(gaitsOut, agent * GAIT_STRIDE, vec4(phase, float(lift), float(again), stride.ticks));
-  STORE4(gaitsOut, agent * GAIT_STRIDE + 1, vec4(stride.halfStride, stride.cycle, float(air), 0.0));
+  STORE4_TWO(gaitsOut, agent * GAIT_STRIDE, vec4(phase, float(lift), float(again), stride.ticks),
+             vec4(stride.halfStride, stride.cycle, float(air), 0.0));
 
   // Few legs begin a step in a tick: they are listed, and foothold runs over the list alone.
   uint begin = lift | again;

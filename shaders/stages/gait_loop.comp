@@ -14,6 +14,6 @@ void main() {
   Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
   Stride stride = strideFor(parameters, body.surfaceSpeed, body.turnRate, float(GROUPS));
   float phase = LOAD4(gaits, agent * GAIT_STRIDE).x + (body.still > 0.0 ? 0.0 : parameters.dt / stride.cycle);
-  STORE4(gaitsOut, agent * GAIT_STRIDE, vec4(phase - floor(phase), 0.0, 0.0, stride.ticks));
-  STORE4(gaitsOut, agent * GAIT_STRIDE + 1, vec4(stride.halfStride, stride.cycle, 0.0, 0.0));
+  STORE4_TWO(gaitsOut, agent * GAIT_STRIDE, vec4(phase - floor(phase), 0.0, 0.0, stride.ticks),
+             vec4(stride.halfStride, stride.cycle, 0.0, 0.0));
 }

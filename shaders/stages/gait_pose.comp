@@ -13,6 +13,5 @@ void main() {
   Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
   float speed = body.surfaceSpeed + abs(body.turnRate) * parameters.homeRadius;
   float phase = LOAD4(gaits, gaitAt).x + speed * parameters.dt / parameters.poseStride;
-  STORE4(gaitsOut, gaitAt, vec4(phase - floor(phase), 0.0, 0.0, 0.0));
-  STORE4(gaitsOut, gaitAt + 1, vec4(0.0));
+  STORE4_TWO(gaitsOut, gaitAt, vec4(phase - floor(phase), 0.0, 0.0, 0.0), vec4(0.0));
 }

@@ -18,6 +18,7 @@ layout(constant_id = CONSTANT_APPROACH_ITERATIONS) const int APPROACH_ITERATIONS
 layout(constant_id = CONSTANT_SOLVER) const int SOLVER = SOLVER_FABRIK;
 layout(constant_id = CONSTANT_POLISH_ITERATIONS) const int POLISH_ITERATIONS = 2;
 layout(constant_id = CONSTANT_PASS) const int PASS = PASS_WHOLE;
+layout(constant_id = CONSTANT_TIPS) const bool TIPS = false;
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -27,9 +28,11 @@ LOAD4_BUFFER(BINDING_START, chains);
 STORE4_BUFFER(BINDING_FIX_OUT, fixesOut);
 #else
 LOAD4_BUFFER(BINDING_CHAIN, chains);
-layout(set = 0, binding = BINDING_ERROR_OUT, std430) writeonly buffer ErrorBlock { float errorsOut[]; };
+LOAD2_BUFFER(BINDING_SOLVE, solves);
+STORE2_BUFFER(BINDING_SOLVE_OUT, solvesOut);
 #endif
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
+STORE4_BUFFER(BINDING_TIP_OUT, tipsOut);
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
 layout(set = 0, binding = BINDING_LIST, std430) buffer ListBlock { uint list[]; };
 
@@ -79,14 +82,23 @@ void main() {
     if (record < 0) return;
   }
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
-  int at = record * chainStride(BONES), rigAt = leg * rigStride(BONES);
+  int rigAt = leg * rigStride(BONES);
+#ifdef PLANTED
+  int at = record * startStride(BONES);
+#else
+  int at = record * chainStride(BONES), solveAt = solvePair(agent, leg, LEGS);
+#endif
 
   // What is far away in memory is asked for first, and waited for while the rig, which is near, is read.
   Pose pose;
   LOAD_SWINGS(pose.swing, chains, at);
   vec4 orientation = LOAD4(bodies, agent * BODY_STRIDE + 2);
   vec3 foot = LOAD4(feet, record).xyz;
-  float damping = LOAD4(chains, at + chainDirections(BONES) + 1).x;
+#ifdef PLANTED
+  float damping = 1.0;
+#else
+  float damping = LOAD2(solves, solveAt).y;
+#endif
   Limb limb;
   LOAD_LIMB(limb, rig, rigAt + RIG_LEG_STRIDE);
   vec4 root = LOAD4(rig, rigAt);
@@ -94,7 +106,7 @@ void main() {
   forwardKinematics(limb, pose);
 #ifdef PLANTED
   // The clip's pose, which what is solved is held against, and its root.
-  root.xyz = LOAD4(chains, at + chainDirections(BONES)).xyz;
+  root.xyz = LOAD4(chains, at + chainStride(BONES)).xyz;
   vec3 clipJoint[BONES], clipBone[BONES];
   for (int i = 0; i < BONES; ++i) {
     clipJoint[i] = pose.joint[i];
@@ -107,7 +119,7 @@ void main() {
   vec3 target = (rotateBack(orientation, foot) - root.xyz) / reach;
   bool lost = !finite(target);
   target = lost ? pose.tip : target;
-  float before = distance(target, pose.tip), error = before;
+  float error = distance(target, pose.tip);
   bool stuck = deadlocked(target, pose);
 
   if (PASS == PASS_QUICK) {
@@ -141,19 +153,16 @@ void main() {
     if (POLISH_ITERATIONS > 0) polish(limb, target, lost, pose, pose, error, damping);
   }
 
-  STORE_SWINGS(chainsOut, at, pose.swing);
-  vec3 tip = rotate(orientation, root.xyz + reach * pose.tip);
-  STORE4(chainsOut, at + chainDirections(BONES), vec4(tip, error * reach));
-  STORE4(chainsOut, at + chainDirections(BONES) + 1, vec4(damping, before * reach, 0.0, 0.0));
+  STORE_SWINGS(chainsOut, record * chainStride(BONES), pose.swing, chainStride(BONES) % 2 == 0);
+  if (TIPS) STORE4(tipsOut, record, vec4(rotate(orientation, root.xyz + reach * pose.tip), error * reach));
 #ifdef PLANTED
   forwardKinematics(limb, pose);
   for (int i = 0; i < BONES; ++i) {
     vec4 q = shortestArc(clipBone[i], pose.aboutBone[i]);
     vec3 move = root.xyz + reach * pose.joint[i] - rotate(q, root.xyz + reach * clipJoint[i]);
-    STORE4(fixesOut, (record * BONES + i) * FIX_STRIDE, q);
-    STORE4(fixesOut, (record * BONES + i) * FIX_STRIDE + 1, vec4(move, 0.0));
+    STORE4_TWO(fixesOut, (record * BONES + i) * FIX_STRIDE, q, vec4(move, 0.0));
   }
 #else
-  errorsOut[agent * 4 * errorStride(LEGS) + leg] = error * reach;
+  STORE2(solvesOut, solveAt, vec2(error * reach, damping));
 #endif
 }

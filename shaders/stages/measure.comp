@@ -10,6 +10,7 @@ LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_FOOT, feet);
 LOAD4_BUFFER(BINDING_CHAIN, chains);
+LOAD4_BUFFER(BINDING_TIP, tips);
 LOAD4_BUFFER(BINDING_WATCH, watches);
 STORE4_BUFFER(BINDING_WATCH_OUT, watchesOut);
 LOAD4_BUFFER(BINDING_METRIC, metrics);
@@ -24,7 +25,7 @@ float ground(vec2 world) {
 }
 
 bool plantedAt(int record) { return LOAD4(feet, record).w >= 1.0; }
-vec4 tipOf(int record) { return LOAD4(chains, record * chainStride(BONES) + chainDirections(BONES)); }
+vec4 tipOf(int record) { return LOAD4(tips, record); }
 
 Trail loadTrail(int at, out float slip) {
   vec4 a = LOAD4(watches, at), b = LOAD4(watches, at + 1), c = LOAD4(watches, at + 2);

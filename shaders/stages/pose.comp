@@ -18,8 +18,7 @@ void main() {
   vec4 root = LOAD4(rig, rigAt);
   vec3 p = rotate(r, root.xyz);
   if (leg == 0) {
-    STORE4(posesOut, poseAt - POSE_STRIDE, r);
-    STORE4(posesOut, poseAt - POSE_STRIDE + 1, vec4(0.0));
+    STORE4_TWO(posesOut, poseAt - POSE_STRIDE, r, vec4(0.0));
   }
   for (int i = 0; i < BONES; ++i) {
     vec4 directions = LOAD4(chains, at + i / 2);
@@ -28,8 +27,7 @@ void main() {
     vec4 a = LOAD4(rig, bone), b = LOAD4(rig, bone + 1);
     vec3 axis = cross(b.xyz, a.xyz) * s.x - a.xyz * s.y;
     r = quaternionProduct(r, vec4(axis, 1.0) * inversesqrt(1.0 + dot(s, s)));
-    STORE4(posesOut, poseAt + POSE_STRIDE * i, r);
-    STORE4(posesOut, poseAt + POSE_STRIDE * i + 1, vec4(p, 0.0));
+    STORE4_TWO(posesOut, poseAt + POSE_STRIDE * i, r, vec4(p, 0.0));
     p += root.w * a.w * rotate(r, b.xyz);
   }
 }

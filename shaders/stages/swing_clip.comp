@@ -29,13 +29,14 @@ float drop(Body body, vec2 q) {
 }
 #else
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
+STORE4_BUFFER(BINDING_TIP_OUT, tipsOut);
 #endif
 
 void main() {
   int record = legAt(int(gl_GlobalInvocationID.x));
   if (record < 0) return;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
-  int bodyAt = agent * BODY_STRIDE, playAt = agent * PLAY_STRIDE, at = record * chainStride(BONES);
+  int bodyAt = agent * BODY_STRIDE, playAt = agent * PLAY_STRIDE;
   Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
                          LOAD4(bodies, bodyAt + 3));
   Play play = unpackPlay(LOAD4(plays, playAt), LOAD4(plays, playAt + 1), LOAD4(plays, playAt + 2));
@@ -84,12 +85,12 @@ void main() {
   STORE4(stepsOut, stepAt + 1, vec4(offset, kept ? s1.w : body.tile.y));
   STORE4(stepsOut, stepAt + 2, vec4(0.0, 0.0, 0.0, locked ? 1.0 : 0.0));
   STORE4(stepsOut, stepAt + 3, vec4(0.0));
-  vec3 end = joint[0];
+  int at = record * startStride(BONES);
+  STORE_SWINGS(chainsOut, at, swings, startStride(BONES) % 2 == 0);
+  STORE4(chainsOut, at + chainStride(BONES), vec4(joint[0], 0.0));
 #else
-  vec3 end = target;
+  STORE_SWINGS(chainsOut, record * chainStride(BONES), swings, chainStride(BONES) % 2 == 0);
+  STORE4(tipsOut, record, vec4(target, 0.0));
 #endif
   STORE4(feetOut, record, vec4(target, u));
-  STORE_SWINGS(chainsOut, at, swings);
-  STORE4(chainsOut, at + chainDirections(BONES), vec4(end, 0.0));
-  STORE4(chainsOut, at + chainDirections(BONES) + 1, vec4(1.0, 0.0, 0.0, 0.0));
 }

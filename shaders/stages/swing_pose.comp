@@ -16,12 +16,14 @@ LOAD4_BUFFER(BINDING_SPRING, springs);
 STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 STORE4_BUFFER(BINDING_SPRING_OUT, springsOut);
+STORE4_BUFFER(BINDING_TIP_OUT, tipsOut);
+layout(constant_id = CONSTANT_TIPS) const bool TIPS = false;
 
 void main() {
   int record = legAt(int(gl_GlobalInvocationID.x));
   if (record < 0) return;
-  int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS), pairs = chainDirections(BONES);
-  int bodyAt = agent * BODY_STRIDE, at = record * chainStride(BONES), springAt = record * pairs;
+  int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS), pairs = chainStride(BONES);
+  int bodyAt = agent * BODY_STRIDE, at = record * pairs;
   Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
                          LOAD4(bodies, bodyAt + 3));
   float phase = LOAD4(gaits, agent * GAIT_STRIDE).x;
@@ -43,10 +45,10 @@ void main() {
     vec4 cycle = weight.x * LOAD4(poses, from + pair) + weight.y * LOAD4(poses, from + pairs + pair) +
                  weight.z * LOAD4(poses, to + pair) + weight.w * LOAD4(poses, to + pairs + pair);
     vec4 goal = mix(LOAD4(poses, standing + pair), cycle, walking);
-    vec4 off = LOAD4(chains, at + pair) - goal, rate = LOAD4(springs, springAt + pair);
+    vec4 off = LOAD4(chains, at + pair) - goal, rate = LOAD4(springs, at + pair);
     vec4 swings = goal + (parameters.springKeep * off + parameters.springDrift * rate);
     STORE4(chainsOut, at + pair, swings);
-    STORE4(springsOut, springAt + pair, parameters.springPull * off + parameters.springCarry * rate);
+    STORE4(springsOut, at + pair, parameters.springPull * off + parameters.springCarry * rate);
     pose.swing[i] = swings.xy;
     if (i + 1 < BONES) pose.swing[min(i + 1, BONES - 1)] = swings.zw;
   }
@@ -60,6 +62,5 @@ void main() {
   vec3 tip = rotate(body.orientation, root.xyz + root.w * pose.tip);
   bool stands = walking < 0.5 || fract(phase - contact.x) < contact.y;
   STORE4(feetOut, record, vec4(tip, stands ? 1.0 : 0.5));
-  STORE4(chainsOut, at + pairs, vec4(tip, 0.0));
-  STORE4(chainsOut, at + pairs + 1, vec4(1.0, 0.0, 0.0, 0.0));
+  if (TIPS) STORE4(tipsOut, record, vec4(tip, 0.0));
 }

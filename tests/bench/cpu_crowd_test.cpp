@@ -148,8 +148,8 @@ TEST_P(CpuCrowdTest, WalksFromTheFirstStep) {
 TEST_P(CpuCrowdTest, SolvesLegsThatAreFarOff) {
   Start start(device(), rollingGround(), 17, 30);
   std::vector<float>& chain = start.state.chain;
-  for (size_t leg = 0; leg < chain.size() / 16; leg += 3)
-    std::fill_n(chain.begin() + ptrdiff_t(16 * leg), 8, 0.0f);
+  for (size_t leg = 0; leg < chain.size() / 8; leg += 3)
+    std::fill_n(chain.begin() + ptrdiff_t(8 * leg), 8, 0.0f);
   CpuCrowd opponent(start.facts(), start.state, options());
   expectAllPass(replay(opponent, start, 5));
 }
@@ -161,8 +161,8 @@ TEST_P(CpuCrowdTest, BendsStraightLegs) {
     for (Bone& bone : leg.bones) bone.direction = glm::normalize(leg.home - leg.root());
   Start start(device(), rollingGround(), 17, 30, rig);
   std::vector<float>& chain = start.state.chain;
-  for (size_t leg = 0; leg < chain.size() / 16; leg += 3)
-    std::fill_n(chain.begin() + ptrdiff_t(16 * leg), 8, 0.0f);
+  for (size_t leg = 0; leg < chain.size() / 8; leg += 3)
+    std::fill_n(chain.begin() + ptrdiff_t(8 * leg), 8, 0.0f);
   CpuCrowd opponent(start.facts(), start.state, options());
   expectAllPass(replay(opponent, start, 5));
 }
@@ -248,6 +248,8 @@ TEST_P(CpuCrowdTest, ThreadsChangeNoBit) {
   EXPECT_EQ(a.body, b.body);
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.chain, b.chain);
+  EXPECT_EQ(a.tip, b.tip);
+  EXPECT_EQ(a.solve, b.solve);
   EXPECT_EQ(a.pose, b.pose);
   EXPECT_NE(a.body, start.state.body);
 }

@@ -72,8 +72,8 @@ TEST_P(ControllersTest, AnyNumberOfAgentsInAnyPages) {
     simulate(device(), crowd, 40);
     const HerdState state = crowd.download(0);
     EXPECT_EQ(state.agents, agents);
-    for (const auto* records : {&state.body, &state.step, &state.foot, &state.chain, &state.pose, &state.play,
-                                &state.start, &state.fix, &state.spring})
+    for (const auto* records : {&state.body, &state.step, &state.foot, &state.chain, &state.tip, &state.solve,
+                                &state.pose, &state.play, &state.start, &state.fix, &state.spring})
       for (const float value : *records) {
         EXPECT_TRUE(std::isfinite(value));
         if (!std::isfinite(value)) return uint64_t{0};
@@ -175,12 +175,10 @@ struct Slip {
 Slip slipOver(Device& device, Crowd& crowd, int ticks) {
   const Rig& rig = crowd.rig(0);
   const auto legs = static_cast<size_t>(rig.legCount());
-  const auto chainFloats = static_cast<size_t>(shared::chainStride(rig.maxBones())) * 4;
-  const auto tipAt = static_cast<size_t>(shared::chainDirections(rig.maxBones())) * 4;
   const auto feetOf = [&](const HerdState& state) {
     std::vector<glm::dvec3> feet;
     for (size_t leg = 0; leg < state.agents * legs; ++leg) {
-      const float* tip = &state.chain[leg * chainFloats + tipAt];
+      const float* tip = &state.tip[leg * 4];
       feet.push_back(positionOf(state, leg / legs) + glm::dvec3(tip[0], tip[1], tip[2]));
     }
     return feet;

@@ -67,7 +67,7 @@ TEST_P(EdgeTest, FeetThatCannotBeFollowedKeepThePose) {
   // Its legs keep their directions, and nobody else notices.
   const auto stride = static_cast<size_t>(shared::chainStride(crowd.rig(0).maxBones())) * 4;
   for (size_t leg = 0; leg < 8; ++leg)
-    for (size_t i = 0; i < 8; ++i)
+    for (size_t i = 0; i < stride; ++i)
       EXPECT_NEAR(after.chain[leg * stride + i], before.chain[leg * stride + i], 1e-6) << leg;
   for (size_t i = after.pose.size() / 3; i < after.pose.size(); ++i)
     ASSERT_TRUE(std::isfinite(after.pose[i]));
@@ -117,6 +117,8 @@ TEST_F(InputTest, MemoryIsWhatWasForetold) {
       EXPECT_EQ(bytesOf(crowd, "body"), 23 * 64u);
       EXPECT_EQ(bytesOf(crowd, "pose") > 0, options.pose);
       EXPECT_EQ(bytesOf(crowd, "metric"), options.measure ? 23 * 112u : 0);
+      // Without, what a binding needs.
+      EXPECT_EQ(bytesOf(crowd, "tip") > 8 * 8 * 16, options.measure);
       EXPECT_EQ(bytesOf(crowd, "footfall"), options.footfalls > 0 ? pages * 11 * 32 : 0);
     }
 }
@@ -132,10 +134,10 @@ TEST_F(InputTest, SpawningIsTheSameOnAnyNumberOfThreads) {
     const auto part = [&](size_t at, size_t each) {
       return std::span(floats).subspan(agents * at + first * each, count * each);
     };
-    return crowd::SpawnRecords{part(0, 8),    part(8, 16),    part(24, 8), part(32, 128),
-                               part(160, 32), part(192, 128), {}};
+    return crowd::SpawnRecords{part(0, 8),    part(8, 16),   part(24, 8),   part(32, 128), part(160, 32),
+                               part(192, 64), part(256, 32), part(288, 16), {}};
   };
-  std::vector<float> whole(agents * 320), runs(agents * 320);
+  std::vector<float> whole(agents * 304), runs(agents * 304);
   spawner.write(0, agents, records(whole, 0, agents));
   for (uint32_t first = 0; first < agents; first += run) spawner.write(first, run, records(runs, first, run));
   EXPECT_EQ(whole, runs);
@@ -189,6 +191,7 @@ TEST_F(InputTest, WhatIsLeftOutIsNotRead) {
   const HerdState state = crowd.download(0);
   EXPECT_TRUE(state.pose.empty());
   EXPECT_TRUE(state.metric.empty());
+  EXPECT_TRUE(state.tip.empty());
   EXPECT_EQ(crowd.fidelity().agentTicks, 0u);
   EXPECT_TRUE(crowd.footfalls(0).empty());
   EXPECT_EQ(state.body.size(), 5 * 16u);

@@ -13,9 +13,7 @@ using FootfallTest = GpuLoadTest;
 
 glm::dvec3 tipOf(const Rig& rig, const HerdState& state, size_t agent, size_t leg) {
   const auto legs = static_cast<size_t>(rig.legCount());
-  const auto stride = static_cast<size_t>(shared::chainStride(rig.maxBones()));
-  const auto tip = static_cast<size_t>(shared::chainDirections(rig.maxBones()));
-  const float* t = state.chain.data() + 4 * ((agent * legs + leg) * stride + tip);
+  const float* t = &state.tip[4 * (agent * legs + leg)];
   return positionOf(state, agent) + glm::dvec3(t[0], t[1], t[2]);
 }
 

@@ -158,24 +158,32 @@ TEST_P(NastyTest, ListedLegsAndOthersAreSolvedAlike) {
     const crowd::Page& page = herd.pages.at(0);
     scramble(context, crowd, 1, 1.1f);
     for (int tick = 0; tick < 4; ++tick) {
-      const auto before = gpu::download<uint32_t>(context, page.chain);
+      const auto before = gpu::download<uint32_t>(context, page.chain),
+                 dampings = gpu::download<uint32_t>(context, page.solve),
+                 places = gpu::download<uint32_t>(context, page.tip);
       simulate(device(), crowd, 1);
-      const auto solved = gpu::download<uint32_t>(context, page.chain);
+      const auto solved = gpu::download<uint32_t>(context, page.chain),
+                 told = gpu::download<uint32_t>(context, page.solve),
+                 tips = gpu::download<uint32_t>(context, page.tip);
       const uint32_t listed = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_IK_LISTED];
       EXPECT_LT(listed, page.agents * static_cast<uint32_t>(herd.legs));
       if (tick == 0) {
         EXPECT_GT(listed, 0u);
       }
       gpu::upload(context, page.chain, before);
+      gpu::upload(context, page.solve, dampings);
+      gpu::upload(context, page.tip, places);
       solveListed(context, herd);
       EXPECT_EQ(gpu::download<uint32_t>(context, page.chain), solved) << "tick " << tick;
+      EXPECT_EQ(gpu::download<uint32_t>(context, page.solve), told) << "tick " << tick;
+      EXPECT_EQ(gpu::download<uint32_t>(context, page.tip), tips) << "tick " << tick;
     }
   }
 }
 
-// What body and gait read of a leg's error is what its chain has, listed or not, padded to whole vec4s or
-// not.
-TEST_P(NastyTest, ErrorsAreThoseOfTheChains) {
+// What body and gait read of a leg's error is what is told with its tip, listed or not, padded to whole vec4s
+// or not.
+TEST_P(NastyTest, ErrorsAreThoseOfTheTips) {
   const gpu::Context& context = device().context();
   for (const Rig& rig : {spiderRig(), straightLegs({2, 5, 3, 1, 4, 5}, 60)}) {
     SCOPED_TRACE(rig.name);
@@ -184,17 +192,14 @@ TEST_P(NastyTest, ErrorsAreThoseOfTheChains) {
     const crowd::Page& page = herd.pages.at(0);
     scramble(context, crowd, 1, 1.1f);
     simulate(device(), crowd, 1);
-    const auto errors = gpu::download<float>(context, page.error),
-               chains = gpu::download<float>(context, page.chain);
-    const auto legs = static_cast<size_t>(herd.legs),
-               stride = static_cast<size_t>(shared::chainStride(herd.bones));
-    const auto entry = static_cast<size_t>(shared::chainDirections(herd.bones));
-    for (size_t agent = 0; agent < 65; ++agent)
-      for (size_t leg = 0; leg < legs; ++leg) {
-        const auto record =
-            static_cast<size_t>(shared::legRecord(static_cast<int>(agent), static_cast<int>(leg), herd.legs));
-        ASSERT_EQ(errors[agent * ((legs + 3) / 4 * 4) + leg], chains[4 * (record * stride + entry) + 3])
-            << "agent " << agent << ", leg " << leg;
+    const auto solves = gpu::download<float>(context, page.solve),
+               tips = gpu::download<float>(context, page.tip);
+    for (int agent = 0; agent < 65; ++agent)
+      for (int leg = 0; leg < herd.legs; ++leg) {
+        const auto record = static_cast<size_t>(shared::legRecord(agent, leg, herd.legs)),
+                   pair = static_cast<size_t>(shared::solvePair(agent, leg, herd.legs));
+        ASSERT_EQ(solves[2 * pair], tips[4 * record + 3]) << "agent " << agent << ", leg " << leg;
+        ASSERT_GE(solves[2 * pair + 1], 1) << "agent " << agent << ", leg " << leg;
       }
   }
 }

@@ -94,7 +94,9 @@ TEST(Records, PushConstantsAndStrides) {
     EXPECT_EQ(constants.at("every"), offsetof(shared::TickConstants, every)) << stage.name;
     EXPECT_EQ(constants.at("watched"), offsetof(shared::TickConstants, watched)) << stage.name;
     EXPECT_EQ(constants.at("room"), offsetof(shared::TickConstants, room)) << stage.name;
-    for (const uint32_t stride : layout.arrayStrides) EXPECT_TRUE(stride == 16 || stride == 4) << stage.name;
+    const bool pairs = crowd::makes(stage.name, "ik");  // solve records
+    for (const uint32_t stride : layout.arrayStrides)
+      EXPECT_TRUE(stride == 16 || stride == 4 || (pairs && stride == 8)) << stage.name << ": " << stride;
   }
 }
 

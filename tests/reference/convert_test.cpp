@@ -16,7 +16,7 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   const HerdState& state = herd.state();
   HerdState copy = state;
   for (auto* buffer : {&copy.goal, &copy.steer, &copy.body, &copy.gait, &copy.step, &copy.foot, &copy.chain,
-                       &copy.pose, &copy.metric, &copy.watch}) {
+                       &copy.tip, &copy.solve, &copy.pose, &copy.metric, &copy.watch}) {
     std::fill(buffer->begin(), buffer->end(), 0.0f);
   }
   const size_t bones = static_cast<size_t>(herd.bones());
@@ -43,6 +43,8 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   EXPECT_EQ(copy.step, state.step);
   EXPECT_EQ(copy.foot, state.foot);
   EXPECT_EQ(copy.chain, state.chain);
+  EXPECT_EQ(copy.tip, state.tip);
+  EXPECT_EQ(copy.solve, state.solve);
   EXPECT_EQ(copy.pose, state.pose);
   EXPECT_EQ(copy.metric, state.metric);
   EXPECT_EQ(copy.watch, state.watch);

@@ -19,7 +19,7 @@ class Measure : public testing::Test {
     tuning.dt = dt;
     for (size_t l = 0; l < creature.limbs.size(); ++l) {
       feet.push_back({{}, 1});
-      chains.push_back({std::vector<glm::dvec2>(4), creature.limbs[l].home, 0, 1, 0});
+      chains.push_back({std::vector<glm::dvec2>(4), creature.limbs[l].home, 0, 1});
     }
   }
 

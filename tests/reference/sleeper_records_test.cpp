@@ -44,14 +44,16 @@ class SleepersRecord : public testing::TestWithParam<Record> {
     fill(state.step, legs, shared::STEP_STRIDE);
     fill(state.foot, legs, shared::FOOT_STRIDE);
     fill(state.chain, legs, shared::chainStride(bones));
+    fill(state.tip, legs, shared::TIP_STRIDE);
+    if (crowd::continuesSolves(controller)) fill(state.solve, 1, shared::solveStride(legs));
     if (crowd::playsClips(controller)) fill(state.play, 1, shared::PLAY_STRIDE);
     if (crowd::playsClips(controller)) fill(state.pose, 1, shared::MATRIX_STRIDE);
     if (!crowd::playsClips(controller)) fill(state.pose, 1 + legs * bones, shared::POSE_STRIDE);
     if (controller == crowd::Controller::planted) {
-      fill(state.start, legs, shared::chainStride(bones));
+      fill(state.start, legs, shared::startStride(bones));
       fill(state.fix, legs * bones, shared::FIX_STRIDE);
     }
-    if (controller == crowd::Controller::pose) fill(state.spring, legs, shared::chainDirections(bones));
+    if (controller == crowd::Controller::pose) fill(state.spring, legs, shared::chainStride(bones));
     for (size_t agent = 0; agent < agents; ++agent) {
       validation::putGoal(state, agent, {});
       validation::putSteer(state, agent, {0, 0}, true);
@@ -111,16 +113,21 @@ INSTANTIATE_TEST_SUITE_P(
                     Record{"adaptiveStep", Controller::adaptive, &HerdState::step, "foothold", 8},
                     Record{"adaptiveFoot", Controller::adaptive, &HerdState::foot, "swing", 8},
                     Record{"adaptiveChain", Controller::adaptive, &HerdState::chain, "ik", 8},
+                    Record{"adaptiveTip", Controller::adaptive, &HerdState::tip, "ik", 8},
+                    Record{"adaptiveSolve", Controller::adaptive, &HerdState::solve, "ik", 1},
                     Record{"adaptivePose", Controller::adaptive, &HerdState::pose, "pose", 1},
                     Record{"loopBody", Controller::loop, &HerdState::body, "body", 1},
                     Record{"loopGait", Controller::loop, &HerdState::gait, "gait", 1},
                     Record{"loopFoot", Controller::loop, &HerdState::foot, "swing", 8},
                     Record{"loopChain", Controller::loop, &HerdState::chain, "ik", 8},
+                    Record{"loopTip", Controller::loop, &HerdState::tip, "ik", 8},
+                    Record{"loopSolve", Controller::loop, &HerdState::solve, "ik", 1},
                     Record{"loopPose", Controller::loop, &HerdState::pose, "pose", 1},
                     Record{"clipBody", Controller::clip, &HerdState::body, "body", 1},
                     Record{"clipPlay", Controller::clip, &HerdState::play, "clip", 1},
                     Record{"clipFoot", Controller::clip, &HerdState::foot, "swing", 8},
                     Record{"clipChain", Controller::clip, &HerdState::chain, "swing", 8},
+                    Record{"clipTip", Controller::clip, &HerdState::tip, "swing", 8},
                     Record{"clipPose", Controller::clip, &HerdState::pose, "pose", 1},
                     Record{"plantedBody", Controller::planted, &HerdState::body, "body", 1},
                     Record{"plantedPlay", Controller::planted, &HerdState::play, "clip", 1},
@@ -128,12 +135,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Record{"plantedFoot", Controller::planted, &HerdState::foot, "swing", 8},
                     Record{"plantedStart", Controller::planted, &HerdState::start, "swing", 8},
                     Record{"plantedChain", Controller::planted, &HerdState::chain, "ik", 8},
+                    Record{"plantedTip", Controller::planted, &HerdState::tip, "ik", 8},
                     Record{"plantedFix", Controller::planted, &HerdState::fix, "ik", 8},
                     Record{"plantedPose", Controller::planted, &HerdState::pose, "pose", 1},
                     Record{"poseBody", Controller::pose, &HerdState::body, "body", 1},
                     Record{"poseGait", Controller::pose, &HerdState::gait, "gait", 1},
                     Record{"poseFoot", Controller::pose, &HerdState::foot, "swing", 8},
                     Record{"poseChain", Controller::pose, &HerdState::chain, "swing", 8},
+                    Record{"poseTip", Controller::pose, &HerdState::tip, "swing", 8},
                     Record{"poseSpring", Controller::pose, &HerdState::spring, "swing", 8},
                     Record{"posePose", Controller::pose, &HerdState::pose, "pose", 1}),
     [](const auto& param) { return std::string(param.param.name); });
