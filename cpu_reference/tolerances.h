@@ -56,6 +56,17 @@ inline double breathedOut(const Tuning& t, const Gait& gait) { return 6 * roundo
 
 // A rotation by a unit quaternion: 12 operations on lengths up to |v|, and the quaternion's own norm.
 inline double rotated(double length) { return 16 * roundoff * length; }
+// A foot's target, in its step or planted. A spline errs in the coordinates that it is evaluated in; heights
+// are world ones.
+inline double footAside(bool planted) { return planted ? relative : spline + relative; }
+inline double footHeight(const Step& step, const AgentBody& body, bool planted) {
+  const double magnitude =
+      std::max({std::abs(step.landing.y), std::abs(step.liftOff.y), std::abs(body.y), 1.0});
+  return (planted ? 4 : 16) * roundoff * magnitude;
+}
+inline double foot(const Step& step, const AgentBody& body, bool planted) {
+  return std::hypot(footAside(planted), footHeight(step, body, planted));
+}
 // Distance of a foot from its root or home.
 inline double footDistance(double length) { return relative + rotated(length); }
 

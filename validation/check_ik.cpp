@@ -1,5 +1,6 @@
 #include "cpu_reference/ik.h"
 #include "cpu_reference/kinematics.h"
+#include "cpu_reference/swing.h"
 #include "cpu_reference/tolerances.h"
 #include "shared/records.h"
 #include "validation/checks.h"
@@ -14,7 +15,7 @@ namespace tolerance = reference::tolerance;
 // What must hold of any result, whichever way the solver went.
 void checkGoals(const Setting& setting, const reference::Limb& limb, const reference::AgentBody& body,
                 const glm::dvec3& target, const reference::Chain& previous, const reference::Chain& got,
-                const reference::Posture& posture, bool hasTips, Sample& sample) {
+                const reference::Posture& posture, double targetError, bool hasTips, Sample& sample) {
   for (size_t i = 0; i < limb.bones.size(); ++i) {
     const double t = limb.bones[i].tanHalfCone;
     const double violation = 2 * (glm::length(got.directions[i]) - t) / (1 + t * t);
@@ -29,8 +30,8 @@ void checkGoals(const Setting& setting, const reference::Limb& limb, const refer
   }
   const bool finite = std::isfinite(target.x + target.y + target.z);
   const double error = finite ? glm::length(target - posture.tip()) : 0;
-  sample.compare("reported error / reach", std::abs(error - got.reachError / limb.reach), kinematics,
-                 {error * limb.reach, 0, 0, 0}, {got.reachError, 0, 0, 0});
+  sample.compare("reported error / reach", std::abs(error - got.reachError / limb.reach),
+                 kinematics + targetError, {error * limb.reach, 0, 0, 0}, {got.reachError, 0, 0, 0});
   for (size_t i = 0; i < limb.bones.size() && !finite; ++i) {
     sample.compare("pose kept", glm::length(previous.directions[i] - got.directions[i]), 0,
                    {previous.directions[i], 0, 0}, {got.directions[i], 0, 0});
@@ -49,7 +50,12 @@ SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l
                           const reference::Chain& previous) {
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
   const size_t leg = moment.agent * static_cast<size_t>(setting.legs) + l;
-  const reference::Foot foot = footOf(moment.after, leg);
+  // What is made at once with swing and looked at by nobody has no foot records.
+  const bool hasFeet = !moment.after.foot.empty();
+  const reference::Step step = stepOf(moment.after, leg);
+  const reference::Foot foot =
+      hasFeet ? footOf(moment.after, leg) : reference::swing(step, body, static_cast<double>(moment.n));
+  const double targetError = hasFeet ? 0 : tolerance::foot(step, body, foot.progress >= 1) / limb.reach;
   const reference::Chain got = chainOf(moment.after, leg, setting.bones);
   const reference::Chain expected = reference::ik(setting.tuning, limb, body, foot, previous, setting.ik);
   const reference::Posture posture(limb, got.directions), wanted(limb, expected.directions);
@@ -58,7 +64,7 @@ SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l
   Sample& sample = verdict.sample;
   sample.finite("chain", records(moment.after.chain, leg, shared::chainStride(setting.bones)));
   checkGoals(setting, limb, body, reference::ikTarget(limb, body, foot.target), previous, got, posture,
-             !moment.after.tip.empty(), sample);
+             targetError, !moment.after.tip.empty(), sample);
 
   double apart = 0;
   for (size_t i = 1; i <= posture.bones(); ++i) {

@@ -22,11 +22,8 @@ void checkSwing(const Setting& setting, const Moment& moment, Judge& judge) {
     sample.same("planted", planted, got.progress >= 1);
     sample.compare("progress", std::abs(expected.progress - got.progress), 4 * tolerance::roundoff,
                    {expected.progress, 0, 0, 0}, {got.progress, 0, 0, 0});
-    // A spline errs in the coordinates that it is evaluated in; heights are world ones.
-    const double horizontal = planted ? tolerance::relative : tolerance::spline + tolerance::relative;
-    const double magnitude =
-        std::max({std::abs(step.landing.y), std::abs(step.liftOff.y), std::abs(body.y), 1.0});
-    const double vertical = (planted ? 4 : 16) * tolerance::roundoff * magnitude;
+    const double horizontal = tolerance::footAside(planted);
+    const double vertical = tolerance::footHeight(step, body, planted);
     const glm::dvec3 apart = got.target - expected.target;
     const glm::dvec4 want{expected.target, 0}, found{got.target, 0};
     sample.compare("target, horizontally / leg length", std::hypot(apart.x, apart.z) / unit,

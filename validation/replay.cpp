@@ -106,7 +106,7 @@ void expectSizes(const Setting& setting, const HerdState& state) {
   expect("body records", state.body, 1, shared::BODY_STRIDE);
   expect("gait records", state.gait, 1, shared::GAIT_STRIDE);
   expect("step records", state.step, legs, shared::STEP_STRIDE);
-  expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
+  if (!state.foot.empty()) expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
   expect("chain records", state.chain, legs, shared::chainStride(setting.bones));
   if (!state.tip.empty()) expect("tip records", state.tip, legs, shared::TIP_STRIDE);
   if (crowd::continuesSolves(setting.controller))
@@ -206,7 +206,8 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
   expectSizes(setting_, before);
   expectSizes(setting_, after);
   const auto left = [&](std::string_view stage) {
-    return (stage == "pose" && after.pose.empty()) || (stage == "footfall" && !after.footfallsKept) ||
+    return (stage == "pose" && after.pose.empty()) || (stage == "swing" && after.foot.empty()) ||
+           (stage == "footfall" && !after.footfallsKept) ||
            (stage == "measure" && (before.metric.empty() || after.metric.empty()));
   };
   const Stages& stages = stagesOf(setting_.controller);

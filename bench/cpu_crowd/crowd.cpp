@@ -33,7 +33,6 @@ void check(const validation::HerdFacts& facts, const HerdState& start, const Opt
   expectSize("gait", start.gait, agents, shared::GAIT_STRIDE);
   if (clips) return expectSize("play", start.play, agents, shared::PLAY_STRIDE);
   expectSize("step", start.step, agents * legs, shared::STEP_STRIDE);
-  expectSize("foot", start.foot, agents * legs, shared::FOOT_STRIDE);
   expectSize("chain", start.chain, agents * legs, shared::chainStride(facts.rig.maxBones()));
   expectSize("solve", start.solve, agents, shared::solveStride(int(legs)));
 }

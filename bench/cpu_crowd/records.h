@@ -57,12 +57,10 @@ template <int N>
 Leg<float, N> readLeg(const HerdState& state, size_t agent, size_t l, size_t legs, int bones) {
   const size_t leg = agent * legs + l;
   const float* s = recordAt(state.step, leg, shared::STEP_STRIDE);
-  const float* foot = recordAt(state.foot, leg, shared::FOOT_STRIDE);
   const float* directions = recordAt(state.chain, leg, shared::chainStride(bones));
   Leg<float, N> to{};
   to.step = {{s[0], s[1], s[2]},  s[3],  {s[4], s[5], s[6]},    s[7],
              {s[8], s[9], s[10]}, s[11], {s[12], s[13], s[14]}, s[15]};
-  to.foot = {{foot[0], foot[1], foot[2]}, foot[3]};
   for (int b = 0; b < bones; ++b) {
     to.chain.x[b] = directions[2 * b];
     to.chain.y[b] = directions[2 * b + 1];

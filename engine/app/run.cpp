@@ -148,7 +148,7 @@ int run(const RunOptions& options) {
   crowdOptions.measure = !options.unmeasured;
   crowdOptions.watchEvery = options.watchEvery;
   crowdOptions.sleep = options.sleep;
-  crowdOptions.tips = !options.trace.empty();
+  crowdOptions.feet = !options.trace.empty();
   if (!options.footfalls.empty()) crowdOptions.footfalls = UINT32_MAX;  // all that can be
   crowdOptions.pose =
       options.poses || windowed || target.kind != OutTarget::Kind::none || !options.trace.empty();

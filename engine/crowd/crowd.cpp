@@ -114,21 +114,25 @@ const gpu::Kernel& kernelOf(const Impl& crowd, const crowd::Herd& herd, size_t i
              : herd.kernels[index];
 }
 
+shared::TickConstants constantsOf(const Impl& crowd, const crowd::Herd& herd, const Page& page,
+                                  Stage::Over over, uint64_t tick) {
+  if (over == Stage::Over::watched) {
+    const crowd::Watch watch = crowd::watchAt(tick, crowd.watchEvery, page);
+    return {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0, 0};
+  }
+  return {page.agents,
+          static_cast<float>(tick),
+          page.firstAgent,
+          1,
+          0,
+          page.footfallRoom,
+          watchesGround(crowd) ? std::numeric_limits<float>::infinity() : herd.parameters.sleepTime};
+}
+
 void dispatch(const Impl& crowd, const crowd::Herd& herd, const Page& page, size_t index, uint64_t tick,
               vk::CommandBuffer cmd) {
   const Stage& stage = herd.stages[index];
-  shared::TickConstants constants{
-      page.agents,
-      static_cast<float>(tick),
-      page.firstAgent,
-      1,
-      0,
-      page.footfallRoom,
-      watchesGround(crowd) ? std::numeric_limits<float>::infinity() : herd.parameters.sleepTime};
-  if (stage.over == Stage::Over::watched) {
-    const crowd::Watch watch = crowd::watchAt(tick, crowd.watchEvery, page);
-    constants = {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0, 0};
-  }
+  const shared::TickConstants constants = constantsOf(crowd, herd, page, stage.over, tick);
   const auto push = gpu::bytesOf(constants);
   if (stage.over == Stage::Over::listed)
     herd.kernels[index].dispatchIndirect(cmd, page.bindings[index], push, page.counters);
@@ -184,8 +188,10 @@ void recordStage(const Impl& crowd, std::string_view name, uint64_t tick, vk::Co
   eachPage([&](const crowd::Herd& herd, const Page& page, size_t index) {
     if (!herd.restKernels[index]) return;
     if (!std::exchange(listed, true)) gpu::computeToIndirectAndCompute(cmd);
-    const auto at = static_cast<uint64_t>(herd.stages[index].rest);
-    herd.restKernels[index].dispatchIndirect(cmd, page.bindings[index], gpu::bytesOf(shared::TickConstants{}),
+    const Stage& stage = herd.stages[index];
+    const shared::TickConstants constants = constantsOf(crowd, herd, page, stage.over, tick);
+    const auto at = static_cast<uint64_t>(stage.rest);
+    herd.restKernels[index].dispatchIndirect(cmd, page.bindings[index], gpu::bytesOf(constants),
                                              page.counters, at * sizeof(uint32_t));
   });
 }
@@ -218,7 +224,7 @@ void settle(Impl& crowd) {
       gpu::computeToTransfer(cmd);
       clearLists(crowd, cmd);  // ik lists legs each time
       gpu::transferToCompute(cmd);
-      recordStage(crowd, "ik", 0, cmd);
+      for (const char* solves : {"ik", "swing+ik"}) recordStage(crowd, solves, 0, cmd);
     }
     gpu::computeToCompute(cmd);
     recordStage(crowd, "pose", 0, cmd);

@@ -5,6 +5,10 @@
 #include "embedded/ik_compared_comp_texel.h"
 #include "embedded/ik_planted_comp_storage.h"
 #include "embedded/ik_planted_comp_texel.h"
+#include "embedded/swing_ik_comp_storage.h"
+#include "embedded/swing_ik_comp_texel.h"
+#include "embedded/swing_ik_compared_comp_storage.h"
+#include "embedded/swing_ik_compared_comp_texel.h"
 #include "shared/bindings.h"
 #include "shared/records.h"
 
@@ -19,6 +23,27 @@ Stage ikStage() {
            {BINDING_RIG, load4},
            {BINDING_BODY, load4},
            {BINDING_FOOT, load4},
+           {BINDING_CHAIN, load4},
+           {BINDING_CHAIN_OUT, store},
+           {BINDING_SOLVE, load2},
+           {BINDING_SOLVE_OUT, store},
+           {BINDING_TIP_OUT, store},
+           {BINDING_LIST, store},
+           {BINDING_COUNTERS, store}},
+          Stage::Over::legs,
+          COUNTER_IK_DISPATCH_X};
+}
+
+Stage swingAndIkStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {"swing+ik",
+          {embedded::swing_ik_comp_texel(), embedded::swing_ik_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_RIG, load4},
+           {BINDING_BODY, load4},
+           {BINDING_STEP, load4},
+           {BINDING_FOOT_OUT, store},
            {BINDING_CHAIN, load4},
            {BINDING_CHAIN_OUT, store},
            {BINDING_SOLVE, load2},
@@ -49,7 +74,9 @@ Stage plantedIkStage() {
           COUNTER_IK_DISPATCH_X};
 }
 
-gpu::ShaderCode comparedIkCode() {
+gpu::ShaderCode comparedIkCode(bool withSwing) {
+  if (withSwing)
+    return {embedded::swing_ik_compared_comp_texel(), embedded::swing_ik_compared_comp_storage()};
   return {embedded::ik_compared_comp_texel(), embedded::ik_compared_comp_storage()};
 }
 

@@ -148,15 +148,17 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
       {"body", &Page::body, vec4s(1, BODY_STRIDE), &SpawnRecords::body},
       {"gait", &Page::gait, vec4s(1, GAIT_STRIDE), &SpawnRecords::gait},
       ofLegs("step", &Page::step, STEP_STRIDE, &SpawnRecords::step),
-      ofLegs("foot", &Page::foot, FOOT_STRIDE, &SpawnRecords::foot),
       ofLegs("chain", &Page::chain, chainStride(rig.maxBones()), &SpawnRecords::chain),
       {"list", &Page::list, legs * sizeof(uint32_t)}};
-  PageBuffer tip = ofLegs("tip", &Page::tip, TIP_STRIDE, &SpawnRecords::tip);
-  if (!keepsTips(options)) {
-    tip.most = tip.bytes;
-    tip.spawned = nullptr;
-  }
-  buffers.push_back(tip);
+  // What is not kept is bound all the same.
+  const auto ofFeet = [&](const char* name, gpu::Buffer Page::*buffer, int stride,
+                          std::span<float> SpawnRecords::*spawned, bool kept) {
+    PageBuffer made = ofLegs(name, buffer, stride, kept ? spawned : nullptr);
+    if (!kept) made.most = made.bytes;
+    buffers.push_back(made);
+  };
+  ofFeet("foot", &Page::foot, FOOT_STRIDE, &SpawnRecords::foot, hasFootRecords(herd, options));
+  ofFeet("tip", &Page::tip, TIP_STRIDE, &SpawnRecords::tip, keepsFeet(options));
   if (continuesSolves(herd.controller))
     buffers.push_back({"solve", &Page::solve, vec4s(1, solveStride(rig.legCount())), &SpawnRecords::solve});
   if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE), &SpawnRecords::play});

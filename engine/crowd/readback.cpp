@@ -84,10 +84,10 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
     append(page.body, state.body);
     append(page.gait, state.gait);
     append(page.step, state.step, herd.legs);
-    append(page.foot, state.foot, herd.legs);
+    if (crowd::hasFootRecords(herd, impl_->options)) append(page.foot, state.foot, herd.legs);
     append(page.chain, state.chain, herd.legs);
     append(page.solve, state.solve);
-    if (crowd::keepsTips(impl_->options)) append(page.tip, state.tip, herd.legs);
+    if (crowd::keepsFeet(impl_->options)) append(page.tip, state.tip, herd.legs);
     append(page.pose, state.pose);
     append(page.metric, state.metric);
     append(page.play, state.play);

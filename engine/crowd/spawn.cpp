@@ -188,7 +188,7 @@ void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRe
       step.push(liftOff.x, liftOff.y, liftOff.z, tileZ);
       step.push(0, 0, 0, -1000);
       step.push(0, 0, 0, 1);
-      foot.push(home.x, landing.y - height, home.z, 1);
+      if (!records.foot.empty()) foot.push(home.x, landing.y - height, home.z, 1);
       pushDirections(l, chain);
       if (!records.tip.empty()) tip.push(home.x, landing.y - height, home.z, 0);
     }

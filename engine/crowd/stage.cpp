@@ -35,9 +35,8 @@ std::vector<Stage> everyStageOf(Controller controller) {
           swingStage(),    ikStage(),   poseStage(), measureStage(), footfallStage()};
 }
 
-// Puts stages of a row that pay to be made at once together, but for those that are given another shader.
-void fuse(const CrowdOptions& options, std::vector<Stage>& stages) {
-  const Stage fused = bodyAndGaitStage();
+// Puts the stages that `fused` makes at once together, but for those that are given another shader.
+void fuse(const CrowdOptions& options, const Stage& fused, std::vector<Stage>& stages) {
   const auto isPart = [&](const Stage& stage) { return makes(fused.name, stage.name); };
   const bool given =
       std::any_of(options.shaders.begin(), options.shaders.end(), [&](const StageShader& shader) {
@@ -61,15 +60,16 @@ Controller controllerNamed(const std::string& name) {
 }
 
 const std::vector<const char*>& frame() {
-  static const std::vector<const char*> names = {"navigate", "wake", "body",     "body+gait",
-                                                 "clip",     "gait", "foothold", "swing",
-                                                 "ik",       "pose", "measure",  "footfall"};
+  static const std::vector<const char*> names = {"navigate", "wake",     "body",    "body+gait", "clip",
+                                                 "gait",     "foothold", "swing",   "swing+ik",  "ik",
+                                                 "pose",     "measure",  "footfall"};
   return names;
 }
 
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) {
   std::vector<Stage> stages = everyStageOf(controller);
-  if (options.fuse && controller == Controller::adaptive) fuse(options, stages);
+  if (options.fuse && controller == Controller::adaptive)
+    for (const Stage& fused : {bodyAndGaitStage(), swingAndIkStage()}) fuse(options, fused, stages);
   std::erase_if(stages, [&](const Stage& stage) {
     const std::string_view name = stage.name;
     if (name == "wake") return !options.sleep;
@@ -77,7 +77,7 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) 
     if (name == "measure") return !options.measure;
     if (name == "footfall") return options.footfalls == 0;
     // Of a clip as it is, feet are looked at by measure alone.
-    if (name == "swing" && controller == Controller::clip) return !keepsTips(options);
+    if (name == "swing" && controller == Controller::clip) return !keepsFeet(options);
     return false;
   });
   for (Stage& stage : stages)
@@ -91,8 +91,8 @@ bool makes(std::string_view stage, std::string_view part) {
   return stage == part;
 }
 
-bool keepsTips(const CrowdOptions& options) {
-  return options.tips || options.measure || options.footfalls > 0;
+bool keepsFeet(const CrowdOptions& options) {
+  return options.feet || options.measure || options.footfalls > 0;
 }
 
 bool isOfTheAwake(const Stage& stage) {
@@ -100,17 +100,23 @@ bool isOfTheAwake(const Stage& stage) {
          stage.over == Stage::Over::joints;
 }
 
+bool hasFootRecords(const Herd& herd, const CrowdOptions& options) {
+  return keepsFeet(options) || std::none_of(herd.stages.begin(), herd.stages.end(), [](const Stage& stage) {
+           return makes(stage.name, "swing") && makes(stage.name, "ik");
+         });
+}
+
 StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const Herd& herd) {
   using namespace shared;
   gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
-  const bool isIk = std::strcmp(stage.name, "ik") == 0;
+  const bool isIk = makes(stage.name, "ik");
   const bool isGait = herd.controller == Controller::adaptive && makes(stage.name, "gait");
-  if (isIk && herd.ik.solver != SOLVER_FABRIK) info.code = comparedIkCode();
+  if (isIk && herd.ik.solver != SOLVER_FABRIK) info.code = comparedIkCode(makes(stage.name, "swing"));
   for (const StageShader& other : options.shaders)
     if (other.stage == stage.name) info.code = {other.texel, other.storage};
   info.constants = {{CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
   if (isIk || (herd.controller == Controller::pose && makes(stage.name, "swing")))
-    info.constants.emplace_back(CONSTANT_TIPS, keepsTips(options));
+    info.constants.emplace_back(CONSTANT_FEET, keepsFeet(options));
   if (options.sleep) {
     const bool breathes = herd.controller == Controller::adaptive;
     info.constants.emplace_back(CONSTANT_SLEEP, breathes ? SLEEP_BREATHED_OUT : SLEEP_STILL);

@@ -35,13 +35,17 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options);
 // them.
 bool makes(std::string_view stage, std::string_view part);
 
-// Whether ik, or what takes its place, writes the tips.
-bool keepsTips(const CrowdOptions& options);
+// Whether somebody looks at feet: ik, or what takes its place, writes tips, and what makes swing and ik at
+// once feet.
+bool keepsFeet(const CrowdOptions& options);
 
 // Whether it passes over those who sleep.
 bool isOfTheAwake(const Stage& stage);
 
 struct Herd;
+
+// Whether feet go from one stage to another through records, or somebody looks at them.
+bool hasFootRecords(const Herd& herd, const CrowdOptions& options);
 
 // A stage's shader, specialised by the herd's legs, bones and groups: for its first dispatch, for what that
 // leaves out (Stage::rest) and, of gait, for the ticks after an edit of the heights.
@@ -70,9 +74,10 @@ Stage clipSwingStage();
 Stage plantedSwingStage();
 Stage keyPoseSwingStage();
 Stage ikStage();
+Stage swingAndIkStage();
 Stage plantedIkStage();
-// Of the ik stage with the solvers that are there to be compared.
-gpu::ShaderCode comparedIkCode();
+// Of ik, or of swing and ik, with the solvers that are there to be compared.
+gpu::ShaderCode comparedIkCode(bool withSwing);
 Stage poseStage();
 Stage clipPoseStage();
 Stage plantedPoseStage();

@@ -80,7 +80,7 @@ BINDING CONSTANT_SEARCH_STEPS = 22;  // 2 to their power is more than a clip has
 BINDING CONSTANT_REACH = 23;         // gait steps when out of reach, without a rhythm
 BINDING CONSTANT_WATCH = 24;  // gait looks at the ground under every foot: the heights were edited lately
 BINDING CONSTANT_SLEEP = 25;  // SLEEP_
-BINDING CONSTANT_TIPS = 26;   // tips are written
+BINDING CONSTANT_FEET = 26;   // tips are written, and feet where only ik reads them
 #undef BINDING
 
 // Push constants of every stage.

@@ -18,11 +18,17 @@ layout(constant_id = CONSTANT_APPROACH_ITERATIONS) const int APPROACH_ITERATIONS
 layout(constant_id = CONSTANT_SOLVER) const int SOLVER = SOLVER_FABRIK;
 layout(constant_id = CONSTANT_POLISH_ITERATIONS) const int POLISH_ITERATIONS = 2;
 layout(constant_id = CONSTANT_PASS) const int PASS = PASS_WHOLE;
-layout(constant_id = CONSTANT_TIPS) const bool TIPS = false;
+layout(constant_id = CONSTANT_FEET) const bool FEET = false;
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
+#ifdef SWINGS
+LOAD4_BUFFER(BINDING_STEP, steps);
+STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
+#include "stages/swing.glsl"
+#else
 LOAD4_BUFFER(BINDING_FOOT, feet);
+#endif
 #ifdef PLANTED
 LOAD4_BUFFER(BINDING_START, chains);
 STORE4_BUFFER(BINDING_FIX_OUT, fixesOut);
@@ -93,7 +99,12 @@ void main() {
   Pose pose;
   LOAD_SWINGS(pose.swing, chains, at);
   vec4 orientation = LOAD4(bodies, agent * BODY_STRIDE + 2);
-  vec3 foot = LOAD4(feet, record).xyz;
+#ifdef SWINGS
+  vec4 foot = makeFoot(agent, record);
+  if (FEET && PASS != PASS_LISTED) STORE4(feetOut, record, foot);
+#else
+  vec4 foot = LOAD4(feet, record);
+#endif
 #ifdef PLANTED
   float damping = 1.0;
 #else
@@ -116,7 +127,7 @@ void main() {
   }
 #endif
 
-  vec3 target = (rotateBack(orientation, foot) - root.xyz) / reach;
+  vec3 target = (rotateBack(orientation, foot.xyz) - root.xyz) / reach;
   bool lost = !finite(target);
   target = lost ? pose.tip : target;
   float error = distance(target, pose.tip);
@@ -154,7 +165,7 @@ void main() {
   }
 
   STORE_SWINGS(chainsOut, record * chainStride(BONES), pose.swing, chainStride(BONES) % 2 == 0);
-  if (TIPS) STORE4(tipsOut, record, vec4(rotate(orientation, root.xyz + reach * pose.tip), error * reach));
+  if (FEET) STORE4(tipsOut, record, vec4(rotate(orientation, root.xyz + reach * pose.tip), error * reach));
 #ifdef PLANTED
   forwardKinematics(limb, pose);
   for (int i = 0; i < BONES; ++i) {

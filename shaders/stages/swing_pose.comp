@@ -17,7 +17,7 @@ STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 STORE4_BUFFER(BINDING_SPRING_OUT, springsOut);
 STORE4_BUFFER(BINDING_TIP_OUT, tipsOut);
-layout(constant_id = CONSTANT_TIPS) const bool TIPS = false;
+layout(constant_id = CONSTANT_FEET) const bool FEET = false;
 
 void main() {
   int record = legAt(int(gl_GlobalInvocationID.x));
@@ -62,5 +62,5 @@ void main() {
   vec3 tip = rotate(body.orientation, root.xyz + root.w * pose.tip);
   bool stands = walking < 0.5 || fract(phase - contact.x) < contact.y;
   STORE4(feetOut, record, vec4(tip, stands ? 1.0 : 0.5));
-  if (TIPS) STORE4(tipsOut, record, vec4(tip, 0.0));
+  if (FEET) STORE4(tipsOut, record, vec4(tip, 0.0));
 }

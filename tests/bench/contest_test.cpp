@@ -64,8 +64,9 @@ TEST_F(ContestTest, EverybodyIsCheckedAndTimed) {
     EXPECT_TRUE(result.pass);
     EXPECT_EQ(result.checks.size(), 7u);  // navigate to pose
     for (const validation::StageResult& check : result.checks) {
-      // That no leg begins a step in a tick can be.
-      EXPECT_TRUE(check.samples > 0 || check.name == "foothold") << check.name;
+      // That no leg begins a step in a tick can be. Feet that swing and ik make at once are judged by ik.
+      const bool unseen = check.name == "foothold" || (check.name == "swing" && result.name == "device");
+      EXPECT_TRUE(check.samples > 0 || unseen) << check.name;
     }
     EXPECT_GT(result.wall.median, 0);
     EXPECT_LE(result.wall.low, result.wall.high);
@@ -75,7 +76,9 @@ TEST_F(ContestTest, EverybodyIsCheckedAndTimed) {
 
 // Bytes of swing by shaders/shared/records.h: the body, eight steps in, eight feet out.
 TEST_F(ContestTest, BytesAreThoseOfTheRecords) {
-  const bench::Match match = contest(sceneOf(16), unmeasured());  // whole blocks
+  CrowdOptions options = unmeasured();
+  options.fuse = false;
+  const bench::Match match = contest(sceneOf(16), options);  // whole blocks
   const auto swing = std::find_if(match.demands.begin(), match.demands.end(),
                                   [](const bench::StageDemand& d) { return d.stage == "swing"; });
   ASSERT_NE(swing, match.demands.end());

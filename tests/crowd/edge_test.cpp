@@ -134,8 +134,9 @@ TEST_F(InputTest, SpawningIsTheSameOnAnyNumberOfThreads) {
     const auto part = [&](size_t at, size_t each) {
       return std::span(floats).subspan(agents * at + first * each, count * each);
     };
-    return crowd::SpawnRecords{part(0, 8),    part(8, 16),   part(24, 8),   part(32, 128), part(160, 32),
-                               part(192, 64), part(256, 32), part(288, 16), {}};
+    return crowd::SpawnRecords{part(0, 8),    part(8, 16),   part(24, 8),
+                               part(32, 128), part(160, 32), part(192, 64),
+                               part(256, 32), part(288, 16), {}};
   };
   std::vector<float> whole(agents * 304), runs(agents * 304);
   spawner.write(0, agents, records(whole, 0, agents));
@@ -192,6 +193,7 @@ TEST_F(InputTest, WhatIsLeftOutIsNotRead) {
   EXPECT_TRUE(state.pose.empty());
   EXPECT_TRUE(state.metric.empty());
   EXPECT_TRUE(state.tip.empty());
+  EXPECT_TRUE(state.foot.empty());
   EXPECT_EQ(crowd.fidelity().agentTicks, 0u);
   EXPECT_TRUE(crowd.footfalls(0).empty());
   EXPECT_EQ(state.body.size(), 5 * 16u);

@@ -125,7 +125,7 @@ void expectEveryStage(Device& device, const Rig& rig, uint64_t seeds, float fart
 }
 
 // Solves every leg as those that ik's first dispatch lists are solved.
-void solveListed(const gpu::Context& context, const crowd::Herd& herd) {
+void solveListed(const gpu::Context& context, const crowd::Herd& herd, uint64_t tick) {
   const crowd::Page& page = herd.pages.at(0);
   std::vector<uint32_t> list;
   for (int agent = 0; agent < static_cast<int>(page.agents); ++agent)
@@ -137,14 +137,14 @@ void solveListed(const gpu::Context& context, const crowd::Herd& herd) {
   counters[shared::COUNTER_IK_LISTED] = legs;
   counters[shared::COUNTER_IK_DISPATCH_X] = gpu::groupsFor(legs, shared::WORK_GROUP);
   gpu::upload(context, page.counters, counters);
-  const auto ik = std::find_if(herd.stages.begin(), herd.stages.end(), [](const crowd::Stage& stage) {
-    return stage.name == std::string_view("ik");
-  });
+  const auto ik = std::find_if(herd.stages.begin(), herd.stages.end(),
+                               [](const crowd::Stage& stage) { return crowd::makes(stage.name, "ik"); });
+  shared::TickConstants constants{};
+  constants.tick = static_cast<float>(tick);
   gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
     herd.restKernels[static_cast<size_t>(ik - herd.stages.begin())].dispatchIndirect(
-        cmd, page.bindings[static_cast<size_t>(ik - herd.stages.begin())],
-        gpu::bytesOf(shared::TickConstants{}), page.counters,
-        shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
+        cmd, page.bindings[static_cast<size_t>(ik - herd.stages.begin())], gpu::bytesOf(constants),
+        page.counters, shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
   });
 }
 
@@ -173,7 +173,7 @@ TEST_P(NastyTest, ListedLegsAndOthersAreSolvedAlike) {
       gpu::upload(context, page.chain, before);
       gpu::upload(context, page.solve, dampings);
       gpu::upload(context, page.tip, places);
-      solveListed(context, herd);
+      solveListed(context, herd, crowd.tick());
       EXPECT_EQ(gpu::download<uint32_t>(context, page.chain), solved) << "tick " << tick;
       EXPECT_EQ(gpu::download<uint32_t>(context, page.solve), told) << "tick " << tick;
       EXPECT_EQ(gpu::download<uint32_t>(context, page.tip), tips) << "tick " << tick;

@@ -55,13 +55,14 @@ const std::map<std::string, size_t>& parameterOffsets() {
 }
 
 std::vector<crowd::Stage> everyStage() {
-  return {crowd::navigateStage(),     crowd::bodyStage(),        crowd::gaitStage(),
-          crowd::bodyAndGaitStage(),  crowd::footholdStage(),    crowd::swingStage(),
-          crowd::ikStage(),           crowd::poseStage(),        crowd::measureStage(),
-          crowd::blindBodyStage(),    crowd::loopGaitStage(),    crowd::loopSwingStage(),
-          crowd::clipStage(),         crowd::clipSwingStage(),   crowd::clipPoseStage(),
-          crowd::plantedSwingStage(), crowd::plantedIkStage(),   crowd::plantedPoseStage(),
-          crowd::footfallStage(),     crowd::keyPoseGaitStage(), crowd::keyPoseSwingStage()};
+  return {crowd::navigateStage(),    crowd::bodyStage(),         crowd::gaitStage(),
+          crowd::bodyAndGaitStage(), crowd::footholdStage(),     crowd::swingStage(),
+          crowd::swingAndIkStage(),  crowd::ikStage(),           crowd::poseStage(),
+          crowd::measureStage(),     crowd::blindBodyStage(),    crowd::loopGaitStage(),
+          crowd::loopSwingStage(),   crowd::clipStage(),         crowd::clipSwingStage(),
+          crowd::clipPoseStage(),    crowd::plantedSwingStage(), crowd::plantedIkStage(),
+          crowd::plantedPoseStage(), crowd::footfallStage(),     crowd::keyPoseGaitStage(),
+          crowd::keyPoseSwingStage()};
 }
 
 TEST(Records, ParametersLieWhereBothSidesThink) {

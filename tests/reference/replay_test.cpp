@@ -77,6 +77,25 @@ TEST(Replay, wrongSizesAreErrors) {
   EXPECT_THROW(replay.tick(1, herd.state(), cut), Error);
 }
 
+// Then ik is held against the steps.
+TEST(Replay, feetMayBeAbsent) {
+  ReferenceHerd herd(roughField(), 2);
+  for (int i = 0; i < 40; ++i) herd.tick();
+  HerdState before = herd.state();
+  herd.tick();
+  HerdState after = herd.state();
+  for (HerdState* state : {&before, &after}) state->foot.clear();
+  Replay replay = herd.replay();
+  replay.tick(herd.ticks(), before, after);
+  EXPECT_TRUE(replay.pass());
+  EXPECT_EQ(replay.results()[4].samples, 0u);
+  EXPECT_EQ(replay.results()[5].samples, 16u);
+  after.solve[0] += 1e-3f;
+  Replay another = herd.replay();
+  another.tick(herd.ticks(), before, after);
+  EXPECT_FALSE(another.results()[5].pass);
+}
+
 TEST(Replay, metricsMayBeAbsent) {
   ReferenceHerd herd(roughField(), 2);
   Replay replay = herd.replay();

@@ -27,9 +27,10 @@ struct CrowdOptions {
   bool measure = true;      // keep the fidelity figures
   uint32_t watchEvery = 0;  // of one agent of this many at a time, each in its turn; 0: of all
                             // in a crowd of at most 256, of one in 64 in a larger one
-  bool tips = false;  // keep where feet are, as measure and footfalls have it; it follows from the chains
-  uint32_t footfalls = 0;  // keep so many touchdowns of a tick, a page of the herd, at most one a
-                           // leg; 0: none
+  bool feet = false;        // keep where feet should be and are, as measure and footfalls have it, though no
+                            // later tick needs it: else they may have no foot and tip records
+  uint32_t footfalls = 0;   // keep so many touchdowns of a tick, a page of the herd, at most one a
+                            // leg; 0: none
   bool sleep = false;  // who has stood still for seconds is passed over, without a breath, until its goal or
                        // the ground moves: standing crowds cost next to nothing
   bool fuse = true;  // stages that are quicker made at once are: the same records, in fewer passes over them
@@ -84,8 +85,8 @@ struct AgentSample {
 struct HerdState {
   uint32_t agents = 0;  // that are here
   AgentSample sample;   // which of the herd they are
-  std::vector<float> goal, steer, body, gait, step, foot, chain;
-  std::vector<float> tip, pose, metric;                // empty where CrowdOptions left them out, like watch
+  std::vector<float> goal, steer, body, gait, step, chain;
+  std::vector<float> foot, tip, pose, metric;          // empty where CrowdOptions left them out, like watch
   std::vector<float> solve, play, start, fix, spring;  // empty where the controller has none
   uint32_t watchEvery = 1;                             // measure watches one agent of this many at a time
   std::vector<float> watch;  // of the herd's agent g at place g / watchEvery, if it is being watched; whole
