@@ -107,8 +107,8 @@ void CollectionCpu::collect(const HerdState& state, uint32_t record, float tick,
   const glm::vec3 lift = up * std::min(height, q_.stepHeightMax);
   put(step, best + local, body[4]);
   put(step + 4, from + local, body[5]);
-  put(step + 8, lift, tick - 1);
-  put(step + 12, lift, lastResort ? -ticks : ticks);
+  put(step + 8, {tick - 1, lastResort ? -ticks : ticks, lift.x}, lift.y);
+  put(step + 12, lift, lift.z);
 }
 
 }  // namespace skitter::experiments

@@ -244,16 +244,16 @@ void putGait(HerdState& state, size_t agent, const reference::Gait& gait) {
 reference::Step stepOf(const HerdState& state, size_t leg) {
   const size_t base = at(leg, shared::STEP_STRIDE);
   const glm::dvec4 landing = load(state.step, base), liftOff = load(state.step, base + 1);
-  const glm::dvec4 lift = load(state.step, base + 2), start = load(state.step, base + 3);
+  const glm::dvec4 when = load(state.step, base + 2), start = load(state.step, base + 3);
   reference::Step step;
   step.landing = landing;
   step.tileX = landing.w;
   step.liftOff = liftOff;
   step.tileZ = liftOff.w;
-  step.lift = lift;
-  step.firstTick = lift.w;
+  step.firstTick = when.x;
+  step.duration = when.y;
+  step.lift = {when.z, when.w, start.w};
   step.startTangent = start;
-  step.duration = start.w;
   return step;
 }
 
@@ -261,8 +261,8 @@ void putStep(HerdState& state, size_t leg, const reference::Step& step) {
   const size_t base = at(leg, shared::STEP_STRIDE);
   store(state.step, base, {step.landing, step.tileX});
   store(state.step, base + 1, {step.liftOff, step.tileZ});
-  store(state.step, base + 2, {step.lift, step.firstTick});
-  store(state.step, base + 3, {step.startTangent, step.duration});
+  store(state.step, base + 2, {step.firstTick, step.duration, step.lift.x, step.lift.y});
+  store(state.step, base + 3, {step.startTangent, step.lift.z});
 }
 
 reference::Foot footOf(const HerdState& state, size_t leg) {

@@ -59,8 +59,8 @@ Leg<float, N> readLeg(const HerdState& state, size_t agent, size_t l, size_t leg
   const float* s = recordAt(state.step, leg, shared::STEP_STRIDE);
   const float* directions = recordAt(state.chain, leg, shared::chainStride(bones));
   Leg<float, N> to{};
-  to.step = {{s[0], s[1], s[2]},  s[3],  {s[4], s[5], s[6]},    s[7],
-             {s[8], s[9], s[10]}, s[11], {s[12], s[13], s[14]}, s[15]};
+  to.step = {{s[0], s[1], s[2]},    s[3], {s[4], s[5], s[6]},    s[7],
+             {s[10], s[11], s[15]}, s[8], {s[12], s[13], s[14]}, s[9]};
   for (int b = 0; b < bones; ++b) {
     to.chain.x[b] = directions[2 * b];
     to.chain.y[b] = directions[2 * b + 1];
@@ -77,8 +77,8 @@ void writeLeg(const Leg<float, N>& from, size_t agent, size_t l, size_t legs, in
   const Step<float>& s = from.step;
   const float step[] = {s.landing.x,      s.landing.y,      s.landing.z,      s.tileX,
                         s.liftOff.x,      s.liftOff.y,      s.liftOff.z,      s.tileZ,
-                        s.lift.x,         s.lift.y,         s.lift.z,         s.firstTick,
-                        s.startTangent.x, s.startTangent.y, s.startTangent.z, s.ticks};
+                        s.firstTick,      s.ticks,          s.lift.x,         s.lift.y,
+                        s.startTangent.x, s.startTangent.y, s.startTangent.z, s.lift.z};
   std::copy(std::begin(step), std::end(step), recordAt(state.step, leg, shared::STEP_STRIDE));
   const Foot<float>& f = from.foot;
   const float foot[] = {f.target.x, f.target.y, f.target.z, f.progress};

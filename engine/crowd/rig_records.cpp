@@ -46,8 +46,7 @@ std::vector<float> rigRecords(const Rig& rig) {
       const float length = present ? bone.length / leg.reach : 0.0f, edge = present ? std::tan(half) : 0.0f;
       append(records, x, length);
       append(records, bone.direction, edge);
-      // The first joint turns the whole leg, so it yields to the target more readily than the others.
-      append(records, present ? bone.start : leg.home, i == 0 ? 0.2f : 1.0f);
+      append(records, present ? bone.start : leg.home, i == 0 ? shared::FIRST_STIFFNESS : 1.0f);
       append(records, glm::vec3(0), 0);
       append(records, glm::vec3(shared::LIMIT_CONE, 0, 0), 0);
       const glm::mat3 frame(x, glm::cross(bone.direction, x), bone.direction);

@@ -186,8 +186,8 @@ void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRe
       // Where clips are played it is no lift-off but an offset: docs/stages.md, planted.
       const glm::vec3 liftOff = clips_.clips > 0 ? glm::vec3(0) : landing;
       step.push(liftOff.x, liftOff.y, liftOff.z, tileZ);
-      step.push(0, 0, 0, -1000);
-      step.push(0, 0, 0, 1);
+      step.push(-1000, 1, 0, 0);
+      step.push(0, 0, 0, 0);
       if (!records.foot.empty()) foot.push(home.x, landing.y - height, home.z, 1);
       pushDirections(l, chain);
       if (!records.tip.empty()) tip.push(home.x, landing.y - height, home.z, 0);

@@ -133,6 +133,7 @@ void main() {
   if (chain >= int(constants.count)) return;
   Limb limb;
   LOAD_LIMB(limb, rig, 0);
+  for (int i = 0; i < BONES; ++i) limb.stiffness[i] = LOAD4(rig, RIG_BONE_STRIDE * i + 2).w;
   int at = chain * stateStride(BONES, TWISTS);
   Pose pose;
   vec2 memory = PREVIOUS ? LOAD4(reports, chain).zw : vec2(0.0, 1.0);

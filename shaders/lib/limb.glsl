@@ -3,7 +3,7 @@
 // Rig and chain records to and from a Limb and a Pose. Macros, because GLSL cannot pass a storage buffer to a
 // function.
 
-// `at`: the first bone's record.
+// `at`: the first bone's record. Stiffness is left to those that pull bones to rest.
 #define LOAD_LIMB(limb, rig, at)                                            \
   for (int i_ = 0; i_ < BONES; ++i_) {                                      \
     int bone_ = (at) + RIG_BONE_STRIDE * i_;                                \
@@ -13,7 +13,6 @@
     limb.carry[i_] = Frame(c_.xyz, cross(d_.xyz, c_.xyz), d_.xyz);          \
     limb.bone[i_] = c_.w;                                                   \
     limb.edge[i_] = d_.w;                                                   \
-    limb.stiffness[i_] = LOAD4(rig, bone_ + 2).w;                           \
     if (isKind(i_, LIMIT_ELLIPSE | LIMIT_HINGE)) limb.ends[i_] = LOAD4(rig, bone_ + 3); \
     if (isKind(i_, LIMIT_TWIST)) limb.twists[i_] = LOAD4(rig, bone_ + 4).yz; \
   }

@@ -24,7 +24,7 @@ struct Step {
 };
 
 Step unpackStep(vec4 a, vec4 b, vec4 c, vec4 d) {
-  return Step(a.xyz, b.xyz, vec2(a.w, b.w), c.xyz, d.xyz, c.w, abs(d.w), d.w < 0.0);
+  return Step(a.xyz, b.xyz, vec2(a.w, b.w), vec3(c.zw, d.w), d.xyz, c.x, abs(c.y), c.y < 0.0);
 }
 
 float stepProgress(Step s, float tick) { return clamp((tick - s.firstTick) / s.ticks, 0.0, 1.0); }

@@ -22,7 +22,7 @@ void main() {
   float morph = clamp((away / patchAt.w - 0.87) / 0.12, 0.0, 1.0);
   at -= 2.0 * fract(0.5 * grid) * morph * patchAt.z;
   vec2 p = pictureAt(at);
-  outPosition = vec3(p.x, heightAt(heights, vec2(0.0), vec2(1.0), at).x, p.y);
+  outPosition = vec3(p.x, heightAt(heights, fieldOf(heights, vec2(0.0), vec2(1.0)), at).x, p.y);
   outSample = at;
   gl_Position = picture.clipFromPicture[VIEW_CAMERA] * vec4(outPosition, 1.0);
 }

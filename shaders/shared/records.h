@@ -74,8 +74,8 @@ SKITTER_CONST int GAIT_STRIDE = 2;
 // step, per leg, written by foothold when a step begins or is aimed anew.
 //   [0] landing x, y, z, tile x      positions are tile-local in x and z, world in y
 //   [1] lift-off x, y, z, tile z
-//   [2] lift vector b x, y, z, first tick
-//   [3] start tangent m0 x, y, z, duration in ticks (negative: the landing is a last resort)
+//   [2] first tick, duration in ticks (negative: the landing is a last resort), lift vector b x, y
+//   [3] start tangent m0 x, y, z, lift vector b z: of the swing alone
 SKITTER_CONST int STEP_STRIDE = 4;
 
 // foot, per leg, written by swing.
@@ -170,6 +170,9 @@ SKITTER_CONST int METRIC_STRIDE = 7;
 //        [5] x axis of B_(i-1)^T B_i (of the first bone: B_0), length / reach
 //        [6] z axis of the same, tan(half-angle / 2)
 SKITTER_CONST int RIG_LEG_STRIDE = 3;
+// Stiffness of a leg's first bone, which turns all of it and so yields to the target more readily; others have
+// 1.
+SKITTER_CONST float FIRST_STIFFNESS = 0.2;
 SKITTER_CONST int RIG_BONE_STRIDE = 7;
 // Kinds of limit. A kernel is specialised by those that may occur at each bone: four bits a bone, eight bones
 // a word, LIMIT_TWIST beside the others.

@@ -3,7 +3,6 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "stages/awake.glsl"
 
-layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
 LOAD4_BUFFER(BINDING_STEER, steers);
 #ifndef BLIND
 LOAD4_BUFFER(BINDING_GAIT, gaits);

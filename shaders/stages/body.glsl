@@ -3,12 +3,7 @@
 // Stage body, for entry points that make it alone or together with gait; they declare its bindings.
 #include "lib/body.glsl"
 #include "stages/rig_legs.glsl"
-#include "lib/heightfield.glsl"
-
-float groundAt(vec2 world) {
-  return heightAt(heights, vec2(parameters.originX, parameters.originZ),
-                  vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), world).x;
-}
+#include "stages/ground.glsl"
 
 Body makeBody(int agent) {
   int at = agent * BODY_STRIDE;
@@ -23,14 +18,14 @@ Body makeBody(int agent) {
   // Legs that do not know where they stand: the body lies on the ground below their homes.
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
     vec3 home = rotate(body.orientation, RIG_LEG(leg, 1).xyz);
-    addPoint(sums, vec3(home.x, groundAt(worldOf(body.local, body.tile) + home.xz) - body.local.y, home.z));
+    addPoint(sums, vec3(home.x, groundAt(worldOf(body.local, body.tile) + home.xz).x - body.local.y, home.z));
   }
 #else
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
     int stepAt = legRecord(agent, leg, LEGS) * STEP_STRIDE;
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
                         LOAD4(steps, stepAt + 3));
-    float u = stepProgress(s, constants.tick - 1.0);
+    float u = stepProgress(s, thisTick - 1.0);
     vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
     vec3 liftOff = fromTile(s.liftOff, s.tile, body.local, body.tile);
     vec4 root = RIG_LEG(leg, 0);
@@ -78,7 +73,7 @@ Body makeBody(int agent) {
   float height = planeHeight + parameters.breathHeight * breath;
   [[unroll]] for (int k = -1; k <= 1; ++k) {
     vec3 belly = parameters.bodyHeight * normal + float(k) * parameters.bodyRadius * forward;
-    height = max(height, groundAt(world + belly.xz) + parameters.bellyClearance - belly.y);
+    height = max(height, groundAt(world + belly.xz).x + parameters.bellyClearance - belly.y);
   }
   body.local.y = mix(body.local.y + dot(slope, moved), height, parameters.heightBlend);
 

@@ -4,7 +4,6 @@
 // body and gait of an agent in one go, which reads its legs' steps once.
 #include "stages/awake.glsl"
 
-layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
 LOAD4_BUFFER(BINDING_STEER, steers);
 LOAD4_BUFFER(BINDING_GAIT, gaits);
 LOAD4_BUFFER(BINDING_STEP, steps);

@@ -3,11 +3,10 @@
 #include "stages/stage.glsl"
 #include "lib/foothold.glsl"
 #include "lib/gait.glsl"
-#include "lib/heightfield.glsl"
 #include "lib/hermite.glsl"
 #include "lib/route.glsl"
+#include "stages/ground.glsl"
 
-layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_GAIT, gaits);
@@ -15,11 +14,6 @@ LOAD4_BUFFER(BINDING_STEP, steps);
 STORE4_BUFFER(BINDING_STEP_OUT, stepsOut);
 layout(set = 0, binding = BINDING_LIST, std430) readonly buffer ListBlock { uint list[]; };
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
-
-vec3 ground(vec2 world) {
-  return heightAt(heights, vec2(parameters.originX, parameters.originZ),
-                  vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), world);
-}
 
 void main() {
   uint listed = gl_GlobalInvocationID.x;
@@ -35,7 +29,7 @@ void main() {
   vec4 root = LOAD4(rig, rigAt), home = LOAD4(rig, rigAt + 1);
   float reach = root.w;
   float freshTicks = LOAD4(gaits, agent * GAIT_STRIDE).w, cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;
-  float flown = constants.tick - 1.0 - old.firstTick;
+  float flown = thisTick - 1.0 - old.firstTick;
   float ticks = again ? max(old.ticks - flown, AGAIN_LEAST) : freshTicks;
   float time = ticks * parameters.dt, stance = cycle - freshTicks * parameters.dt;
 
@@ -60,7 +54,7 @@ void main() {
     for (int j = -k; j <= k; ++j) {
       vec2 c = tau.xz + o * (rho * (float(k - CENTRE_RUNG) / 3.0)) + vec2(-o.y, o.x) * (float(j) * rho / 6.0);
       vec3 q = rotate(body.orientation, vec3(c.x, tau.y, c.y));
-      vec3 g = ground(world + q.xz);
+      vec3 g = groundAt(world + q.xz);
       q.y = g.x - body.local.y;
       Candidate candidate = judge(parameters, q, g, up, rootWorld, predicted, reach);
       if (candidate.fits && candidate.score < best.score) best = candidate;
@@ -84,7 +78,7 @@ void main() {
   // Relative to the body's position, as the old step too; stored relative to its tile.
   Swing flight = Swing(fromTile(old.liftOff, old.tile, body.local, body.tile),
                        fromTile(old.landing, old.tile, body.local, body.tile), old.lift, old.startTangent);
-  float u = stepProgress(old, constants.tick - 1.0);
+  float u = stepProgress(old, thisTick - 1.0);
   float rate = startRate(flight), way = easedTime(u, rate);
   vec3 p0 = again ? swingPoint(flight, way) : flight.p1;
   vec3 p1 = best.point;
@@ -100,7 +94,7 @@ void main() {
     for (int i = 0; i < SAMPLES; ++i) {
       Place place = placeOf(p0, p1, again, m0, i);
       vec3 p = place.straight + place.share * side;
-      float gap = ground(world + p.xz).x - (body.local.y + p.y);
+      float gap = groundAt(world + p.xz).x - (body.local.y + p.y);
       height = max(height, (gap * up.y + parameters.stepClearance * place.clearing) / place.share);
     }
     float over = max(0.0, height - parameters.stepHeightMax);
@@ -114,5 +108,5 @@ void main() {
   m0 = again ? m0 : lift;
 
   STORE4_TWO(stepsOut, stepAt, vec4(p1 + body.local, body.tile.x), vec4(p0 + body.local, body.tile.y));
-  STORE4_TWO(stepsOut, stepAt + 2, vec4(lift, constants.tick - 1.0), vec4(m0, lastResort ? -ticks : ticks));
+  STORE4_TWO(stepsOut, stepAt + 2, vec4(thisTick - 1.0, lastResort ? -ticks : ticks, lift.xy), vec4(m0, lift.z));
 }

@@ -3,7 +3,7 @@
 // Stage gait, for entry points that make it alone or together with body; they declare its bindings.
 #include "lib/gait.glsl"
 #include "stages/rig_legs.glsl"
-#include "lib/heightfield.glsl"
+#include "stages/ground.glsl"
 #include "lib/hermite.glsl"
 
 // In the ticks after an edit of the heights; else no height is looked up here.
@@ -14,9 +14,7 @@ layout(constant_id = CONSTANT_REACH) const int REACH = 0;
 // Height of the ground above a point relative to the body.
 float above(vec3 point, Body body) {
   vec2 world = worldOf(body.local, body.tile) + point.xz;
-  float ground = heightAt(heights, vec2(parameters.originX, parameters.originZ),
-                          vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), world).x;
-  return ground - (body.local.y + point.y);
+  return groundAt(world).x - (body.local.y + point.y);
 }
 
 void makeGait(int agent, Body body) {
@@ -35,7 +33,7 @@ void makeGait(int agent, Body body) {
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
                         LOAD4(steps, stepAt + 3));
     vec4 root = RIG_LEG(leg, 0), home = RIG_LEG(leg, 1), order = RIG_LEG(leg, 2);
-    float flown = constants.tick - 1.0 - s.firstTick;
+    float flown = thisTick - 1.0 - s.firstTick;
     float u = clamp(flown / s.ticks, 0.0, 1.0);
     vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
     vec3 foot = rotateBack(body.orientation, landing);

@@ -112,6 +112,7 @@ void main() {
 #endif
   Limb limb;
   LOAD_LIMB(limb, rig, rigAt + RIG_LEG_STRIDE);
+  for (int i = 0; i < BONES; ++i) limb.stiffness[i] = i == 0 ? FIRST_STIFFNESS : 1.0;
   vec4 root = LOAD4(rig, rigAt);
   float reach = root.w;
   forwardKinematics(limb, pose);

@@ -2,10 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "stages/stage.glsl"
 #include "lib/crossing.glsl"
-#include "lib/heightfield.glsl"
+#include "stages/ground.glsl"
 #include "lib/trail.glsl"
 
-layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_FOOT, feet);
@@ -18,11 +17,6 @@ STORE4_BUFFER(BINDING_METRIC_OUT, metricsOut);
 layout(set = 0, binding = BINDING_HISTOGRAM, std430) buffer HistogramBlock { uint histogram[]; };
 
 const float FAR = 3e38;
-
-float ground(vec2 world) {
-  return heightAt(heights, vec2(parameters.originX, parameters.originZ),
-                  vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), world).x;
-}
 
 bool plantedAt(int record) { return LOAD4(feet, record).w >= 1.0; }
 vec4 tipOf(int record) { return LOAD4(tips, record); }
@@ -86,10 +80,10 @@ float depthOf(Stretched s, vec4 orientation, float y, vec2 world) {
   float depth = 0.0;
   for (int i = 0; i < BONES; ++i) {
     vec3 middle = rotate(orientation, 0.5 * (s.joint[i] + s.joint[i + 1]));
-    depth = max(depth, ground(world + middle.xz) - (y + middle.y));
+    depth = max(depth, groundAt(world + middle.xz).x - (y + middle.y));
     if (i + 1 == BONES) continue;
     vec3 end = rotate(orientation, s.joint[i + 1]);
-    depth = max(depth, ground(world + end.xz) - (y + end.y));
+    depth = max(depth, groundAt(world + end.xz).x - (y + end.y));
   }
   return depth;
 }
@@ -162,7 +156,7 @@ void measure(int slot, int agent) {
     storeTrail(at, trail, slip);
     m6.xy += windowJerk(trail, closes, parameters.jerkTicks, parameters.jerkPath);
 
-    float above = tip.y + body.local.y - ground(world + tip.xz);
+    float above = tip.y + body.local.y - groundAt(world + tip.xz).x;
     float below = max(0.0, -above), over = planted ? max(0.0, above) : 0.0;
     m2 += vec4(below, max(0.0, below - parameters.deadZone), over, max(0.0, over - parameters.deadZone));
 

@@ -12,11 +12,12 @@ layout(constant_id = CONSTANT_BONES) const int BONES = 4;
 layout(constant_id = CONSTANT_GROUPS) const int GROUPS = 2;
 
 layout(push_constant) uniform TickBlock { TickConstants constants; };
+// Read at once, before any branch: below one, a device that masks lanes gathers what is uniform lane by lane.
+float thisTick = constants.tick;
 #ifndef WITHOUT_PARAMETERS
 layout(std140, set = 0, binding = BINDING_PARAMETERS) uniform ParametersBlock {
   Parameters uniformParameters;
   vec4 uniformLegs[MOST_LEGS * RIG_LEG_STRIDE];
 };
-// Read at once, before any branch: below one, a device that masks lanes gathers a uniform lane by lane.
 Parameters parameters = uniformParameters;
 #endif

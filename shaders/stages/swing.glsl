@@ -9,7 +9,7 @@ vec4 makeFoot(int agent, int record) {
                       LOAD4(steps, stepAt + 3));
   vec3 local = LOAD4(bodies, at).xyz;
   vec2 tile = LOAD4(bodies, at + 1).xy;
-  float u = stepProgress(s, constants.tick);
+  float u = stepProgress(s, thisTick);
   Swing flight = Swing(fromTile(s.liftOff, s.tile, local, tile), fromTile(s.landing, s.tile, local, tile), s.lift,
                        s.startTangent);
   return vec4(u >= 1.0 ? flight.p1 : swingPoint(flight, easedTime(u, startRate(flight))), u);

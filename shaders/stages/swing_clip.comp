@@ -5,7 +5,6 @@
 #include "shared/ik_batch.h"
 #include "lib/chain.glsl"
 #include "lib/clip.glsl"
-#include "lib/heightfield.glsl"
 #include "lib/limb.glsl"
 
 LOAD4_BUFFER(BINDING_RIG, rig);
@@ -16,16 +15,14 @@ LOAD4_BUFFER(BINDING_CLIP_ROW, rows);
 LOAD4_BUFFER(BINDING_CLIP_LEG, legs);
 STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 #ifdef PLANTED
-layout(set = 0, binding = BINDING_HEIGHTS) uniform sampler2D heights;
+#include "stages/ground.glsl"
 LOAD4_BUFFER(BINDING_STEP, steps);
 STORE4_BUFFER(BINDING_STEP_OUT, stepsOut);
 STORE4_BUFFER(BINDING_START_OUT, chainsOut);
 
 // Height of the ground below a point relative to the body.
 float drop(Body body, vec2 q) {
-  return heightAt(heights, vec2(parameters.originX, parameters.originZ),
-                  vec2(parameters.inverseSpacingX, parameters.inverseSpacingZ), worldOf(body.local, body.tile) + q).x -
-         body.local.y;
+  return groundAt(worldOf(body.local, body.tile) + q).x - body.local.y;
 }
 #else
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);

@@ -41,7 +41,7 @@ glm::dvec3 landingOf(const HerdState& state, size_t leg) {
   const float* s = state.step.data() + leg * shared::STEP_STRIDE * 4;
   return {double{s[3]} * shared::TILE_SIZE + s[0], s[1], double{s[7]} * shared::TILE_SIZE + s[2]};
 }
-float durationOf(const HerdState& state, size_t leg) { return state.step[leg * 16 + 15]; }
+float durationOf(const HerdState& state, size_t leg) { return state.step[leg * 16 + 9]; }
 
 // Height of a planted foot's landing above the ground as it now is.
 double aboveGround(const Crowd& crowd, const HerdState& state, size_t leg) {

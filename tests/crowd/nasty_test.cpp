@@ -82,8 +82,8 @@ void scramble(const gpu::Context& context, Crowd& crowd, uint64_t seed, float fa
       const glm::vec3 foot = root + way * (leg.reach * distances[random() % 6]);
       s[0] = b[0] + foot.x, s[1] = b[1] + foot.y, s[2] = b[2] + foot.z, s[3] = b[4];
       s[4] = s[0] + uniform(-0.5f, 0.5f), s[5] = s[1], s[6] = s[2] + uniform(-0.5f, 0.5f), s[7] = b[5];
-      s[8] = s[10] = s[12] = s[14] = 0, s[9] = s[13] = uniform(0, 0.4f);
-      s[11] = -std::floor(uniform(0, 30)), s[15] = std::floor(uniform(3, 20));
+      s[10] = s[12] = s[14] = s[15] = 0, s[11] = s[13] = uniform(0, 0.4f);
+      s[8] = -std::floor(uniform(0, 30)), s[9] = std::floor(uniform(3, 20));
       const bool rest = random() % 3 == 0;
       for (size_t i = 0; i < bones && i < leg.bones.size(); ++i) {
         const float t = rest ? 0 : uniform(0, std::tan(std::min(leg.bones[i].coneHalfAngle, 2.5f) / 2)),
