@@ -34,7 +34,7 @@ std::vector<float> rigRecords(const Rig& rig) {
     const Leg& leg = rig.legs[l];
     append(records, leg.root(), leg.reach);
     append(records, leg.home, static_cast<float>(leg.group));
-    append(records, {order[l].lag, static_cast<float>(order[l].neighbours), 0}, 0);
+    append(records, {order[l].lag, static_cast<float>(order[l].neighbours), 1 / leg.reach}, 0);
     glm::mat3 before(1);
     for (int i = 0; i < rig.maxBones(); ++i) {
       const bool present = i < static_cast<int>(leg.bones.size());

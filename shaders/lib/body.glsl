@@ -3,12 +3,13 @@
 // The pieces of the body stage (docs/stages.md, body).
 
 // 1. How much a planted leg slows the body: 1 not at all, 0 to a stop.
-float followFactor(Parameters q, vec3 root, vec3 foot, float reach, float error, vec2 velocity) {
+float followFactor(Parameters q, vec3 root, vec3 foot, float inverseReach, float error, vec2 velocity) {
   vec3 d = foot - root;
-  float stretch = length(d) / reach;
+  float stretch = length(d) * inverseReach;
   bool stretching = dot(d.xz, velocity) < 0.0;
-  float follow = stretching ? clamp((q.stretchStop - stretch) / (q.stretchStop - q.stretchSlow), 0.0, 1.0) : 1.0;
-  return min(follow, clamp(1.0 - error / (q.errorStop * reach), 0.0, 1.0));
+  float slack = 1.0 / (q.stretchStop - q.stretchSlow), inverseStop = 1.0 / q.errorStop;  // the same for all legs
+  float follow = stretching ? clamp((q.stretchStop - stretch) * slack, 0.0, 1.0) : 1.0;
+  return min(follow, clamp(1.0 - error * inverseReach * inverseStop, 0.0, 1.0));
 }
 
 // 2. Turn rate and heading toward `wanted` (unit).

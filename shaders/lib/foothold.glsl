@@ -13,15 +13,25 @@ struct Candidate {
   bool fits;
 };
 
-Candidate judge(Parameters q, vec3 point, vec3 gradient, vec3 up, vec3 root, vec3 predicted, float reach) {
+// Distances from the root at which a foothold fits, 1 / reach and 1 / legLength^2.
+struct Range {
+  float least, most, inverseReach, inverseSquare;
+};
+
+Range rangeOf(Parameters q, float reach) {
+  return Range(q.reachLeast * reach, q.reachMost * reach, 1.0 / reach, 1.0 / (q.legLength * q.legLength));
+}
+
+Candidate judge(Parameters q, vec3 point, vec3 gradient, vec3 up, vec3 root, vec3 predicted, Range range) {
   Candidate c;
   c.point = point;
   c.distance = distance(point, root);
-  float aligned = dot(unit(vec3(-gradient.y, 1.0, -gradient.z)), up);
-  c.fits = c.distance >= q.reachLeast * reach && c.distance <= q.reachMost * reach && aligned >= q.slopeLeast;
-  vec3 miss = (point - predicted) / q.legLength;
-  float stretched = max(0.0, c.distance / reach - q.reachComfort);
-  c.score = dot(miss, miss);
+  float steep = dot(gradient.yz, gradient.yz) + 1.0;
+  float aligned = (up.y - gradient.y * up.x - gradient.z * up.z) * inversesqrt(steep);
+  c.fits = c.distance >= range.least && c.distance <= range.most && aligned >= q.slopeLeast;
+  vec3 miss = point - predicted;
+  float stretched = max(0.0, c.distance * range.inverseReach - q.reachComfort);
+  c.score = dot(miss, miss) * range.inverseSquare;
   if (q.nearestOnly == 0.0) c.score += q.slopeWeight * (1.0 - aligned) + q.reachWeight * stretched * stretched;
   return c;
 }

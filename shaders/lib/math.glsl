@@ -46,6 +46,8 @@ vec3 turn(float theta, vec3 v) {
   return vec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x);
 }
 
+float squared(float x) { return x * x; }
+
 bool finite(vec3 v) { return !(any(isnan(v)) || any(isinf(v))); }
 
 #endif

@@ -161,7 +161,7 @@ SKITTER_CONST int METRIC_STRIDE = 7;
 //   leg  [0] root x, y, z (model), reach (m)
 //        [1] home x, y, z (model), group
 //        [2] lag in its group (0 first, 1 last), mask of the legs that must stand while it is in the air,
-//        unused x 2
+//        1 / reach, unused
 //   bone [0] x axis of the bone frame B_i (model), length / reach
 //        [1] z axis of B_i, the rest direction r_i (model), tan(half-angle / 2)
 //        [2] rest start p_i x, y, z (model), stiffness

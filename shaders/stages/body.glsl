@@ -30,7 +30,7 @@ Body makeBody(int agent) {
     vec3 liftOff = fromTile(s.liftOff, s.tile, body.local, body.tile);
     vec4 root = RIG_LEG(leg, 0);
     float error = LOAD4(solves, agent * solveStride(LEGS) + leg / 2)[leg % 2 * 2];
-    float slow = followFactor(parameters, rotate(body.orientation, root.xyz), landing, root.w, error, velocity);
+    float slow = followFactor(parameters, rotate(body.orientation, root.xyz), landing, RIG_LEG(leg, 2).z, error, velocity);
     follow = u >= 1.0 ? min(follow, slow) : follow;
     addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));
   }

@@ -42,36 +42,44 @@ void main() {
   vec3 up = rotate(body.orientation, vec3(0.0, 1.0, 0.0));
   vec3 predicted = rotate(body.orientation, tau), rootWorld = rotate(body.orientation, rootThen);
   vec2 world = worldOf(body.local, body.tile);
+  // From a rung to the next, and from a place on it to the next.
+  vec3 along = rotate(body.orientation, vec3(o.x, 0.0, o.y)) * (rho / 3.0);
+  vec3 across = rotate(body.orientation, vec3(-o.y, 0.0, o.x)) * (rho / 6.0);
+  Range range = rangeOf(parameters, reach);
 
   Candidate best;
   best.score = 3e38;
   best.fits = false;
   best.point = predicted;
   best.distance = 0.0;
-  vec3 nearest = predicted;  // of those out of range, if none fits
-  float nearestMiss = 3e38;
   for (int k = 1; k <= RUNGS; ++k) {
     for (int j = -k; j <= k; ++j) {
-      vec2 c = tau.xz + o * (rho * (float(k - CENTRE_RUNG) / 3.0)) + vec2(-o.y, o.x) * (float(j) * rho / 6.0);
-      vec3 q = rotate(body.orientation, vec3(c.x, tau.y, c.y));
+      vec3 q = predicted + along * float(k - CENTRE_RUNG) + across * float(j);
       vec3 g = groundAt(world + q.xz);
       q.y = g.x - body.local.y;
-      Candidate candidate = judge(parameters, q, g, up, rootWorld, predicted, reach);
+      Candidate candidate = judge(parameters, q, g, up, rootWorld, predicted, range);
       if (candidate.fits && candidate.score < best.score) best = candidate;
-      float range = clamp(candidate.distance, parameters.reachLeast * reach, parameters.reachMost * reach);
-      float miss = abs(candidate.distance - range);
+    }
+  }
+  // Few legs have none that fits; these loops end at once where no leg has.
+  bool lastResort = !best.fits;
+  vec3 nearest = predicted;
+  float nearestMiss = 3e38;
+  for (int k = 1; lastResort && k <= RUNGS; ++k) {
+    for (int j = -k; j <= k; ++j) {
+      vec3 q = predicted + along * float(k - CENTRE_RUNG) + across * float(j);
+      q.y = groundAt(world + q.xz).x - body.local.y;
+      float far = distance(q, rootWorld), miss = abs(far - clamp(far, range.least, range.most));
       if (miss < nearestMiss) {
         nearestMiss = miss;
         nearest = q;
       }
     }
   }
-  bool lastResort = !best.fits;
   if (lastResort) {
     vec3 d = nearest - rootWorld;
     float far = length(d);
-    float range = clamp(far, parameters.reachLeast * reach, parameters.reachMost * reach);
-    best.point = rootWorld + d * (range / max(far, 1e-6));
+    best.point = rootWorld + d * (clamp(far, range.least, range.most) / max(far, 1e-6));
     atomicAdd(counters[COUNTER_LAST_RESORTS], 1u);
   }
 

@@ -28,6 +28,10 @@ void makeGait(int agent, Body body) {
   uint first = 0u, yields = 0u;
   float stoodSince = 3e38;
   bool settled = body.still >= parameters.settleTime;
+  float inverseHalfStride = 1.0 / stride.halfStride, liftShare = REACH != 0 ? REACH_SHARE : parameters.liftShare;
+  float rootShare2 = squared(parameters.rootShare), stretchLift2 = squared(parameters.stretchLift),
+        strayShare2 = squared(parameters.strayShare), liftShare2 = squared(liftShare),
+        reaimDistance2 = squared(parameters.reaimDistance);
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
     int stepAt = legRecord(agent, leg, LEGS) * STEP_STRIDE;
     Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
@@ -39,12 +43,14 @@ void makeGait(int agent, Body body) {
     vec3 foot = rotateBack(body.orientation, landing);
     bool moved = WATCH != 0 && !s.lastResort && abs(above(landing, body)) > parameters.groundTolerance;
     if (u >= 1.0) {
-      float stretch = length(foot - root.xyz) / root.w;
-      float off = distance(foot.xz, home.xz);
+      // Distances are compared by their squares.
+      vec3 arm = (foot - root.xyz) * order.z;
+      vec2 astray = (foot.xz - home.xz) * inverseHalfStride;
+      float stretch = dot(arm, arm), off = dot(astray, astray);
       float error = LOAD4(solves, agent * solveStride(LEGS) + leg / 2)[leg % 2 * 2];
-      bool must = stretch < parameters.rootShare || stretch > parameters.stretchLift ||
-                  off > parameters.strayShare * stride.halfStride || error > parameters.errorLift * root.w;
-      bool far = off > (REACH != 0 ? REACH_SHARE : parameters.liftShare) * stride.halfStride;
+      bool must = stretch < rootShare2 || stretch > stretchLift2 || off > strayShare2 ||
+                  error > parameters.errorLift * root.w;
+      bool far = off > liftShare2;
       bool open = REACH != 0 || windowOpen(parameters, phase, home.w, order.x, stride, float(GROUPS));
       wants |= !settled && open && (far || must || s.lastResort) ? 1u << leg : 0u;
       // Who stands still steps only off ground that moves.
@@ -57,7 +63,8 @@ void makeGait(int agent, Body body) {
     } else {
       air |= 1u << leg;
       vec3 predicted = predictLanding(home.xyz, body.turnRate, body.surfaceSpeed, (s.ticks - flown) * parameters.dt, stance);
-      bool strayed = distance(predicted.xz, foot.xz) > parameters.reaimDistance;
+      vec2 apart = predicted.xz - foot.xz;
+      bool strayed = dot(apart, apart) > reaimDistance2;
       bool anew = strayed && u < parameters.reaimLatest;
       if (WATCH != 0) {
         Swing flight = Swing(fromTile(s.liftOff, s.tile, body.local, body.tile), landing, s.lift, s.startTangent);
