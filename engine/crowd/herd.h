@@ -28,7 +28,7 @@ struct Page {
   uint32_t agents = 0;
   gpu::Buffer goal, steer, body, gait, step, foot, chain;
   gpu::Buffer solve;             // where ik continues its solves
-  gpu::Buffer tip;               // of one agent alone unless somebody looks at tips
+  gpu::Buffer tip;               // of one agent alone unless somebody looks at feet
   gpu::Buffer pose;              // none unless poses are wanted
   gpu::Buffer metric, watch;     // none unless fidelity is measured
   gpu::Buffer play, start, fix;  // where clips are played, the latter two where they are planted
