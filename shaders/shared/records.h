@@ -170,8 +170,8 @@ SKITTER_CONST int METRIC_STRIDE = 7;
 //        [5] x axis of B_(i-1)^T B_i (of the first bone: B_0), length / reach
 //        [6] z axis of the same, tan(half-angle / 2)
 SKITTER_CONST int RIG_LEG_STRIDE = 3;
-// Stiffness of a leg's first bone, which turns all of it and so yields to the target more readily; others have
-// 1.
+// Stiffness of a leg's first bone, which turns all of it and so yields to the target more readily; others
+// have 1.
 SKITTER_CONST float FIRST_STIFFNESS = 0.2;
 SKITTER_CONST int RIG_BONE_STRIDE = 7;
 // Kinds of limit. A kernel is specialised by those that may occur at each bone: four bits a bone, eight bones

@@ -124,8 +124,8 @@ TEST_P(RendererTest, aSpiderIsWhereItsBonesAre) {
   const int bones = rig.maxBones();
   ASSERT_EQ(state.pose.size(), size_t(rig.paletteSize()) * 8);
   const auto joint = [&](int leg, int i) {
-    const float* p = i < bones ? &state.pose[size_t(1 + leg * bones + i) * 8 + 4]
-                               : &state.tip[size_t(leg) * 4];
+    const float* p =
+        i < bones ? &state.pose[size_t(1 + leg * bones + i) * 8 + 4] : &state.tip[size_t(leg) * 4];
     return body + glm::vec3(p[0], p[1], p[2]);
   };
   for (int leg = 0; leg < rig.legCount(); ++leg)
