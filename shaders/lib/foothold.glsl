@@ -6,6 +6,16 @@
 const int RUNGS = 4;
 const int CENTRE_RUNG = 3;  // its middle is the predicted landing itself
 
+// Relative to the body: the predicted landing, and the ways from a rung to the next and along it to the next place.
+struct Ladder {
+  vec3 predicted, along, across;
+};
+
+// Its height is that of the prediction.
+vec3 placeOn(Ladder ladder, int rung, int place) {
+  return ladder.predicted + ladder.along * float(rung - CENTRE_RUNG) + ladder.across * float(place);
+}
+
 struct Candidate {
   vec3 point;      // relative to the body
   float distance;  // from the root

@@ -42,9 +42,8 @@ void main() {
   vec3 up = rotate(body.orientation, vec3(0.0, 1.0, 0.0));
   vec3 predicted = rotate(body.orientation, tau), rootWorld = rotate(body.orientation, rootThen);
   vec2 world = worldOf(body.local, body.tile);
-  // From a rung to the next, and from a place on it to the next.
-  vec3 along = rotate(body.orientation, vec3(o.x, 0.0, o.y)) * (rho / 3.0);
-  vec3 across = rotate(body.orientation, vec3(-o.y, 0.0, o.x)) * (rho / 6.0);
+  Ladder ladder = Ladder(predicted, rotate(body.orientation, vec3(o.x, 0.0, o.y)) * (rho / 3.0),
+                         rotate(body.orientation, vec3(-o.y, 0.0, o.x)) * (rho / 6.0));
   Range range = rangeOf(parameters, reach);
 
   Candidate best;
@@ -54,20 +53,20 @@ void main() {
   best.distance = 0.0;
   for (int k = 1; k <= RUNGS; ++k) {
     for (int j = -k; j <= k; ++j) {
-      vec3 q = predicted + along * float(k - CENTRE_RUNG) + across * float(j);
+      vec3 q = placeOn(ladder, k, j);
       vec3 g = groundAt(world + q.xz);
       q.y = g.x - body.local.y;
       Candidate candidate = judge(parameters, q, g, up, rootWorld, predicted, range);
       if (candidate.fits && candidate.score < best.score) best = candidate;
     }
   }
-  // Few legs have none that fits; these loops end at once where no leg has.
+  // Few legs have none that fits; where none of those solved side by side has, these loops end after a turn.
   bool lastResort = !best.fits;
   vec3 nearest = predicted;
   float nearestMiss = 3e38;
   for (int k = 1; lastResort && k <= RUNGS; ++k) {
     for (int j = -k; j <= k; ++j) {
-      vec3 q = predicted + along * float(k - CENTRE_RUNG) + across * float(j);
+      vec3 q = placeOn(ladder, k, j);
       q.y = groundAt(world + q.xz).x - body.local.y;
       float far = distance(q, rootWorld), miss = abs(far - clamp(far, range.least, range.most));
       if (miss < nearestMiss) {
