@@ -61,6 +61,7 @@ Run makeRun(const std::string& key, const std::string& controller, Who who, uint
   const uint64_t next = run.crowd->tick() + 1;
   run.contestant = who == Who::device ? bench::deviceContestant(device(), *run.crowd, kDt)
                                       : bench::cpuContestant(*run.crowd, who == Who::scalar, 1, true);
+  run.contestant->timeStages(true);
   for (const validation::StageResult& check : bench::checkTick(
            *run.crowd, *run.contestant, next, bench::demandOf(*run.crowd, options(fuse)), scene.seed))
     if (!check.pass) run.fault += check.name + ": " + check.worst + "; ";

@@ -20,7 +20,6 @@ class ClipKernel final : public Kernel {
       : world_(world),
         agents_(start.agents),
         blocks_(Parts<F>::blocks(agents_)),
-        timings_(options.timings),
         agentBlocks_(blocks_),
         plays_(blocks_),
         poses_(options.poses ? agents_ * poseLines() : 0),
@@ -35,8 +34,8 @@ class ClipKernel final : public Kernel {
 
   size_t parts() const override { return Parts<F>::count(blocks_); }
 
-  void tick(uint64_t, size_t part, int thread) override {
-    Laps laps(timings_ ? &scratch_[size_t(thread)].seconds : nullptr);
+  void tick(uint64_t, size_t part, int thread, bool timed) override {
+    Laps laps(timed ? &scratch_[size_t(thread)].seconds : nullptr);
     Parts<F>::eachGroup(part, blocks_, [&](size_t first, size_t last) {
       laps.stage(kNavigate, first, last, [&](size_t b) { navigate(world_, agentBlocks_[b]); });
       laps.stage(kBody, first, last, [&](size_t b) { blindBody(world_, agentBlocks_[b]); });
@@ -93,7 +92,6 @@ class ClipKernel final : public Kernel {
 
   const World& world_;
   size_t agents_, blocks_;
-  bool timings_;
   std::vector<Agent<F>> agentBlocks_;
   std::vector<Play<F>> plays_;
   std::vector<Line> poses_;

@@ -43,6 +43,7 @@ struct CpuCrowd::Impl {
   World world;
   Options options;
   uint32_t agents;
+  bool timed = false;
   std::unique_ptr<Kernel> kernel;
   Pool pool;
 
@@ -62,8 +63,11 @@ CpuCrowd::~CpuCrowd() = default;
 
 void CpuCrowd::tick(uint64_t n) {
   Kernel& kernel = *impl_->kernel;
-  impl_->pool.run(kernel.parts(), [&](size_t part, int thread) { kernel.tick(n, part, thread); });
+  impl_->pool.run(kernel.parts(),
+                  [&](size_t part, int thread) { kernel.tick(n, part, thread, impl_->timed); });
 }
+
+void CpuCrowd::timeStages(bool on) { impl_->timed = on; }
 
 HerdState CpuCrowd::state() const {
   const size_t agents = impl_->agents, legs = impl_->world.legs.size(), bones = size_t(impl_->world.bones);
@@ -91,9 +95,7 @@ HerdState CpuCrowd::state() const {
   return state;
 }
 
-std::vector<StageSeconds> CpuCrowd::stageSeconds() const {
-  return impl_->options.timings ? impl_->kernel->stageSeconds() : std::vector<StageSeconds>{};
-}
+std::vector<StageSeconds> CpuCrowd::stageSeconds() const { return impl_->kernel->stageSeconds(); }
 
 size_t CpuCrowd::bytesAnAgent() const { return impl_->kernel->bytes(); }
 

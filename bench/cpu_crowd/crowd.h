@@ -20,13 +20,12 @@ enum class Width { scalar, simd };
 struct Options {
   int threads = 1;  // at least 1, the caller's among them
   Width width = Width::simd;
-  bool poses = false;    // bone rotations and positions, as CrowdOptions::pose
-  bool timings = false;  // keep what each stage takes; reading clocks costs some nanoseconds an agent
+  bool poses = false;  // bone rotations and positions, as CrowdOptions::pose
 };
 
 struct StageSeconds {
   std::string stage;
-  double seconds = 0;  // of CPU time, of all threads together, since the start
+  double seconds = 0;  // of CPU time, of all threads together
 };
 
 // One herd, adaptive or clip, on ground that stays as it is: no edits, no measure, no footfalls. Not
@@ -44,11 +43,14 @@ class CpuCrowd {
   // Tick `n`, counted from 1 as Crowd::tick is after it: one more than the tick that the state is of.
   // Allocates nothing. The number of threads does not change a bit of the result.
   void tick(uint64_t n);
+  // Whether ticks from now on are timed stage by stage, at first not: reading clocks costs some nanoseconds
+  // an agent.
+  void timeStages(bool on);
 
   // Records in the device's layout, without metrics, and without poses unless Options::poses. Those of stages
   // that are not run are 0: of clip, all of the legs'.
   HerdState state() const;
-  std::vector<StageSeconds> stageSeconds() const;  // in the tick's order; empty without Options::timings
+  std::vector<StageSeconds> stageSeconds() const;  // of the ticks so timed, in the tick's order
   size_t bytesAnAgent() const;                     // of state that a tick reads and writes, poses among it
 
   struct Impl;

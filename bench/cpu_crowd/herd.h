@@ -26,7 +26,6 @@ class HerdKernel final : public Kernel {
         agents_(start.agents),
         legs_(world.legs.size()),
         blocks_(Parts<F>::blocks(agents_)),
-        timings_(options.timings),
         agentBlocks_(blocks_),
         legBlocks_(blocks_ * legs_),
         poses_(options.poses ? blocks_ * poseCount() : 0),
@@ -50,10 +49,10 @@ class HerdKernel final : public Kernel {
 
   size_t parts() const override { return Parts<F>::count(blocks_); }
 
-  void tick(uint64_t n, size_t part, int thread) override {
+  void tick(uint64_t n, size_t part, int thread, bool timed) override {
     Scratch& scratch = scratch_[size_t(thread)];
     const float tick = float(n);
-    Laps laps(timings_ ? &scratch.seconds : nullptr);
+    Laps laps(timed ? &scratch.seconds : nullptr);
     scratch.begun = 0;
     Parts<F>::eachGroup(part, blocks_, [&](size_t first, size_t last) {
       laps.stage(kNavigate, first, last, [&](size_t b) { navigate(world_, agentBlocks_[b]); });
@@ -205,7 +204,6 @@ class HerdKernel final : public Kernel {
 
   const World& world_;
   size_t agents_, legs_, blocks_;
-  bool timings_;
   std::vector<Agent<F>> agentBlocks_;
   std::vector<Leg<F, kBones<N>>> legBlocks_;
   std::vector<BonePose<F>> poses_;

@@ -27,6 +27,7 @@ class DeviceContestant : public Contestant {
   HerdState state(uint32_t herd, const AgentSample& sample) const override {
     return crowd_.download(herd, sample);
   }
+  void timeStages(bool on) override { crowd_.timeStages(on); }
   std::vector<StageTime> stageTimes() const override { return times_; }
 
  private:
@@ -56,6 +57,9 @@ class CpuContestant : public Contestant {
   }
   HerdState state(uint32_t herd, const AgentSample& sample) const override {
     return validation::sampled(herds_[herd]->state(), sample);
+  }
+  void timeStages(bool on) override {
+    for (const auto& herd : herds_) herd->timeStages(on);
   }
   std::vector<StageTime> stageTimes() const override {
     std::vector<StageTime> times;
@@ -91,7 +95,6 @@ std::unique_ptr<Contestant> cpuContestant(const Crowd& crowd, bool scalar, int t
   options.width = scalar ? cpu_crowd::Width::scalar : cpu_crowd::Width::simd;
   options.threads = threads;
   options.poses = poses;
-  options.timings = true;
   return std::make_unique<CpuContestant>(crowd, options);
 }
 

@@ -17,7 +17,9 @@ class Contestant {
   virtual int threads() const = 0;  // of the CPU that it may use; 0: the device's own
   virtual void tick() = 0;          // one, to its end
   virtual HerdState state(uint32_t herd, const AgentSample& sample) const = 0;  // without metrics
-  // Milliseconds of all ticks so far by stage: the device's clock, or CPU time of all threads.
+  // Whether ticks from now on are timed stage by stage, which the device does not get for nothing.
+  virtual void timeStages(bool on) = 0;
+  // Milliseconds of all ticks so timed, by stage: the device's clock, or CPU time of all threads.
   virtual std::vector<StageTime> stageTimes() const = 0;
 };
 

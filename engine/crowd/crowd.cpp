@@ -397,6 +397,8 @@ uint64_t Crowd::memoryBytes() const {
   return bytes;
 }
 
+void Crowd::timeStages(bool on) { impl_->timer.measure(on); }
+
 std::vector<StageTime> Crowd::stageTimes() const {
   std::vector<StageTime> times;
   if (!impl_->timer.measures()) return times;

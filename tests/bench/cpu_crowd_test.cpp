@@ -303,12 +303,12 @@ TEST_P(CpuCrowdTest, RefusesWhatItCannotWalk) {
 
 TEST_P(CpuCrowdTest, TellsWhatStagesTake) {
   Start start(device(), rollingGround(), 16, 1);
-  Options timed = options();
-  CpuCrowd untimed(start.facts(), start.state, timed);
-  EXPECT_TRUE(untimed.stageSeconds().empty());
-  timed.timings = true;
-  CpuCrowd opponent(start.facts(), start.state, timed);
+  CpuCrowd opponent(start.facts(), start.state, options());
   opponent.tick(start.crowd.tick() + 1);
+  for (const cpu_crowd::StageSeconds& stage : opponent.stageSeconds())
+    EXPECT_EQ(stage.seconds, 0) << stage.stage;
+  opponent.timeStages(true);
+  opponent.tick(start.crowd.tick() + 2);
   std::string names;
   for (const cpu_crowd::StageSeconds& stage : opponent.stageSeconds()) {
     names += stage.stage + " ";

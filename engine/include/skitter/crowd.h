@@ -168,6 +168,9 @@ class Crowd {
       const;  // agents of all herds that slept in the last tick; 0 without CrowdOptions::sleep
   uint64_t stateHash() const;                 // of every record that the next tick depends on
   std::vector<StageTime> stageTimes() const;  // empty without CrowdOptions::timestamps
+  // Whether ticks recorded from now on are timed stage by stage, with CrowdOptions::timestamps: at first they
+  // are. Not free: a timestamp costs lavapipe as much as a small dispatch.
+  void timeStages(bool on);
 
   // One a page of the herd; does not wait. The last barrier of record() makes them visible.
   std::vector<FootfallBuffer> footfallBuffers(uint32_t herd) const;
