@@ -17,12 +17,16 @@ void append(std::vector<float>& records, const glm::vec3& v, float w) {
   records.insert(records.end(), {v.x, v.y, v.z, w});
 }
 
-// The x axis of the frame B whose z axis is `direction`: the shortest rotation of z onto it, applied to x.
-glm::vec3 frameX(const glm::vec3& direction) {
-  if (direction.z < -0.999999f) return {1, 0, 0};
-  const float k = 1 / (1 + direction.z);
-  return glm::normalize(
-      glm::vec3(1 - direction.x * direction.x * k, -direction.x * direction.y * k, -direction.x));
+// Stereographic coordinates of a direction. Its opposite has none: there, what is next to nothing away from
+// it.
+glm::dvec2 stereographic(const glm::dvec3& d) {
+  return 1 + d.z < 1e-9 ? glm::dvec2(0, 1e5) : glm::dvec2(d) / (1 + d.z);
+}
+
+// The shortest rotation of z onto the direction that has them.
+glm::dmat3 shortest(const glm::dvec2& s) {
+  const glm::dvec3 w = glm::dvec3(s, 1) * (2 / (1 + glm::dot(s, s)));
+  return {glm::dvec3(1, 0, 0) - s.x * w, glm::dvec3(0, 1, 0) - s.y * w, w - glm::dvec3(0, 0, 1)};
 }
 
 }  // namespace
@@ -35,25 +39,24 @@ std::vector<float> rigRecords(const Rig& rig) {
     append(records, leg.root(), leg.reach);
     append(records, leg.home, static_cast<float>(leg.group));
     append(records, {order[l].lag, static_cast<float>(order[l].neighbours), 1 / leg.reach}, 0);
-    glm::mat3 before(1);
+    glm::dmat3 frame(1);
     for (int i = 0; i < rig.maxBones(); ++i) {
       const bool present = i < static_cast<int>(leg.bones.size());
       const Bone& bone = present ? leg.bones[static_cast<size_t>(i)] : leg.bones.back();
-      // Measured from the records, the frame must be exactly what the solver uses: x orthogonal to z.
-      glm::vec3 x = frameX(bone.direction);
-      x = glm::normalize(x - bone.direction * glm::dot(x, bone.direction));
       const float half = std::min(bone.coneHalfAngle, kWidestCone) / 2;
       const float length = present ? bone.length / leg.reach : 0.0f, edge = present ? std::tan(half) : 0.0f;
-      append(records, x, length);
-      append(records, bone.direction, edge);
+      // From the coordinates that the solver reads, so that all frames are exactly its own.
+      const glm::vec2 s(stereographic(glm::normalize(glm::transpose(frame) * glm::dvec3(bone.direction))));
+      const glm::dmat3 carry = shortest(s);
+      frame = frame * carry;
+      append(records, glm::vec3(frame[0]), length);
+      append(records, glm::vec3(frame[2]), edge);
       append(records, present ? bone.start : leg.home, i == 0 ? shared::FIRST_STIFFNESS : 1.0f);
       append(records, glm::vec3(0), 0);
       append(records, glm::vec3(shared::LIMIT_CONE, 0, 0), 0);
-      const glm::mat3 frame(x, glm::cross(bone.direction, x), bone.direction);
-      const glm::mat3 carry = glm::transpose(before) * frame;
-      append(records, carry[0], length);
-      append(records, carry[2], edge);
-      before = frame;
+      append(records, glm::vec3(carry[0]), length);
+      append(records, glm::vec3(carry[2]), edge);
+      records.insert(records.end(), {s.x, s.y, length, edge});
     }
   }
   return records;

@@ -54,6 +54,7 @@ std::vector<float> boneRecords(const Skeleton& skeleton) {
         i == 0 ? joint.frame : glm::transpose(skeleton.joints()[i - 1].frame) * joint.frame;
     append(records, carry[0], joint.length);
     append(records, carry[2], edge);
+    append(records, glm::dvec3(0), 0);
     start = rest[i];
   }
   return records;

@@ -4,6 +4,15 @@
 // function.
 
 // `at`: the first bone's record. Stiffness is left to those that pull bones to rest.
+#ifdef ONLY_CONES
+#define LOAD_LIMB(limb, rig, at)                                            \
+  for (int i_ = 0; i_ < BONES; ++i_) {                                      \
+    vec4 a_ = LOAD4(rig, (at) + RIG_BONE_STRIDE * i_ + 7);                  \
+    limb.carry[i_] = swungFrame(noTurn(), a_.xy, 2.0 / (1.0 + dot(a_.xy, a_.xy))); \
+    limb.bone[i_] = a_.z;                                                   \
+    limb.edge[i_] = a_.w;                                                   \
+  }
+#else
 #define LOAD_LIMB(limb, rig, at)                                            \
   for (int i_ = 0; i_ < BONES; ++i_) {                                      \
     int bone_ = (at) + RIG_BONE_STRIDE * i_;                                \
@@ -16,6 +25,7 @@
     if (isKind(i_, LIMIT_ELLIPSE | LIMIT_HINGE)) limb.ends[i_] = LOAD4(rig, bone_ + 3); \
     if (isKind(i_, LIMIT_TWIST)) limb.twists[i_] = LOAD4(rig, bone_ + 4).yz; \
   }
+#endif
 
 #define LOAD_SWINGS(swing, chains, at)                                      \
   for (int i_ = 0; i_ < BONES; i_ += 2) {                                   \

@@ -169,11 +169,13 @@ SKITTER_CONST int METRIC_STRIDE = 7;
 //        [4] kind of limit (LIMIT_), twist: tan(lo/2), tan(hi/2), unused
 //        [5] x axis of B_(i-1)^T B_i (of the first bone: B_0), length / reach
 //        [6] z axis of the same, tan(half-angle / 2)
+//        [7] of a crowd, whose frames are carried along the leg at rest: stereographic X, Y of r_i in B_(i-1)
+//        (of the first bone: in the model), length / reach, tan(half-angle / 2)
 SKITTER_CONST int RIG_LEG_STRIDE = 3;
 // Stiffness of a leg's first bone, which turns all of it and so yields to the target more readily; others
 // have 1.
 SKITTER_CONST float FIRST_STIFFNESS = 0.2;
-SKITTER_CONST int RIG_BONE_STRIDE = 7;
+SKITTER_CONST int RIG_BONE_STRIDE = 8;
 // Kinds of limit. A kernel is specialised by those that may occur at each bone: four bits a bone, eight bones
 // a word, LIMIT_TWIST beside the others.
 SKITTER_CONST int LIMIT_CONE = 1;

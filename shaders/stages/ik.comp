@@ -128,7 +128,7 @@ void main() {
   }
 #endif
 
-  vec3 target = (rotateBack(orientation, foot.xyz) - root.xyz) / reach;
+  vec3 target = (rotateBack(orientation, foot.xyz) - root.xyz) * (1.0 / reach);
   bool lost = !finite(target);
   target = lost ? pose.tip : target;
   float error = distance(target, pose.tip);

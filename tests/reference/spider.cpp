@@ -82,6 +82,7 @@ std::vector<float> rigRecordsOf(const Rig& rig, int padding) {
       const glm::dmat3 frame(x, glm::cross(z, x), z), carry = glm::transpose(before) * frame;
       push(carry[0], length);
       push(carry[2], edge);
+      push(glm::dvec3(0), 0);  // a device reads it, whose frames are others
       before = frame;
     };
     for (const Bone& bone : leg.bones) {
