@@ -7,6 +7,8 @@
 #include "embedded/gait_loop_comp_texel.h"
 #include "embedded/gait_pose_comp_storage.h"
 #include "embedded/gait_pose_comp_texel.h"
+#include "embedded/navigate_body_gait_comp_storage.h"
+#include "embedded/navigate_body_gait_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -45,6 +47,19 @@ Stage bodyAndGaitStage() {
            {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::agents};
+}
+
+Stage navigateBodyAndGaitStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  Stage stage = bodyAndGaitStage();
+  stage.name = "navigate+body+gait";
+  stage.code = {embedded::navigate_body_gait_comp_texel(), embedded::navigate_body_gait_comp_storage()};
+  std::erase_if(stage.bindings, [](const gpu::BindingDecl& decl) { return decl.binding == BINDING_STEER; });
+  stage.bindings.push_back({BINDING_GOAL, load4});
+  stage.bindings.push_back({BINDING_GOAL_OUT, store});
+  stage.bindings.push_back({BINDING_STEER_OUT, store});
+  return stage;
 }
 
 Stage loopGaitStage() {

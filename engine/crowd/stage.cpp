@@ -35,7 +35,8 @@ std::vector<Stage> everyStageOf(Controller controller) {
           swingStage(),    ikStage(),   poseStage(), measureStage(), footfallStage()};
 }
 
-// Puts the stages that `fused` makes at once together, but for those that are given another shader.
+// Puts the stages that `fused` makes at once in its place, where they stand in a row and none is given
+// another shader.
 void fuse(const CrowdOptions& options, const Stage& fused, std::vector<Stage>& stages) {
   const auto isPart = [&](const Stage& stage) { return makes(fused.name, stage.name); };
   const bool given =
@@ -43,9 +44,11 @@ void fuse(const CrowdOptions& options, const Stage& fused, std::vector<Stage>& s
         return shader.stage != fused.name && makes(fused.name, shader.stage);
       });
   const auto first = std::find_if(stages.begin(), stages.end(), isPart);
-  if (given || first == stages.end()) return;
+  const auto last = std::find_if_not(first, stages.end(), isPart);
+  const auto parts = 1 + std::count(fused.name, fused.name + std::strlen(fused.name), '+');
+  if (given || last - first != parts) return;
   *first = fused;
-  stages.erase(first + 1);
+  stages.erase(first + 1, last);
 }
 
 }  // namespace
@@ -60,16 +63,15 @@ Controller controllerNamed(const std::string& name) {
 }
 
 const std::vector<const char*>& frame() {
-  static const std::vector<const char*> names = {"navigate", "wake",     "body",    "body+gait", "clip",
-                                                 "gait",     "foothold", "swing",   "swing+ik",  "ik",
-                                                 "pose",     "measure",  "footfall"};
+  static const std::vector<const char*> names = {"navigate",  "wake",     "body", "navigate+body+gait",
+                                                 "body+gait", "clip",     "gait", "foothold",
+                                                 "swing",     "swing+ik", "ik",   "pose",
+                                                 "measure",   "footfall"};
   return names;
 }
 
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) {
   std::vector<Stage> stages = everyStageOf(controller);
-  if (options.fuse && controller == Controller::adaptive)
-    for (const Stage& fused : {bodyAndGaitStage(), swingAndIkStage()}) fuse(options, fused, stages);
   std::erase_if(stages, [&](const Stage& stage) {
     const std::string_view name = stage.name;
     if (name == "wake") return !options.sleep;
@@ -80,6 +82,9 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) 
     if (name == "swing" && controller == Controller::clip) return !keepsFeet(options);
     return false;
   });
+  if (options.fuse && controller == Controller::adaptive)
+    for (const Stage& fused : {navigateBodyAndGaitStage(), bodyAndGaitStage(), swingAndIkStage()})
+      fuse(options, fused, stages);
   for (Stage& stage : stages)
     if (isOfTheAwake(stage)) stage.bindings.push_back({shared::BINDING_AWAKE, gpu::BindingKind::load4});
   return stages;

@@ -65,6 +65,7 @@ Stage blindBodyStage();
 Stage clipStage();
 Stage gaitStage();
 Stage bodyAndGaitStage();
+Stage navigateBodyAndGaitStage();
 Stage loopGaitStage();
 Stage keyPoseGaitStage();
 Stage footholdStage();

@@ -5,10 +5,12 @@
 #include "stages/rig_legs.glsl"
 #include "stages/ground.glsl"
 
-Body makeBody(int agent) {
-  int at = agent * BODY_STRIDE;
-  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
-  vec2 velocity = LOAD4(steers, agent).xy;
+#define LOAD_BODY(agent)                                                                                     \
+  unpackBody(LOAD4(bodies, (agent) * BODY_STRIDE), LOAD4(bodies, (agent) * BODY_STRIDE + 1),                 \
+             LOAD4(bodies, (agent) * BODY_STRIDE + 2), LOAD4(bodies, (agent) * BODY_STRIDE + 3))
+
+// `body` is the agent's, `velocity` what it is steered to.
+Body makeBody(int agent, Body body, vec2 velocity) {
   float dt = parameters.dt;
 
   // Ground points are summed relative to the old position; the new one differs by `moved`.
@@ -83,6 +85,7 @@ Body makeBody(int agent) {
   body.still = still ? body.still + dt : 0.0;
   body.follow = follow;
 
+  int at = agent * BODY_STRIDE;
   STORE4_TWO(bodiesOut, at, vec4(body.local, body.heading.x), vec4(body.tile, body.heading.y, body.speed));
   STORE4_TWO(bodiesOut, at + 2, body.orientation, vec4(body.turnRate, body.still, body.follow, body.surfaceSpeed));
   return body;

@@ -1,10 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// body and gait of an agent in one go, which reads its legs' steps once.
+// body and gait of an agent in one go, which reads its legs' steps once; with NAVIGATES navigate too, which reads its
+// body, where nobody may sleep.
 #include "stages/awake.glsl"
 
+#ifdef NAVIGATES
+LOAD4_BUFFER(BINDING_GOAL, goals);
+STORE4_BUFFER(BINDING_GOAL_OUT, goalsOut);
+STORE4_BUFFER(BINDING_STEER_OUT, steersOut);
+#include "stages/navigate.glsl"
+#else
 LOAD4_BUFFER(BINDING_STEER, steers);
+#endif
 LOAD4_BUFFER(BINDING_GAIT, gaits);
 LOAD4_BUFFER(BINDING_STEP, steps);
 LOAD4_BUFFER(BINDING_SOLVE, solves);
@@ -20,5 +28,12 @@ void main() {
   loadRigLegs();
   int agent = agentAt(int(gl_GlobalInvocationID.x));
   if (agent < 0) return;
-  makeGait(agent, makeBody(agent));
+  Body body = LOAD_BODY(agent);
+#ifdef NAVIGATES
+  vec2 velocity = makeVelocity(agent, worldOf(body.local, body.tile));
+  STORE4(steersOut, agent, vec4(velocity, 0.0, 0.0));
+#else
+  vec2 velocity = LOAD4(steers, agent).xy;
+#endif
+  makeGait(agent, makeBody(agent, body, velocity));
 }

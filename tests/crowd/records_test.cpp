@@ -55,13 +55,28 @@ const std::map<std::string, size_t>& parameterOffsets() {
 }
 
 std::vector<crowd::Stage> everyStage() {
-  return {crowd::navigateStage(),    crowd::bodyStage(),         crowd::gaitStage(),
-          crowd::bodyAndGaitStage(), crowd::footholdStage(),     crowd::swingStage(),
-          crowd::swingAndIkStage(),  crowd::ikStage(),           crowd::poseStage(),
-          crowd::measureStage(),     crowd::blindBodyStage(),    crowd::loopGaitStage(),
-          crowd::loopSwingStage(),   crowd::clipStage(),         crowd::clipSwingStage(),
-          crowd::clipPoseStage(),    crowd::plantedSwingStage(), crowd::plantedIkStage(),
-          crowd::plantedPoseStage(), crowd::footfallStage(),     crowd::keyPoseGaitStage(),
+  return {crowd::navigateStage(),
+          crowd::bodyStage(),
+          crowd::gaitStage(),
+          crowd::bodyAndGaitStage(),
+          crowd::navigateBodyAndGaitStage(),
+          crowd::footholdStage(),
+          crowd::swingStage(),
+          crowd::swingAndIkStage(),
+          crowd::ikStage(),
+          crowd::poseStage(),
+          crowd::measureStage(),
+          crowd::blindBodyStage(),
+          crowd::loopGaitStage(),
+          crowd::loopSwingStage(),
+          crowd::clipStage(),
+          crowd::clipSwingStage(),
+          crowd::clipPoseStage(),
+          crowd::plantedSwingStage(),
+          crowd::plantedIkStage(),
+          crowd::plantedPoseStage(),
+          crowd::footfallStage(),
+          crowd::keyPoseGaitStage(),
           crowd::keyPoseSwingStage()};
 }
 
@@ -79,7 +94,8 @@ TEST(Records, ParametersLieWhereBothSidesThink) {
 }
 
 TEST(Records, LegsFollowTheParameters) {
-  for (const crowd::Stage& stage : {crowd::bodyStage(), crowd::gaitStage(), crowd::bodyAndGaitStage()})
+  for (const crowd::Stage& stage :
+       {crowd::bodyStage(), crowd::gaitStage(), crowd::bodyAndGaitStage(), crowd::navigateBodyAndGaitStage()})
     EXPECT_EQ(layoutOf(stage.code.storage).offsets.at("ParametersBlock").at("uniformLegs"),
               offsetof(crowd::ParameterBlock, rigLegs))
         << stage.name;
