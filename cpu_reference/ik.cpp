@@ -46,7 +46,7 @@ Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Fo
   Chain chain = previous;
   Posture posture(limb, previous.directions);
   glm::dvec3 target = ikTarget(limb, body, foot.target);
-  const bool finite = std::isfinite(target.x) && std::isfinite(target.y) && std::isfinite(target.z);
+  const bool finite = glm::dot(target, target) < 1e38;  // nor absurdly far away
   if (!finite) target = posture.tip();
   if (finite) {
     breakDeadlock(target, posture);

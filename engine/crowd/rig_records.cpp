@@ -56,7 +56,7 @@ std::vector<float> rigRecords(const Rig& rig) {
       append(records, glm::vec3(shared::LIMIT_CONE, 0, 0), 0);
       append(records, glm::vec3(carry[0]), length);
       append(records, glm::vec3(carry[2]), edge);
-      records.insert(records.end(), {s.x, s.y, length, edge});
+      records.insert(records.end(), {s.x, s.y, length, present ? std::cos(2 * half) : 1.0f});
     }
   }
   return records;

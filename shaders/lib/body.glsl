@@ -2,14 +2,23 @@
 #define BODY_GLSL
 // The pieces of the body stage (docs/stages.md, body).
 
-// 1. How much a planted leg slows the body: 1 not at all, 0 to a stop.
-float followFactor(Parameters q, vec3 root, vec3 foot, float inverseReach, float error, vec2 velocity) {
-  vec3 d = foot - root;
-  float stretch = length(d) * inverseReach;
-  bool stretching = dot(d.xz, velocity) < 0.0;
-  float slack = 1.0 / (q.stretchStop - q.stretchSlow), inverseStop = 1.0 / q.errorStop;  // the same for all legs
-  float follow = stretching ? clamp((q.stretchStop - stretch) * slack, 0.0, 1.0) : 1.0;
-  return min(follow, clamp(1.0 - error * inverseReach * inverseStop, 0.0, 1.0));
+// 1. Of the planted legs, in reaches: the longest that is being stretched, squared, and the largest error.
+struct Hold {
+  float stretch2, error;
+};
+
+void addHold(inout Hold hold, bool planted, vec3 root, vec3 foot, float inverseReach, float error, vec2 velocity) {
+  vec3 d = (foot - root) * inverseReach;
+  float stretch2 = dot(d, d), share = error * inverseReach;
+  bool stretching = planted && dot(d.xz, velocity) < 0.0;
+  hold.stretch2 = stretching && stretch2 > hold.stretch2 ? stretch2 : hold.stretch2;
+  hold.error = planted && share > hold.error ? share : hold.error;
+}
+
+// How much they slow the body: 1 not at all, 0 to a stop.
+float followFactor(Parameters q, Hold hold) {
+  float slack = (q.stretchStop - sqrt(hold.stretch2)) / (q.stretchStop - q.stretchSlow);
+  return clamp(min(slack, 1.0 - hold.error / q.errorStop), 0.0, 1.0);
 }
 
 // 2. Turn rate and heading toward `wanted` (unit).

@@ -26,6 +26,7 @@ struct Limb {
   Frame carry[BONES];   // B_(i-1)^T B_i, of the first bone B_0
   float bone[BONES];    // lengths; 0 pads a shorter limb
   float edge[BONES];    // of cones: tan(alpha / 2)
+  float cosine[BONES];  // of cones alone, where there are no other limits: cos(alpha)
   float stiffness[BONES];
   vec4 ends[BONES];     // an ellipse's half-angles; a hinge's ends and its bone's x and z in its frame
   vec2 twists[BONES];   // tan(tau / 2) at both ends
@@ -163,14 +164,16 @@ vec4 swung(Limb limb, int i, vec4 parent, Pose pose) {
 }
 
 // A straight chain with its target nearer on the same line would never bend: bend it first.
-bool deadlocked(vec3 target, Pose pose) {
+// Looks at joints first .. last - 1: true for all of them means true for some.
+bool deadlocked(vec3 target, Pose pose, int first, int last) {
   float off = 0.0, span = dot(pose.tip, pose.tip);
-  for (int i = 1; i < BONES; ++i) {
+  for (int i = first; i < last; ++i) {
     vec3 away = cross(pose.tip, pose.joint[i]);
     off = max(off, dot(away, away));
   }
   return off < 1e-6 * span && dot(target, target) < 0.998001 * span;
 }
+bool deadlocked(vec3 target, Pose pose) { return deadlocked(target, pose, 1, BONES); }
 
 void bend(Limb limb, inout Pose pose) {
   for (int i = 0; i < BONES; ++i) {

@@ -52,7 +52,7 @@ vec2 turned(Limb limb, int i, vec2 s, vec2 x) {
 
 // Of the next solve, as Levenberg and Marquardt have it.
 float dampingAfter(bool kept, float damping) {
-  return kept ? max(damping / 10.0, 1.0) : min(16.0 * damping, 4096.0);
+  return kept ? max(0.1 * damping, 1.0) : min(16.0 * damping, 4096.0);
 }
 
 void turnTwist(Limb limb, int i, float x, inout float twist) {

@@ -10,7 +10,8 @@
     vec4 a_ = LOAD4(rig, (at) + RIG_BONE_STRIDE * i_ + 7);                  \
     limb.carry[i_] = swungFrame(noTurn(), a_.xy, 2.0 / (1.0 + dot(a_.xy, a_.xy))); \
     limb.bone[i_] = a_.z;                                                   \
-    limb.edge[i_] = a_.w;                                                   \
+    limb.cosine[i_] = a_.w;                                                 \
+    limb.edge[i_] = LOAD4(rig, (at) + RIG_BONE_STRIDE * i_ + 6).w;          \
   }
 #else
 #define LOAD_LIMB(limb, rig, at)                                            \

@@ -32,7 +32,7 @@ float stepProgress(Step s, float tick) { return clamp((tick - s.firstTick) / s.t
 // A point of a step relative to a body's position, along world axes.
 vec3 fromTile(vec3 point, vec2 tile, vec3 bodyLocal, vec2 bodyTile) {
   vec2 offset = (tile - bodyTile) * TILE_SIZE;
-  return vec3(point.x + offset.x - bodyLocal.x, point.y - bodyLocal.y, point.z + offset.y - bodyLocal.z);
+  return point + vec3(offset.x - bodyLocal.x, -bodyLocal.y, offset.y - bodyLocal.z);
 }
 
 vec2 worldOf(vec3 local, vec2 tile) { return tile * TILE_SIZE + local.xz; }

@@ -4,12 +4,9 @@
 // The active set's step (active_set.glsl) and chord steps of a chain of cones of which no bone meets its limit: nothing
 // is held then and nothing clamped, which is half of the work (docs/stages.md, ik).
 
-// Whether a step leads no bone to its limit, from n (1 + d.z) and n of the direction d after it; edge: tan(alpha / 2).
-// Clamped is what has cos(theta) < cos(alpha); held what has n cos(theta) < cos(alpha) times a number from 1 to n.
-bool clearOfLimit(float below, float n, float edge) {
-  float edge2 = edge * edge, inner = 1.0 - edge2;
-  return (below - n - 1e-5) * (1.0 + edge2) > max(inner * n, inner);
-}
+// Whether a step leads no bone to its limit, from n (1 + d.z) and n of the direction d after it; c: cos(alpha).
+// Clamped is what has cos(theta) < c; held what has n cos(theta) < c times a number from 1 to n.
+bool clearOfLimit(float below, float n, float c) { return below - n - 1e-5 > (c > 0.0 ? c * n : c); }
 
 // k: 2 / (1 + X^2 + Y^2).
 vec3 tipOf(Limb limb, vec2 swing[BONES], float k[BONES]) {
@@ -44,7 +41,7 @@ bool unheldStep(Limb limb, vec3 target, int chords, float restPull, float tolera
     for (int i = 0; i < BONES; ++i) {
       x[i] += stepOf(c, i, lambda);
       vec4 to = stepped(pose.swing[i], x[i]);
-      clear = clear && ((PADDED && limb.bone[i] == 0.0) || clearOfLimit(to.z, to.w, limb.edge[i]));
+      clear = clear && ((PADDED && limb.bone[i] == 0.0) || clearOfLimit(to.z, to.w, limb.cosine[i]));
       float over = 1.0 / (to.z * to.w);
       trial.swing[i] = to.xy * (over * to.w);
       trial.twist[i] = pose.twist[i];

@@ -170,7 +170,7 @@ SKITTER_CONST int METRIC_STRIDE = 7;
 //        [5] x axis of B_(i-1)^T B_i (of the first bone: B_0), length / reach
 //        [6] z axis of the same, tan(half-angle / 2)
 //        [7] of a crowd, whose frames are carried along the leg at rest: stereographic X, Y of r_i in B_(i-1)
-//        (of the first bone: in the model), length / reach, tan(half-angle / 2)
+//        (of the first bone: in the model), length / reach, cos(half-angle)
 SKITTER_CONST int RIG_LEG_STRIDE = 3;
 // Stiffness of a leg's first bone, which turns all of it and so yields to the target more readily; others
 // have 1.

@@ -14,7 +14,8 @@ Body makeBody(int agent, Body body, vec2 velocity) {
   float dt = parameters.dt;
 
   // Ground points are summed relative to the old position; the new one differs by `moved`.
-  float follow = 1.0;
+  Hold hold = Hold(0.0, 0.0);
+  mat3 before = matrixOf(body.orientation);
   PlaneSums sums = PlaneSums(vec3(0.0), vec3(0.0), vec2(0.0));
 #ifdef BLIND
   // Legs that do not know where they stand: the body lies on the ground below their homes.
@@ -32,13 +33,12 @@ Body makeBody(int agent, Body body, vec2 velocity) {
     vec3 liftOff = fromTile(s.liftOff, s.tile, body.local, body.tile);
     vec4 root = RIG_LEG(leg, 0);
     float error = LOAD4(solves, agent * solveStride(LEGS) + leg / 2)[leg % 2 * 2];
-    float slow = followFactor(parameters, rotate(body.orientation, root.xyz), landing, RIG_LEG(leg, 2).z, error, velocity);
-    follow = u >= 1.0 ? min(follow, slow) : follow;
+    addHold(hold, u >= 1.0, before * root.xyz, landing, RIG_LEG(leg, 2).z, error, velocity);
     addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));
   }
 #endif
 
-  follow = max(follow, parameters.followLeast);
+  float follow = max(followFactor(parameters, hold), parameters.followLeast);
 
   float commanded = length(velocity);
   bool going = commanded > 1e-4 * parameters.legLength;

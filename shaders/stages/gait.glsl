@@ -23,6 +23,7 @@ void makeGait(int agent, Body body) {
   float phase = LOAD4(gaits, agent * GAIT_STRIDE).x + parameters.dt / stride.cycle;
   phase -= floor(phase);
 
+  mat3 orientation = matrixOf(body.orientation);
   uint air = 0u, wants = 0u, again = 0u;
   // The leg that must lift and has stood longest goes first, and its neighbours wait for it.
   uint first = 0u, yields = 0u;
@@ -40,7 +41,7 @@ void makeGait(int agent, Body body) {
     float flown = thisTick - 1.0 - s.firstTick;
     float u = clamp(flown / s.ticks, 0.0, 1.0);
     vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
-    vec3 foot = rotateBack(body.orientation, landing);
+    vec3 foot = landing * orientation;
     bool moved = WATCH != 0 && !s.lastResort && abs(above(landing, body)) > parameters.groundTolerance;
     if (u >= 1.0) {
       // Distances are compared by their squares.
@@ -49,7 +50,7 @@ void makeGait(int agent, Body body) {
       float stretch = dot(arm, arm), off = dot(astray, astray);
       float error = LOAD4(solves, agent * solveStride(LEGS) + leg / 2)[leg % 2 * 2];
       bool must = stretch < rootShare2 || stretch > stretchLift2 || off > strayShare2 ||
-                  error > parameters.errorLift * root.w;
+                  error * order.z > parameters.errorLift;
       bool far = off > liftShare2;
       bool open = REACH != 0 || windowOpen(parameters, phase, home.w, order.x, stride, float(GROUPS));
       wants |= !settled && open && (far || must || s.lastResort) ? 1u << leg : 0u;

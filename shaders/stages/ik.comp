@@ -129,10 +129,12 @@ void main() {
 #endif
 
   vec3 target = (rotateBack(orientation, foot.xyz) - root.xyz) * (1.0 / reach);
-  bool lost = !finite(target);
+  bool lost = !(dot(target, target) < 1e38);  // nor where no number is
   target = lost ? pose.tip : target;
   float error = distance(target, pose.tip);
-  bool stuck = deadlocked(target, pose);
+  // Who may be is left to the second dispatch, so one joint in the middle will do, if all limbs have one there.
+  bool one = PASS == PASS_QUICK && !PADDED && BONES > 1;
+  bool stuck = one ? deadlocked(target, pose, BONES / 2, BONES / 2 + 1) : deadlocked(target, pose);
 
   if (PASS == PASS_QUICK) {
     // What few chains need is left to the second dispatch, which begins anew: a device that masks lanes makes every
