@@ -53,7 +53,7 @@ std::span<const std::byte> bytesOf(const T& value) {
 }
 
 // The work groups of `size` invocations that cover `items`.
-constexpr uint32_t groupsFor(uint32_t items, uint32_t size = 64) {
+constexpr uint32_t groupsFor(uint32_t items, uint32_t size) {
   return items / size + (items % size != 0 ? 1u : 0u);
 }
 

@@ -244,7 +244,7 @@ void Batch::Impl::makePages() {
   if (context->texelLoads()) reach = std::min(reach, limits.maxTexelBufferElements * 16);
   const uint64_t largest = 16 * std::max<uint64_t>({stateStride(), bones, shared::BASE_STRIDE});
   pageChains = static_cast<uint32_t>(std::min<uint64_t>(
-      {kMostPageChains, reach / largest, uint64_t{limits.maxComputeWorkGroupCountX} * 64}));
+      {kMostPageChains, reach / largest, uint64_t{limits.maxComputeWorkGroupCountX} * shared::WORK_GROUP}));
   if (options.pageChains > 0) pageChains = std::min(pageChains, options.pageChains);
   uint64_t stride = 2 + bones;
   if (options.bases) stride += shared::BASE_STRIDE;
@@ -443,7 +443,7 @@ void Batch::record(VkCommandBuffer commandBuffer) const {
     }
   };
   forEachPage([&](const Page& page, std::span<const std::byte> constants) {
-    batch.kernel.dispatch(cmd, page.bindings, constants, gpu::groupsFor(page.chains));
+    batch.kernel.dispatch(cmd, page.bindings, constants, gpu::groupsFor(page.chains, shared::WORK_GROUP));
   });
   if (batch.quick) {
     gpu::computeToIndirectAndCompute(cmd);

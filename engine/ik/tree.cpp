@@ -128,7 +128,8 @@ void TreeBatch::solve(std::span<const glm::vec3> bodies, std::span<const glm::ve
   gpu::upload(*batch.context, batch.targets, widened(targets));
   gpu::submitAndWait(*batch.context, [&](vk::CommandBuffer cmd) {
     gpu::transferToCompute(cmd);
-    batch.kernel.dispatch(cmd, batch.bindings, gpu::bytesOf(batch.constants), gpu::groupsFor(batch.trees));
+    batch.kernel.dispatch(cmd, batch.bindings, gpu::bytesOf(batch.constants),
+                          gpu::groupsFor(batch.trees, shared::WORK_GROUP));
     gpu::computeToTransfer(cmd);
   });
 }

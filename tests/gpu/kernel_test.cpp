@@ -55,7 +55,7 @@ TEST_P(KernelTest, WritesExactlyItsItems) {
     clear(context(), target);
     const Bindings bindings = kernel.bind(context(), {{0, &source}, {1, &target}});
     submitAndWait(context(), [&](vk::CommandBuffer cmd) {
-      kernel.dispatch(cmd, bindings, bytesOf(CopyPush{count, 0.5f}), groupsFor(count));
+      kernel.dispatch(cmd, bindings, bytesOf(CopyPush{count, 0.5f}), groupsFor(count, 64));
     });
     const auto out = download<Record>(context(), target);
     ASSERT_EQ(out.size(), count + 1);
@@ -75,9 +75,9 @@ TEST_P(KernelTest, StagesFeedEachOther) {
   const Bindings ba = kernel.bind(context(), {{0, &b}, {1, &a}});
   submitAndWait(context(), [&](vk::CommandBuffer cmd) {
     for (int i = 0; i < 3; ++i) {
-      kernel.dispatch(cmd, ab, bytesOf(CopyPush{count, 1}), groupsFor(count));
+      kernel.dispatch(cmd, ab, bytesOf(CopyPush{count, 1}), groupsFor(count, 64));
       computeToCompute(cmd);
-      kernel.dispatch(cmd, ba, bytesOf(CopyPush{count, 1}), groupsFor(count));
+      kernel.dispatch(cmd, ba, bytesOf(CopyPush{count, 1}), groupsFor(count, 64));
       computeToCompute(cmd);
     }
   });
