@@ -15,6 +15,11 @@ Body unpackBody(vec4 a, vec4 b, vec4 c, vec4 d) {
   return Body(a.xyz, b.xy, vec2(a.w, b.z), b.w, c, d.x, d.y, d.z, d.w);
 }
 
+// Of the buffer `bodies`; a macro, as GLSL cannot pass one to a function.
+#define LOAD_BODY(agent)                                                                     \
+  unpackBody(LOAD4(bodies, (agent) * BODY_STRIDE), LOAD4(bodies, (agent) * BODY_STRIDE + 1), \
+             LOAD4(bodies, (agent) * BODY_STRIDE + 2), LOAD4(bodies, (agent) * BODY_STRIDE + 3))
+
 struct Step {
   vec3 landing, liftOff;  // tile-local in x and z, world in y
   vec2 tile;
@@ -26,6 +31,11 @@ struct Step {
 Step unpackStep(vec4 a, vec4 b, vec4 c, vec4 d) {
   return Step(a.xyz, b.xyz, vec2(a.w, b.w), vec3(c.zw, d.w), d.xyz, c.x, abs(c.y), c.y < 0.0);
 }
+
+// Of the buffer `steps`.
+#define LOAD_STEP(leg)                                                                   \
+  unpackStep(LOAD4(steps, (leg) * STEP_STRIDE), LOAD4(steps, (leg) * STEP_STRIDE + 1), \
+             LOAD4(steps, (leg) * STEP_STRIDE + 2), LOAD4(steps, (leg) * STEP_STRIDE + 3))
 
 float stepProgress(Step s, float tick) { return clamp((tick - s.firstTick) / s.ticks, 0.0, 1.0); }
 

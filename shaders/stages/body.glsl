@@ -5,10 +5,6 @@
 #include "stages/rig_legs.glsl"
 #include "stages/ground.glsl"
 
-#define LOAD_BODY(agent)                                                                                     \
-  unpackBody(LOAD4(bodies, (agent) * BODY_STRIDE), LOAD4(bodies, (agent) * BODY_STRIDE + 1),                 \
-             LOAD4(bodies, (agent) * BODY_STRIDE + 2), LOAD4(bodies, (agent) * BODY_STRIDE + 3))
-
 // `body` is the agent's, `velocity` what it is steered to.
 Body makeBody(int agent, Body body, vec2 velocity) {
   float dt = parameters.dt;
@@ -25,9 +21,7 @@ Body makeBody(int agent, Body body, vec2 velocity) {
   }
 #else
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
-    int stepAt = legRecord(agent, leg, LEGS) * STEP_STRIDE;
-    Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
-                        LOAD4(steps, stepAt + 3));
+    Step s = LOAD_STEP(legRecord(agent, leg, LEGS));
     float u = stepProgress(s, thisTick - 1.0);
     vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
     vec3 liftOff = fromTile(s.liftOff, s.tile, body.local, body.tile);

@@ -30,8 +30,8 @@ vec2 frameAt(vec4 clip, float time) {
 void main() {
   int agent = agentAt(int(gl_GlobalInvocationID.x));
   if (agent < 0) return;
-  int at = agent * BODY_STRIDE, playAt = agent * PLAY_STRIDE;
-  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  int playAt = agent * PLAY_STRIDE;
+  Body body = LOAD_BODY(agent);
   Play play = unpackPlay(LOAD4(plays, playAt), LOAD4(plays, playAt + 1), LOAD4(plays, playAt + 2));
   float speed = body.surfaceSpeed + abs(body.turnRate) * parameters.homeRadius;
 

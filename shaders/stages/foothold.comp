@@ -22,10 +22,9 @@ void main() {
   bool again = (list[listed] & 1u) != 0u;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
 
-  int at = agent * BODY_STRIDE, stepAt = record * STEP_STRIDE, rigAt = leg * rigStride(BONES);
-  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
-  Step old = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
-                        LOAD4(steps, stepAt + 3));
+  int stepAt = record * STEP_STRIDE, rigAt = leg * rigStride(BONES);
+  Body body = LOAD_BODY(agent);
+  Step old = LOAD_STEP(record);
   vec4 root = LOAD4(rig, rigAt), home = LOAD4(rig, rigAt + 1);
   float reach = root.w;
   float freshTicks = LOAD4(gaits, agent * GAIT_STRIDE).w, cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;

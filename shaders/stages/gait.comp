@@ -16,6 +16,5 @@ void main() {
   loadRigLegs();
   int agent = agentAt(int(gl_GlobalInvocationID.x));
   if (agent < 0) return;
-  int at = agent * BODY_STRIDE;
-  makeGait(agent, unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3)));
+  makeGait(agent, LOAD_BODY(agent));
 }

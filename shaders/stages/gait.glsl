@@ -34,9 +34,7 @@ void makeGait(int agent, Body body) {
         strayShare2 = squared(parameters.strayShare), liftShare2 = squared(liftShare),
         reaimDistance2 = squared(parameters.reaimDistance);
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
-    int stepAt = legRecord(agent, leg, LEGS) * STEP_STRIDE;
-    Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
-                        LOAD4(steps, stepAt + 3));
+    Step s = LOAD_STEP(legRecord(agent, leg, LEGS));
     vec4 root = RIG_LEG(leg, 0), home = RIG_LEG(leg, 1), order = RIG_LEG(leg, 2);
     float flown = thisTick - 1.0 - s.firstTick;
     float u = clamp(flown / s.ticks, 0.0, 1.0);

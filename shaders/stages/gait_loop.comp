@@ -10,8 +10,7 @@ STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
 void main() {
   int agent = agentAt(int(gl_GlobalInvocationID.x));
   if (agent < 0) return;
-  int at = agent * BODY_STRIDE;
-  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  Body body = LOAD_BODY(agent);
   Stride stride = strideFor(parameters, body.surfaceSpeed, body.turnRate, float(GROUPS));
   float phase = LOAD4(gaits, agent * GAIT_STRIDE).x + (body.still > 0.0 ? 0.0 : parameters.dt / stride.cycle);
   STORE4_TWO(gaitsOut, agent * GAIT_STRIDE, vec4(phase - floor(phase), 0.0, 0.0, stride.ticks),

@@ -9,8 +9,8 @@ STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
 void main() {
   int agent = agentAt(int(gl_GlobalInvocationID.x));
   if (agent < 0) return;
-  int at = agent * BODY_STRIDE, gaitAt = agent * GAIT_STRIDE;
-  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  int gaitAt = agent * GAIT_STRIDE;
+  Body body = LOAD_BODY(agent);
   float speed = body.surfaceSpeed + abs(body.turnRate) * parameters.homeRadius;
   float phase = LOAD4(gaits, gaitAt).x + speed * parameters.dt / parameters.poseStride;
   STORE4_TWO(gaitsOut, gaitAt, vec4(phase - floor(phase), 0.0, 0.0, 0.0), vec4(0.0));

@@ -116,9 +116,8 @@ float supportMargin(int first, vec2 centre, vec2 anchor) {
 }
 
 void measure(int slot, int agent) {
-  int bodyAt = agent * BODY_STRIDE, firstLeg = legRecord(agent, 0, LEGS), watchAt = slot * watchStride(LEGS);
-  Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
-                         LOAD4(bodies, bodyAt + 3));
+  int firstLeg = legRecord(agent, 0, LEGS), watchAt = slot * watchStride(LEGS);
+  Body body = LOAD_BODY(agent);
   vec2 world = worldOf(body.local, body.tile);
   vec2 centre = rotate(body.orientation, vec3(0.0, parameters.bodyHeight, 0.0)).xz;
   uint watched = constants.watched, ticks = uint(parameters.jerkTicks);

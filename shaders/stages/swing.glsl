@@ -4,9 +4,8 @@
 #include "lib/hermite.glsl"
 
 vec4 makeFoot(int agent, int record) {
-  int at = agent * BODY_STRIDE, stepAt = record * STEP_STRIDE;
-  Step s = unpackStep(LOAD4(steps, stepAt), LOAD4(steps, stepAt + 1), LOAD4(steps, stepAt + 2),
-                      LOAD4(steps, stepAt + 3));
+  int at = agent * BODY_STRIDE;
+  Step s = LOAD_STEP(record);
   vec3 local = LOAD4(bodies, at).xyz;
   vec2 tile = LOAD4(bodies, at + 1).xy;
   float u = stepProgress(s, thisTick);

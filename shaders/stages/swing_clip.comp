@@ -33,9 +33,8 @@ void main() {
   int record = legAt(int(gl_GlobalInvocationID.x));
   if (record < 0) return;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
-  int bodyAt = agent * BODY_STRIDE, playAt = agent * PLAY_STRIDE;
-  Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
-                         LOAD4(bodies, bodyAt + 3));
+  int playAt = agent * PLAY_STRIDE;
+  Body body = LOAD_BODY(agent);
   Play play = unpackPlay(LOAD4(plays, playAt), LOAD4(plays, playAt + 1), LOAD4(plays, playAt + 2));
   uint standing = uint(LOAD4(frames, int(play.weight < 0.5 ? play.frames.z : play.frames.x)).z);
   bool stands = (standing >> leg & 1u) != 0u;

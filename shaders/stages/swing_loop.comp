@@ -12,8 +12,7 @@ void main() {
   int record = legAt(int(gl_GlobalInvocationID.x));
   if (record < 0) return;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
-  int at = agent * BODY_STRIDE;
-  Body body = unpackBody(LOAD4(bodies, at), LOAD4(bodies, at + 1), LOAD4(bodies, at + 2), LOAD4(bodies, at + 3));
+  Body body = LOAD_BODY(agent);
   vec4 home = LOAD4(rig, leg * rigStride(BONES) + 1);
   vec4 gait = LOAD4(gaits, agent * GAIT_STRIDE);
   float cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;

@@ -23,9 +23,8 @@ void main() {
   int record = legAt(int(gl_GlobalInvocationID.x));
   if (record < 0) return;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS), pairs = chainStride(BONES);
-  int bodyAt = agent * BODY_STRIDE, at = record * pairs;
-  Body body = unpackBody(LOAD4(bodies, bodyAt), LOAD4(bodies, bodyAt + 1), LOAD4(bodies, bodyAt + 2),
-                         LOAD4(bodies, bodyAt + 3));
+  int at = record * pairs;
+  Body body = LOAD_BODY(agent);
   float phase = LOAD4(gaits, agent * GAIT_STRIDE).x;
   float speed = body.surfaceSpeed + abs(body.turnRate) * parameters.homeRadius;
   float walking = min(1.0, speed / parameters.poseWalk);
