@@ -17,8 +17,8 @@ using uint = unsigned;
 // Legs that a creature may have.
 SKITTER_CONST int MOST_LEGS = 24;
 
-// Invocations a work group in every stage: a software device takes a while to begin one, and makes all of them, with
-// work to do or none.
+// Invocations a work group in every stage: a software device takes a while to begin one, and makes all of
+// them, with work to do or none.
 SKITTER_CONST int WORK_GROUP = 128;
 
 // Leg records are laid out in blocks of BLOCK agents: within a block those of the first legs, one an agent,
