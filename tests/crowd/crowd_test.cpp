@@ -29,6 +29,26 @@ TEST_F(CrowdTest, WalksAtTheCommandedSpeedWithoutSlipping) {
   EXPECT_EQ(f.notFinite, 0u);
 }
 
+TEST_F(CrowdTest, TimesStagesWhileItIsToldTo) {
+  if (!context().timestamps()) GTEST_SKIP() << "the device has no timestamps";
+  CrowdOptions options;
+  options.timestamps = true;
+  Crowd crowd(device(), flatGround(), sceneOf(8), options);
+  const auto namesAfterATick = [&] {
+    simulate(device(), crowd, 1);
+    std::vector<std::string> names;
+    for (const StageTime& time : crowd.stageTimes()) names.push_back(time.stage);
+    return names;
+  };
+  const std::vector<std::string> all = namesAfterATick();
+  ASSERT_FALSE(all.empty());
+  EXPECT_EQ(all.front(), "navigate+body+gait");
+  crowd.timeStages(false);
+  EXPECT_TRUE(namesAfterATick().empty());
+  crowd.timeStages(true);
+  EXPECT_EQ(namesAfterATick(), all);
+}
+
 TEST_F(CrowdTest, BodiesFollowTheSlope) {
   // A plane that rises one in two across the way: bodies must come to lie parallel to it.
   Heightfield slope = flatGround();
