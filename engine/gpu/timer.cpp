@@ -21,6 +21,7 @@ StageTimer::StageTimer(const Context& context, uint32_t maxStages, bool enabled)
 void StageTimer::reset(vk::CommandBuffer cmd) {
   entries_.clear();
   stamps_ = 0;
+  measuring_ = wanted_;
   if (measures()) cmd.resetQueryPool(*pool_, 0, 2 * maxStages_);
 }
 

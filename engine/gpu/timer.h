@@ -22,7 +22,7 @@ class StageTimer {
   StageTimer(const Context&, uint32_t maxStages, bool enabled = true);
 
   // Whether it measures from the next reset() on, where it can; at first it does.
-  void measure(bool on) { on_ = on; }
+  void measure(bool on) { wanted_ = on; }
   // First in the command buffer, before any begin().
   void reset(vk::CommandBuffer);
   // Stages may nest. The same name twice is two entries. Beyond maxStages a caller's bug. `stage` is a
@@ -35,7 +35,7 @@ class StageTimer {
 
   // Of the last reset(), in the order of begin(), once the submission is complete.
   std::vector<StageTime> milliseconds() const;
-  bool measures() const { return on_ && !!*pool_; }
+  bool measures() const { return measuring_ && !!*pool_; }
 
  private:
   struct Entry {
@@ -49,7 +49,7 @@ class StageTimer {
   const Context* context_ = nullptr;
   uint32_t maxStages_ = 0;
   vk::raii::QueryPool pool_ = nullptr;
-  bool on_ = true;
+  bool wanted_ = true, measuring_ = true;  // the latter of the commands since the last reset()
   std::vector<Entry> entries_;
   uint32_t stamps_ = 0;  // since reset()
 };

@@ -44,8 +44,10 @@ TEST_F(CrowdTest, TimesStagesWhileItIsToldTo) {
   ASSERT_FALSE(all.empty());
   EXPECT_EQ(all.front(), "navigate+body+gait");
   crowd.timeStages(false);
+  EXPECT_EQ(crowd.stageTimes().size(), all.size());  // of the last tick still
   EXPECT_TRUE(namesAfterATick().empty());
   crowd.timeStages(true);
+  EXPECT_TRUE(crowd.stageTimes().empty());
   EXPECT_EQ(namesAfterATick(), all);
 }
 
