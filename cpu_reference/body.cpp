@@ -9,7 +9,7 @@ namespace skitter::reference {
 namespace {
 
 LegFollow followOf(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Step& step,
-                   const glm::dvec2& desired, double reachError, double tick) {
+                   const glm::dvec2& desired, double miss, double tick) {
   LegFollow follow;
   follow.planted = step.progress(tick - 1) >= 1;
   if (!follow.planted) return follow;
@@ -19,7 +19,7 @@ LegFollow followOf(const Tuning& tuning, const Limb& limb, const AgentBody& body
   follow.behind = glm::dot(normalized(root - foot), normalized(glm::dvec3(desired.x, 0, desired.y)));
   follow.factor =
       std::clamp((tuning.stretchStop - stretch) / (tuning.stretchStop - tuning.stretchSlow), 0.0, 1.0);
-  follow.errorFactor = std::clamp(1 - reachError / (tuning.errorStop * limb.reach), 0.0, 1.0);
+  follow.errorFactor = std::clamp(1 - miss / tuning.errorStop, 0.0, 1.0);
   return follow;
 }
 
@@ -174,13 +174,13 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
 
 BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
                 const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
-                std::span<const double> reachErrors, double tick, double phase, const BodyChoices& choices) {
+                std::span<const double> misses, double tick, double phase, const BodyChoices& choices) {
   BodyResult result;
   result.body = previous;
   double kappa = 1;
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
     const LegFollow follow =
-        followOf(tuning, creature.limbs[l], previous, steps[l], desired, reachErrors[l], tick);
+        followOf(tuning, creature.limbs[l], previous, steps[l], desired, misses[l], tick);
     if (follow.planted && follow.behind > 0) kappa = std::min(kappa, follow.factor);
     kappa = std::min(kappa, follow.errorFactor);
     result.follow.push_back(follow);

@@ -41,11 +41,11 @@ struct BodyChoices {
   int turnSign = 0;  // +1, -1: forced
 };
 
-// `reachErrors`: of each leg after the last tick, metres. `tick` is n, the tick being computed; `phase` the
+// `misses`: Chain::miss of each leg after the last tick. `tick` is n, the tick being computed; `phase` the
 // gait's after the last one.
 BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
                 const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
-                std::span<const double> reachErrors, double tick, double phase = 0,
+                std::span<const double> misses, double tick, double phase = 0,
                 const BodyChoices& choices = {});
 
 // A body that does not feel its feet: nothing holds it back, and the ground below the homes takes the place

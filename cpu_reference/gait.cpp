@@ -51,8 +51,7 @@ void look(const Tuning& tuning, const AgentBody& body, const Step& step, const H
 }
 
 LegDecision judge(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Step& step,
-                  const Gait& gait, double stanceTime, double reachError, double tick,
-                  WatchedGround watched) {
+                  const Gait& gait, double stanceTime, double miss, double tick, WatchedGround watched) {
   LegDecision leg;
   leg.progress = step.progress(tick - 1);
   leg.planted = leg.progress >= 1;
@@ -71,8 +70,7 @@ LegDecision judge(const Tuning& tuning, const Limb& limb, const AgentBody& body,
     must.add(leg.stretch < tuning.rootShare, std::abs(leg.stretch - tuning.rootShare) * limb.reach);
     const double astray = tuning.strayShare * gait.halfStride;
     must.add(leg.offset > astray, std::abs(leg.offset - astray));
-    const double amiss = tuning.errorLift * limb.reach;
-    must.add(reachError > amiss, std::abs(reachError - amiss));
+    must.add(miss > tuning.errorLift, std::abs(miss - tuning.errorLift) * limb.reach);
     Disjunction wants;
     const double enough = (tuning.reachTriggered ? 0.6 : tuning.liftShare) * gait.halfStride;
     wants.add(leg.offset > enough, std::abs(leg.offset - enough));
@@ -140,7 +138,7 @@ Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
 }
 
 GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody& body, double phase,
-                std::span<const Step> steps, std::span<const double> reachErrors, double tick,
+                std::span<const Step> steps, std::span<const double> misses, double tick,
                 const GaitChoices& choices, WatchedGround watched) {
   GaitResult result;
   Gait& next = result.gait;
@@ -156,8 +154,8 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
   result.mustMargin = never;
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
     const Limb& limb = creature.limbs[l];
-    LegDecision leg = judge(tuning, limb, body, steps[l], next, stride.cycle - stride.swingTime,
-                            reachErrors[l], tick, watched);
+    LegDecision leg =
+        judge(tuning, limb, body, steps[l], next, stride.cycle - stride.swingTime, misses[l], tick, watched);
     findWindow(tuning, creature, limb, next, stride.swingTime, leg);
     if (!leg.planted) next.air |= 1u << l;
     if (!leg.planted && leg.wants) next.reaim |= 1u << l;

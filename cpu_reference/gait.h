@@ -50,10 +50,10 @@ struct GaitChoices {
 // The ground that is looked at in the ticks after an edit of the heights; without it gait knows none.
 using WatchedGround = const Heights*;
 
-// `phase` is the last tick's, `body` the new one, `reachErrors` of each leg after the last tick (metres),
+// `phase` is the last tick's, `body` the new one, `misses` Chain::miss of each leg after the last tick,
 // `tick` is n.
 GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody& body, double phase,
-                std::span<const Step> steps, std::span<const double> reachErrors, double tick,
+                std::span<const Step> steps, std::span<const double> misses, double tick,
                 const GaitChoices& choices = {}, WatchedGround watched = nullptr);
 
 // Where leg `limb` would land, and where its root would then be, `seconds` before touchdown (model space).

@@ -31,8 +31,14 @@ void approach(const IkPlan& plan, double enough, const glm::dvec3& target, Postu
 }
 
 // The rest pull moves the tip, and a chord step makes good for that.
-ActiveSet polish(const Tuning& tuning, int chords) {
-  return {chords > 0 ? tuning.restPull : 0, tuning.pullError, tuning.ikTolerance, chords};
+void polish(const Tuning& tuning, int chords, const glm::dvec3& target, Posture& posture) {
+  const ActiveSet how{chords > 0 ? tuning.restPull : 0, tuning.pullError, tuning.ikTolerance, chords};
+  // If the step leads away, a short one in its place.
+  for (const double damping : {1.0, 256.0}) {
+    double next = damping;
+    activeSet(how, target, posture, next);
+    if (next <= damping) return;
+  }
 }
 
 }  // namespace
@@ -51,12 +57,13 @@ Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Fo
   if (finite) {
     breakDeadlock(target, posture);
     approach(plan, tuning.approachError, target, posture);
-    if (plan.polishIterations > 0)
-      activeSet(polish(tuning, plan.polishIterations - 1), target, posture, chain.damping);
+    if (plan.polishIterations > 0) polish(tuning, plan.polishIterations - 1, target, posture);
   }
   chain.directions = posture.directions();
   chain.tip = body.orientation * (limb.root + limb.reach * posture.tip());
-  chain.reachError = glm::length(target - posture.tip()) * limb.reach;
+  const double error = glm::length(target - posture.tip());
+  chain.reachError = error * limb.reach;
+  chain.miss = foot.progress >= 1 && error > tuning.missLeast ? error : 0;
   return chain;
 }
 

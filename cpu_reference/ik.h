@@ -12,7 +12,7 @@ struct IkPlan {
   int approachIterations = 0, polishIterations = 0;
 };
 
-// `previous` gives the warm start and its damping. A target that is not finite keeps the pose and counts as
+// `previous` gives the warm start. A target that is not finite keeps the pose and counts as
 // reached.
 Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Foot& foot,
          const Chain& previous, const IkPlan& plan);

@@ -29,7 +29,7 @@ struct Tuning {
   double halfStrideStill = 0, halfStrideMax = 0, swingStill = 0, swingSpeed = 0;
   double dutyStill = 0, dutyGain = 0, dutyLeast = 0, lagShare = 0;
   double cycleMax = 0, windowSlack = 0, windowOpen = 0, liftShare = 0, stretchLift = 0, strayShare = 0;
-  double errorLift = 0, rootShare = 0;
+  double errorLift = 0, rootShare = 0, missLeast = 0;
   double settleTime = 0, sleepTime = 0, reaimDistance = 0, reaimLatest = 0, groundTolerance = 0;
   bool reachTriggered = false;
   double reachMost = 0, reachLeast = 0, reachComfort = 0, slopeLeast = 0, slopeWeight = 0, reachWeight = 0;
@@ -130,7 +130,7 @@ struct Chain {
   std::vector<glm::dvec2> directions;  // (d.x, d.y) / (1 + d.z) of each bone in its frame B_i
   glm::dvec3 tip{0};                   // relative
   double reachError = 0;               // metres
-  double damping = 1;
+  double miss = 0;                     // of a planted foot, share of the reach; 0 up to missLeast
 };
 
 struct BonePose {

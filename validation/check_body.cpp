@@ -70,15 +70,15 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
   const glm::dvec2 desired = desiredOf(moment.after, moment.agent);
   std::vector<reference::Step> steps;
   const size_t legs = static_cast<size_t>(setting.legs);
-  std::vector<double> errors;
+  std::vector<double> misses;
   for (size_t l = 0; l < legs; ++l) {
     steps.push_back(stepOf(moment.before, moment.agent * legs + l));
-    errors.push_back(chainOf(moment.before, moment.agent * legs + l, setting.bones).reachError);
+    misses.push_back(missOf(moment.before, moment.agent, l, setting.legs, moment.n - 1));
   }
   const double phase = gaitOf(moment.before, moment.agent).phase;
   const auto run = [&](const reference::BodyChoices& choices) {
     return reference::body(setting.tuning, setting.heights, setting.creature, previous, desired, steps,
-                           errors, static_cast<double>(moment.n), phase, choices);
+                           misses, static_cast<double>(moment.n), phase, choices);
   };
   const auto inputs = tolerance::feltGround(setting.tuning, setting.creature, previous);
   const reference::BodyResult result = run({});

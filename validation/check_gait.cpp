@@ -111,13 +111,13 @@ void checkGait(const Setting& setting, const Moment& moment, Judge& judge) {
   const double phase = gaitOf(moment.before, moment.agent).phase;
   std::vector<reference::Step> steps;
   const size_t legs = static_cast<size_t>(setting.legs);
-  std::vector<double> errors;
+  std::vector<double> misses;
   for (size_t l = 0; l < legs; ++l) {
     steps.push_back(stepOf(moment.before, moment.agent * legs + l));
-    errors.push_back(chainOf(moment.before, moment.agent * legs + l, setting.bones).reachError);
+    misses.push_back(missOf(moment.before, moment.agent, l, setting.legs, moment.n - 1));
   }
   const auto run = [&](const reference::GaitChoices& choices) {
-    return reference::gait(setting.tuning, setting.creature, body, phase, steps, errors,
+    return reference::gait(setting.tuning, setting.creature, body, phase, steps, misses,
                            static_cast<double>(moment.n), choices,
                            moment.after.watched ? &setting.heights : nullptr);
   };

@@ -12,10 +12,11 @@ namespace {
 
 namespace tolerance = reference::tolerance;
 
-// What must hold of any result, whichever way the solver went.
-void checkGoals(const Setting& setting, const reference::Limb& limb, const reference::AgentBody& body,
-                const glm::dvec3& target, const reference::Chain& previous, const reference::Chain& got,
-                const reference::Posture& posture, double targetError, bool hasTips, Sample& sample) {
+// What must hold of any result, whichever way the solver went. The error that is left is returned, a share of
+// the reach.
+double checkGoals(const Setting& setting, const reference::Limb& limb, const reference::AgentBody& body,
+                  const glm::dvec3& target, const reference::Chain& previous, const reference::Chain& got,
+                  const reference::Posture& posture, double targetError, bool hasTips, Sample& sample) {
   for (size_t i = 0; i < limb.bones.size(); ++i) {
     const double t = limb.bones[i].tanHalfCone;
     const double violation = 2 * (glm::length(got.directions[i]) - t) / (1 + t * t);
@@ -30,12 +31,27 @@ void checkGoals(const Setting& setting, const reference::Limb& limb, const refer
   }
   const bool finite = std::isfinite(target.x + target.y + target.z);
   const double error = finite ? glm::length(target - posture.tip()) : 0;
-  sample.compare("reported error / reach", std::abs(error - got.reachError / limb.reach),
-                 kinematics + targetError, {error * limb.reach, 0, 0, 0}, {got.reachError, 0, 0, 0});
+  if (hasTips) {
+    sample.compare("reported error / reach", std::abs(error - got.reachError / limb.reach),
+                   kinematics + targetError, {error * limb.reach, 0, 0, 0}, {got.reachError, 0, 0, 0});
+  }
   for (size_t i = 0; i < limb.bones.size() && !finite; ++i) {
     sample.compare("pose kept", glm::length(previous.directions[i] - got.directions[i]), 0,
                    {previous.directions[i], 0, 0}, {got.directions[i], 0, 0});
   }
+  return error;
+}
+
+// What body and gait are told of it.
+void checkMiss(const Setting& setting, const Moment& moment, size_t l, const reference::Limb& limb,
+               const reference::Foot& foot, double error, double targetError, Sample& sample) {
+  sample.finite("miss", records(moment.after.miss, moment.agent, shared::missStride(setting.legs)));
+  const double bound = kinematicsError(setting, limb) + targetError;
+  const double found = missOf(moment.after, moment.agent, l, setting.legs, moment.n);
+  // Near the least that is told of, either is right.
+  const double least = setting.tuning.missLeast + (found > 0 ? -bound : bound);
+  const double want = foot.progress >= 1 && error > least ? error : 0;
+  sample.compare("miss / reach", std::abs(want - found), bound, {want, 0, 0, 0}, {found, 0, 0, 0});
 }
 
 }  // namespace
@@ -63,21 +79,19 @@ SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l
   SolveVerdict verdict;
   Sample& sample = verdict.sample;
   sample.finite("chain", records(moment.after.chain, leg, shared::chainStride(setting.bones)));
-  checkGoals(setting, limb, body, reference::ikTarget(limb, body, foot.target), previous, got, posture,
-             targetError, !moment.after.tip.empty(), sample);
+  const double error = checkGoals(setting, limb, body, reference::ikTarget(limb, body, foot.target), previous,
+                                  got, posture, targetError, !moment.after.tip.empty(), sample);
+  if (!moment.after.miss.empty()) checkMiss(setting, moment, l, limb, foot, error, targetError, sample);
 
   double apart = 0;
   for (size_t i = 1; i <= posture.bones(); ++i) {
     apart = std::max(apart, glm::length(posture.joint(i) - wanted.joint(i)));
   }
-  const bool sameDamping =
-      moment.after.solve.empty() || std::abs(got.damping - expected.damping) <= 1e-5 * expected.damping;
-  verdict.tie = apart > tolerance::jointPosition || !sameDamping;
+  verdict.tie = apart > tolerance::jointPosition;
   if (verdict.tie) {
     sample.compare("error beyond the reference's / reach",
-                   std::max(0.0, got.reachError - expected.reachError) / limb.reach, tolerance::ikTie,
-                   {expected.reachError, expected.damping, apart, 0}, {got.reachError, got.damping, 0, 0});
-    sample.compare("damping outside [1, 4096]", got.damping >= 1 && got.damping <= 4096 ? 0 : 1, 0);
+                   std::max(0.0, error - expected.reachError / limb.reach), tolerance::ikTie,
+                   {expected.reachError / limb.reach, apart, 0, 0}, {error, 0, 0, 0});
   } else {
     sample.compare("joint positions / reach", apart, tolerance::jointPosition);
   }

@@ -68,6 +68,7 @@ reference::Tuning tuningOf(const shared::Parameters& p) {
   t.stretchLift = p.stretchLift;
   t.strayShare = p.strayShare;
   t.errorLift = p.errorLift;
+  t.missLeast = p.missLeast;
   t.rootShare = p.rootShare;
   t.settleTime = p.settleTime;
   t.sleepTime = p.sleepTime;
@@ -274,17 +275,6 @@ void putFoot(HerdState& state, size_t leg, const reference::Foot& foot) {
   store(state.foot, at(leg, shared::FOOT_STRIDE), {foot.target, foot.progress});
 }
 
-namespace {
-
-// The first float of a leg's pair.
-size_t solveOf(const HerdState& state, size_t leg, int bones) {
-  const size_t legs = state.chain.size() / (state.agents * at(4, shared::chainStride(bones)));
-  const auto agent = static_cast<int>(leg / legs), own = static_cast<int>(leg % legs);
-  return 2 * static_cast<size_t>(shared::solvePair(agent, own, static_cast<int>(legs)));
-}
-
-}  // namespace
-
 reference::Chain chainOf(const HerdState& state, size_t leg, int bones) {
   const size_t base = at(leg, shared::chainStride(bones));
   reference::Chain chain;
@@ -293,11 +283,6 @@ reference::Chain chainOf(const HerdState& state, size_t leg, int bones) {
     const glm::dvec4 tip = load(state.tip, at(leg, shared::TIP_STRIDE));
     chain.tip = tip;
     chain.reachError = tip.w;
-  }
-  if (!state.solve.empty()) {
-    const float* solve = &state.solve[solveOf(state, leg, bones)];
-    chain.reachError = double{solve[0]};
-    chain.damping = double{solve[1]};
   }
   return chain;
 }
@@ -310,11 +295,28 @@ void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& c
     store(state.chain, base + first / 2, {chain.directions[first], second});
   }
   if (!state.tip.empty()) store(state.tip, at(leg, shared::TIP_STRIDE), {chain.tip, chain.reachError});
-  if (!state.solve.empty()) {
-    float* solve = &state.solve[solveOf(state, leg, bones)];
-    solve[0] = static_cast<float>(chain.reachError);
-    solve[1] = static_cast<float>(chain.damping);
-  }
+}
+
+namespace {
+
+// The first float of a leg's pair.
+size_t missAt(size_t agent, size_t leg, int legs) {
+  return 2 * static_cast<size_t>(shared::missPair(static_cast<int>(agent), static_cast<int>(leg), legs));
+}
+
+}  // namespace
+
+double missOf(const HerdState& state, size_t agent, size_t leg, int legs, uint64_t n) {
+  if (state.miss.empty()) return 0;
+  const float* told = &state.miss[missAt(agent, leg, legs)];
+  return told[1] == static_cast<float>(n) ? double{told[0]} : 0;
+}
+
+void putMiss(HerdState& state, size_t agent, size_t leg, int legs, uint64_t n, double miss) {
+  if (state.miss.empty()) return;
+  float* told = &state.miss[missAt(agent, leg, legs)];
+  told[0] = static_cast<float>(miss);
+  told[1] = static_cast<float>(n);
 }
 
 reference::KeyPoses::Directions springOf(const HerdState& state, size_t leg, int bones) {

@@ -27,6 +27,8 @@ reference::Gait gaitOf(const HerdState& state, size_t agent);
 reference::Step stepOf(const HerdState& state, size_t leg);
 reference::Foot footOf(const HerdState& state, size_t leg);
 reference::Chain chainOf(const HerdState& state, size_t leg, int bones);
+// Chain::miss of an agent's leg after tick n; 0 where the controller's ik tells of none.
+double missOf(const HerdState& state, size_t agent, size_t leg, int legs, uint64_t n);
 reference::KeyPoses::Directions springOf(const HerdState& state, size_t leg, int bones);
 reference::BonePose boneOf(const HerdState& state, size_t entry);
 reference::Metric metricOf(const HerdState& state, size_t agent);
@@ -41,6 +43,7 @@ void putGait(HerdState& state, size_t agent, const reference::Gait& gait);
 void putStep(HerdState& state, size_t leg, const reference::Step& step);
 void putFoot(HerdState& state, size_t leg, const reference::Foot& foot);
 void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& chain);
+void putMiss(HerdState& state, size_t agent, size_t leg, int legs, uint64_t n, double miss);
 void putBone(HerdState& state, size_t entry, const reference::BonePose& bone);
 void putMetric(HerdState& state, size_t agent, const reference::Metric& metric);
 void putWatched(HerdState& state, size_t slot, const reference::Watched& watched);

@@ -30,18 +30,18 @@ void walkAgent(const Setting& setting, uint64_t tick, size_t agent, HerdState& s
   if (way.asleep) return;
 
   std::vector<reference::Step> steps;
-  std::vector<double> errors;
+  std::vector<double> misses;
   for (size_t l = 0; l < legs; ++l) {
     steps.push_back(stepOf(state, first + l));
-    errors.push_back(chainOf(state, first + l, setting.bones).reachError);
+    misses.push_back(missOf(state, agent, l, setting.legs, tick - 1));
   }
   putBody(state, agent,
           reference::body(tuning, setting.heights, creature, bodyOf(state, agent), desiredOf(state, agent),
-                          steps, errors, n, gaitOf(state, agent).phase)
+                          steps, misses, n, gaitOf(state, agent).phase)
               .body);
   const reference::AgentBody body = bodyOf(state, agent);
   putGait(state, agent,
-          reference::gait(tuning, creature, body, gaitOf(state, agent).phase, steps, errors, n).gait);
+          reference::gait(tuning, creature, body, gaitOf(state, agent).phase, steps, misses, n).gait);
   const reference::Gait gait = gaitOf(state, agent);
 
   putBone(state, entry, reference::bodyPose(body));
@@ -53,9 +53,10 @@ void walkAgent(const Setting& setting, uint64_t tick, size_t agent, HerdState& s
       putStep(state, leg,
               reference::foothold(tuning, setting.heights, limb, body, gait, steps[l], lifts, n).step);
     putFoot(state, leg, reference::swing(stepOf(state, leg), body, n));
-    putChain(state, leg, setting.bones,
-             reference::ik(tuning, limb, body, footOf(state, leg), chainOf(state, leg, setting.bones),
-                           setting.ik));
+    const reference::Chain chain =
+        reference::ik(tuning, limb, body, footOf(state, leg), chainOf(state, leg, setting.bones), setting.ik);
+    putChain(state, leg, setting.bones, chain);
+    putMiss(state, agent, l, setting.legs, tick, chain.miss);
     const auto posed = reference::pose(limb, body, chainOf(state, leg, setting.bones).directions);
     for (size_t b = 0; b < bones; ++b) putBone(state, entry + 1 + l * bones + b, posed[b]);
   }

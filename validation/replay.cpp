@@ -31,7 +31,7 @@ constexpr Kept step{&HerdState::step, "step of a sleeper", true};
 constexpr Kept foot{&HerdState::foot, "foot of a sleeper", true};
 constexpr Kept chain{&HerdState::chain, "chain of a sleeper", true};
 constexpr Kept tip{&HerdState::tip, "tip of a sleeper", true};
-constexpr Kept solve{&HerdState::solve, "solve of a sleeper", false};
+constexpr Kept miss{&HerdState::miss, "miss of a sleeper", false};
 constexpr Kept start{&HerdState::start, "start of a sleeper", true};
 constexpr Kept fix{&HerdState::fix, "fix of a sleeper", true};
 constexpr Kept spring{&HerdState::spring, "spring of a sleeper", true};
@@ -41,14 +41,14 @@ const Stages& stagesOf(crowd::Controller controller) {
   static const Stages adaptive = {
       {"navigate", checkNavigate},         {"body", checkBody, {kept::body}},
       {"gait", checkGait, {kept::gait}},   {"foothold", checkFoothold, {kept::step}},
-      {"swing", checkSwing, {kept::foot}}, {"ik", checkIk, {kept::chain, kept::tip, kept::solve}},
+      {"swing", checkSwing, {kept::foot}}, {"ik", checkIk, {kept::chain, kept::tip, kept::miss}},
       {"pose", checkPose, {kept::pose}},   {"measure", checkMeasure},
       {"footfall", checkFootfall}};
   static const Stages loop = {{"navigate", checkNavigate},
                               {"body", checkBlindBody, {kept::body}},
                               {"gait", checkLoopGait, {kept::gait}},
                               {"swing", checkLoopSwing, {kept::foot}},
-                              {"ik", checkIk, {kept::chain, kept::tip, kept::solve}},
+                              {"ik", checkIk, {kept::chain, kept::tip, kept::miss}},
                               {"pose", checkPose, {kept::pose}},
                               {"measure", checkMeasure},
                               {"footfall", checkFootfall}};
@@ -109,8 +109,8 @@ void expectSizes(const Setting& setting, const HerdState& state) {
   if (!state.foot.empty()) expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
   expect("chain records", state.chain, legs, shared::chainStride(setting.bones));
   if (!state.tip.empty()) expect("tip records", state.tip, legs, shared::TIP_STRIDE);
-  if (crowd::continuesSolves(setting.controller))
-    expect("solve records", state.solve, 1, shared::solveStride(setting.legs));
+  if (crowd::tellsMisses(setting.controller))
+    expect("miss records", state.miss, 1, shared::missStride(setting.legs));
   const size_t bones = static_cast<size_t>(setting.bones);
   const bool clips = crowd::playsClips(setting.controller);
   if (clips) expect("play records", state.play, 1, shared::PLAY_STRIDE);
@@ -151,13 +151,14 @@ AgentSample sampleAt(uint64_t seed, uint64_t n, uint32_t agents, uint32_t most) 
 
 HerdState sampled(const HerdState& whole, const AgentSample& sample) {
   HerdState part;
+  part.tick = whole.tick;
   part.sample = sample;
   part.watched = whole.watched;
   part.sleep = whole.sleep;
   for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride) ++part.agents;
   for (const auto records :
        {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait, &HerdState::step,
-        &HerdState::foot, &HerdState::chain, &HerdState::tip, &HerdState::solve, &HerdState::pose,
+        &HerdState::foot, &HerdState::chain, &HerdState::tip, &HerdState::miss, &HerdState::pose,
         &HerdState::play, &HerdState::start, &HerdState::fix, &HerdState::spring}) {
     const std::vector<float>& from = whole.*records;
     const size_t each = from.size() / std::max(1u, whole.agents);

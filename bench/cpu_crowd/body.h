@@ -62,8 +62,9 @@ Footing<F> footingOf(const World& world, float tick, const Agent<F>& a, const Le
     const auto stretching = d.x * a.velocityX + d.z * a.velocityZ < F(0);
     const float slack = 1 / (q.stretchStop - q.stretchSlow);
     const F room = clamp(F(q.stretchStop * slack) - length(d) * (slack / model.reach), 0, 1);
-    const F error = clamp(F(1) - legs[l].chain.error * (1 / (q.errorStop * model.reach)), 0, 1);
-    const F slow = smaller(select(stretching, room, F(1)), error);
+    const F miss = legs[l].chain.error;
+    const F missed = clamp(F(1) - select(F(q.missLeast) < miss, miss, F(0)) * (1 / q.errorStop), 0, 1);
+    const F slow = smaller(select(stretching, room, F(1)), missed);
     footing.follow = select(planted, smaller(footing.follow, slow), footing.follow);
     const F u = clamp(flown * reciprocal(ticks), 0, 1);
     footing.ground.add(select(planted, landing, mix(liftOff, landing, u)));

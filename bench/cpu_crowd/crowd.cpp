@@ -34,7 +34,7 @@ void check(const validation::HerdFacts& facts, const HerdState& start, const Opt
   if (clips) return expectSize("play", start.play, agents, shared::PLAY_STRIDE);
   expectSize("step", start.step, agents * legs, shared::STEP_STRIDE);
   expectSize("chain", start.chain, agents * legs, shared::chainStride(facts.rig.maxBones()));
-  expectSize("solve", start.solve, agents, shared::solveStride(int(legs)));
+  expectSize("miss", start.miss, agents, shared::missStride(int(legs)));
 }
 
 }  // namespace
@@ -44,11 +44,12 @@ struct CpuCrowd::Impl {
   Options options;
   uint32_t agents;
   bool timed = false;
+  uint64_t tick;  // the last one made
   std::unique_ptr<Kernel> kernel;
   Pool pool;
 
   Impl(const validation::HerdFacts& facts, const HerdState& start, const Options& chosen)
-      : world(worldOf(facts)), options(chosen), agents(start.agents), pool(chosen.threads) {
+      : world(worldOf(facts)), options(chosen), agents(start.agents), tick(start.tick), pool(chosen.threads) {
     kernel = options.width == Width::simd ? simdKernel(world, start, options)
                                           : scalarKernel(world, start, options);
   }
@@ -63,6 +64,7 @@ CpuCrowd::~CpuCrowd() = default;
 
 void CpuCrowd::tick(uint64_t n) {
   Kernel& kernel = *impl_->kernel;
+  impl_->tick = n;
   impl_->pool.run(kernel.parts(),
                   [&](size_t part, int thread) { kernel.tick(n, part, thread, impl_->timed); });
 }
@@ -72,6 +74,7 @@ void CpuCrowd::timeStages(bool on) { impl_->timed = on; }
 HerdState CpuCrowd::state() const {
   const size_t agents = impl_->agents, legs = impl_->world.legs.size(), bones = size_t(impl_->world.bones);
   HerdState state;
+  state.tick = impl_->tick;
   state.agents = impl_->agents;
   const auto make = [](std::vector<float>& records, size_t count, int stride) {
     records.resize(4 * count * size_t(stride));
@@ -84,7 +87,7 @@ HerdState CpuCrowd::state() const {
   make(state.foot, agents * legs, shared::FOOT_STRIDE);
   make(state.chain, agents * legs, shared::chainStride(int(bones)));
   make(state.tip, agents * legs, shared::TIP_STRIDE);
-  make(state.solve, agents, shared::solveStride(int(legs)));
+  make(state.miss, agents, shared::missStride(int(legs)));
   const ClipTable& clips = impl_->world.clips;
   if (!clips.clips.empty()) make(state.play, agents, shared::PLAY_STRIDE);
   if (impl_->options.poses && clips.clips.empty())

@@ -63,7 +63,7 @@ template <class F, int N>
     const F stretch = length(foot - broadcast<F>(model.root));
     const F dx = foot.x - model.home.x, dz = foot.z - model.home.z, off = squareRoot(dx * dx + dz * dz);
     auto must = (stretch < F(q.rootShare * model.reach)) | (F(q.stretchLift * model.reach) < stretch) |
-                (astray < off) | (F(q.errorLift * model.reach) < legs[l].chain.error);
+                (astray < off) | (F(q.errorLift) < legs[l].chain.error);
     const auto far = comfort < off;
     auto want = planted & !settled & (far | must | (step.ticks < F(0)));
     if (!reach) {

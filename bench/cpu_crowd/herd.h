@@ -81,7 +81,7 @@ class HerdKernel final : public Kernel {
         Leg<float, kBones<N>> leg;
         copyLane<F, float>(legBlocks_[block * legs_ + l], at, leg, 0);
         leg.chain.tip = tipInWorld(world_.legs[l], a.orientation, leg.chain.tip);
-        writeLeg(leg, agent, l, legs_, world_.bones, state);
+        writeLeg(leg, world_.legs[l], world_.q.missLeast, agent, l, legs_, world_.bones, state);
       }
       if (poses_.empty()) continue;
       for (size_t i = 0; i < poseCount(); ++i) {

@@ -168,10 +168,10 @@ struct Tuning {
 };
 
 // One damped step with an active set of limits, and its chord steps, from `d`, whose tip and error are given.
-// On return all are the new ones where they are better.
+// On return all are the new ones where they are better, which is where the mask says so.
 template <class F, int N>
-[[gnu::flatten]] void activeSet(const LegModel& leg, const Vec3<F>& target, const Tuning<F>& tuning,
-                                Directions<F, N>& d, Vec3<F>& tip, F& error, F& damping) {
+[[gnu::flatten]] Mask<F> activeSet(const LegModel& leg, const Vec3<F>& target, const Tuning<F>& tuning,
+                                   float damping, Directions<F, N>& d, Vec3<F>& tip, F& error) {
   const int n = boneCountOf<N>(leg);
   Steps<F, N> steps;
   Vec3<F> e = target - tip;
@@ -231,7 +231,7 @@ template <class F, int N>
   }
   tip = select(kept, reached, tip);
   error = select(kept, after, error);
-  damping = select(kept, larger(damping * 0.1f, 1), smaller(damping * 16.0f, 4096));
+  return kept;
 }
 
 template <class F, int N>
@@ -258,7 +258,7 @@ void store(const LegModel& leg, const Directions<F, N>& d, const Vec3<F>& tip, c
     chain.y[i] = d.y[i];
   }
   chain.tip = tip;
-  chain.error = error * leg.reach;
+  chain.error = error;
 }
 
 // A straight chain with its target nearer on the same line would never bend. Few are straight, and their
@@ -297,10 +297,10 @@ template <class F, int N, class Rare>
   const Vec3<F> target = targetOf(leg, r, foot);
   Vec3<F> tip = chain.tip;
   F error = length(target - tip);
-  const auto usual = finite(target) & !deadlocked(leg, target, d, tip) & (error <= F(world.q.approachError));
-  if (any(!usual)) rare(bits(!usual));
+  auto usual = finite(target) & !deadlocked(leg, target, d, tip) & (error <= F(world.q.approachError));
   const F pull = select(error < F(world.q.pullError), F(world.chords > 0 ? world.q.restPull : 0), F(0));
-  activeSet(leg, target, {pull, world.q.ikTolerance, world.chords}, d, tip, error, chain.damping);
+  usual = usual & activeSet(leg, target, {pull, world.q.ikTolerance, world.chords}, 1.0f, d, tip, error);
+  if (any(!usual)) rare(bits(!usual));
   store(leg, d, tip, error, chain);
 }
 
@@ -358,7 +358,10 @@ void ikWhole(const World& world, const LegModel& leg, const Mat3<float>& r, cons
     error = e;
   }
   const float pull = world.chords > 0 && error < world.q.pullError ? world.q.restPull : 0;
-  activeSet(leg, target, {pull, world.q.ikTolerance, world.chords}, d, tip, error, chain.damping);
+  // If the step leads away, a short one in its place.
+  const Tuning<float> tuning{pull, world.q.ikTolerance, world.chords};
+  if (!activeSet(leg, target, tuning, 1.0f, d, tip, error))
+    activeSet(leg, target, tuning, 256.0f, d, tip, error);
   store(leg, d, tip, error, chain);
 }
 

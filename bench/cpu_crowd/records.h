@@ -65,14 +65,16 @@ Leg<float, N> readLeg(const HerdState& state, size_t agent, size_t l, size_t leg
     to.chain.x[b] = directions[2 * b];
     to.chain.y[b] = directions[2 * b + 1];
   }
-  const float* solve = state.solve.data() + 2 * shared::solvePair(int(agent), int(l), int(legs));
-  to.chain.error = solve[0];
-  to.chain.damping = solve[1];
+  to.foot.progress =
+      std::clamp((float(state.tick) - to.step.firstTick) / std::abs(to.step.ticks), 0.0f, 1.0f);
+  const float* told = state.miss.data() + 2 * shared::missPair(int(agent), int(l), int(legs));
+  to.chain.error = told[1] == float(state.tick) ? told[0] : 0;
   return to;
 }
 
 template <int N>
-void writeLeg(const Leg<float, N>& from, size_t agent, size_t l, size_t legs, int bones, HerdState& state) {
+void writeLeg(const Leg<float, N>& from, const LegModel& model, float missLeast, size_t agent, size_t l,
+              size_t legs, int bones, HerdState& state) {
   const size_t leg = agent * legs + l;
   const Step<float>& s = from.step;
   const float step[] = {s.landing.x,      s.landing.y,      s.landing.z,      s.tileX,
@@ -88,11 +90,11 @@ void writeLeg(const Leg<float, N>& from, size_t agent, size_t l, size_t legs, in
     directions[2 * b] = from.chain.x[b];
     directions[2 * b + 1] = from.chain.y[b];
   }
-  const float tip[] = {from.chain.tip.x, from.chain.tip.y, from.chain.tip.z, from.chain.error};
+  const float tip[] = {from.chain.tip.x, from.chain.tip.y, from.chain.tip.z, from.chain.error * model.reach};
   std::copy(std::begin(tip), std::end(tip), recordAt(state.tip, leg, shared::TIP_STRIDE));
-  float* solve = state.solve.data() + 2 * shared::solvePair(int(agent), int(l), int(legs));
-  solve[0] = from.chain.error;
-  solve[1] = from.chain.damping;
+  float* told = state.miss.data() + 2 * shared::missPair(int(agent), int(l), int(legs));
+  told[0] = f.progress >= 1 && from.chain.error > missLeast ? from.chain.error : 0;
+  told[1] = float(state.tick);
 }
 
 inline void writePose(const BonePose<float>& pose, size_t entry, HerdState& state) {

@@ -17,7 +17,7 @@ Stage bodyStage() {
            {BINDING_STEER, load4},
            {BINDING_GAIT, load4},
            {BINDING_STEP, load4},
-           {BINDING_SOLVE, load4},
+           {BINDING_MISS, load4},
            {BINDING_BODY, load4},
            {BINDING_BODY_OUT, store}},
           Stage::Over::agents};

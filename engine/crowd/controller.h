@@ -12,7 +12,7 @@ constexpr bool playsClips(Controller c) { return c == Controller::clip || c == C
 // Played, or sampled for key poses.
 constexpr bool needsClips(Controller c) { return playsClips(c) || c == Controller::pose; }
 
-// Whether ik goes on from where it was the tick before.
-constexpr bool continuesSolves(Controller c) { return c == Controller::adaptive || c == Controller::loop; }
+// Whether ik tells which planted feet miss their targets.
+constexpr bool tellsMisses(Controller c) { return c == Controller::adaptive || c == Controller::loop; }
 
 }  // namespace skitter::crowd

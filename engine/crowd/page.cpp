@@ -56,9 +56,9 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
     case BINDING_CHAIN:
     case BINDING_CHAIN_OUT:
       return {binding, &page.chain};
-    case BINDING_SOLVE:
-    case BINDING_SOLVE_OUT:
-      return {binding, &page.solve};
+    case BINDING_MISS:
+    case BINDING_MISS_OUT:
+      return {binding, &page.miss};
     case BINDING_TIP:
     case BINDING_TIP_OUT:
       return {binding, &page.tip};
@@ -159,8 +159,8 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
   };
   ofFeet("foot", &Page::foot, FOOT_STRIDE, &SpawnRecords::foot, hasFootRecords(herd, options));
   ofFeet("tip", &Page::tip, TIP_STRIDE, &SpawnRecords::tip, keepsFeet(options));
-  if (continuesSolves(herd.controller))
-    buffers.push_back({"solve", &Page::solve, vec4s(1, solveStride(rig.legCount())), &SpawnRecords::solve});
+  if (tellsMisses(herd.controller))
+    buffers.push_back({"miss", &Page::miss, vec4s(1, missStride(rig.legCount()))});
   if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE), &SpawnRecords::play});
   if (planted) {
     buffers.push_back(ofLegs("start", &Page::start, startStride(rig.maxBones())));

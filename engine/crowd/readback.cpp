@@ -69,6 +69,7 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
   assert(sample.stride > 0);
   impl_->context->waitIdle();
   HerdState state;
+  state.tick = impl_->tick;
   state.sample = sample;
   state.watchEvery = impl_->watchEvery;
   state.sleep = impl_->options.sleep;
@@ -86,7 +87,7 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
     append(page.step, state.step, herd.legs);
     if (crowd::hasFootRecords(herd, impl_->options)) append(page.foot, state.foot, herd.legs);
     append(page.chain, state.chain, herd.legs);
-    append(page.solve, state.solve);
+    append(page.miss, state.miss);
     if (crowd::keepsFeet(impl_->options)) append(page.tip, state.tip, herd.legs);
     append(page.pose, state.pose);
     append(page.metric, state.metric);
@@ -164,7 +165,7 @@ uint64_t Crowd::stateHash() const {
                                                  {&Page::gait},
                                                  {&Page::step, herd.legs},
                                                  {&Page::chain, herd.legs},
-                                                 {&Page::solve},
+                                                 {&Page::miss},
                                                  {&Page::play},
                                                  {&Page::spring, herd.legs}};
     // Record by record over the herd, not page by page: how agents are paged must not show.

@@ -134,10 +134,10 @@ void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRe
   Writer goal(records.goal, GOAL_STRIDE), body(records.body, BODY_STRIDE), gait(records.gait, GAIT_STRIDE),
       step(records.step, STEP_STRIDE), foot(records.foot, FOOT_STRIDE),
       chain(records.chain, chainStride(rig_.maxBones())), tip(records.tip, TIP_STRIDE),
-      solve(records.solve, solveStride(rig_.legCount())), play(records.play, PLAY_STRIDE);
+      play(records.play, PLAY_STRIDE);
   for (uint32_t record = from; record < to; ++record) {
     const uint32_t agent = first + record;
-    for (Writer* each : {&goal, &body, &gait, &solve, &play}) each->seek(static_cast<int>(record));
+    for (Writer* each : {&goal, &body, &gait, &play}) each->seek(static_cast<int>(record));
     const Placement p = place(agent);
     const float kind = herd_.goal.kind == Goal::Kind::cross   ? shared::GOAL_CROSS
                        : herd_.goal.kind == Goal::Kind::point ? shared::GOAL_POINT
@@ -173,8 +173,6 @@ void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRe
       const glm::vec2 frame = frameAt(clips_, clips_.standing, time);
       play.push(frame.x, frame.y, frame.x, frame.y);
     }
-
-    for (int i = 0; i < solveStride(rig_.legCount()) && !records.solve.empty(); ++i) solve.push(0, 1, 0, 1);
 
     for (size_t l = 0; l < rig_.legs.size(); ++l) {
       for (Writer* each : {&step, &foot, &chain, &tip})

@@ -12,7 +12,7 @@ namespace skitter::crowd {
 // The records that a page's agents begin with, laid out as shaders/shared/records.h says; all others begin as
 // zeros.
 struct SpawnRecords {
-  std::span<float> goal, body, gait, step, foot, chain, tip, solve, play;
+  std::span<float> goal, body, gait, step, foot, chain, tip, play;
 };
 
 // Where agent i of n starts: the herd's spawn, goal and seed decide alone, so neither pages nor threads ever

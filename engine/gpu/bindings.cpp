@@ -40,10 +40,9 @@ Target targetOf(const Context& context, const BindingLayout& layout, const Bindi
                     .imageLayout = vk::ImageLayout::eShaderReadOnlyOptimal};
   } else if (isTexel(type)) {
     assert(std::holds_alternative<const Buffer*>(binding.resource));
-    target.view =
-        std::get<const Buffer*>(binding.resource)->texelView(decl.kind == BindingKind::load2 ? 2 : 4);
+    target.view = std::get<const Buffer*>(binding.resource)->texelView();
   } else if (const auto* host = std::get_if<const HostBuffer*>(&binding.resource)) {
-    assert(decl.kind != BindingKind::load4 && decl.kind != BindingKind::load2);
+    assert(decl.kind != BindingKind::load4);
     if (type == vk::DescriptorType::eStorageBuffer)
       checkReach(context, (*host)->size(), (*host)->name(), layout.name());
     target.buffer = vk::DescriptorBufferInfo{.buffer = (*host)->handle(), .range = VK_WHOLE_SIZE};
@@ -92,7 +91,6 @@ BindingLayout::BindingLayout(const Context& context, std::string name, std::vect
 vk::DescriptorType BindingLayout::descriptorType(BindingKind kind) const {
   switch (kind) {
     case BindingKind::load4:
-    case BindingKind::load2:
       return texelLoads_ ? vk::DescriptorType::eUniformTexelBuffer : vk::DescriptorType::eStorageBuffer;
     case BindingKind::store:
       return vk::DescriptorType::eStorageBuffer;

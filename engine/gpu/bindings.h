@@ -12,7 +12,6 @@ namespace skitter::gpu {
 
 enum class BindingKind {
   load4,    // LOAD4_BUFFER: a texel buffer or a storage buffer, as the context says
-  load2,    // LOAD2_BUFFER, likewise
   store,    // STORE4_BUFFER, or any storage buffer
   uniform,  // a uniform buffer
   heights,  // a sampler2D that is only ever fetched from: nearest, clamped
@@ -50,7 +49,7 @@ class BindingLayout {
   vk::raii::PipelineLayout pipelineLayout_ = nullptr;
 };
 
-// What one declared binding is bound to. A load4 or load2 takes a Buffer; a store or uniform a Buffer or
+// What one declared binding is bound to. A load4 takes a Buffer; a store or uniform a Buffer or
 // HostBuffer; a heights or texture an Image in state sampled. Everything bound outlives the Bindings.
 struct Binding {
   uint32_t binding;

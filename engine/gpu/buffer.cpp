@@ -62,24 +62,22 @@ Buffer Buffer::borrowed(const Context& context, vk::Buffer handle, uint64_t byte
   return buffer;
 }
 
-vk::BufferView Buffer::texelView(int floats) const {
-  assert(floats == 2 || floats == 4);
-  vk::raii::BufferView& view = floats == 2 ? ofTwos_ : ofFours_;
-  if (*view) return *view;
-  const uint64_t texels = allocated_ / (uint64_t(floats) * sizeof(float));
+vk::BufferView Buffer::texelView() const {
+  if (*texels_) return *texels_;
+  const uint64_t texels = allocated_ / (4 * sizeof(float));
   const uint64_t most = context_->limits().maxTexelBufferElements;
   if (texels > most) {
     throw deviceError(fmt::format("\"{}\" has {} texels, {} reaches {} through one view", name_, texels,
                                   context_->report().name, most));
   }
-  const vk::Format format = floats == 2 ? vk::Format::eR32G32Sfloat : vk::Format::eR32G32B32A32Sfloat;
-  view = guarded("the texel view of \"" + name_ + "\"", [&] {
+  texels_ = guarded("the texel view of \"" + name_ + "\"", [&] {
     return vk::raii::BufferView(
         context_->device(),
-        vk::BufferViewCreateInfo{.buffer = handle(), .format = format, .range = allocated_});
+        vk::BufferViewCreateInfo{
+            .buffer = handle(), .format = vk::Format::eR32G32B32A32Sfloat, .range = allocated_});
   });
-  context_->name(*view, name_);
-  return *view;
+  context_->name(*texels_, name_);
+  return *texels_;
 }
 
 HostBuffer::HostBuffer(const Context& context, uint64_t bytes, HostUse use, std::string name)

@@ -31,9 +31,9 @@ class Buffer {
   vk::Buffer handle() const { return *buffer_ ? *buffer_ : borrowed_; }
   explicit operator bool() const { return !!handle(); }
 
-  // The whole buffer as texels of 4 or 2 floats, made at the first call, which is never in the frame loop
+  // The whole buffer as texels of 4 floats, made at the first call, which is never in the frame loop
   // (Bindings asks for it). Throws Error(device) when the buffer has more texels than a view reaches.
-  vk::BufferView texelView(int floats = 4) const;
+  vk::BufferView texelView() const;
 
  private:
   const Context* context_ = nullptr;
@@ -43,7 +43,7 @@ class Buffer {
   vk::raii::DeviceMemory memory_ = nullptr;
   vk::raii::Buffer buffer_ = nullptr;
   vk::Buffer borrowed_;
-  mutable vk::raii::BufferView ofFours_ = nullptr, ofTwos_ = nullptr;
+  mutable vk::raii::BufferView texels_ = nullptr;
 };
 
 enum class HostUse {

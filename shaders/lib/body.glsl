@@ -2,23 +2,23 @@
 #define BODY_GLSL
 // The pieces of the body stage (docs/stages.md, body).
 
-// 1. Of the planted legs, in reaches: the longest that is being stretched, squared, and the largest error.
+// 1. Of the planted legs, in reaches: the longest that is being stretched, squared, and the largest miss.
 struct Hold {
-  float stretch2, error;
+  float stretch2, miss;
 };
 
-void addHold(inout Hold hold, bool planted, vec3 root, vec3 foot, float inverseReach, float error, vec2 velocity) {
+void addHold(inout Hold hold, bool planted, vec3 root, vec3 foot, float inverseReach, float miss, vec2 velocity) {
   vec3 d = (foot - root) * inverseReach;
-  float stretch2 = dot(d, d), share = error * inverseReach;
+  float stretch2 = dot(d, d);
   bool stretching = planted && dot(d.xz, velocity) < 0.0;
   hold.stretch2 = stretching && stretch2 > hold.stretch2 ? stretch2 : hold.stretch2;
-  hold.error = planted && share > hold.error ? share : hold.error;
+  hold.miss = planted ? max(hold.miss, miss) : hold.miss;
 }
 
 // How much they slow the body: 1 not at all, 0 to a stop.
 float followFactor(Parameters q, Hold hold) {
   float slack = (q.stretchStop - sqrt(hold.stretch2)) / (q.stretchStop - q.stretchSlow);
-  return clamp(min(slack, 1.0 - hold.error / q.errorStop), 0.0, 1.0);
+  return clamp(min(slack, 1.0 - hold.miss / q.errorStop), 0.0, 1.0);
 }
 
 // 2. Turn rate and heading toward `wanted` (unit).

@@ -15,7 +15,7 @@
 //   STORE4_BUFFER(1, joints)
 //   STORE4(joints, i, a);
 //   STORE4_TWO(joints, i, a, b);    a and b at i and i + 1, i even: dearer apart on such a device
-// Records of vec2 likewise, by LOAD2 and STORE2.
+// Records of vec2 are written by STORE2.
 //
 // One VkBuffer may be bound both ways in a dispatch if each record is read only by the invocation that writes
 // it, and before it does.
@@ -26,8 +26,6 @@
 #if LOAD4_TEXEL
 #define LOAD4_BUFFER(bindingNumber, name) layout(set = 0, binding = bindingNumber) uniform samplerBuffer name;
 #define LOAD4(name, i) texelFetch(name, int(i))
-#define LOAD2_BUFFER(bindingNumber, name) LOAD4_BUFFER(bindingNumber, name)
-#define LOAD2(name, i) texelFetch(name, int(i)).xy
 uint64_t bitsOf(vec2 v) { return packUint2x32(floatBitsToUint(v)); }
 u64vec2 bitsOf(vec4 v) { return u64vec2(bitsOf(v.xy), bitsOf(v.zw)); }
 #define STORE4_BUFFER(bindingNumber, name)                                                                         \
@@ -42,9 +40,6 @@ u64vec2 bitsOf(vec4 v) { return u64vec2(bitsOf(v.xy), bitsOf(v.zw)); }
 #define LOAD4_BUFFER(bindingNumber, name) \
   layout(set = 0, binding = bindingNumber, std430) readonly buffer name##Load4 { vec4 record[]; } name;
 #define LOAD4(name, i) (name.record[i])
-#define LOAD2_BUFFER(bindingNumber, name) \
-  layout(set = 0, binding = bindingNumber, std430) readonly buffer name##Load2 { vec2 record[]; } name;
-#define LOAD2(name, i) (name.record[i])
 #define STORE4_BUFFER(bindingNumber, name) \
   layout(set = 0, binding = bindingNumber, std430) writeonly buffer name##Store4 { vec4 record[]; } name;
 #define STORE4(name, i, value) name.record[i] = (value)

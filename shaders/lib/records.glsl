@@ -45,6 +45,14 @@ vec3 fromTile(vec3 point, vec2 tile, vec3 bodyLocal, vec2 bodyTile) {
   return point + vec3(offset.x - bodyLocal.x, -bodyLocal.y, offset.y - bodyLocal.z);
 }
 
+// A leg's miss in the tick before, of a pair of legs' record.
+float missTold(vec4 pairs, int leg, float tick) {
+  vec2 told = leg % 2 == 0 ? pairs.xy : pairs.zw;
+  return told.y == tick - 1.0 ? told.x : 0.0;
+}
+// Of the buffer `misses`.
+#define LOAD_MISS(agent, leg) missTold(LOAD4(misses, (agent) * missStride(LEGS) + (leg) / 2), leg, thisTick)
+
 vec2 worldOf(vec3 local, vec2 tile) { return tile * TILE_SIZE + local.xz; }
 
 #endif

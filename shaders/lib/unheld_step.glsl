@@ -18,15 +18,15 @@ vec3 tipOf(Limb limb, vec2 swing[BONES], float k[BONES]) {
   return v;
 }
 
-// As activeSet with CHORDS_ALL, from within half the reach of the target. False if a bone may meet its limit: what is
-// returned is of no use then.
-bool unheldStep(Limb limb, vec3 target, int chords, float restPull, float tolerance, inout Pose pose, inout float error,
-                inout float damping) {
+// As activeSet with CHORDS_ALL, undamped, from within half the reach of the target. False if a bone may meet its limit
+// or the step leads away: what is returned is of no use then.
+bool unheldStep(Limb limb, vec3 target, int chords, float restPull, float tolerance, inout Pose pose,
+                inout float error) {
   Columns c;
   columnsOf(limb, pose, pose.tip, c);
   vec2 x[BONES];
   vec3 e = target - pose.tip;
-  Symmetric m = Symmetric(vec3((0.25 * dot(e, e) + 1e-5) * damping), vec3(0.0));
+  Symmetric m = Symmetric(vec3(0.25 * dot(e, e) + 1e-5), vec3(0.0));
   for (int i = 0; i < BONES; ++i) {
     addOuter(m, c, i);
     x[i] = towardRest(pose.swing[i], restPull * limb.stiffness[i]);
@@ -51,10 +51,9 @@ bool unheldStep(Limb limb, vec3 target, int chords, float restPull, float tolera
     e = target - trial.tip;
   }
   float after = length(e);
-  bool kept = after <= 1.0001 * error || after <= tolerance;
-  keepIf(kept, pose, trial);
-  error = kept ? after : error;
-  damping = dampingAfter(kept, damping);
+  clear = clear && (after <= 1.0001 * error || after <= tolerance);
+  keepIf(true, pose, trial);
+  error = after;
   return clear;
 }
 

@@ -102,6 +102,7 @@ struct Parameters {
   float restPull;       // share of the angle from rest taken back a step once on target
   float pullError;      // share of the reach below which the rest pull acts
   float ikTolerance;    // share of the reach that counts as arrived
+  float missLeast;  // share of the reach; body and gait are not told of a planted foot that misses by less
   // measure
   float deadZone;       // depth or height of a foot that may count as touching
   float skateSpeed;     // m/s, horizontal, above which a planted foot skates

@@ -87,10 +87,12 @@ SKITTER_CONST int FOOT_STRIDE = 1;
 //   [0 .. ceil(bones/2)-1] stereographic directions X, Y of two bones each
 SKITTER_FUNCTION int chainStride(int bones) { return (bones + 1) / 2; }
 
-// solve, per agent, written by ik: of each leg a pair, two a vec4, for body and gait read all of an agent's.
-//   reach error (m), damping of the next solve
-SKITTER_FUNCTION int solveStride(int legs) { return (legs + 1) / 2; }
-SKITTER_FUNCTION int solvePair(int agent, int leg, int legs) { return agent * 2 * solveStride(legs) + leg; }
+// miss, per agent, written by ik of the few legs that its second dispatch solves: of each leg a pair, two a
+// vec4, for body and gait read all of an agent's.
+//   reach error of a planted foot (share of the reach; 0 up to missLeast), the tick in which it was told:
+//   what was told earlier is over
+SKITTER_FUNCTION int missStride(int legs) { return (legs + 1) / 2; }
+SKITTER_FUNCTION int missPair(int agent, int leg, int legs) { return agent * 2 * missStride(legs) + leg; }
 
 // tip, per leg, written by ik where somebody looks at it (CrowdOptions::tips): it follows from the chain.
 //   [0] tip relative to the body's position, world axes, x, y, z; reach error (m)

@@ -26,8 +26,7 @@ Body makeBody(int agent, Body body, vec2 velocity) {
     vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
     vec3 liftOff = fromTile(s.liftOff, s.tile, body.local, body.tile);
     vec4 root = RIG_LEG(leg, 0);
-    float error = LOAD4(solves, agent * solveStride(LEGS) + leg / 2)[leg % 2 * 2];
-    addHold(hold, u >= 1.0, before * root.xyz, landing, RIG_LEG(leg, 2).z, error, velocity);
+    addHold(hold, u >= 1.0, before * root.xyz, landing, RIG_LEG(leg, 2).z, LOAD_MISS(agent, leg), velocity);
     addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));
   }
 #endif

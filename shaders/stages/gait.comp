@@ -5,7 +5,7 @@
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_STEP, steps);
-LOAD4_BUFFER(BINDING_SOLVE, solves);
+LOAD4_BUFFER(BINDING_MISS, misses);
 LOAD4_BUFFER(BINDING_GAIT, gaits);
 STORE4_BUFFER(BINDING_GAIT_OUT, gaitsOut);
 layout(set = 0, binding = BINDING_LIST, std430) writeonly buffer ListBlock { uint list[]; };

@@ -46,9 +46,8 @@ void makeGait(int agent, Body body) {
       vec3 arm = (foot - root.xyz) * order.z;
       vec2 astray = (foot.xz - home.xz) * inverseHalfStride;
       float stretch = dot(arm, arm), off = dot(astray, astray);
-      float error = LOAD4(solves, agent * solveStride(LEGS) + leg / 2)[leg % 2 * 2];
       bool must = stretch < rootShare2 || stretch > stretchLift2 || off > strayShare2 ||
-                  error * order.z > parameters.errorLift;
+                  LOAD_MISS(agent, leg) > parameters.errorLift;
       bool far = off > liftShare2;
       bool open = REACH != 0 || windowOpen(parameters, phase, home.w, order.x, stride, float(GROUPS));
       wants |= !settled && open && (far || must || s.lastResort) ? 1u << leg : 0u;

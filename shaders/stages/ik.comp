@@ -34,8 +34,7 @@ LOAD4_BUFFER(BINDING_START, chains);
 STORE4_BUFFER(BINDING_FIX_OUT, fixesOut);
 #else
 LOAD4_BUFFER(BINDING_CHAIN, chains);
-LOAD2_BUFFER(BINDING_SOLVE, solves);
-STORE2_BUFFER(BINDING_SOLVE_OUT, solvesOut);
+STORE2_BUFFER(BINDING_MISS_OUT, missesOut);
 #endif
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 STORE4_BUFFER(BINDING_TIP_OUT, tipsOut);
@@ -56,19 +55,27 @@ void enlist(int record) {
   atomicMax(counters[COUNTER_IK_DISPATCH_X], place / uint(WORK_GROUP) + 1u);
 }
 
+const float SHORT_STEP = 256.0;  // its damping
+
+// What body and gait are to know of.
+float missOf(vec4 foot, float error) { return foot.w >= 1.0 && error > parameters.missLeast ? error : 0.0; }
+
 float pullAt(float error) { return POLISH_ITERATIONS > 1 && error < parameters.pullError ? parameters.restPull : 0.0; }
 
-void polish(Limb limb, vec3 target, bool lost, Pose unheld, inout Pose pose, inout float error, inout float damping) {
+void polish(Limb limb, vec3 target, bool lost, Pose unheld, inout Pose pose, inout float error) {
   // What the first dispatch would have made of it, to the bit, where it could have.
-  float unheldError = error, unheldDamping = damping;
+  float unheldError = error, pull = pullAt(error);
   bool clear = PASS == PASS_LISTED && !lost && error <= parameters.approachError &&
-               unheldStep(limb, target, POLISH_ITERATIONS - 1, pullAt(error), parameters.ikTolerance, unheld, unheldError,
-                          unheldDamping);
-  activeSet(limb, target, lost, POLISH_ITERATIONS - 1, CHORDS_ALL, pullAt(error), parameters.ikTolerance, pose, error,
-            damping);
+               unheldStep(limb, target, POLISH_ITERATIONS - 1, pull, parameters.ikTolerance, unheld, unheldError);
+  // A step that leads away was undone: a short one then.
+  bool done = false;
+  for (int attempt = 0; attempt < 2 && !done; ++attempt) {
+    float damping = attempt == 0 ? 1.0 : SHORT_STEP, before = damping;
+    activeSet(limb, target, lost, POLISH_ITERATIONS - 1, CHORDS_ALL, pull, parameters.ikTolerance, pose, error, damping);
+    done = clear || damping <= before;
+  }
   keepIf(clear, pose, unheld);
   error = clear ? unheldError : error;
-  damping = clear ? unheldDamping : damping;
 }
 
 #ifdef PLANTED
@@ -92,7 +99,7 @@ void main() {
 #ifdef PLANTED
   int at = record * startStride(BONES);
 #else
-  int at = record * chainStride(BONES), solveAt = solvePair(agent, leg, LEGS);
+  int at = record * chainStride(BONES);
 #endif
 
   // What is far away in memory is asked for first, and waited for while the rig, which is near, is read.
@@ -104,11 +111,6 @@ void main() {
   if (FEET && PASS != PASS_LISTED) STORE4(feetOut, record, foot);
 #else
   vec4 foot = LOAD4(feet, record);
-#endif
-#ifdef PLANTED
-  float damping = 1.0;
-#else
-  float damping = LOAD2(solves, solveAt).y;
 #endif
   Limb limb;
   LOAD_LIMB(limb, rig, rigAt + RIG_LEG_STRIDE);
@@ -140,8 +142,10 @@ void main() {
     // What few chains need is left to the second dispatch, which begins anew: a device that masks lanes makes every
     // path for every lane.
     bool near = !lost && !stuck && error <= parameters.approachError;
-    bool clear =
-        unheldStep(limb, target, POLISH_ITERATIONS - 1, pullAt(error), parameters.ikTolerance, pose, error, damping);
+    bool clear = unheldStep(limb, target, POLISH_ITERATIONS - 1, pullAt(error), parameters.ikTolerance, pose, error);
+#ifndef PLANTED
+    clear = clear && missOf(foot, error) == 0.0;
+#endif
     if (!(near && clear)) {
       enlist(record);
       return;
@@ -164,7 +168,7 @@ void main() {
       error = better ? e : error;
     }
     forwardKinematics(limb, pose);
-    if (POLISH_ITERATIONS > 0) polish(limb, target, lost, pose, pose, error, damping);
+    if (POLISH_ITERATIONS > 0) polish(limb, target, lost, pose, pose, error);
   }
 
   STORE_SWINGS(chainsOut, record * chainStride(BONES), pose.swing, chainStride(BONES) % 2 == 0);
@@ -177,6 +181,7 @@ void main() {
     STORE4_TWO(fixesOut, (record * BONES + i) * FIX_STRIDE, q, vec4(move, 0.0));
   }
 #else
-  STORE2(solvesOut, solveAt, vec2(error * reach, damping));
+  if (PASS != PASS_QUICK)
+    STORE2(missesOut, missPair(agent, leg, LEGS), vec2(missOf(foot, error), thisTick));
 #endif
 }

@@ -249,7 +249,7 @@ TEST_P(CpuCrowdTest, ThreadsChangeNoBit) {
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.chain, b.chain);
   EXPECT_EQ(a.tip, b.tip);
-  EXPECT_EQ(a.solve, b.solve);
+  EXPECT_EQ(a.miss, b.miss);
   EXPECT_EQ(a.pose, b.pose);
   EXPECT_NE(a.body, start.state.body);
 }

@@ -22,7 +22,7 @@ class Body : public testing::Test {
         steps.push_back(plantedAt(body, home));
       }
       body =
-          reference::body(tuning, heights, creature, body, desired, steps, errors, ++tick, breathPhase).body;
+          reference::body(tuning, heights, creature, body, desired, steps, misses, ++tick, breathPhase).body;
     }
   }
 
@@ -32,7 +32,7 @@ class Body : public testing::Test {
   reference::Creature creature = spiderCreature();
   reference::AgentBody body = bodyAt(0.5, 0.5);
   std::vector<reference::Step> steps;
-  std::vector<double> errors = std::vector<double>(8);
+  std::vector<double> misses = std::vector<double>(8);
   double tick = 0, breathPhase = 0;
 };
 
@@ -107,20 +107,20 @@ TEST_F(Body, bellyStaysAboveABump) {
 TEST_F(Body, stretchedLegBehindHoldsTheBodyAndOneAheadDoesNot) {
   steps = stepsAtHome(creature, body);
   steps[0] = plantedAt(body, creature.limbs[0].root + glm::dvec3(0, -0.26, -0.98));
-  const auto held = reference::body(tuning, heights, creature, body, {0, 1}, steps, errors, 1);
+  const auto held = reference::body(tuning, heights, creature, body, {0, 1}, steps, misses, 1);
   EXPECT_LT(held.body.kappa, 0.5);
-  const auto free = reference::body(tuning, heights, creature, body, {0, -1}, steps, errors, 1);
+  const auto free = reference::body(tuning, heights, creature, body, {0, -1}, steps, misses, 1);
   EXPECT_EQ(free.body.kappa, 1);
 }
 
 TEST_F(Body, footThatCannotFollowHoldsTheBody) {
   steps = stepsAtHome(creature, body);
-  errors[3] = tuning.errorStop / 2;
-  EXPECT_NEAR(reference::body(tuning, heights, creature, body, {0, 1}, steps, errors, 1).body.kappa, 0.5,
+  misses[3] = tuning.errorStop / 2;
+  EXPECT_NEAR(reference::body(tuning, heights, creature, body, {0, 1}, steps, misses, 1).body.kappa, 0.5,
               1e-6);
   steps[3].firstTick = 0;
   steps[3].duration = 20;
-  EXPECT_EQ(reference::body(tuning, heights, creature, body, {0, 1}, steps, errors, 1).body.kappa, 1);
+  EXPECT_EQ(reference::body(tuning, heights, creature, body, {0, 1}, steps, misses, 1).body.kappa, 1);
 }
 
 TEST_F(Body, leansIntoATurnAndComesUpright) {

@@ -16,7 +16,7 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   const HerdState& state = herd.state();
   HerdState copy = state;
   for (auto* buffer : {&copy.goal, &copy.steer, &copy.body, &copy.gait, &copy.step, &copy.foot, &copy.chain,
-                       &copy.tip, &copy.solve, &copy.pose, &copy.metric, &copy.watch}) {
+                       &copy.tip, &copy.miss, &copy.pose, &copy.metric, &copy.watch}) {
     std::fill(buffer->begin(), buffer->end(), 0.0f);
   }
   const size_t bones = static_cast<size_t>(herd.bones());
@@ -31,6 +31,7 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
       putStep(copy, leg, stepOf(state, leg));
       putFoot(copy, leg, footOf(state, leg));
       putChain(copy, leg, herd.bones(), chainOf(state, leg, herd.bones()));
+      putMiss(copy, agent, leg % 8, 8, herd.ticks(), missOf(state, agent, leg % 8, 8, herd.ticks()));
     }
     for (size_t i = 0; i < 1 + 8 * bones; ++i) {
       putBone(copy, agent * (1 + 8 * bones) + i, boneOf(state, agent * (1 + 8 * bones) + i));
@@ -44,7 +45,7 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   EXPECT_EQ(copy.foot, state.foot);
   EXPECT_EQ(copy.chain, state.chain);
   EXPECT_EQ(copy.tip, state.tip);
-  EXPECT_EQ(copy.solve, state.solve);
+  EXPECT_EQ(copy.miss, state.miss);
   EXPECT_EQ(copy.pose, state.pose);
   EXPECT_EQ(copy.metric, state.metric);
   EXPECT_EQ(copy.watch, state.watch);

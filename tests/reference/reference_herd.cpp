@@ -44,7 +44,7 @@ void ReferenceHerd::spawn(uint32_t agents) {
   state_.foot.resize(4 * count * legCount * shared::FOOT_STRIDE);
   state_.chain.resize(4 * count * legCount * chain);
   state_.tip.resize(4 * count * legCount * shared::TIP_STRIDE);
-  state_.solve.resize(4 * count * static_cast<size_t>(shared::solveStride(legs())));
+  state_.miss.resize(4 * count * static_cast<size_t>(shared::missStride(legs())));
   state_.pose.resize(4 * count * (1 + legCount * static_cast<size_t>(bones_)) * shared::POSE_STRIDE);
   state_.metric.resize(4 * count * shared::METRIC_STRIDE);
   state_.watch.resize(4 * count * static_cast<size_t>(shared::watchStride(legs())));

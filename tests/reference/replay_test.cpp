@@ -90,7 +90,7 @@ TEST(Replay, feetMayBeAbsent) {
   EXPECT_TRUE(replay.pass());
   EXPECT_EQ(replay.results()[4].samples, 0u);
   EXPECT_EQ(replay.results()[5].samples, 16u);
-  after.solve[0] += 1e-3f;
+  after.miss[0] += 1e-3f;
   Replay another = herd.replay();
   another.tick(herd.ticks(), before, after);
   EXPECT_FALSE(another.results()[5].pass);
@@ -192,9 +192,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"footNan", 4, [](HerdState& s) { s.foot[0] = notANumber; }},
                     Fault{"directions", 5, [](HerdState& s) { s.chain[0] += 1e-2f; }},
                     Fault{"tip", 5, [](HerdState& s) { s.tip[0] += 1e-3f; }},
-                    Fault{"reachError", 5, [](HerdState& s) { s.solve[0] += 1e-3f; }},
-                    Fault{"damping", 5, [](HerdState& s) { s.solve[1] = 0.5f; }},
-                    Fault{"solveNan", 5, [](HerdState& s) { s.solve[3] = notANumber; }},
+                    Fault{"reachError", 5, [](HerdState& s) { s.tip[3] += 1e-3f; }},
+                    Fault{"miss", 5, [](HerdState& s) { s.miss[0] += 1e-3f; }},
+                    Fault{"missNan", 5, [](HerdState& s) { s.miss[3] = notANumber; }},
                     Fault{"tipNan", 5, [](HerdState& s) { s.tip[5] = notANumber; }},
                     Fault{"chainNan", 5, [](HerdState& s) { s.chain[3] = notANumber; }},
                     Fault{"bodyRotation", 6, [](HerdState& s) { s.pose[0] += 1e-3f; }},

@@ -45,7 +45,7 @@ class SleepersRecord : public testing::TestWithParam<Record> {
     fill(state.foot, legs, shared::FOOT_STRIDE);
     fill(state.chain, legs, shared::chainStride(bones));
     fill(state.tip, legs, shared::TIP_STRIDE);
-    if (crowd::continuesSolves(controller)) fill(state.solve, 1, shared::solveStride(legs));
+    if (crowd::tellsMisses(controller)) fill(state.miss, 1, shared::missStride(legs));
     if (crowd::playsClips(controller)) fill(state.play, 1, shared::PLAY_STRIDE);
     if (crowd::playsClips(controller)) fill(state.pose, 1, shared::MATRIX_STRIDE);
     if (!crowd::playsClips(controller)) fill(state.pose, 1 + legs * bones, shared::POSE_STRIDE);
@@ -114,14 +114,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Record{"adaptiveFoot", Controller::adaptive, &HerdState::foot, "swing", 8},
                     Record{"adaptiveChain", Controller::adaptive, &HerdState::chain, "ik", 8},
                     Record{"adaptiveTip", Controller::adaptive, &HerdState::tip, "ik", 8},
-                    Record{"adaptiveSolve", Controller::adaptive, &HerdState::solve, "ik", 1},
+                    Record{"adaptiveMiss", Controller::adaptive, &HerdState::miss, "ik", 1},
                     Record{"adaptivePose", Controller::adaptive, &HerdState::pose, "pose", 1},
                     Record{"loopBody", Controller::loop, &HerdState::body, "body", 1},
                     Record{"loopGait", Controller::loop, &HerdState::gait, "gait", 1},
                     Record{"loopFoot", Controller::loop, &HerdState::foot, "swing", 8},
                     Record{"loopChain", Controller::loop, &HerdState::chain, "ik", 8},
                     Record{"loopTip", Controller::loop, &HerdState::tip, "ik", 8},
-                    Record{"loopSolve", Controller::loop, &HerdState::solve, "ik", 1},
+                    Record{"loopMiss", Controller::loop, &HerdState::miss, "ik", 1},
                     Record{"loopPose", Controller::loop, &HerdState::pose, "pose", 1},
                     Record{"clipBody", Controller::clip, &HerdState::body, "body", 1},
                     Record{"clipPlay", Controller::clip, &HerdState::play, "clip", 1},

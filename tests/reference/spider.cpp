@@ -190,6 +190,7 @@ shared::Parameters parametersFor(const Heightfield& terrain) {
   p.stretchLift = 0.95f;
   p.strayShare = 2.5f;
   p.errorLift = 0.05f;
+  p.missLeast = 2e-4f;
   p.rootShare = 0.25f;
   p.settleTime = 1;
   p.sleepTime = 2;
