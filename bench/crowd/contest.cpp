@@ -52,8 +52,10 @@ std::vector<Corner> cornersOf(Device& device, Crowd& crowd, const ContestOptions
 void takeTurn(Corner& corner, uint32_t ticks) {
   corner.contestant->timeStages(false);
   corner.contestant->tick();
+  corner.contestant->finish();
   const Seconds spent = timed([&] {
     for (uint32_t t = 0; t < ticks; ++t) corner.contestant->tick();
+    corner.contestant->finish();
   });
   const uint32_t watched = std::max(kFewestTicksATurn, ticks / kTicksAWatchedOne);
   const std::vector<StageTime> before = corner.contestant->stageTimes();
@@ -107,7 +109,10 @@ Match contest(Device& device, const Heightfield& terrain, const Scene& scene, co
     warm->timeStages(false);
     for (uint32_t i = 0; i < options.warmUp; ++i) {
       if (stopped()) return {};
-      const double seconds = timed([&] { warm->tick(); }).wall;
+      const double seconds = timed([&] {
+                               warm->tick();
+                               warm->finish();
+                             }).wall;
       tickSeconds = i == 0 ? seconds : std::min(tickSeconds, seconds);
       step(0.2 * (i + 1) / options.warmUp);
     }

@@ -21,17 +21,25 @@ class DeviceContestant : public Contestant {
   int threads() const override { return 0; }
   void tick() override {
     crowd_.record(ring_.begin(), dt_);
-    ring_.wait(ring_.submit());
+    ring_.submit();
+    if (!timed_) return;
+    finish();
     for (const StageTime& time : crowd_.stageTimes()) add(times_, time.stage, time.milliseconds);
   }
   HerdState state(uint32_t herd, const AgentSample& sample) const override {
     return crowd_.download(herd, sample);
   }
-  void timeStages(bool on) override { crowd_.timeStages(on); }
+  void finish() override { ring_.waitAll(); }
+  void timeStages(bool on) override {
+    finish();
+    crowd_.timeStages(on);
+    timed_ = on;
+  }
   std::vector<StageTime> stageTimes() const override { return times_; }
 
  private:
   Crowd& crowd_;
+  bool timed_ = true;
   gpu::CommandRing ring_;
   float dt_;
   std::vector<StageTime> times_;
