@@ -24,8 +24,9 @@ std::vector<AgentState> agentsOf(const HerdState& state, const Rig& rig) {
   for (size_t a = 0; a < agents.size(); ++a) {
     AgentState& agent = agents[a];
     const float* body = state.body.data() + 4 * a * BODY_STRIDE;
-    agent.position = {double{body[4]} * TILE_SIZE + body[0], body[1], double{body[5]} * TILE_SIZE + body[2]};
-    agent.heading = {body[3], body[6]};
+    agent.position = {double{tileX(body[3])} * TILE_SIZE + body[0], body[1],
+                      double{tileZ(body[3])} * TILE_SIZE + body[2]};
+    agent.heading = {body[4], body[5]};
     for (size_t leg = a * legs; leg < (a + 1) * legs; ++leg) {
       const float* at = state.tip.data() + 4 * leg * TIP_STRIDE;
       agent.legs.push_back(

@@ -50,7 +50,8 @@ void CollectionCpu::collect(const HerdState& state, uint32_t record, float tick,
   const glm::vec3 root = vectorAt(limb), home = vectorAt(limb + 4);
   const float reach = limb[3];
   const glm::vec3 local = vectorAt(body);
-  const float worldX = body[4] * TILE_SIZE + local.x, worldZ = body[5] * TILE_SIZE + local.z;
+  const float bodyX = tileX(body[3]), bodyZ = tileZ(body[3]);
+  const float worldX = bodyX * TILE_SIZE + local.x, worldZ = bodyZ * TILE_SIZE + local.z;
   const glm::quat turn(body[11], body[8], body[9], body[10]);
   const float omega = body[12], v3 = body[15];
   const float ticks = gait[3], time = ticks * q_.dt, stance = gait[5] - time;
@@ -96,7 +97,7 @@ void CollectionCpu::collect(const HerdState& state, uint32_t record, float tick,
   }
 
   const glm::vec3 from =
-      glm::vec3((step[3] - body[4]) * TILE_SIZE, 0, (step[7] - body[5]) * TILE_SIZE) + vectorAt(step) - local;
+      glm::vec3((step[3] - bodyX) * TILE_SIZE, 0, (step[7] - bodyZ) * TILE_SIZE) + vectorAt(step) - local;
   constexpr float at[3] = {3.0f / 16, 0.5f, 13.0f / 16}, share[3] = {5.0f / 8, 1, 5.0f / 8};
   float height = q_.stepHeight;
   for (int i = 0; i < 3; ++i) {
@@ -105,8 +106,8 @@ void CollectionCpu::collect(const HerdState& state, uint32_t record, float tick,
     if (gap > -q_.stepClearance) height = std::max(height, (gap * up.y + q_.stepClearance) / share[i]);
   }
   const glm::vec3 lift = up * std::min(height, q_.stepHeightMax);
-  put(step, best + local, body[4]);
-  put(step + 4, from + local, body[5]);
+  put(step, best + local, bodyX);
+  put(step + 4, from + local, bodyZ);
   put(step + 8, {tick - 1, lastResort ? -ticks : ticks, lift.x}, lift.y);
   put(step + 12, lift, lift.z);
 }

@@ -204,16 +204,17 @@ void putSteer(HerdState& state, size_t agent, const glm::dvec2& desired, bool as
 
 reference::AgentBody bodyOf(const HerdState& state, size_t agent) {
   const size_t base = at(agent, shared::BODY_STRIDE);
-  const glm::dvec4 local = load(state.body, base), tile = load(state.body, base + 1);
+  const glm::dvec4 local = load(state.body, base), way = load(state.body, base + 1);
   const glm::dvec4 rates = load(state.body, base + 3);
   reference::AgentBody body;
   body.localX = local.x;
   body.y = local.y;
   body.localZ = local.z;
-  body.heading = {local.w, tile.z};
-  body.tileX = tile.x;
-  body.tileZ = tile.y;
-  body.speed = tile.w;
+  const auto tile = static_cast<float>(local.w);
+  body.tileX = shared::tileX(tile);
+  body.tileZ = shared::tileZ(tile);
+  body.heading = way;
+  body.speed = way.z;
   body.orientation = quaternion(load(state.body, base + 2));
   body.turnRate = rates.x;
   body.still = rates.y;
@@ -224,8 +225,8 @@ reference::AgentBody bodyOf(const HerdState& state, size_t agent) {
 
 void putBody(HerdState& state, size_t agent, const reference::AgentBody& body) {
   const size_t base = at(agent, shared::BODY_STRIDE);
-  store(state.body, base, {body.localX, body.y, body.localZ, body.heading.x});
-  store(state.body, base + 1, {body.tileX, body.tileZ, body.heading.y, body.speed});
+  store(state.body, base, {body.localX, body.y, body.localZ, shared::TILES * body.tileX + body.tileZ});
+  store(state.body, base + 1, {body.heading, body.speed, 0});
   store(state.body, base + 2, components(body.orientation));
   store(state.body, base + 3, {body.turnRate, body.still, body.kappa, body.v3});
 }

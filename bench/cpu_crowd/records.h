@@ -25,7 +25,8 @@ inline Agent<float> readAgent(const HerdState& state, size_t agent) {
   a.wantedSpeed = goal[4], a.arrival = goal[5], a.kind = goal[6];
   a.velocityX = steer[0], a.velocityZ = steer[1];
   a.local = {b[0], b[1], b[2]};
-  a.headingX = b[3], a.tileX = b[4], a.tileZ = b[5], a.headingZ = b[6], a.speed = b[7];
+  a.tileX = shared::tileX(b[3]), a.tileZ = shared::tileZ(b[3]);
+  a.headingX = b[4], a.headingZ = b[5], a.speed = b[6];
   a.orientation = {b[8], b[9], b[10], b[11]};
   a.turnRate = b[12], a.still = b[13], a.follow = b[14], a.surfaceSpeed = b[15];
   a.phase = gait[0], a.lift = gait[1], a.again = gait[2], a.stepTicks = gait[3];
@@ -41,8 +42,9 @@ inline void writeAgent(const Agent<float>& a, size_t agent, HerdState& state) {
       {a.targetX, a.targetZ, a.otherX, a.otherZ, a.wantedSpeed, a.arrival, a.kind, 0});
   put(state.steer, shared::STEER_STRIDE, {a.velocityX, a.velocityZ, 0, 0});
   put(state.body, shared::BODY_STRIDE,
-      {a.local.x, a.local.y, a.local.z, a.headingX, a.tileX, a.tileZ, a.headingZ, a.speed, a.orientation.x,
-       a.orientation.y, a.orientation.z, a.orientation.w, a.turnRate, a.still, a.follow, a.surfaceSpeed});
+      {a.local.x, a.local.y, a.local.z, shared::packedTile(a.tileX, a.tileZ), a.headingX, a.headingZ, a.speed,
+       0, a.orientation.x, a.orientation.y, a.orientation.z, a.orientation.w, a.turnRate, a.still, a.follow,
+       a.surfaceSpeed});
   put(state.gait, shared::GAIT_STRIDE,
       {a.phase, a.lift, a.again, a.stepTicks, a.halfStride, a.cycle, a.air, 0});
 }

@@ -15,7 +15,7 @@ glm::vec2 middleOf(const HerdState& herd) {
   glm::vec2 sum(0);
   for (size_t agent = 0; agent < herd.agents; ++agent) {
     const float* b = herd.body.data() + agent * shared::BODY_STRIDE * 4;
-    sum += glm::vec2(b[4], b[5]) * shared::TILE_SIZE + glm::vec2(b[0], b[2]);
+    sum += glm::vec2(shared::tileX(b[3]), shared::tileZ(b[3])) * shared::TILE_SIZE + glm::vec2(b[0], b[2]);
   }
   return sum / static_cast<float>(std::max(1u, herd.agents));
 }

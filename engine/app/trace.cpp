@@ -95,8 +95,8 @@ void appendAgent(const HerdState& state, const crowd::Herd& herd, size_t agent, 
   const auto legs = static_cast<size_t>(rig.legCount()), bones = static_cast<size_t>(rig.maxBones());
 
   const float* body = vec4(state.body, agent * BODY_STRIDE);
-  const double position[3] = {double{body[4]} * TILE_SIZE + body[0], body[1],
-                              double{body[5]} * TILE_SIZE + body[2]};
+  const double position[3] = {double{tileX(body[3])} * TILE_SIZE + body[0], body[1],
+                              double{tileZ(body[3])} * TILE_SIZE + body[2]};
   for (double coordinate : position) values.body.push_back(static_cast<float>(coordinate));
   values.body.insert(values.body.end(), body + 8, body + 12);
 

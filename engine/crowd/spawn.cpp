@@ -158,8 +158,8 @@ void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRe
     const glm::quat q = glm::quat_cast(glm::mat3(glm::cross(normal, forward), normal, forward));
     const float tileX = std::floor(p.x / shared::TILE_SIZE), tileZ = std::floor(p.z / shared::TILE_SIZE);
     const float localX = p.x - tileX * shared::TILE_SIZE, localZ = p.z - tileZ * shared::TILE_SIZE;
-    body.push(localX, height, localZ, heading.x);
-    body.push(tileX, tileZ, heading.y, 0);
+    body.push(localX, height, localZ, packedTile(tileX, tileZ));
+    body.push(heading.x, heading.y, 0, 0);
     body.push(q.x, q.y, q.z, q.w);
     body.push(0, 0, 1, 0);
     gait.push(uniform(seed_, agent, 2), 0, 0, 1);

@@ -11,8 +11,10 @@ struct Body {
   float turnRate, still, follow, surfaceSpeed;
 };
 
+vec2 tileOf(float tile) { return vec2(tileX(tile), tileZ(tile)); }
+
 Body unpackBody(vec4 a, vec4 b, vec4 c, vec4 d) {
-  return Body(a.xyz, b.xy, vec2(a.w, b.z), b.w, c, d.x, d.y, d.z, d.w);
+  return Body(a.xyz, tileOf(a.w), b.xy, b.z, c, d.x, d.y, d.z, d.w);
 }
 
 // Of the buffer `bodies`; a macro, as GLSL cannot pass one to a function.

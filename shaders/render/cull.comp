@@ -26,8 +26,8 @@ bool inCascade(int cascade, vec3 p) {
 void main() {
   uint agent = gl_GlobalInvocationID.x;
   if (agent >= constants.agents) return;
-  vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE), b = LOAD4(bodies, int(agent) * BODY_STRIDE + 1);
-  vec3 p = vec3(a.x, a.y, a.z) + TILE_SIZE * vec3(b.x - picture.tile.x, 0.0, b.y - picture.tile.y);
+  vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE);
+  vec3 p = a.xyz + TILE_SIZE * vec3(tileX(a.w) - picture.tile.x, 0.0, tileZ(a.w) - picture.tile.y);
   float away = distance(p, picture.eye.xyz);
 
   float inside = picture.tile.z - away;

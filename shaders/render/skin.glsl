@@ -37,9 +37,9 @@ void influence(uint bone, vec4 part, vec3 normal, inout Skinned s) {
 }
 
 Skinned skinned(vec3 normal) {
-  vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE), b = LOAD4(bodies, int(agent) * BODY_STRIDE + 1);
+  vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE);
   Skinned s;
-  s.body = a.xyz + TILE_SIZE * vec3(b.x - picture.tile.x, 0.0, b.y - picture.tile.y);
+  s.body = a.xyz + TILE_SIZE * vec3(tileX(a.w) - picture.tile.x, 0.0, tileZ(a.w) - picture.tile.y);
   s.position = s.body;
   s.normal = vec3(0.0);
   influence(bones.x, influence0, normal, s);

@@ -5,6 +5,8 @@
 #define SKITTER_RECORDS_H
 
 #ifdef __cplusplus
+#include <cmath>
+
 namespace skitter::shared {
 using uint = unsigned;
 #define SKITTER_CONST inline constexpr
@@ -38,6 +40,17 @@ SKITTER_FUNCTION int legOfRecord(int record, int legs) {
 }
 // Metres; body positions are tile * TILE_SIZE + local, 0 <= local < TILE_SIZE.
 SKITTER_CONST float TILE_SIZE = 16.0;
+// A tile (x, z) as one number, TILES x + z: an exact float while both are at least -TILES / 2 and less than
+// TILES / 2, which is 32 km, eight times as far as terrains go.
+SKITTER_CONST float TILES = 4096.0;
+SKITTER_FUNCTION float packedTile(float x, float z) { return TILES * x + z; }
+#ifdef __cplusplus
+inline float tileX(float tile) { return std::floor(tile / TILES + 0.5f); }
+inline float tileZ(float tile) { return tile - TILES * tileX(tile); }
+#else
+float tileX(float tile) { return floor(tile / TILES + 0.5); }
+float tileZ(float tile) { return tile - TILES * tileX(tile); }
+#endif
 
 // goal, per agent, written by navigate.
 //   [0] target x, target z, other end x, other end z    world metres
@@ -61,8 +74,8 @@ SKITTER_CONST int SLEEP_BREATHED_OUT = 2;
 SKITTER_CONST int AWAKE_STRIDE = 1;
 
 // body, per agent, written by body.
-//   [0] local x, y (world), local z, heading x
-//   [1] tile x, tile z, heading z, speed s (m/s, horizontal, along the heading)
+//   [0] local x, y (world), local z, tile
+//   [1] heading x, heading z, speed s (m/s, horizontal, along the heading), unused
 //   [2] R_0, quaternion xyzw, worldFromModel
 //   [3] turn rate omega (rad/s), still time (s), follow factor kappa, surface speed v3 (m/s)
 SKITTER_CONST int BODY_STRIDE = 4;

@@ -79,7 +79,7 @@ Body makeBody(int agent, Body body, vec2 velocity) {
   body.follow = follow;
 
   int at = agent * BODY_STRIDE;
-  STORE4_TWO(bodiesOut, at, vec4(body.local, body.heading.x), vec4(body.tile, body.heading.y, body.speed));
+  STORE4_TWO(bodiesOut, at, vec4(body.local, packedTile(body.tile.x, body.tile.y)), vec4(body.heading, body.speed, 0.0));
   STORE4_TWO(bodiesOut, at + 2, body.orientation, vec4(body.turnRate, body.still, body.follow, body.surfaceSpeed));
   return body;
 }

@@ -14,9 +14,8 @@ void main() {
   int record = int(gl_GlobalInvocationID.x);
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
   if (agent >= int(constants.count)) return;
-  vec3 local = LOAD4(bodies, agent * BODY_STRIDE).xyz;
-  vec2 tile = LOAD4(bodies, agent * BODY_STRIDE + 1).xy;
-  vec3 tip = LOAD4(tips, record).xyz + local;
+  vec4 body = LOAD4(bodies, agent * BODY_STRIDE);
+  vec3 tip = LOAD4(tips, record).xyz + body.xyz;
   bool planted = LOAD4(feet, record).w >= 1.0;
   vec4 before = LOAD4(flights, record);
   STORE4(flightsOut, record, vec4(tip, planted ? 0.0 : 1.0));
@@ -31,7 +30,7 @@ void main() {
     // The body may have changed its tile; nothing moves half a tile in a tick.
     vec3 way = tip - before.xyz;
     way.xz -= TILE_SIZE * round(way.xz / TILE_SIZE);
-    vec2 world = worldOf(tip, tile);
+    vec2 world = worldOf(tip, tileOf(body.w));
     int at = int(place) * FOOTFALL_STRIDE;
     STORE4(footfalls, at, vec4(world.x, tip.y, world.y, length(way) / parameters.dt));
     STORE4(footfalls, at + 1, vec4(float(constants.first) + float(agent), float(leg), constants.tick, 0.0));

@@ -22,7 +22,7 @@ bool asleep(int agent, vec2 velocity) {
 void main() {
   int agent = int(gl_GlobalInvocationID.x);
   if (agent >= int(constants.count)) return;
-  vec4 a = LOAD4(bodies, agent * BODY_STRIDE), b = LOAD4(bodies, agent * BODY_STRIDE + 1);
-  vec2 velocity = makeVelocity(agent, worldOf(a.xyz, b.xy));
+  vec4 body = LOAD4(bodies, agent * BODY_STRIDE);
+  vec2 velocity = makeVelocity(agent, worldOf(body.xyz, tileOf(body.w)));
   STORE4(steersOut, agent, vec4(velocity, SLEEP != SLEEP_NEVER && asleep(agent, velocity) ? 1.0 : 0.0, 0.0));
 }

@@ -4,10 +4,10 @@
 #include "lib/hermite.glsl"
 
 vec4 makeFoot(int agent, int record) {
-  int at = agent * BODY_STRIDE;
   Step s = LOAD_STEP(record);
-  vec3 local = LOAD4(bodies, at).xyz;
-  vec2 tile = LOAD4(bodies, at + 1).xy;
+  vec4 body = LOAD4(bodies, agent * BODY_STRIDE);
+  vec3 local = body.xyz;
+  vec2 tile = tileOf(body.w);
   float u = stepProgress(s, thisTick);
   Swing flight = Swing(fromTile(s.liftOff, s.tile, local, tile), fromTile(s.landing, s.tile, local, tile), s.lift,
                        s.startTangent);

@@ -68,9 +68,9 @@ void scramble(const gpu::Context& context, Crowd& crowd, uint64_t seed, float fa
     const glm::quat q = glm::normalize(
         glm::angleAxis(uniform(0, 1.2f), glm::normalize(glm::vec3(uniform(-1, 1), 0.01f, uniform(-1, 1)))) *
         glm::angleAxis(heading, glm::vec3(0, 1, 0)));
-    b[3] = std::sin(heading), b[6] = std::cos(heading), b[7] = uniform(0, 3);
+    b[4] = std::sin(heading), b[5] = std::cos(heading), b[6] = uniform(0, 3);
     b[8] = q.x, b[9] = q.y, b[10] = q.z, b[11] = q.w;
-    b[12] = uniform(-1.5f, 1.5f), b[13] = uniform(0, 2), b[15] = b[7];
+    b[12] = uniform(-1.5f, 1.5f), b[13] = uniform(0, 2), b[15] = b[6];
     gait[agent * 8] = uniform(0, 1);
     for (size_t l = 0; l < legs; ++l) {
       const auto record =
@@ -81,8 +81,9 @@ void scramble(const gpu::Context& context, Crowd& crowd, uint64_t seed, float fa
       const glm::vec3 way = glm::normalize(glm::vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) + 1e-3f);
       const float distances[] = {0, 1e-4f, 0.2f, uniform(0, 1), 1, uniform(1, farthest)};
       const glm::vec3 foot = root + way * (leg.reach * distances[random() % 6]);
-      s[0] = b[0] + foot.x, s[1] = b[1] + foot.y, s[2] = b[2] + foot.z, s[3] = b[4];
-      s[4] = s[0] + uniform(-0.5f, 0.5f), s[5] = s[1], s[6] = s[2] + uniform(-0.5f, 0.5f), s[7] = b[5];
+      s[0] = b[0] + foot.x, s[1] = b[1] + foot.y, s[2] = b[2] + foot.z, s[3] = shared::tileX(b[3]);
+      s[4] = s[0] + uniform(-0.5f, 0.5f), s[5] = s[1], s[6] = s[2] + uniform(-0.5f, 0.5f),
+      s[7] = shared::tileZ(b[3]);
       s[10] = s[12] = s[14] = s[15] = 0, s[11] = s[13] = uniform(0, 0.4f);
       s[8] = -std::floor(uniform(0, 30)), s[9] = std::floor(uniform(3, 20));
       const bool rest = random() % 3 == 0;

@@ -83,7 +83,8 @@ void expectAllPass(const std::vector<validation::StageResult>& results) {
 
 glm::dvec3 positionOf(const HerdState& state, size_t agent) {
   const float* b = state.body.data() + agent * shared::BODY_STRIDE * 4;
-  return {double{b[4]} * shared::TILE_SIZE + b[0], b[1], double{b[5]} * shared::TILE_SIZE + b[2]};
+  return {double{shared::tileX(b[3])} * shared::TILE_SIZE + b[0], b[1],
+          double{shared::tileZ(b[3])} * shared::TILE_SIZE + b[2]};
 }
 
 bool plantedOf(const HerdState& state, size_t leg) { return state.foot.at(leg * 4 + 3) >= 1; }

@@ -156,9 +156,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"desiredVelocityNan", 0, [](HerdState& s) { s.steer[1] = notANumber; }},
                     Fault{"localX", 1, [](HerdState& s) { s.body[0] += 1e-3f; }},
                     Fault{"height", 1, [](HerdState& s) { s.body[1] += 1e-3f; }},
-                    Fault{"heading", 1, [](HerdState& s) { s.body[3] += 1e-3f; }},
-                    Fault{"tile", 1, [](HerdState& s) { s.body[4] += 1; }},
-                    Fault{"speed", 1, [](HerdState& s) { s.body[7] += 1e-3f; }},
+                    Fault{"heading", 1, [](HerdState& s) { s.body[4] += 1e-3f; }},
+                    Fault{"tile", 1, [](HerdState& s) { s.body[3] += 1; }},
+                    Fault{"speed", 1, [](HerdState& s) { s.body[6] += 1e-3f; }},
                     Fault{"orientation", 1, [](HerdState& s) { s.body[8] += 1e-3f; }},
                     Fault{"orientationSign", 1,
                           [](HerdState& s) {

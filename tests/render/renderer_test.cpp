@@ -84,7 +84,8 @@ glm::vec2 pixelOf(const View& view, glm::vec3 point, uint32_t width, uint32_t he
 
 glm::vec3 bodyOf(const HerdState& state) {
   const std::vector<float>& b = state.body;
-  return {b[4] * shared::TILE_SIZE + b[0], b[1], b[5] * shared::TILE_SIZE + b[2]};
+  return {shared::tileX(b[3]) * shared::TILE_SIZE + b[0], b[1],
+          shared::tileZ(b[3]) * shared::TILE_SIZE + b[2]};
 }
 
 class RendererTest : public GpuLoadTest {};
