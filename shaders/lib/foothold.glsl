@@ -4,6 +4,8 @@
 // landing, each rung as wide as its number.
 
 const int RUNGS = 4;
+const int PLACES = RUNGS * (RUNGS + 2);
+const int AT_ONCE = 3;      // of the places, whose number it divides
 const int CENTRE_RUNG = 3;  // its middle is the predicted landing itself
 
 // Relative to the body: the predicted landing, and the ways from a rung to the next and along it to the next place.

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "stages/stage.glsl"
 #include "lib/foothold.glsl"
 #include "lib/gait.glsl"
@@ -50,12 +51,20 @@ void main() {
   best.fits = false;
   best.point = predicted;
   best.distance = 0.0;
-  for (int k = 1; k <= RUNGS; ++k) {
-    for (int j = -k; j <= k; ++j) {
-      vec3 q = placeOn(ladder, k, j);
-      vec3 g = groundAt(world + q.xz);
-      q.y = g.x - body.local.y;
-      Candidate candidate = judge(parameters, q, g, up, rootWorld, predicted, range);
+  // Rung by rung and along each, some places at once: their heights, far away in memory, are waited for together.
+  int k = 1, j = -1;
+  for (int places = 0; places < PLACES; places += AT_ONCE) {
+    vec3 q[AT_ONCE], ground[AT_ONCE];
+    [[unroll]] for (int i = 0; i < AT_ONCE; ++i) {
+      q[i] = placeOn(ladder, k, j);
+      ground[i] = groundAt(world + q[i].xz);
+      bool last = j == k;
+      k += last ? 1 : 0;
+      j = last ? -k : j + 1;
+    }
+    [[unroll]] for (int i = 0; i < AT_ONCE; ++i) {
+      q[i].y = ground[i].x - body.local.y;
+      Candidate candidate = judge(parameters, q[i], ground[i], up, rootWorld, predicted, range);
       if (candidate.fits && candidate.score < best.score) best = candidate;
     }
   }
