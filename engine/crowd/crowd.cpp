@@ -242,12 +242,7 @@ shared::Parameters parametersOf(const Impl& crowd, const crowd::Herd& herd, floa
 
 void setParameters(const Impl& crowd, float dt, crowd::Herd& herd) {
   herd.parameters = parametersOf(crowd, herd, dt);
-  crowd::ParameterBlock block{herd.parameters, {}};
-  constexpr size_t aLeg = 4 * shared::RIG_LEG_STRIDE;
-  const auto stride = 4 * static_cast<size_t>(shared::rigStride(herd.bones));
-  for (size_t leg = 0; leg < static_cast<size_t>(herd.legs); ++leg)
-    std::copy_n(&herd.rigRecords[leg * stride], aLeg, &block.rigLegs[leg * aLeg]);
-  std::memcpy(herd.parameterBlock.bytes().data(), &block, sizeof block);
+  std::memcpy(herd.parameterBlock.bytes().data(), &herd.parameters, sizeof herd.parameters);
 }
 
 void setTick(Impl& crowd, float dt) {
@@ -314,7 +309,7 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     gpu::upload(context, herd.rigBuffer, herd.rigRecords);
     if (crowd::needsClips(herd.controller)) loadClips(context, from, herd);
     herd.parameterBlock =
-        gpu::HostBuffer(context, sizeof(crowd::ParameterBlock), gpu::HostUse::upload, "parameters");
+        gpu::HostBuffer(context, sizeof(shared::Parameters), gpu::HostUse::upload, "parameters");
     setParameters(crowd, 1.0f / 60, herd);
     herd.stages = crowd::stagesOf(herd.controller, options);
     needed += crowd::bytesOf(crowd, herd, from.agents);

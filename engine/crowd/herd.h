@@ -42,12 +42,6 @@ struct Page {
   std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
-// The uniform block of stages/stage.glsl.
-struct ParameterBlock {
-  shared::Parameters parameters;
-  alignas(16) float rigLegs[4 * shared::RIG_LEG_STRIDE * shared::MOST_LEGS];  // the rig's records of legs
-};
-
 struct Herd {
   Rig rig;
   Controller controller = Controller::adaptive;
@@ -60,7 +54,7 @@ struct Herd {
   gpu::Buffer keyBuffer;
   bool reachTriggered = false;  // legs step when out of reach, without a rhythm
   shared::Parameters parameters{};
-  gpu::HostBuffer parameterBlock;  // a ParameterBlock; written once, before the first tick
+  gpu::HostBuffer parameterBlock;  // Parameters; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
   gpu::Buffer rigBuffer;
   std::vector<Stage> stages;             // of the controller, those that were asked for

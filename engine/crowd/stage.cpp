@@ -111,6 +111,20 @@ bool hasFootRecords(const Herd& herd, const CrowdOptions& options) {
          });
 }
 
+namespace {
+
+void addRigLegs(const Herd& herd, gpu::KernelInfo& info) {
+  constexpr int aLeg = 4 * shared::RIG_LEG_STRIDE;
+  const auto stride = 4 * static_cast<size_t>(shared::rigStride(herd.bones));
+  for (int leg = 0; leg < herd.legs; ++leg)
+    for (int i = 0; i < aLeg; ++i)
+      info.constants.emplace_back(
+          shared::CONSTANT_RIG_LEGS + leg * aLeg + i,
+          herd.rigRecords[static_cast<size_t>(leg) * stride + static_cast<size_t>(i)]);
+}
+
+}  // namespace
+
 StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const Herd& herd) {
   using namespace shared;
   gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
@@ -141,6 +155,7 @@ StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const He
     });
     info.constants.emplace_back(CONSTANT_PADDED, padded);
   }
+  if (makes(stage.name, "body") || isGait) addRigLegs(herd, info);
   if (isGait) info.constants.emplace_back(CONSTANT_REACH, herd.reachTriggered ? 1 : 0);
 
   StageKernels kernels{info, {}, {}};

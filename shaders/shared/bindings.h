@@ -81,6 +81,8 @@ BINDING CONSTANT_REACH = 23;         // gait steps when out of reach, without a 
 BINDING CONSTANT_WATCH = 24;  // gait looks at the ground under every foot: the heights were edited lately
 BINDING CONSTANT_SLEEP = 25;  // SLEEP_
 BINDING CONSTANT_FEET = 26;   // tips are written, and feet where only ik reads them
+// From here on the numbers with which the rig's records of legs begin, 4 * RIG_LEG_STRIDE a leg.
+BINDING CONSTANT_RIG_LEGS = 100;
 #undef BINDING
 
 // Push constants of every stage.

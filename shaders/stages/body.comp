@@ -14,7 +14,6 @@ STORE4_BUFFER(BINDING_BODY_OUT, bodiesOut);
 #include "stages/body.glsl"
 
 void main() {
-  loadRigLegs();
   int agent = agentAt(int(gl_GlobalInvocationID.x));
   if (agent >= 0) makeBody(agent, LOAD_BODY(agent), LOAD4(steers, agent).xy);
 }

@@ -13,7 +13,6 @@ layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint 
 #include "stages/gait.glsl"
 
 void main() {
-  loadRigLegs();
   int agent = agentAt(int(gl_GlobalInvocationID.x));
   if (agent < 0) return;
   makeGait(agent, LOAD_BODY(agent));

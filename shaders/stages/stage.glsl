@@ -17,7 +17,6 @@ float thisTick = constants.tick;
 #ifndef WITHOUT_PARAMETERS
 layout(std140, set = 0, binding = BINDING_PARAMETERS) uniform ParametersBlock {
   Parameters uniformParameters;
-  vec4 uniformLegs[MOST_LEGS * RIG_LEG_STRIDE];
 };
 Parameters parameters = uniformParameters;
 #endif

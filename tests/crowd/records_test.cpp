@@ -93,14 +93,6 @@ TEST(Records, ParametersLieWhereBothSidesThink) {
     }
 }
 
-TEST(Records, LegsFollowTheParameters) {
-  for (const crowd::Stage& stage :
-       {crowd::bodyStage(), crowd::gaitStage(), crowd::bodyAndGaitStage(), crowd::navigateBodyAndGaitStage()})
-    EXPECT_EQ(layoutOf(stage.code.storage).offsets.at("ParametersBlock").at("uniformLegs"),
-              offsetof(crowd::ParameterBlock, rigLegs))
-        << stage.name;
-}
-
 TEST(Records, PushConstantsAndStrides) {
   for (const crowd::Stage& stage : everyStage()) {
     const Layout layout = layoutOf(stage.code.storage);
