@@ -138,8 +138,7 @@ shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield
   p.restPull = 0.05f;       // a step; more, and it fights the target near the limits
   p.pullError = 0.1f;       // of the reach: about a fast tick; out of reach no pull may act
   p.ikTolerance = 2e-5f;    // of the reach; a planted foot's slide is the sum of such errors
-  p.missLeast =
-      2e-4f;  // of the reach: a hundredth of errorStop, and one planted leg of a thousand misses by more
+  p.missLeast = 2e-4f;      // of the reach; one planted leg of a thousand misses by more
   // Without a polish the approach goes all the way.
   if (ik.polish == 0) p.approachError = p.ikTolerance;
 
