@@ -69,8 +69,8 @@ FreeRun::FreeRun(const HerdFacts& herd, HerdState start)
 }
 
 void FreeRun::tick() {
-  ++n_;
-  for (size_t agent = 0; agent < state_.agents; ++agent) walkAgent(setting_, n_, agent, state_);
+  ++state_.tick;
+  for (size_t agent = 0; agent < state_.agents; ++agent) walkAgent(setting_, state_.tick, agent, state_);
 }
 
 double FreeRun::shareWithin(const HerdState& device, double tolerance) const {

@@ -27,7 +27,6 @@ class FreeRun {
   Heightfield terrain_;
   Setting setting_;
   HerdState state_;
-  uint64_t n_ = 0;
 };
 
 }  // namespace skitter::validation

@@ -47,7 +47,7 @@ template <class F, int N>
 struct Chain {
   F x[N], y[N];  // directions
   Vec3<F> tip;   // from the root, in model space, a share of the reach
-  F error;       // the same
+  F error;       // of the tip to its target, likewise
 };
 
 // Of a block, the same leg of all its agents.

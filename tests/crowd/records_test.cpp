@@ -103,7 +103,7 @@ TEST(Records, PushConstantsAndStrides) {
     EXPECT_EQ(constants.at("every"), offsetof(shared::TickConstants, every)) << stage.name;
     EXPECT_EQ(constants.at("watched"), offsetof(shared::TickConstants, watched)) << stage.name;
     EXPECT_EQ(constants.at("room"), offsetof(shared::TickConstants, room)) << stage.name;
-    const bool pairs = crowd::makes(stage.name, "ik");  // solve records
+    const bool pairs = crowd::makes(stage.name, "ik");  // miss records
     for (const uint32_t stride : layout.arrayStrides)
       EXPECT_TRUE(stride == 16 || stride == 4 || (pairs && stride == 8)) << stage.name << ": " << stride;
   }

@@ -83,13 +83,13 @@ void ReferenceHerd::spawn(uint32_t agents) {
 }
 
 void ReferenceHerd::tick() {
-  ++n_;
+  ++state_.tick;
   for (size_t agent = 0; agent < state_.agents; ++agent) tickAgent(agent);
 }
 
 void ReferenceHerd::tickAgent(size_t agent) {
   const Setting setting = settingOf(facts(), terrain_);
-  walkAgent(setting, n_, agent, state_);
+  walkAgent(setting, state_.tick, agent, state_);
   std::vector<reference::Foot> feet;
   std::vector<reference::Chain> chains;
   for (size_t l = 0; l < static_cast<size_t>(legs()); ++l) {
@@ -99,7 +99,7 @@ void ReferenceHerd::tickAgent(size_t agent) {
   }
   const auto measured =
       reference::measure(setting.tuning, setting.heights, setting.creature, bodyOf(state_, agent), feet,
-                         chains, n_ - 1, watchedOf(state_, agent, legs()), metricOf(state_, agent));
+                         chains, state_.tick - 1, watchedOf(state_, agent, legs()), metricOf(state_, agent));
   putMetric(state_, agent, measured.metric);
   putWatched(state_, agent, measured.watched);
 }

@@ -13,7 +13,7 @@ class ReferenceHerd {
   ReferenceHerd(const Heightfield& terrain, uint32_t agents, int padding = 0);
 
   void tick();
-  uint64_t ticks() const { return n_; }
+  uint64_t ticks() const { return state_.tick; }
   const HerdState& state() const { return state_; }
   HerdState& state() { return state_; }
   const shared::Parameters& parameters() const { return parameters_; }
@@ -35,7 +35,6 @@ class ReferenceHerd {
   std::vector<float> rigRecords_;
   int bones_;
   HerdState state_;
-  uint64_t n_ = 0;
 };
 
 }  // namespace skitter::test
