@@ -27,12 +27,20 @@ const char* loadsName(LoadPath loads) {
   return loads == LoadPath::texel ? "texel buffers" : "storage buffers";
 }
 
+int bitsOf(StoreWidth width) { return width == StoreWidth::bits64 ? 64 : 32; }
+
 std::string amount(uint64_t bytes) {
   return bytes < 10ull << 30 ? fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20))
                              : fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1ull << 30));
 }
 
-void printDevice(const DeviceReport& report, const std::optional<LoadChoice>& loads) {
+// How records are read and written, as an open device knows it.
+struct Choices {
+  LoadChoice loads;
+  StoreChoice stores;
+};
+
+void printDevice(const DeviceReport& report, const std::optional<Choices>& choices) {
   const DeviceLimits& limits = report.limits;
   const DeviceFeatures& features = report.features;
   const auto row = [](const char* name, const std::string& value) {
@@ -42,10 +50,17 @@ void printDevice(const DeviceReport& report, const std::optional<LoadChoice>& lo
   fmt::print("{} {}: {} ({})\n", report.chosen ? "*" : " ", report.index, report.name, report.typeName());
   row("driver", report.driver);
   row("Vulkan", version(report.apiVersion));
-  if (loads) row("records are read by", fmt::format("{}: {}", loadsName(loads->path), loads->why));
-  if (loads && loads->cost)
-    row("reading a vec4",
-        fmt::format("texel {:.2f} ns, storage {:.2f} ns", loads->cost->texel, loads->cost->storage));
+  if (choices) {
+    const auto& [loads, stores] = *choices;
+    row("records are read by", fmt::format("{}: {}", loadsName(loads.path), loads.why));
+    if (loads.cost)
+      row("reading a vec4",
+          fmt::format("texel {:.2f} ns, storage {:.2f} ns", loads.cost->texel, loads.cost->storage));
+    row("records are written by", fmt::format("{} bits: {}", bitsOf(stores.width), stores.why));
+    if (stores.cost)
+      row("writing a vec4",
+          fmt::format("by 32 bits {:.2f} ns, by 64 {:.2f} ns", stores.cost->bits32, stores.cost->bits64));
+  }
   row("subgroup", fmt::format("{} invocations", limits.subgroupSize));
   row("work group, at most", fmt::format("{} invocations", limits.maxComputeWorkGroupInvocations));
   row("storage buffer, at most", amount(limits.maxStorageBufferRange));
@@ -63,11 +78,12 @@ void printDevice(const DeviceReport& report, const std::optional<LoadChoice>& lo
   for (const std::string& refusal : report.refusals) row("unsuitable", refusal);
 }
 
-// How records are read is known once a device is open; nothing where it cannot be opened.
-std::optional<LoadChoice> loadsOf(DeviceReport& report) {
+// Nothing where the device cannot be opened.
+std::optional<Choices> choicesOf(DeviceReport& report) {
   if (!report.suitable) return {};
   try {
-    return Device::create({.device = fmt::format("{}", report.index)}).report().loads;
+    const Device device = Device::create({.device = fmt::format("{}", report.index)});
+    return Choices{device.report().loads, device.report().stores};
   } catch (const Error& error) {
     if (error.kind() != Error::Kind::device) throw;
     report.refusals.emplace_back(error.what());
@@ -75,15 +91,20 @@ std::optional<LoadChoice> loadsOf(DeviceReport& report) {
   }
 }
 
-nlohmann::ordered_json describe(const std::optional<LoadChoice>& loads) {
-  if (!loads) return nullptr;
-  nlohmann::ordered_json made = {{"path", loads->path == LoadPath::texel ? "texel" : "storage"},
-                                 {"why", loads->why}};
-  if (loads->cost) made["nanoseconds"] = {{"texel", loads->cost->texel}, {"storage", loads->cost->storage}};
+nlohmann::ordered_json describe(const LoadChoice& loads) {
+  nlohmann::ordered_json made = {{"path", loads.path == LoadPath::texel ? "texel" : "storage"},
+                                 {"why", loads.why}};
+  if (loads.cost) made["nanoseconds"] = {{"texel", loads.cost->texel}, {"storage", loads.cost->storage}};
   return made;
 }
 
-nlohmann::ordered_json describe(const DeviceReport& report, const std::optional<LoadChoice>& loads) {
+nlohmann::ordered_json describe(const StoreChoice& stores) {
+  nlohmann::ordered_json made = {{"bits", bitsOf(stores.width)}, {"why", stores.why}};
+  if (stores.cost) made["nanoseconds"] = {{"32", stores.cost->bits32}, {"64", stores.cost->bits64}};
+  return made;
+}
+
+nlohmann::ordered_json describe(const DeviceReport& report, const std::optional<Choices>& choices) {
   const DeviceLimits& limits = report.limits;
   const DeviceFeatures& features = report.features;
   return {{"index", report.index},
@@ -91,7 +112,8 @@ nlohmann::ordered_json describe(const DeviceReport& report, const std::optional<
           {"type", report.typeName()},
           {"driver", report.driver},
           {"apiVersion", version(report.apiVersion)},
-          {"loads", describe(loads)},
+          {"loads", choices ? describe(choices->loads) : nlohmann::ordered_json()},
+          {"stores", choices ? describe(choices->stores) : nlohmann::ordered_json()},
           {"limits",
            {{"subgroupSize", limits.subgroupSize},
             {"maxStorageBufferRange", limits.maxStorageBufferRange},
@@ -134,9 +156,9 @@ int info(const InfoOptions& options) {
 
   nlohmann::ordered_json devices = nlohmann::ordered_json::array(), chosen = nullptr;
   for (DeviceReport& report : reports) {
-    const std::optional<LoadChoice> loads = loadsOf(report);
-    printDevice(report, loads);
-    devices.push_back(describe(report, loads));
+    const std::optional<Choices> choices = choicesOf(report);
+    printDevice(report, choices);
+    devices.push_back(describe(report, choices));
     if (report.chosen) chosen = report.index;
   }
   if (!options.json.empty()) {

@@ -51,6 +51,9 @@ class Context {
   bool texelLoads() const { return parts_.report.loads.path == LoadPath::texel; }
   // What was made before keeps to the path of its time.
   void setLoads(LoadChoice choice) { parts_.report.loads = std::move(choice); }
+  // STORE4 writes by 64 bits, where LOAD4 goes through texel buffers.
+  bool wideStores() const { return parts_.report.stores.width == StoreWidth::bits64; }
+  void setStores(StoreChoice choice) { parts_.report.stores = std::move(choice); }
   bool timestamps() const { return limits().timestampBits != 0; }
 
   // Kernels and graphics pipelines all go through it, so that making one again is cheap.

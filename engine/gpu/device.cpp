@@ -5,6 +5,7 @@
 #include "gpu/context.h"
 #include "gpu/instance.h"
 #include "gpu/loads.h"
+#include "gpu/stores.h"
 
 #include <fmt/format.h>
 
@@ -44,10 +45,12 @@ vk::raii::Device makeDevice(const gpu::Candidate& candidate, bool presentation) 
                       [&] { return vk::raii::Device(candidate.physical, info); });
 }
 
-std::unique_ptr<gpu::Context> open(gpu::Context::Parts parts, std::optional<LoadPath> requested) {
+std::unique_ptr<gpu::Context> open(gpu::Context::Parts parts, const DeviceRequest& request) {
   auto context = std::make_unique<gpu::Context>(std::move(parts));
-  context->setLoads(gpu::chooseLoads(context->limits(), context->features(), gpu::wantedLoads(requested),
+  context->setLoads(gpu::chooseLoads(context->limits(), context->features(), gpu::wantedLoads(request.loads),
                                      [&] { return gpu::measureLoads(*context); }));
+  context->setStores(gpu::chooseStores(context->report().loads.path, gpu::wantedStores(request.stores),
+                                       [&] { return gpu::measureStores(*context); }));
   return context;
 }
 
@@ -118,7 +121,7 @@ Device Device::create(const DeviceRequest& request) {
                       .queueFamily = candidate.queueFamily,
                       .debugUtils = instance.debugUtils,
                       .report = std::move(candidate.report)},
-                     request.loads));
+                     request));
 }
 
 Device Device::adopt(VkInstance instance, VkPhysicalDevice physicalDevice, VkDevice device,
@@ -142,7 +145,7 @@ Device Device::adopt(VkInstance instance, VkPhysicalDevice physicalDevice, VkDev
   parts.physical = std::move(candidate.physical);
   parts.device = gpu::adoptDevice(parts.physical, device);
   parts.queue = vk::raii::Queue(parts.device, queue);
-  return Device(open(std::move(parts), loads));
+  return Device(open(std::move(parts), {.loads = loads}));
 }
 
 Device::Device(std::unique_ptr<gpu::Context> context) : context_(std::move(context)) {}

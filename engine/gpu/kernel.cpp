@@ -1,5 +1,7 @@
 #include "gpu/kernel.h"
 
+#include "shared/load4.h"
+
 #include <cassert>
 
 namespace skitter::gpu {
@@ -23,12 +25,14 @@ Kernel::Kernel(const Context& context, const KernelInfo& info)
   const auto module = makeModule(context, info.code, info.name);
   std::vector<vk::SpecializationMapEntry> entries;
   std::vector<uint32_t> values;
-  for (const SpecConstant& constant : info.constants) {
+  const auto specialize = [&](const SpecConstant& constant) {
     entries.push_back({.constantID = constant.id,
                        .offset = uint32_t(values.size() * sizeof(uint32_t)),
                        .size = sizeof(uint32_t)});
     values.push_back(constant.bits);
-  }
+  };
+  for (const SpecConstant& constant : info.constants) specialize(constant);
+  specialize({shared::CONSTANT_WIDE_STORES, context.wideStores()});
   const vk::SpecializationInfo specialization{.mapEntryCount = uint32_t(entries.size()),
                                               .pMapEntries = entries.data(),
                                               .dataSize = values.size() * sizeof(uint32_t),

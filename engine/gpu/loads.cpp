@@ -2,16 +2,13 @@
 
 #include "embedded/load_cost_comp_storage.h"
 #include "embedded/load_cost_comp_texel.h"
-#include "gpu/kernel.h"
-#include "gpu/submit.h"
-#include "gpu/timer.h"
+#include "gpu/cost_probe.h"
 #include "gpu/transfer.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 #include <limits>
 #include <string_view>
 
@@ -29,42 +26,14 @@ constexpr int kTurns = 5, kMostTurns = 50;
 constexpr double kClear = 1.25;         // a ratio this far from the margin needs no further turns
 constexpr double kLeastSeconds = 2e-4;  // what is over sooner tells of the dispatch, not of the loads
 
-double cpuSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+CostProbe reader(const Context& context, const Buffer& records, const Buffer& sums) {
+  return {context,
+          {.name = "load cost",
+           .code = {embedded::load_cost_comp_texel(), embedded::load_cost_comp_storage()},
+           .bindings = {{0, BindingKind::load4}, {1, BindingKind::store}},
+           .constants = {{0, kRecords}, {1, kStride}}},
+          {{0, &records}, {1, &sums}}};
 }
-
-class Reader {
- public:
-  Reader(const Context& context, const Buffer& records, const Buffer& sums)
-      : context_(context),
-        ring_(context, 1),
-        timer_(context, 1, !context.isCpu()),
-        kernel_(context, {.name = "load cost",
-                          .code = {embedded::load_cost_comp_texel(), embedded::load_cost_comp_storage()},
-                          .bindings = {{0, BindingKind::load4}, {1, BindingKind::store}},
-                          .constants = {{0, kRecords}, {1, kStride}}}),
-        bindings_(kernel_.bind(context, {{0, &records}, {1, &sums}})) {}
-
-  double seconds(uint32_t groups) {
-    const double began = cpuSeconds();
-    const vk::CommandBuffer cmd = ring_.begin();
-    timer_.reset(cmd);
-    timer_.begin(cmd, "load cost");
-    kernel_.dispatch(cmd, bindings_, {}, groups);
-    timer_.end(cmd, "load cost");
-    ring_.wait(ring_.submit());
-    return context_.isCpu() ? cpuSeconds() - began : 1e-3 * timer_.milliseconds().front().milliseconds;
-  }
-
- private:
-  const Context& context_;
-  CommandRing ring_;
-  StageTimer timer_;
-  Kernel kernel_;
-  Bindings bindings_;
-};
 
 }  // namespace
 
@@ -97,14 +66,14 @@ LoadChoice chooseLoads(const DeviceLimits& limits, const DeviceFeatures& feature
 }
 
 std::optional<LoadCost> measureLoads(Context& context) {
-  if (!context.isCpu() && !context.timestamps()) return {};
+  if (!CostProbe::canTell(context)) return {};
   context.setLoads({.path = LoadPath::texel});  // a buffer made so can be read either way
   const Buffer records(context, uint64_t{kRecords} * kStride * 16, "records to read");
   const Buffer sums(context, 16, "sums");
   clear(context, records);
-  Reader texel(context, records, sums);
+  CostProbe texel = reader(context, records, sums);
   context.setLoads({.path = LoadPath::storage});
-  Reader storage(context, records, sums);
+  CostProbe storage = reader(context, records, sums);
   texel.seconds(1), storage.seconds(1);  // some drivers compile only now
 
   const uint32_t most = std::min(context.limits().maxComputeWorkGroupCountX, kMostGroups);

@@ -25,6 +25,9 @@ TEST_F(Info, TableAndJsonNameTheChosenDevice) {
       const nlohmann::json& loads = device.at("loads");
       EXPECT_NE(result.out.find(loads.at("why").get<std::string>()), std::string::npos);
       EXPECT_EQ(result.out.find("reading a vec4") != std::string::npos, loads.contains("nanoseconds"));
+      const nlohmann::json& stores = device.at("stores");
+      EXPECT_NE(result.out.find(stores.at("why").get<std::string>()), std::string::npos);
+      EXPECT_EQ(result.out.find("writing a vec4") != std::string::npos, stores.contains("nanoseconds"));
     }
     if (device.at("chosen")) {
       ++chosen;
@@ -46,6 +49,22 @@ TEST_F(Info, ALoadPathCanBeAskedFor) {
       EXPECT_EQ(device.at("loads").at("path"), "storage");
     }
   }
+}
+
+TEST_F(Info, AStoreWidthCanBeAskedFor) {
+  const Result result =
+      skitter({"info", "--json", file("info.json")}, {{"SKITTER_LOADS", "texel"}, {"SKITTER_STORES", "64"}});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find("64 bits: asked for"), std::string::npos) << result.out;
+  for (const nlohmann::json& device : json("info.json").at("devices")) {
+    if (device.at("suitable")) {
+      EXPECT_EQ(device.at("stores").at("bits"), 64);
+    }
+  }
+}
+
+TEST_F(Info, AnUnknownStoreWidthIsRefused) {
+  expectRefusal(skitter({"info"}, {{"SKITTER_STORES", "16"}}), 2, {"SKITTER_STORES", "16", "32 or 64"});
 }
 
 TEST_F(Info, AnUnknownLoadPathIsRefused) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace skitter::test {
 
@@ -26,6 +27,16 @@ inline bool hasTexelPath() {
   for (const DeviceReport& device : listDevices(request))
     if (device.chosen) return device.limits.texelRgba32f && device.features.shaderInt64;
   return true;  // no device: making one tells why
+}
+
+// Every way in which a device that has them all reads and writes records: the same bits.
+inline std::vector<DeviceRequest> everyRecordPath() {
+  std::vector<DeviceRequest> all(3, validatedRequest());
+  all[0].loads = all[1].loads = LoadPath::texel;
+  all[0].stores = StoreWidth::bits32;
+  all[1].stores = StoreWidth::bits64;
+  all[2].loads = LoadPath::storage;
+  return all;
 }
 
 inline void failOnMessages(const ValidationLog& log) {

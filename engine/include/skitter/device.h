@@ -17,7 +17,7 @@ class Context;
 
 // How shaders read records, and write them (shaders/lib/load4.glsl).
 enum class LoadPath {
-  texel,    // RGBA32F texel buffers; written by 64 bits (needs shaderInt64)
+  texel,    // RGBA32F texel buffers (needs shaderInt64, for what may be written by 64 bits)
   storage,  // storage buffers
 };
 
@@ -32,6 +32,22 @@ struct LoadChoice {
   LoadPath path = LoadPath::storage;
   std::optional<LoadCost> cost = {};  // where both paths were measured
   std::string why = {};               // for people
+};
+
+// Bits of the numbers in which records that are read through texel buffers are written. A software device
+// stores number by number and lane by lane: half as many are quicker where taking one out of a register is.
+enum class StoreWidth { bits32, bits64 };
+
+// Nanoseconds that writing a vec4 takes, two in a row, as LoadCost tells them.
+struct StoreCost {
+  double bits32 = 0, bits64 = 0;
+};
+
+// Whichever is measured to be quicker; both write the same bits.
+struct StoreChoice {
+  StoreWidth width = StoreWidth::bits32;
+  std::optional<StoreCost> cost = {};  // where both were measured
+  std::string why = {};                // for people
 };
 
 struct DeviceLimits {
@@ -78,6 +94,7 @@ struct DeviceReport {
   DeviceFeatures features;
   std::vector<std::string> lacks;  // optional features and sizes that it is without, as `info` names them
   LoadChoice loads;                // of a Device; listDevices() opens none and measures nothing
+  StoreChoice stores;              // likewise
   bool suitable = false;
   std::vector<std::string> refusals;  // each reason why it is not suitable
   bool chosen = false;
@@ -96,6 +113,8 @@ struct DeviceRequest {
   std::vector<std::string> instanceExtensions = {};
   // Read records so and measure nothing; without it, SKITTER_LOADS may name "texel" or "storage".
   std::optional<LoadPath> loads = {};
+  // Likewise; SKITTER_STORES may name "32" or "64".
+  std::optional<StoreWidth> stores = {};
 };
 
 struct ValidationMessage {
@@ -127,7 +146,8 @@ class Device {
  public:
   // The best suitable device: Vulkan 1.3, a graphics and compute queue, dynamicRendering, synchronization2
   // and timelineSemaphore; discrete before integrated before virtual before cpu. Throws Error(device) listing
-  // each candidate with its reasons. Takes some milliseconds to find out how records are best read.
+  // each candidate with its reasons. Takes some milliseconds to find out how records are best read and
+  // written.
   static Device create(const DeviceRequest& = {});
 
   // A device that the caller made and keeps; it is never destroyed here. It needs what create() asks for,
