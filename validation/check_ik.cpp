@@ -89,9 +89,10 @@ SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l
   }
   verdict.tie = apart > tolerance::jointPosition;
   if (verdict.tie) {
-    sample.compare("error beyond the reference's / reach",
-                   std::max(0.0, error - expected.reachError / limb.reach), tolerance::ikTie,
-                   {expected.reachError / limb.reach, apart, 0, 0}, {error, 0, 0, 0});
+    const double wantedError = expected.reachError / limb.reach;
+    sample.compare("error beyond the reference's / reach", std::max(0.0, error - wantedError),
+                   tolerance::ikTie * std::max(1.0, wantedError), {wantedError, apart, 0, 0},
+                   {error, 0, 0, 0});
   } else {
     sample.compare("joint positions / reach", apart, tolerance::jointPosition);
   }

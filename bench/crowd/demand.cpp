@@ -62,7 +62,7 @@ std::vector<StageDemand> demandOf(const Crowd& crowd, const CrowdOptions& option
       for (const crowd::Stage& stage : herd.stages) {
         if (stage.name != name) continue;
         found = true;
-        const gpu::KernelInfo info = crowd::kernelsOf(stage, options, herd).first;
+        const gpu::KernelInfo info = crowd::kernelsOf(context, stage, options, herd).first;
         const double operations = operationsAnInvocation(info.code.pick(context), info.constants);
         for (const crowd::Page& page : herd.pages) {
           const double invocations = invocationsOf(herd, page, stage.over);

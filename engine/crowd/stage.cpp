@@ -123,9 +123,32 @@ void addRigLegs(const Herd& herd, gpu::KernelInfo& info) {
           herd.rigRecords[static_cast<size_t>(leg) * stride + static_cast<size_t>(i)]);
 }
 
+void addParameters(const shared::Parameters& parameters, gpu::KernelInfo& info) {
+#define ADD_KNOWN(i, name) info.constants.emplace_back(shared::CONSTANT_PARAMETERS + (i), parameters.name);
+  KNOWN_PARAMETERS(ADD_KNOWN)
+#undef ADD_KNOWN
+}
+
+// Where the rig has fewer legs than there are constants of, its own follow each other again: equal ones need
+// not be chosen from.
+bool addRigBones(const Herd& herd, gpu::KernelInfo& info) {
+  using namespace shared;
+  if (herd.legs > CHOSEN_LEGS || herd.bones > CHOSEN_BONES) return false;
+  for (int bone = 0; bone < herd.bones; ++bone)
+    for (int i = 0; i < 4; ++i)
+      for (int leg = 0; leg < CHOSEN_LEGS; ++leg) {
+        const int at =
+            4 * ((leg % herd.legs) * rigStride(herd.bones) + RIG_LEG_STRIDE + RIG_BONE_STRIDE * bone + 7) + i;
+        info.constants.emplace_back(CONSTANT_RIG_BONES + (4 * bone + i) * CHOSEN_LEGS + leg,
+                                    herd.rigRecords[static_cast<size_t>(at)]);
+      }
+  return true;
+}
+
 }  // namespace
 
-StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const Herd& herd) {
+StageKernels kernelsOf(const gpu::Context& context, const Stage& stage, const CrowdOptions& options,
+                       const Herd& herd) {
   using namespace shared;
   gpu::KernelInfo info{stage.name, stage.code, stage.bindings, sizeof(TickConstants)};
   const bool isIk = makes(stage.name, "ik");
@@ -134,6 +157,7 @@ StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const He
   for (const StageShader& other : options.shaders)
     if (other.stage == stage.name) info.code = {other.texel, other.storage};
   info.constants = {{CONSTANT_LEGS, herd.legs}, {CONSTANT_BONES, herd.bones}, {CONSTANT_GROUPS, herd.groups}};
+  addParameters(herd.parameters, info);
   if (isIk || (herd.controller == Controller::pose && makes(stage.name, "swing")))
     info.constants.emplace_back(CONSTANT_FEET, keepsFeet(options));
   if (options.sleep) {
@@ -162,6 +186,11 @@ StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const He
   // Without a polish ik would list every leg.
   if (stage.rest >= 0 && !(isIk && herd.ik.polish == 0)) {
     kernels.first.constants.emplace_back(CONSTANT_PASS, PASS_QUICK);
+    // Where texel buffers are quicker loads are dear, and choosing is not.
+    if (isIk && context.texelLoads() && addRigBones(herd, kernels.first)) {
+      addRigLegs(herd, kernels.first);
+      kernels.first.constants.emplace_back(CONSTANT_RIG_CHOSEN, true);
+    }
     kernels.rest = info;
     kernels.rest->constants.emplace_back(CONSTANT_PASS, PASS_LISTED);
   }
@@ -174,7 +203,7 @@ StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const He
 
 void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd) {
   for (const Stage& stage : herd.stages) {
-    const StageKernels kernels = kernelsOf(stage, options, herd);
+    const StageKernels kernels = kernelsOf(context, stage, options, herd);
     herd.kernels.emplace_back(context, kernels.first);
     gpu::Kernel& rest = herd.restKernels.emplace_back();
     if (kernels.rest) rest = gpu::Kernel(context, *kernels.rest);

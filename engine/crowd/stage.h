@@ -53,7 +53,8 @@ struct StageKernels {
   gpu::KernelInfo first;
   std::optional<gpu::KernelInfo> rest, watching;
 };
-StageKernels kernelsOf(const Stage& stage, const CrowdOptions& options, const Herd& herd);
+StageKernels kernelsOf(const gpu::Context& context, const Stage& stage, const CrowdOptions& options,
+                       const Herd& herd);
 // The pipelines of all stages of the controller.
 void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd);
 

@@ -5,12 +5,16 @@
 
 // `at`: the first bone's record. Stiffness is left to those that pull bones to rest.
 #ifdef ONLY_CONES
+// Of the record's last vec4.
+void setBone(inout Limb limb, int i, vec4 a) {
+  limb.carry[i] = swungFrame(noTurn(), a.xy, 2.0 / (1.0 + dot(a.xy, a.xy)));
+  limb.bone[i] = a.z;
+  limb.cosine[i] = a.w;
+}
+
 #define LOAD_LIMB(limb, rig, at)                                            \
   for (int i_ = 0; i_ < BONES; ++i_) {                                      \
-    vec4 a_ = LOAD4(rig, (at) + RIG_BONE_STRIDE * i_ + 7);                  \
-    limb.carry[i_] = swungFrame(noTurn(), a_.xy, 2.0 / (1.0 + dot(a_.xy, a_.xy))); \
-    limb.bone[i_] = a_.z;                                                   \
-    limb.cosine[i_] = a_.w;                                                 \
+    setBone(limb, i_, LOAD4(rig, (at) + RIG_BONE_STRIDE * i_ + 7));         \
     limb.edge[i_] = LOAD4(rig, (at) + RIG_BONE_STRIDE * i_ + 6).w;          \
   }
 #else

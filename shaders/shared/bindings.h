@@ -83,6 +83,14 @@ BINDING CONSTANT_SLEEP = 25;  // SLEEP_
 BINDING CONSTANT_FEET = 26;   // tips are written, and feet where only ik reads them
 // From here on the numbers with which the rig's records of legs begin, 4 * RIG_LEG_STRIDE a leg.
 BINDING CONSTANT_RIG_LEGS = 100;
+// And those of the bones of rigs with CHOSEN_LEGS legs and CHOSEN_BONES bones at most: a number of one bone,
+// of all legs.
+BINDING CONSTANT_RIG_CHOSEN = 27;  // whether it is one
+BINDING CONSTANT_RIG_BONES = 400;
+BINDING CHOSEN_LEGS = 8;
+BINDING CHOSEN_BONES = 8;
+// KNOWN_PARAMETERS.
+BINDING CONSTANT_PARAMETERS = 700;
 #undef BINDING
 
 // Push constants of every stage.

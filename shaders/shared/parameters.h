@@ -111,6 +111,24 @@ struct Parameters {
   float jerkPath;       // a window with a shorter path does not count
 };
 
+// Those of a rig and its controller, which stay as they are while a crowd lives: X(number, name). Pipelines
+// are specialised by them, for a uniform costs a software device some instructions. The others follow the
+// tick's length, the terrain or an experiment.
+// clang-format off
+#define KNOWN_PARAMETERS(X) \
+  X(0, legLength) X(1, bodyHeight) X(2, bodyRadius) X(3, slowRadius) X(4, acceleration) \
+  X(5, braking) X(6, turnRate) X(7, turnAcceleration) X(8, turnGain) X(9, stretchSlow) \
+  X(10, stretchStop) X(11, errorStop) X(12, followLeast) X(13, maxSlope) X(14, bellyClearance) \
+  X(15, ridge) X(16, leanGain) X(17, leanMost) X(18, leanLevel) X(19, breathHeight) \
+  X(20, halfStrideStill) X(21, halfStrideMax) X(22, dutyStill) X(23, dutyGain) X(24, dutyLeast) \
+  X(25, lagShare) X(26, swingStill) X(27, swingSpeed) X(28, cycleMax) X(29, windowSlack) \
+  X(30, windowOpen) X(31, liftShare) X(32, stretchLift) X(33, strayShare) X(34, errorLift) \
+  X(35, rootShare) X(36, settleTime) X(37, reaimDistance) X(38, reaimLatest) X(39, groundTolerance) \
+  X(40, reachMost) X(41, reachLeast) X(42, reachComfort) X(43, slopeLeast) X(44, slopeWeight) \
+  X(45, reachWeight) X(46, stepHeight) X(47, stepClearance) X(48, stepHeightMax) X(49, routeWidth) \
+  X(50, approachError) X(51, restPull) X(52, pullError) X(53, ikTolerance) X(54, missLeast)
+// clang-format on
+
 #ifdef __cplusplus
 }  // namespace skitter::shared
 #endif

@@ -8,6 +8,7 @@
 #include "lib/unheld_step.glsl"
 #include "lib/fabrik.glsl"
 #include "lib/limb.glsl"
+#include "stages/rig_bones.glsl"
 // What is there to be compared stays out of what ships: some drivers take long over code that is never run.
 #ifdef COMPARED_SOLVERS
 #include "lib/ccd.glsl"
@@ -19,6 +20,7 @@ layout(constant_id = CONSTANT_SOLVER) const int SOLVER = SOLVER_FABRIK;
 layout(constant_id = CONSTANT_POLISH_ITERATIONS) const int POLISH_ITERATIONS = 2;
 layout(constant_id = CONSTANT_PASS) const int PASS = PASS_WHOLE;
 layout(constant_id = CONSTANT_FEET) const bool FEET = false;
+layout(constant_id = CONSTANT_RIG_CHOSEN) const bool RIG_CHOSEN = false;
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -113,9 +115,19 @@ void main() {
   vec4 foot = LOAD4(feet, record);
 #endif
   Limb limb;
-  LOAD_LIMB(limb, rig, rigAt + RIG_LEG_STRIDE);
+  vec4 root;
+  if (RIG_CHOSEN) {
+    LegBits bits = bitsOfLeg(leg);
+    root = chosenRoot(bits);
+    for (int i = 0; i < BONES; ++i) {
+      setBone(limb, i, chosenBone(bits, i));
+      limb.edge[i] = 0.0;  // of what the first dispatch does not do
+    }
+  } else {
+    root = LOAD4(rig, rigAt);
+    LOAD_LIMB(limb, rig, rigAt + RIG_LEG_STRIDE);
+  }
   for (int i = 0; i < BONES; ++i) limb.stiffness[i] = i == 0 ? FIRST_STIFFNESS : 1.0;
-  vec4 root = LOAD4(rig, rigAt);
   float reach = root.w;
   forwardKinematics(limb, pose);
 #ifdef PLANTED

@@ -18,5 +18,13 @@ float thisTick = constants.tick;
 layout(std140, set = 0, binding = BINDING_PARAMETERS) uniform ParametersBlock {
   Parameters uniformParameters;
 };
-Parameters parameters = uniformParameters;
+#define DECLARE_KNOWN(i, name) layout(constant_id = CONSTANT_PARAMETERS + i) const float known_##name = 0.0;
+KNOWN_PARAMETERS(DECLARE_KNOWN)
+Parameters allParameters() {
+  Parameters p = uniformParameters;
+#define TAKE_KNOWN(i, name) p.name = known_##name;
+  KNOWN_PARAMETERS(TAKE_KNOWN)
+  return p;
+}
+Parameters parameters = allParameters();
 #endif
