@@ -52,13 +52,18 @@ TEST_F(Info, ALoadPathCanBeAskedFor) {
 }
 
 TEST_F(Info, AStoreWidthCanBeAskedFor) {
-  const Result result =
-      skitter({"info", "--json", file("info.json")}, {{"SKITTER_LOADS", "texel"}, {"SKITTER_STORES", "64"}});
-  ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_NE(result.out.find("64 bits: asked for"), std::string::npos) << result.out;
-  for (const nlohmann::json& device : json("info.json").at("devices")) {
-    if (device.at("suitable")) {
-      EXPECT_EQ(device.at("stores").at("bits"), 64);
+  for (const int bits : {32, 64}) {
+    const Result result =
+        skitter({"info", "--json", file("info.json")}, {{"SKITTER_STORES", std::to_string(bits)}});
+    ASSERT_EQ(result.code, 0) << result.err;
+    for (const nlohmann::json& device : json("info.json").at("devices")) {
+      // Storage buffers are written by one width alone.
+      if (device.at("suitable") && device.at("loads").at("path") == "texel") {
+        EXPECT_EQ(device.at("stores").at("bits"), bits);
+        EXPECT_EQ(device.at("stores").at("why"), "asked for");
+        EXPECT_NE(result.out.find(std::to_string(bits) + " bits: asked for"), std::string::npos)
+            << result.out;
+      }
     }
   }
 }
