@@ -1,5 +1,7 @@
 #include "cpu_reference/ik.h"
 
+#include <algorithm>
+
 #include "cpu_reference/active_set.h"
 #include "cpu_reference/ccd.h"
 #include "cpu_reference/deadlock.h"
@@ -15,15 +17,16 @@ void iterate(IkSolver solver, const glm::dvec3& target, Posture& posture) {
   jacobian(methodOf(solver), target, posture);
 }
 
-// While the tip is further than `enough` from the target. The best pose seen is kept.
-void approach(const IkPlan& plan, double enough, const glm::dvec3& target, Posture& posture) {
+// While the tip is further than `enough` from the target. The best pose seen is kept; of those whose errors
+// are no more than `tie` apart the last.
+void approach(const IkPlan& plan, double enough, double tie, const glm::dvec3& target, Posture& posture) {
   Pose best = posture.pose();
   double bestError = glm::length(target - posture.tip()), error = bestError;
   for (int iteration = 0; iteration < plan.approachIterations && error > enough; ++iteration) {
     iterate(plan.approach, target, posture);
     error = glm::length(target - posture.tip());
-    if (error < bestError) {
-      bestError = error;
+    if (error < bestError + tie) {
+      bestError = std::min(bestError, error);
       best = posture.pose();
     }
   }
@@ -48,7 +51,7 @@ glm::dvec3 ikTarget(const Limb& limb, const AgentBody& body, const glm::dvec3& f
 }
 
 Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Foot& foot,
-         const Chain& previous, const IkPlan& plan) {
+         const Chain& previous, const IkPlan& plan, double approachTie) {
   Chain chain = previous;
   Posture posture(limb, previous.directions);
   glm::dvec3 target = ikTarget(limb, body, foot.target);
@@ -56,7 +59,7 @@ Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Fo
   if (!finite) target = posture.tip();
   if (finite) {
     breakDeadlock(target, posture);
-    approach(plan, tuning.approachError, target, posture);
+    approach(plan, tuning.approachError, approachTie, target, posture);
     if (plan.polishIterations > 0) polish(tuning, plan.polishIterations - 1, target, posture);
   }
   chain.directions = posture.directions();

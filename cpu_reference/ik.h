@@ -13,9 +13,10 @@ struct IkPlan {
 };
 
 // `previous` gives the warm start. A target that is not finite keeps the pose and counts as
-// reached.
+// reached. Of approach iterations whose errors are no more than `approachTie` reaches apart the last is kept,
+// without it the best.
 Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Foot& foot,
-         const Chain& previous, const IkPlan& plan);
+         const Chain& previous, const IkPlan& plan, double approachTie = 0);
 
 // The target in the limb's own terms: model space with the root at 0, divided by the reach.
 glm::dvec3 ikTarget(const Limb& limb, const AgentBody& body, const glm::dvec3& foot);

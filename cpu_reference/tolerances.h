@@ -26,9 +26,7 @@ inline constexpr double relative = 4 * local;
 inline constexpr double spline = 12 * local;
 // Scores of footholds closer than this are a tie by the project's rule.
 inline constexpr double footholdScore = 1e-4;
-// Reach errors of chains closer than this share of the reach are a tie by the project's rule; of larger
-// errors it is a share: a step is kept that leads away by no more than 1e-4 of the error, and rounding
-// decides at that edge.
+// Reach errors of chains closer than this share of the reach are a tie by the project's rule.
 inline constexpr double ikTie = 1e-4;
 // Ties may be this share of a stage's samples, one is always allowed.
 inline constexpr double tieShare = 1e-3;
