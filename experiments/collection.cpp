@@ -87,8 +87,8 @@ CollectionTime measure(Walk& walk, const gpu::Context& context, const Heightfiel
   stage.run(1);
   const HerdState after = walk.crowd().download(0);
   const CollectionCpu cpu(herd.parameters, ground, herd.rigRecords, herd.legs, herd.bones);
-  std::vector<float> steps = before.step;
-  cpu.run(before, legs, stage.tick(), steps);
+  std::vector<float> steps = before.step, arcs = before.arc;
+  cpu.run(before, legs, stage.tick(), steps, arcs);
   std::vector<double> apart;
   size_t differing = 0;
   for (size_t at = 0; at < size_t{legs} * 4 * shared::STEP_STRIDE; at += 4 * shared::STEP_STRIDE) {
@@ -108,7 +108,8 @@ CollectionTime measure(Walk& walk, const gpu::Context& context, const Heightfiel
   const int times = static_cast<int>(std::max(1u, 2000 / legs));
   for (int i = 0; i < std::max(3, settings.collectionRepetitions / 10); ++i) {
     host.push_back(1e3 / times * bench::timed([&] {
-                                   for (int k = 0; k < times; ++k) cpu.run(before, legs, stage.tick(), steps);
+                                   for (int k = 0; k < times; ++k)
+                                     cpu.run(before, legs, stage.tick(), steps, arcs);
                                  }).wall);
   }
   made.deviceMilliseconds = bench::quantile(alone, 0.5);

@@ -37,12 +37,15 @@ CollectionCpu::Height CollectionCpu::heightAt(float x, float z) const {
   return {h0 + b * (h1 - h0), (gx0 + b * (gx1 - gx0)) * q_.inverseSpacingX, (h1 - h0) * q_.inverseSpacingZ};
 }
 
-void CollectionCpu::run(const HerdState& state, uint32_t legs, float tick, std::vector<float>& steps) const {
+void CollectionCpu::run(const HerdState& state, uint32_t legs, float tick, std::vector<float>& steps,
+                        std::vector<float>& arcs) const {
   for (uint32_t leg = 0; leg < legs; ++leg)
-    collect(state, leg, tick, steps.data() + size_t{4} * STEP_STRIDE * leg);
+    collect(state, leg, tick, steps.data() + size_t{4} * STEP_STRIDE * leg,
+            arcs.data() + size_t{4} * ARC_STRIDE * leg);
 }
 
-void CollectionCpu::collect(const HerdState& state, uint32_t record, float tick, float* step) const {
+void CollectionCpu::collect(const HerdState& state, uint32_t record, float tick, float* step,
+                            float* arc) const {
   const size_t agent = record / static_cast<uint32_t>(legs_), leg = record % static_cast<uint32_t>(legs_);
   const float* body = state.body.data() + 4 * agent * BODY_STRIDE;
   const float* gait = state.gait.data() + 4 * agent * GAIT_STRIDE;
@@ -96,8 +99,9 @@ void CollectionCpu::collect(const HerdState& state, uint32_t record, float tick,
     best = rootWorld + d * (std::clamp(far, least, most) / std::max(far, 1e-6f));
   }
 
+  const float apart = tilesApart(tileOfTicks(step[7]), stepTile(bodyX, bodyZ));
   const glm::vec3 from =
-      glm::vec3((step[3] - bodyX) * TILE_SIZE, 0, (step[7] - bodyZ) * TILE_SIZE) + vectorAt(step) - local;
+      glm::vec3(apartX(apart) * TILE_SIZE, 0, apartZ(apart) * TILE_SIZE) + vectorAt(step) - local;
   constexpr float at[3] = {3.0f / 16, 0.5f, 13.0f / 16}, share[3] = {5.0f / 8, 1, 5.0f / 8};
   float height = q_.stepHeight;
   for (int i = 0; i < 3; ++i) {
@@ -106,10 +110,10 @@ void CollectionCpu::collect(const HerdState& state, uint32_t record, float tick,
     if (gap > -q_.stepClearance) height = std::max(height, (gap * up.y + q_.stepClearance) / share[i]);
   }
   const glm::vec3 lift = up * std::min(height, q_.stepHeightMax);
-  put(step, best + local, bodyX);
-  put(step + 4, from + local, bodyZ);
-  put(step + 8, {tick - 1, lastResort ? -ticks : ticks, lift.x}, lift.y);
-  put(step + 12, lift, lift.z);
+  put(step, best + local, tick - 1);
+  put(step + 4, from + local, packedTicks(lastResort ? -ticks : ticks, stepTile(bodyX, bodyZ)));
+  put(arc, lift, 0);
+  put(arc + 4, lift, 0);
 }
 
 }  // namespace skitter::experiments

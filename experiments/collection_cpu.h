@@ -19,15 +19,16 @@ class CollectionCpu {
                 const std::vector<float>& rigRecords, int legs, int bones)
       : q_(parameters), ground_(ground), rig_(rigRecords), legs_(legs), bones_(bones) {}
 
-  // Into step records: `steps` holds the last steps and takes the new ones.
-  void run(const HerdState& state, uint32_t legs, float tick, std::vector<float>& steps) const;
+  // `steps` and `arcs` hold the records of the last steps and take those of the new ones.
+  void run(const HerdState& state, uint32_t legs, float tick, std::vector<float>& steps,
+           std::vector<float>& arcs) const;
 
  private:
   struct Height {
     float y, gx, gz;
   };
   Height heightAt(float x, float z) const;
-  void collect(const HerdState& state, uint32_t leg, float tick, float* step) const;
+  void collect(const HerdState& state, uint32_t leg, float tick, float* step, float* arc) const;
 
   const shared::Parameters& q_;
   const Heightfield& ground_;

@@ -158,6 +158,7 @@ Sample compare(const Case& c, const reference::FootholdResult& result) {
   const double unit = c.setting.tuning.legLength;
   Sample sample;
   sample.finite("step", records(c.moment.after.step, c.leg, shared::STEP_STRIDE));
+  sample.finite("arc", records(c.moment.after.arc, c.leg, shared::ARC_STRIDE));
   sample.same("tile x", expected.tileX, got.tileX);
   sample.same("tile z", expected.tileZ, got.tileZ);
   sample.same("first tick", expected.firstTick, got.firstTick);
@@ -228,14 +229,18 @@ void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge) {
                l, judge);
       continue;
     }
-    const auto before = records(moment.before.step, leg, shared::STEP_STRIDE);
-    const auto after = records(moment.after.step, leg, shared::STEP_STRIDE);
-    if (std::equal(before.begin(), before.end(), after.begin())) continue;
     Sample sample;
-    for (size_t i = 0; i < before.size(); ++i) {
-      sample.same("step of a leg that neither lifts nor is aimed anew", before[i], after[i]);
-    }
-    judge.add(moment.n, moment.number(), static_cast<int>(l), sample);
+    const auto stays = [&](const char* what, const auto& before, const auto& after) {
+      if (std::equal(before.begin(), before.end(), after.begin())) return;
+      for (size_t i = 0; i < before.size(); ++i) sample.same(what, before[i], after[i]);
+    };
+    stays("step of a leg that neither lifts nor is aimed anew",
+          records(moment.before.step, leg, shared::STEP_STRIDE),
+          records(moment.after.step, leg, shared::STEP_STRIDE));
+    stays("arc of a leg that neither lifts nor is aimed anew",
+          records(moment.before.arc, leg, shared::ARC_STRIDE),
+          records(moment.after.arc, leg, shared::ARC_STRIDE));
+    if (!sample.passes()) judge.add(moment.n, moment.number(), static_cast<int>(l), sample);
   }
 }
 

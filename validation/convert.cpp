@@ -1,5 +1,7 @@
 #include "validation/convert.h"
 
+#include <cmath>
+
 #include "shared/records.h"
 #include "validation/vec4s.h"
 
@@ -21,6 +23,12 @@ std::vector<glm::dvec2> pairsOf(const std::vector<float>& records, size_t base, 
 }
 
 glm::dvec4 components(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
+
+// The packed tile of the body that a leg belongs to.
+float bodyTileOf(const HerdState& state, size_t leg) {
+  const size_t legs = state.step.size() / (4 * shared::STEP_STRIDE) / state.agents;
+  return static_cast<float>(load(state.body, at(leg / legs, shared::BODY_STRIDE)).w);
+}
 
 }  // namespace
 
@@ -244,27 +252,32 @@ void putGait(HerdState& state, size_t agent, const reference::Gait& gait) {
 }
 
 reference::Step stepOf(const HerdState& state, size_t leg) {
-  const size_t base = at(leg, shared::STEP_STRIDE);
+  const size_t base = at(leg, shared::STEP_STRIDE), arc = at(leg, shared::ARC_STRIDE);
   const glm::dvec4 landing = load(state.step, base), liftOff = load(state.step, base + 1);
-  const glm::dvec4 when = load(state.step, base + 2), start = load(state.step, base + 3);
+  const auto packed = static_cast<float>(liftOff.w);
+  const float body = bodyTileOf(state, leg), x = shared::tileX(body), z = shared::tileZ(body);
+  const float apart = shared::tilesApart(shared::tileOfTicks(packed), shared::stepTile(x, z));
   reference::Step step;
+  step.tileX = x + shared::apartX(apart);
+  step.tileZ = z + shared::apartZ(apart);
   step.landing = landing;
-  step.tileX = landing.w;
   step.liftOff = liftOff;
-  step.tileZ = liftOff.w;
-  step.firstTick = when.x;
-  step.duration = when.y;
-  step.lift = {when.z, when.w, start.w};
-  step.startTangent = start;
+  step.firstTick = landing.w;
+  step.duration = std::copysign(shared::ticksOf(packed), packed);
+  if (state.arc.empty()) return step;
+  step.lift = load(state.arc, arc);
+  step.startTangent = load(state.arc, arc + 1);
   return step;
 }
 
 void putStep(HerdState& state, size_t leg, const reference::Step& step) {
-  const size_t base = at(leg, shared::STEP_STRIDE);
-  store(state.step, base, {step.landing, step.tileX});
-  store(state.step, base + 1, {step.liftOff, step.tileZ});
-  store(state.step, base + 2, {step.firstTick, step.duration, step.lift.x, step.lift.y});
-  store(state.step, base + 3, {step.startTangent, step.lift.z});
+  const size_t base = at(leg, shared::STEP_STRIDE), arc = at(leg, shared::ARC_STRIDE);
+  const float tile = shared::stepTile(static_cast<float>(step.tileX), static_cast<float>(step.tileZ));
+  const float packed = shared::packedTicks(static_cast<float>(step.duration), tile);
+  store(state.step, base, {step.landing, step.firstTick});
+  store(state.step, base + 1, {step.liftOff, packed});
+  store(state.arc, arc, {step.lift, 0});
+  store(state.arc, arc + 1, {step.startTangent, 0});
 }
 
 reference::Foot footOf(const HerdState& state, size_t leg) {

@@ -24,6 +24,7 @@ glm::dvec2 desiredOf(const HerdState& state, size_t agent);
 bool asleepOf(const HerdState& state, size_t agent);
 reference::AgentBody bodyOf(const HerdState& state, size_t agent);
 reference::Gait gaitOf(const HerdState& state, size_t agent);
+// Without lift and tangent where the controller has no arcs.
 reference::Step stepOf(const HerdState& state, size_t leg);
 reference::Foot footOf(const HerdState& state, size_t leg);
 reference::Chain chainOf(const HerdState& state, size_t leg, int bones);

@@ -62,7 +62,8 @@ reference::Play playOf(const HerdState& state, size_t agent, const reference::Cl
 reference::Plant plantOf(const HerdState& state, size_t leg) {
   const size_t base = at(leg, shared::STEP_STRIDE);
   const glm::dvec4 lock = load(state.step, base), offset = load(state.step, base + 1);
-  return {lock.w, offset.w, glm::dvec3(lock), glm::dvec3(offset), load(state.step, base + 2).w == 1};
+  const auto tile = static_cast<float>(lock.w);
+  return {shared::tileX(tile), shared::tileZ(tile), glm::dvec3(lock), glm::dvec3(offset), offset.w == 1};
 }
 
 reference::PlantedStart startOf(const HerdState& state, size_t leg, int bones) {

@@ -28,6 +28,7 @@ constexpr Kept gait{&HerdState::gait, "gait of a sleeper", false};
 constexpr Kept play{&HerdState::play, "play of a sleeper", false};
 constexpr Kept pose{&HerdState::pose, "pose of a sleeper", false};
 constexpr Kept step{&HerdState::step, "step of a sleeper", true};
+constexpr Kept arc{&HerdState::arc, "arc of a sleeper", true};
 constexpr Kept foot{&HerdState::foot, "foot of a sleeper", true};
 constexpr Kept chain{&HerdState::chain, "chain of a sleeper", true};
 constexpr Kept tip{&HerdState::tip, "tip of a sleeper", true};
@@ -40,7 +41,7 @@ constexpr Kept spring{&HerdState::spring, "spring of a sleeper", true};
 const Stages& stagesOf(crowd::Controller controller) {
   static const Stages adaptive = {
       {"navigate", checkNavigate},         {"body", checkBody, {kept::body}},
-      {"gait", checkGait, {kept::gait}},   {"foothold", checkFoothold, {kept::step}},
+      {"gait", checkGait, {kept::gait}},   {"foothold", checkFoothold, {kept::step, kept::arc}},
       {"swing", checkSwing, {kept::foot}}, {"ik", checkIk, {kept::chain, kept::tip, kept::miss}},
       {"pose", checkPose, {kept::pose}},   {"measure", checkMeasure},
       {"footfall", checkFootfall}};
@@ -106,6 +107,7 @@ void expectSizes(const Setting& setting, const HerdState& state) {
   expect("body records", state.body, 1, shared::BODY_STRIDE);
   expect("gait records", state.gait, 1, shared::GAIT_STRIDE);
   expect("step records", state.step, legs, shared::STEP_STRIDE);
+  if (crowd::aimsSteps(setting.controller)) expect("arc records", state.arc, legs, shared::ARC_STRIDE);
   if (!state.foot.empty()) expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
   expect("chain records", state.chain, legs, shared::chainStride(setting.bones));
   if (!state.tip.empty()) expect("tip records", state.tip, legs, shared::TIP_STRIDE);
@@ -158,8 +160,8 @@ HerdState sampled(const HerdState& whole, const AgentSample& sample) {
   for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride) ++part.agents;
   for (const auto records :
        {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait, &HerdState::step,
-        &HerdState::foot, &HerdState::chain, &HerdState::tip, &HerdState::miss, &HerdState::pose,
-        &HerdState::play, &HerdState::start, &HerdState::fix, &HerdState::spring}) {
+        &HerdState::arc, &HerdState::foot, &HerdState::chain, &HerdState::tip, &HerdState::miss,
+        &HerdState::pose, &HerdState::play, &HerdState::start, &HerdState::fix, &HerdState::spring}) {
     const std::vector<float>& from = whole.*records;
     const size_t each = from.size() / std::max(1u, whole.agents);
     for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride)

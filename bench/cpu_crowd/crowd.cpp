@@ -33,6 +33,7 @@ void check(const validation::HerdFacts& facts, const HerdState& start, const Opt
   expectSize("gait", start.gait, agents, shared::GAIT_STRIDE);
   if (clips) return expectSize("play", start.play, agents, shared::PLAY_STRIDE);
   expectSize("step", start.step, agents * legs, shared::STEP_STRIDE);
+  expectSize("arc", start.arc, agents * legs, shared::ARC_STRIDE);
   expectSize("chain", start.chain, agents * legs, shared::chainStride(facts.rig.maxBones()));
   expectSize("miss", start.miss, agents, shared::missStride(int(legs)));
 }
@@ -84,6 +85,7 @@ HerdState CpuCrowd::state() const {
   make(state.body, agents, shared::BODY_STRIDE);
   make(state.gait, agents, shared::GAIT_STRIDE);
   make(state.step, agents * legs, shared::STEP_STRIDE);
+  make(state.arc, agents * legs, shared::ARC_STRIDE);
   make(state.foot, agents * legs, shared::FOOT_STRIDE);
   make(state.chain, agents * legs, shared::chainStride(int(bones)));
   make(state.tip, agents * legs, shared::TIP_STRIDE);

@@ -59,10 +59,16 @@ template <int N>
 Leg<float, N> readLeg(const HerdState& state, size_t agent, size_t l, size_t legs, int bones) {
   const size_t leg = agent * legs + l;
   const float* s = recordAt(state.step, leg, shared::STEP_STRIDE);
+  const float* arc = recordAt(state.arc, leg, shared::ARC_STRIDE);
+  const float tile = recordAt(state.body, agent, shared::BODY_STRIDE)[3];
+  const float x = shared::tileX(tile), z = shared::tileZ(tile);
+  const float apart = shared::tilesApart(shared::tileOfTicks(s[7]), shared::stepTile(x, z));
   const float* directions = recordAt(state.chain, leg, shared::chainStride(bones));
   Leg<float, N> to{};
-  to.step = {{s[0], s[1], s[2]},    s[3], {s[4], s[5], s[6]},    s[7],
-             {s[10], s[11], s[15]}, s[8], {s[12], s[13], s[14]}, s[9]};
+  to.step = {{s[0], s[1], s[2]},       x + shared::apartX(apart),
+             {s[4], s[5], s[6]},       z + shared::apartZ(apart),
+             {arc[0], arc[1], arc[2]}, s[3],
+             {arc[4], arc[5], arc[6]}, std::copysign(shared::ticksOf(s[7]), s[7])};
   for (int b = 0; b < bones; ++b) {
     to.chain.x[b] = directions[2 * b];
     to.chain.y[b] = directions[2 * b + 1];
@@ -79,11 +85,14 @@ void writeLeg(const Leg<float, N>& from, const LegModel& model, float missLeast,
               size_t legs, int bones, HerdState& state) {
   const size_t leg = agent * legs + l;
   const Step<float>& s = from.step;
-  const float step[] = {s.landing.x,      s.landing.y,      s.landing.z,      s.tileX,
-                        s.liftOff.x,      s.liftOff.y,      s.liftOff.z,      s.tileZ,
-                        s.firstTick,      s.ticks,          s.lift.x,         s.lift.y,
-                        s.startTangent.x, s.startTangent.y, s.startTangent.z, s.lift.z};
+  const float step[] = {s.landing.x, s.landing.y,
+                        s.landing.z, s.firstTick,
+                        s.liftOff.x, s.liftOff.y,
+                        s.liftOff.z, shared::packedTicks(s.ticks, shared::stepTile(s.tileX, s.tileZ))};
   std::copy(std::begin(step), std::end(step), recordAt(state.step, leg, shared::STEP_STRIDE));
+  const float arc[] = {s.lift.x,         s.lift.y,         s.lift.z,         0,
+                       s.startTangent.x, s.startTangent.y, s.startTangent.z, 0};
+  std::copy(std::begin(arc), std::end(arc), recordAt(state.arc, leg, shared::ARC_STRIDE));
   const Foot<float>& f = from.foot;
   const float foot[] = {f.target.x, f.target.y, f.target.z, f.progress};
   std::copy(std::begin(foot), std::end(foot), recordAt(state.foot, leg, shared::FOOT_STRIDE));

@@ -12,6 +12,8 @@ constexpr bool playsClips(Controller c) { return c == Controller::clip || c == C
 // Played, or sampled for key poses.
 constexpr bool needsClips(Controller c) { return playsClips(c) || c == Controller::pose; }
 
+// Whether feet go by steps that foothold aims.
+constexpr bool aimsSteps(Controller c) { return c == Controller::adaptive; }
 // Whether ik tells which planted feet miss their targets.
 constexpr bool tellsMisses(Controller c) { return c == Controller::adaptive || c == Controller::loop; }
 

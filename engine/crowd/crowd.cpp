@@ -1,5 +1,7 @@
 #include "skitter/crowd.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -35,6 +37,8 @@ using Impl = Crowd::Impl;
 constexpr int kSettleIterations = 6;
 // World coordinates beyond it are too coarse in float32 for a foot to be placed.
 constexpr float kFarthest = 4096;
+// Legs, so that nobody goes half of STEP_TILES tiles while a foot stands.
+constexpr float kLongest = 100;
 // Above it an agent's index is no exact float, as records have it.
 constexpr uint64_t kMostAgents = 1 << 24;
 
@@ -252,6 +256,13 @@ void setTick(Impl& crowd, float dt) {
   if (crowd.dt != 0)
     throw inputError("dt changed from " + std::to_string(crowd.dt) + " to " + std::to_string(dt) +
                      ": steps are timed in ticks, so a crowd keeps its first dt");
+  for (const crowd::Herd& herd : crowd.herds) {
+    const float ticks = herd.parameters.swingStill / dt;
+    if (!(ticks < shared::MOST_STEP_TICKS))
+      throw inputError(
+          fmt::format("dt {:.3g} s: a step of {} would last {:.0f} ticks, expected fewer than {:.0f}", dt,
+                      herd.rig.name, ticks, shared::MOST_STEP_TICKS));
+  }
   crowd.dt = dt;
   for (crowd::Herd& herd : crowd.herds) setParameters(crowd, dt, herd);
 }
@@ -298,6 +309,9 @@ Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std
     if (herd.legs > shared::MOST_LEGS)
       throw inputError(herd.rig.name + ": " + std::to_string(herd.legs) + " legs, expected at most " +
                        std::to_string(shared::MOST_LEGS));
+    if (crowd::aimsSteps(herd.controller) && herd.rig.legLength > kLongest)
+      throw inputError(fmt::format("{}: legs of {:.4g} m, expected at most {:.4g} m: scale the rig down",
+                                   herd.rig.name, herd.rig.legLength, kLongest));
     herd.ik = crowd::ikPlanFor(from.solver);
     if (herd.controller == crowd::Controller::planted && from.solver != "active-set")
       throw inputError("solver '" + from.solver + "': controller planted has active-set alone");

@@ -17,6 +17,8 @@ Stage footholdStage() {
            {BINDING_GAIT, load4},
            {BINDING_STEP, load4},
            {BINDING_STEP_OUT, store},
+           {BINDING_ARC, load4},
+           {BINDING_ARC_OUT, store},
            {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::listed};

@@ -27,6 +27,7 @@ struct Page {
   uint32_t firstAgent = 0;
   uint32_t agents = 0;
   gpu::Buffer goal, steer, body, gait, step, foot, chain;
+  gpu::Buffer arc;               // where feet are swung by steps
   gpu::Buffer miss;              // where ik tells of it
   gpu::Buffer tip;               // of one agent alone unless somebody looks at feet
   gpu::Buffer pose;              // none unless poses are wanted

@@ -42,6 +42,7 @@ Stage swingAndIkStage() {
            {BINDING_RIG, load4},
            {BINDING_BODY, load4},
            {BINDING_STEP, load4},
+           {BINDING_ARC, load4},
            {BINDING_FOOT_OUT, store},
            {BINDING_CHAIN, load4},
            {BINDING_CHAIN_OUT, store},

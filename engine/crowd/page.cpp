@@ -50,6 +50,9 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& p
     case BINDING_STEP:
     case BINDING_STEP_OUT:
       return {binding, &page.step};
+    case BINDING_ARC:
+    case BINDING_ARC_OUT:
+      return {binding, &page.arc};
     case BINDING_FOOT:
     case BINDING_FOOT_OUT:
       return {binding, &page.foot};
@@ -159,6 +162,7 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) 
   };
   ofFeet("foot", &Page::foot, FOOT_STRIDE, &SpawnRecords::foot, hasFootRecords(herd, options));
   ofFeet("tip", &Page::tip, TIP_STRIDE, &SpawnRecords::tip, keepsFeet(options));
+  if (aimsSteps(herd.controller)) buffers.push_back(ofLegs("arc", &Page::arc, ARC_STRIDE));
   if (tellsMisses(herd.controller))
     buffers.push_back({"miss", &Page::miss, vec4s(1, missStride(rig.legCount()))});
   if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE), &SpawnRecords::play});

@@ -85,6 +85,7 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
     append(page.body, state.body);
     append(page.gait, state.gait);
     append(page.step, state.step, herd.legs);
+    append(page.arc, state.arc, herd.legs);
     if (crowd::hasFootRecords(herd, impl_->options)) append(page.foot, state.foot, herd.legs);
     append(page.chain, state.chain, herd.legs);
     append(page.miss, state.miss);
@@ -164,6 +165,7 @@ uint64_t Crowd::stateHash() const {
                                                  {&Page::body},
                                                  {&Page::gait},
                                                  {&Page::step, herd.legs},
+                                                 {&Page::arc, herd.legs},
                                                  {&Page::chain, herd.legs},
                                                  {&Page::miss},
                                                  {&Page::play},

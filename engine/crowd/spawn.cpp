@@ -180,12 +180,13 @@ void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRe
       const Leg& leg = rig_.legs[l];
       const glm::vec3 home = q * leg.home;
       const glm::vec3 landing(localX + home.x, terrain_.at(p.x + home.x, p.z + home.z), localZ + home.z);
-      step.push(landing.x, landing.y, landing.z, tileX);
-      // Where clips are played it is no lift-off but an offset: docs/stages.md, planted.
-      const glm::vec3 liftOff = clips_.clips > 0 ? glm::vec3(0) : landing;
-      step.push(liftOff.x, liftOff.y, liftOff.z, tileZ);
-      step.push(-1000, 1, 0, 0);
-      step.push(0, 0, 0, 0);
+      if (clips_.clips > 0) {
+        step.push(landing.x, landing.y, landing.z, packedTile(tileX, tileZ));
+        step.push(0, 0, 0, 0);
+      } else {
+        step.push(landing.x, landing.y, landing.z, -1000);
+        step.push(landing.x, landing.y, landing.z, packedTicks(1, stepTile(tileX, tileZ)));
+      }
       if (!records.foot.empty()) foot.push(home.x, landing.y - height, home.z, 1);
       pushDirections(l, chain);
       if (!records.tip.empty()) tip.push(home.x, landing.y - height, home.z, 0);

@@ -21,6 +21,7 @@ Stage swingStage() {
           {{BINDING_PARAMETERS, uniform},
            {BINDING_BODY, load4},
            {BINDING_STEP, load4},
+           {BINDING_ARC, load4},
            {BINDING_FOOT_OUT, store}},
           Stage::Over::legs};
 }

@@ -1,10 +1,17 @@
 #ifndef HERMITE_GLSL
 #define HERMITE_GLSL
+#include "lib/records.glsl"
 
 // The swing's spline: two cubic Hermite segments through p0, (p0 + p1)/2 + lift, p1 (docs/stages.md, swing).
 struct Swing {
   vec3 p0, p1, lift, m0;
 };
+
+// Of a step, relative to a body's position.
+Swing swingOf(Step s, Arc arc, vec3 bodyLocal, vec2 bodyTile) {
+  return Swing(fromStep(s.liftOff, s, bodyLocal, bodyTile), fromStep(s.landing, s, bodyLocal, bodyTile), arc.lift,
+               arc.startTangent);
+}
 
 // Time, eased: a foot leaves the ground from rest and touches it at rest. A step aimed anew is under way at its
 // start; its start tangent is not the lift.

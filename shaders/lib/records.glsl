@@ -23,29 +23,37 @@ Body unpackBody(vec4 a, vec4 b, vec4 c, vec4 d) {
              LOAD4(bodies, (agent) * BODY_STRIDE + 2), LOAD4(bodies, (agent) * BODY_STRIDE + 3))
 
 struct Step {
-  vec3 landing, liftOff;  // tile-local in x and z, world in y
-  vec2 tile;
-  vec3 lift, startTangent;
+  vec3 landing, liftOff;  // local to the tile in x and z, world in y
+  float tile;             // stepTile
   float firstTick, ticks;
   bool lastResort;
 };
 
-Step unpackStep(vec4 a, vec4 b, vec4 c, vec4 d) {
-  return Step(a.xyz, b.xyz, vec2(a.w, b.w), vec3(c.zw, d.w), d.xyz, c.x, abs(c.y), c.y < 0.0);
+Step unpackStep(vec4 a, vec4 b) {
+  return Step(a.xyz, b.xyz, tileOfTicks(b.w), a.w, ticksOf(b.w), b.w < 0.0);
 }
 
 // Of the buffer `steps`.
-#define LOAD_STEP(leg)                                                                   \
-  unpackStep(LOAD4(steps, (leg) * STEP_STRIDE), LOAD4(steps, (leg) * STEP_STRIDE + 1), \
-             LOAD4(steps, (leg) * STEP_STRIDE + 2), LOAD4(steps, (leg) * STEP_STRIDE + 3))
+#define LOAD_STEP(leg) unpackStep(LOAD4(steps, (leg) * STEP_STRIDE), LOAD4(steps, (leg) * STEP_STRIDE + 1))
 
 float stepProgress(Step s, float tick) { return clamp((tick - s.firstTick) / s.ticks, 0.0, 1.0); }
 
-// A point of a step relative to a body's position, along world axes.
-vec3 fromTile(vec3 point, vec2 tile, vec3 bodyLocal, vec2 bodyTile) {
-  vec2 offset = (tile - bodyTile) * TILE_SIZE;
+// A point relative to a body's position, along world axes; its tile is so many off from the body's.
+vec3 fromTile(vec3 point, vec2 apart, vec3 bodyLocal) {
+  vec2 offset = apart * TILE_SIZE;
   return point + vec3(offset.x - bodyLocal.x, -bodyLocal.y, offset.y - bodyLocal.z);
 }
+vec3 fromStep(vec3 point, Step s, vec3 bodyLocal, vec2 bodyTile) {
+  float apart = tilesApart(s.tile, stepTile(bodyTile.x, bodyTile.y));
+  return fromTile(point, vec2(apartX(apart), apartZ(apart)), bodyLocal);
+}
+
+struct Arc {
+  vec3 lift, startTangent;
+};
+
+// Of the buffer `arcs`.
+#define LOAD_ARC(leg) Arc(LOAD4(arcs, (leg) * ARC_STRIDE).xyz, LOAD4(arcs, (leg) * ARC_STRIDE + 1).xyz)
 
 // A leg's miss in the tick before, of a pair of legs' record.
 float missTold(vec4 pairs, int leg, float tick) {

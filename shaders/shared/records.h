@@ -9,11 +9,14 @@
 
 namespace skitter::shared {
 using uint = unsigned;
+using std::abs, std::floor;
 #define SKITTER_CONST inline constexpr
 #define SKITTER_FUNCTION inline constexpr
+#define SKITTER_INLINE inline
 #else
 #define SKITTER_CONST const
 #define SKITTER_FUNCTION
+#define SKITTER_INLINE
 #endif
 
 // Legs that a creature may have.
@@ -44,13 +47,8 @@ SKITTER_CONST float TILE_SIZE = 16.0;
 // TILES / 2, which is 32 km, eight times as far as terrains go.
 SKITTER_CONST float TILES = 4096.0;
 SKITTER_FUNCTION float packedTile(float x, float z) { return TILES * x + z; }
-#ifdef __cplusplus
-inline float tileX(float tile) { return std::floor(tile / TILES + 0.5f); }
-inline float tileZ(float tile) { return tile - TILES * tileX(tile); }
-#else
-float tileX(float tile) { return floor(tile / TILES + 0.5); }
-float tileZ(float tile) { return tile - TILES * tileX(tile); }
-#endif
+SKITTER_INLINE float tileX(float tile) { return floor(tile / TILES + 0.5f); }
+SKITTER_INLINE float tileZ(float tile) { return tile - TILES * tileX(tile); }
 
 // goal, per agent, written by navigate.
 //   [0] target x, target z, other end x, other end z    world metres
@@ -86,11 +84,38 @@ SKITTER_CONST int BODY_STRIDE = 4;
 SKITTER_CONST int GAIT_STRIDE = 2;
 
 // step, per leg, written by foothold when a step begins or is aimed anew.
-//   [0] landing x, y, z, tile x      positions are tile-local in x and z, world in y
-//   [1] lift-off x, y, z, tile z
-//   [2] first tick, duration in ticks (negative: the landing is a last resort), lift vector b x, y
-//   [3] start tangent m0 x, y, z, lift vector b z: of the swing alone
-SKITTER_CONST int STEP_STRIDE = 4;
+//   [0] landing x, y, z, first tick            positions are local to the step's tile in x and z, world in y
+//   [1] lift-off x, y, z, duration and tile    (packedTicks)
+SKITTER_CONST int STEP_STRIDE = 2;
+// A step's tile is the body's when it begins, so it is known modulo STEP_TILES in x and z: no body goes half
+// as many tiles, 256 m, while a foot stands. With the duration in ticks (negative: the landing is a last
+// resort) it is one number, an exact float below MOST_STEP_TICKS.
+SKITTER_CONST float STEP_TILES = 32.0;
+SKITTER_CONST float STEP_TICK = 1024.0;  // STEP_TILES^2
+SKITTER_CONST float MOST_STEP_TICKS = 16384.0;
+SKITTER_INLINE float stepTile(float x, float z) {
+  float tile = STEP_TILES * x + z;
+  return tile - STEP_TICK * floor(tile / STEP_TICK);
+}
+SKITTER_INLINE float packedTicks(float ticks, float tile) {
+  float packed = STEP_TICK * abs(ticks) + tile;
+  return ticks < 0.0f ? -packed : packed;
+}
+SKITTER_INLINE float ticksOf(float packed) {  // without their sign
+  return floor(abs(packed) / STEP_TICK);
+}
+SKITTER_INLINE float tileOfTicks(float packed) { return abs(packed) - STEP_TICK * ticksOf(packed); }
+// From a body's tile to a step's, as one number and in x and z.
+SKITTER_INLINE float tilesApart(float step, float body) {
+  return step - body - STEP_TICK * floor((step - body) / STEP_TICK + 0.5f);
+}
+SKITTER_INLINE float apartX(float apart) { return floor(apart / STEP_TILES + 0.5f); }
+SKITTER_INLINE float apartZ(float apart) { return apart - STEP_TILES * apartX(apart); }
+
+// arc, per leg, written by foothold with the step: the way of its foot through the air.
+//   [0] lift vector b x, y, z, unused
+//   [1] start tangent m0 x, y, z, unused
+SKITTER_CONST int ARC_STRIDE = 2;
 
 // foot, per leg, written by swing.
 //   [0] foot target relative to the body's position, world axes, x, y, z; progress u in [0,1], 1 = stance
@@ -133,7 +158,7 @@ SKITTER_CONST int FIX_STRIDE = 2;
 // spring, per leg, of controller pose, written by swing, which writes its chain too.
 //   as a chain record, rates of the directions X, Y (1/s)
 // step, of planted, written by swing.
-//   [0] lock x, y, z, tile x   [1] offset o x, y, z, tile z   [2] 0, 0, 0, 1 if locked   [3] unused
+//   [0] lock x, y, z, tile   [1] offset o x, y, z, 1 if locked
 // pose, per agent, of clip and planted, written by pose: an entry a joint of
 //   [0..2] rows of the matrix from the clips' skin to world axes about the body's position
 SKITTER_CONST int MATRIX_STRIDE = 3;

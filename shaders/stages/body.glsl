@@ -23,8 +23,8 @@ Body makeBody(int agent, Body body, vec2 velocity) {
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
     Step s = LOAD_STEP(legRecord(agent, leg, LEGS));
     float u = stepProgress(s, thisTick - 1.0);
-    vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
-    vec3 liftOff = fromTile(s.liftOff, s.tile, body.local, body.tile);
+    vec3 landing = fromStep(s.landing, s, body.local, body.tile);
+    vec3 liftOff = fromStep(s.liftOff, s, body.local, body.tile);
     vec4 root = RIG_LEG(leg, 0);
     addHold(hold, u >= 1.0, before * root.xyz, landing, RIG_LEG(leg, 2).z, LOAD_MISS(agent, leg), velocity);
     addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));

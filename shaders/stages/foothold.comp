@@ -12,7 +12,9 @@ LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_GAIT, gaits);
 LOAD4_BUFFER(BINDING_STEP, steps);
+LOAD4_BUFFER(BINDING_ARC, arcs);
 STORE4_BUFFER(BINDING_STEP_OUT, stepsOut);
+STORE4_BUFFER(BINDING_ARC_OUT, arcsOut);
 layout(set = 0, binding = BINDING_LIST, std430) readonly buffer ListBlock { uint list[]; };
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
 
@@ -23,9 +25,10 @@ void main() {
   bool again = (list[listed] & 1u) != 0u;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
 
-  int stepAt = record * STEP_STRIDE, rigAt = leg * rigStride(BONES);
+  int rigAt = leg * rigStride(BONES);
   Body body = LOAD_BODY(agent);
   Step old = LOAD_STEP(record);
+  Arc oldArc = LOAD_ARC(record);
   vec4 root = LOAD4(rig, rigAt), home = LOAD4(rig, rigAt + 1);
   float reach = root.w;
   float freshTicks = LOAD4(gaits, agent * GAIT_STRIDE).w, cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;
@@ -91,8 +94,7 @@ void main() {
   }
 
   // Relative to the body's position, as the old step too; stored relative to its tile.
-  Swing flight = Swing(fromTile(old.liftOff, old.tile, body.local, body.tile),
-                       fromTile(old.landing, old.tile, body.local, body.tile), old.lift, old.startTangent);
+  Swing flight = swingOf(old, oldArc, body.local, body.tile);
   float u = stepProgress(old, thisTick - 1.0);
   float rate = startRate(flight), way = easedTime(u, rate);
   vec3 p0 = again ? swingPoint(flight, way) : flight.p1;
@@ -122,6 +124,7 @@ void main() {
   }
   m0 = again ? m0 : lift;
 
-  STORE4_TWO(stepsOut, stepAt, vec4(p1 + body.local, body.tile.x), vec4(p0 + body.local, body.tile.y));
-  STORE4_TWO(stepsOut, stepAt + 2, vec4(thisTick - 1.0, lastResort ? -ticks : ticks, lift.xy), vec4(m0, lift.z));
+  STORE4_TWO(stepsOut, record * STEP_STRIDE, vec4(p1 + body.local, thisTick - 1.0),
+             vec4(p0 + body.local, packedTicks(lastResort ? -ticks : ticks, stepTile(body.tile.x, body.tile.y))));
+  STORE4_TWO(arcsOut, record * ARC_STRIDE, vec4(lift, 0.0), vec4(m0, 0.0));
 }

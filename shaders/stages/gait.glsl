@@ -34,11 +34,12 @@ void makeGait(int agent, Body body) {
         strayShare2 = squared(parameters.strayShare), liftShare2 = squared(liftShare),
         reaimDistance2 = squared(parameters.reaimDistance);
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
-    Step s = LOAD_STEP(legRecord(agent, leg, LEGS));
+    int record = legRecord(agent, leg, LEGS);
+    Step s = LOAD_STEP(record);
     vec4 root = RIG_LEG(leg, 0), home = RIG_LEG(leg, 1), order = RIG_LEG(leg, 2);
     float flown = thisTick - 1.0 - s.firstTick;
     float u = clamp(flown / s.ticks, 0.0, 1.0);
-    vec3 landing = fromTile(s.landing, s.tile, body.local, body.tile);
+    vec3 landing = fromStep(s.landing, s, body.local, body.tile);
     vec3 foot = landing * orientation;
     bool moved = WATCH != 0 && !s.lastResort && abs(above(landing, body)) > parameters.groundTolerance;
     if (u >= 1.0) {
@@ -65,7 +66,7 @@ void makeGait(int agent, Body body) {
       bool strayed = dot(apart, apart) > reaimDistance2;
       bool anew = strayed && u < parameters.reaimLatest;
       if (WATCH != 0) {
-        Swing flight = Swing(fromTile(s.liftOff, s.tile, body.local, body.tile), landing, s.lift, s.startTangent);
+        Swing flight = swingOf(s, LOAD_ARC(record), body.local, body.tile);
         float way = easedTime(u, startRate(flight));
         for (int i = 0; i < AHEAD; ++i) {
           vec3 ahead = swingPoint(flight, mix(way, 1.0, float(i) / float(AHEAD)));

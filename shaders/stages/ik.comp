@@ -26,6 +26,7 @@ LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 #ifdef SWINGS
 LOAD4_BUFFER(BINDING_STEP, steps);
+LOAD4_BUFFER(BINDING_ARC, arcs);
 STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 #include "stages/swing.glsl"
 #else

@@ -4,6 +4,7 @@
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_STEP, steps);
+LOAD4_BUFFER(BINDING_ARC, arcs);
 STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 #include "stages/swing.glsl"
 

@@ -9,8 +9,7 @@ vec4 makeFoot(int agent, int record) {
   vec3 local = body.xyz;
   vec2 tile = tileOf(body.w);
   float u = stepProgress(s, thisTick);
-  Swing flight = Swing(fromTile(s.liftOff, s.tile, local, tile), fromTile(s.landing, s.tile, local, tile), s.lift,
-                       s.startTangent);
+  Swing flight = swingOf(s, LOAD_ARC(record), local, tile);
   return vec4(u >= 1.0 ? flight.p1 : swingPoint(flight, easedTime(u, startRate(flight))), u);
 }
 

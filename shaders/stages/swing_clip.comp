@@ -62,8 +62,8 @@ void main() {
 #ifdef PLANTED
   int stepAt = record * STEP_STRIDE;
   vec4 s0 = LOAD4(steps, stepAt), s1 = LOAD4(steps, stepAt + 1);
-  bool locked = LOAD4(steps, stepAt + 2).w > 0.0;
-  vec3 lock = fromTile(s0.xyz, vec2(s0.w, s1.w), body.local, body.tile), offset = s1.xyz;
+  bool locked = s1.w > 0.0;
+  vec3 lock = fromTile(s0.xyz, tileOf(s0.w) - body.tile, body.local), offset = s1.xyz;
   float above = max(foot.y, 0.0);
   vec3 wanted = vec3(target.x, drop(body, target.xz) + above, target.z);
   offset = stands && locked ? lock - wanted : offset;
@@ -77,10 +77,8 @@ void main() {
   u = locked ? 1.0 : 0.5;
   // A lock stays as it was written, in the tile of that tick; rounded anew in every tick it would creep.
   bool kept = locked && !locks;
-  STORE4(stepsOut, stepAt, kept ? s0 : vec4(lock + body.local, body.tile.x));
-  STORE4(stepsOut, stepAt + 1, vec4(offset, kept ? s1.w : body.tile.y));
-  STORE4(stepsOut, stepAt + 2, vec4(0.0, 0.0, 0.0, locked ? 1.0 : 0.0));
-  STORE4(stepsOut, stepAt + 3, vec4(0.0));
+  STORE4_TWO(stepsOut, stepAt, kept ? s0 : vec4(lock + body.local, packedTile(body.tile.x, body.tile.y)),
+             vec4(offset, locked ? 1.0 : 0.0));
   int at = record * startStride(BONES);
   STORE_SWINGS(chainsOut, at, swings, startStride(BONES) % 2 == 0);
   STORE4(chainsOut, at + chainStride(BONES), vec4(joint[0], 0.0));

@@ -74,7 +74,7 @@ TEST_F(ContestTest, EverybodyIsCheckedAndTimed) {
   }
 }
 
-// Bytes of swing by shaders/shared/records.h: the body, eight steps in, eight feet out.
+// Bytes of swing by shaders/shared/records.h: the body, eight steps and arcs in, eight feet out.
 TEST_F(ContestTest, BytesAreThoseOfTheRecords) {
   CrowdOptions options = unmeasured();
   options.fuse = false;

@@ -73,8 +73,9 @@ TEST_P(ControllersTest, AnyNumberOfAgentsInAnyPages) {
     simulate(device(), crowd, 40);
     const HerdState state = crowd.download(0);
     EXPECT_EQ(state.agents, agents);
-    for (const auto* records : {&state.body, &state.step, &state.foot, &state.chain, &state.tip, &state.miss,
-                                &state.pose, &state.play, &state.start, &state.fix, &state.spring})
+    for (const auto* records :
+         {&state.body, &state.step, &state.arc, &state.foot, &state.chain, &state.tip, &state.miss,
+          &state.pose, &state.play, &state.start, &state.fix, &state.spring})
       for (const float value : *records) {
         EXPECT_TRUE(std::isfinite(value));
         if (!std::isfinite(value)) return uint64_t{0};

@@ -18,7 +18,8 @@ namespace {
 using EdgeTest = GpuLoadTest;
 
 void expectFinite(const HerdState& state) {
-  for (const auto* records : {&state.body, &state.gait, &state.step, &state.foot, &state.chain, &state.pose})
+  for (const auto* records :
+       {&state.body, &state.gait, &state.step, &state.arc, &state.foot, &state.chain, &state.pose})
     for (const float value : *records) ASSERT_TRUE(std::isfinite(value));
 }
 
@@ -89,6 +90,16 @@ TEST_F(InputTest, RefusesWhatItDoesNotKnow) {
   EXPECT_THROW(simulate(device(), crowd, 1, std::numeric_limits<float>::quiet_NaN()), Error);
 }
 
+TEST_F(InputTest, RefusesStepsThatTheirRecordsDoNotHold) {
+  Crowd crowd(device(), flatGround(), sceneOf(1));
+  EXPECT_THROW(simulate(device(), crowd, 1, 2e-5f), Error);  // 17,500 ticks a step
+  simulate(device(), crowd, 1, 2.5e-5f);
+  Rig giant = crowd.rig(0);
+  giant.legLength = 101;
+  EXPECT_THROW(Crowd(device(), flatGround(), sceneOf(1), std::vector<Rig>{giant}), Error);
+  EXPECT_NO_THROW(Crowd(device(), flatGround(), sceneOf(1, 1, 1, "loop"), std::vector<Rig>{giant}));
+}
+
 TEST_F(InputTest, RefusesMoreAgentsThanThereIsMemoryFor) {
   Scene scene = sceneOf(2'000'000'000);
   try {
@@ -134,10 +145,10 @@ TEST_F(InputTest, SpawningIsTheSameOnAnyNumberOfThreads) {
     const auto part = [&](size_t at, size_t each) {
       return std::span(floats).subspan(agents * at + first * each, count * each);
     };
-    return crowd::SpawnRecords{part(0, 8),    part(8, 16),   part(24, 8),   part(32, 128),
-                               part(160, 32), part(192, 64), part(256, 32), {}};
+    return crowd::SpawnRecords{part(0, 8),   part(8, 16),   part(24, 8),   part(32, 64),
+                               part(96, 32), part(128, 64), part(192, 32), {}};
   };
-  std::vector<float> whole(agents * 288), runs(agents * 288);
+  std::vector<float> whole(agents * 224), runs(agents * 224);
   spawner.write(0, agents, records(whole, 0, agents));
   for (uint32_t first = 0; first < agents; first += run) spawner.write(first, run, records(runs, first, run));
   EXPECT_EQ(whole, runs);
@@ -165,7 +176,7 @@ TEST_F(InputTest, ASampleIsWhatTheWholeHas) {
     EXPECT_EQ(part.agents, sample.first < 23 ? (23 - sample.first + sample.stride - 1) / sample.stride : 0);
     for (const auto records :
          {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait, &HerdState::step,
-          &HerdState::foot, &HerdState::chain, &HerdState::pose, &HerdState::metric})
+          &HerdState::arc, &HerdState::foot, &HerdState::chain, &HerdState::pose, &HerdState::metric})
       EXPECT_EQ(part.*records, sampled(whole.*records, whole, sample));
     EXPECT_EQ(part.watch, whole.watch);
   }

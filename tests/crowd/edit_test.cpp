@@ -5,6 +5,7 @@
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
 #include "skitter/error.h"
+#include "validation/convert.h"
 #include "validation/herd_facts.h"
 
 namespace skitter::test {
@@ -38,10 +39,10 @@ void raise(Crowd& crowd, const Rectangle& r, float by) {
 
 // World position of a step's landing.
 glm::dvec3 landingOf(const HerdState& state, size_t leg) {
-  const float* s = state.step.data() + leg * shared::STEP_STRIDE * 4;
-  return {double{s[3]} * shared::TILE_SIZE + s[0], s[1], double{s[7]} * shared::TILE_SIZE + s[2]};
+  const reference::Step s = validation::stepOf(state, leg);
+  return {s.tileX * shared::TILE_SIZE + s.landing.x, s.landing.y, s.tileZ * shared::TILE_SIZE + s.landing.z};
 }
-float durationOf(const HerdState& state, size_t leg) { return state.step[leg * 16 + 9]; }
+double durationOf(const HerdState& state, size_t leg) { return validation::stepOf(state, leg).duration; }
 
 // Height of a planted foot's landing above the ground as it now is.
 double aboveGround(const Crowd& crowd, const HerdState& state, size_t leg) {

@@ -59,7 +59,8 @@ void scramble(const gpu::Context& context, Crowd& crowd, uint64_t seed, float fa
   crowd::Herd& herd = crowd.impl().herds[0];
   const crowd::Page& page = herd.pages.at(0);
   auto body = gpu::download<float>(context, page.body), gait = gpu::download<float>(context, page.gait);
-  auto step = gpu::download<float>(context, page.step), chain = gpu::download<float>(context, page.chain);
+  auto step = gpu::download<float>(context, page.step), arc = gpu::download<float>(context, page.arc);
+  auto chain = gpu::download<float>(context, page.chain);
   const auto legs = static_cast<size_t>(herd.legs), bones = static_cast<size_t>(herd.bones);
   const auto chainFloats = static_cast<size_t>(shared::chainStride(herd.bones)) * 4;
   for (size_t agent = 0; agent < page.agents; ++agent) {
@@ -75,17 +76,19 @@ void scramble(const gpu::Context& context, Crowd& crowd, uint64_t seed, float fa
     for (size_t l = 0; l < legs; ++l) {
       const auto record =
           static_cast<size_t>(shared::legRecord(static_cast<int>(agent), static_cast<int>(l), herd.legs));
-      float* s = &step[record * 16];
+      float *s = &step[record * 8], *a = &arc[record * 8];
       const Leg& leg = herd.rig.legs[l];
       const glm::vec3 root = q * leg.root();
       const glm::vec3 way = glm::normalize(glm::vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) + 1e-3f);
       const float distances[] = {0, 1e-4f, 0.2f, uniform(0, 1), 1, uniform(1, farthest)};
       const glm::vec3 foot = root + way * (leg.reach * distances[random() % 6]);
-      s[0] = b[0] + foot.x, s[1] = b[1] + foot.y, s[2] = b[2] + foot.z, s[3] = shared::tileX(b[3]);
-      s[4] = s[0] + uniform(-0.5f, 0.5f), s[5] = s[1], s[6] = s[2] + uniform(-0.5f, 0.5f),
-      s[7] = shared::tileZ(b[3]);
-      s[10] = s[12] = s[14] = s[15] = 0, s[11] = s[13] = uniform(0, 0.4f);
-      s[8] = -std::floor(uniform(0, 30)), s[9] = std::floor(uniform(3, 20));
+      s[0] = b[0] + foot.x, s[1] = b[1] + foot.y, s[2] = b[2] + foot.z;
+      s[4] = s[0] + uniform(-0.5f, 0.5f), s[5] = s[1], s[6] = s[2] + uniform(-0.5f, 0.5f);
+      std::fill_n(a, 8, 0.0f);
+      a[1] = a[5] = uniform(0, 0.4f);
+      s[3] = -std::floor(uniform(0, 30));
+      s[7] = shared::packedTicks(std::floor(uniform(3, 20)),
+                                 shared::stepTile(shared::tileX(b[3]), shared::tileZ(b[3])));
       const bool rest = random() % 3 == 0;
       for (size_t i = 0; i < bones && i < leg.bones.size(); ++i) {
         const float t = rest ? 0 : uniform(0, std::tan(std::min(leg.bones[i].coneHalfAngle, 2.5f) / 2)),
@@ -98,6 +101,7 @@ void scramble(const gpu::Context& context, Crowd& crowd, uint64_t seed, float fa
   gpu::upload(context, page.body, body);
   gpu::upload(context, page.gait, gait);
   gpu::upload(context, page.step, step);
+  gpu::upload(context, page.arc, arc);
   gpu::upload(context, page.chain, chain);
 }
 

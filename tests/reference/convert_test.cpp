@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "reference_herd.h"
+#include "shared/records.h"
 
 namespace skitter::test {
 namespace {
@@ -15,8 +16,8 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   for (int i = 0; i < 40; ++i) herd.tick();
   const HerdState& state = herd.state();
   HerdState copy = state;
-  for (auto* buffer : {&copy.goal, &copy.steer, &copy.body, &copy.gait, &copy.step, &copy.foot, &copy.chain,
-                       &copy.tip, &copy.miss, &copy.pose, &copy.metric, &copy.watch}) {
+  for (auto* buffer : {&copy.goal, &copy.steer, &copy.body, &copy.gait, &copy.step, &copy.arc, &copy.foot,
+                       &copy.chain, &copy.tip, &copy.miss, &copy.pose, &copy.metric, &copy.watch}) {
     std::fill(buffer->begin(), buffer->end(), 0.0f);
   }
   const size_t bones = static_cast<size_t>(herd.bones());
@@ -42,6 +43,7 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   EXPECT_EQ(copy.body, state.body);
   EXPECT_EQ(copy.gait, state.gait);
   EXPECT_EQ(copy.step, state.step);
+  EXPECT_EQ(copy.arc, state.arc);
   EXPECT_EQ(copy.foot, state.foot);
   EXPECT_EQ(copy.chain, state.chain);
   EXPECT_EQ(copy.tip, state.tip);
@@ -49,6 +51,27 @@ TEST(Convert, recordsSurviveReadingAndWriting) {
   EXPECT_EQ(copy.pose, state.pose);
   EXPECT_EQ(copy.metric, state.metric);
   EXPECT_EQ(copy.watch, state.watch);
+}
+
+// As far as a body may go, and as long as a step may last.
+TEST(Convert, stepsKnowTheirTilesFromTheBodys) {
+  ReferenceHerd herd(flatField(), 1);
+  HerdState state = herd.state();
+  const double longest = shared::MOST_STEP_TICKS - 1, furthest = shared::STEP_TILES / 2 - 1;
+  for (const double tile : {-2048.0, -33.0, -32.0, -1.0, 0.0, 31.0, 2047.0})
+    for (const double apart : {-furthest, -1.0, 0.0, 1.0, furthest})
+      for (const double ticks : {1.0, -1.0, 17.0, longest, -longest}) {
+        reference::AgentBody body = bodyOf(state, 0);
+        body.tileX = tile, body.tileZ = -tile - 1;
+        putBody(state, 0, body);
+        reference::Step step = stepOf(state, 3);
+        step.tileX = body.tileX + apart, step.tileZ = body.tileZ - apart, step.duration = ticks;
+        putStep(state, 3, step);
+        const reference::Step got = stepOf(state, 3);
+        EXPECT_EQ(got.tileX, step.tileX) << tile << " " << apart << " " << ticks;
+        EXPECT_EQ(got.tileZ, step.tileZ) << tile << " " << apart << " " << ticks;
+        EXPECT_EQ(got.duration, step.duration) << tile << " " << apart << " " << ticks;
+      }
 }
 
 TEST(Convert, boneFramesAreRightHandedAndOrthonormal) {

@@ -41,6 +41,7 @@ void ReferenceHerd::spawn(uint32_t agents) {
   state_.body.resize(4 * count * shared::BODY_STRIDE);
   state_.gait.resize(4 * count * shared::GAIT_STRIDE);
   state_.step.resize(4 * count * legCount * shared::STEP_STRIDE);
+  state_.arc.resize(4 * count * legCount * shared::ARC_STRIDE);
   state_.foot.resize(4 * count * legCount * shared::FOOT_STRIDE);
   state_.chain.resize(4 * count * legCount * chain);
   state_.tip.resize(4 * count * legCount * shared::TIP_STRIDE);

@@ -80,8 +80,9 @@ TEST_F(SleepingHerd, sleepIsAFixedPoint) {
   fallAsleep();
   const HerdState asleep = herd.state();
   for (int i = 0; i < 100; ++i) herd.tick();
-  for (const auto records : {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait,
-                             &HerdState::step, &HerdState::foot, &HerdState::chain, &HerdState::pose})
+  for (const auto records :
+       {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait, &HerdState::step,
+        &HerdState::arc, &HerdState::foot, &HerdState::chain, &HerdState::pose})
     EXPECT_EQ(herd.state().*records, asleep.*records);
   EXPECT_GT(herd.state().metric[0], asleep.metric[0]) << "measured all the same";
 }

@@ -42,6 +42,7 @@ class SleepersRecord : public testing::TestWithParam<Record> {
     fill(state.body, 1, shared::BODY_STRIDE);
     fill(state.gait, 1, shared::GAIT_STRIDE);
     fill(state.step, legs, shared::STEP_STRIDE);
+    if (crowd::aimsSteps(controller)) fill(state.arc, legs, shared::ARC_STRIDE);
     fill(state.foot, legs, shared::FOOT_STRIDE);
     fill(state.chain, legs, shared::chainStride(bones));
     fill(state.tip, legs, shared::TIP_STRIDE);
@@ -111,6 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Record{"adaptiveBody", Controller::adaptive, &HerdState::body, "body", 1},
                     Record{"adaptiveGait", Controller::adaptive, &HerdState::gait, "gait", 1},
                     Record{"adaptiveStep", Controller::adaptive, &HerdState::step, "foothold", 8},
+                    Record{"adaptiveArc", Controller::adaptive, &HerdState::arc, "foothold", 8},
                     Record{"adaptiveFoot", Controller::adaptive, &HerdState::foot, "swing", 8},
                     Record{"adaptiveChain", Controller::adaptive, &HerdState::chain, "ik", 8},
                     Record{"adaptiveTip", Controller::adaptive, &HerdState::tip, "ik", 8},

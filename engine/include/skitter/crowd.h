@@ -87,9 +87,9 @@ struct HerdState {
   uint32_t agents = 0;  // that are here
   AgentSample sample;   // which of the herd they are
   std::vector<float> goal, steer, body, gait, step, chain;
-  std::vector<float> foot, tip, pose, metric;         // empty where CrowdOptions left them out, like watch
-  std::vector<float> miss, play, start, fix, spring;  // empty where the controller has none
-  uint32_t watchEvery = 1;                            // measure watches one agent of this many at a time
+  std::vector<float> foot, tip, pose, metric;  // empty where CrowdOptions left them out, like watch
+  std::vector<float> arc, miss, play, start, fix, spring;  // empty where the controller has none
+  uint32_t watchEvery = 1;                                 // measure watches one agent of this many at a time
   std::vector<float> watch;  // of the herd's agent g at place g / watchEvery, if it is being watched; whole
   std::vector<Footfall> footfalls;  // of the last tick and of all agents, by agent and leg
   bool footfallsKept = false;       // they are all here: CrowdOptions::footfalls left room for them
