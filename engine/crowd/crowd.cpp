@@ -258,7 +258,7 @@ void setTick(Impl& crowd, float dt) {
                      ": steps are timed in ticks, so a crowd keeps its first dt");
   for (const crowd::Herd& herd : crowd.herds) {
     const float ticks = herd.parameters.swingStill / dt;
-    if (!(ticks < shared::MOST_STEP_TICKS))
+    if (crowd::aimsSteps(herd.controller) && !(ticks < shared::MOST_STEP_TICKS))
       throw inputError(
           fmt::format("dt {:.3g} s: a step of {} would last {:.0f} ticks, expected fewer than {:.0f}", dt,
                       herd.rig.name, ticks, shared::MOST_STEP_TICKS));

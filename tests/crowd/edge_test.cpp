@@ -94,6 +94,8 @@ TEST_F(InputTest, RefusesStepsThatTheirRecordsDoNotHold) {
   Crowd crowd(device(), flatGround(), sceneOf(1));
   EXPECT_THROW(simulate(device(), crowd, 1, 2e-5f), Error);  // 17,500 ticks a step
   simulate(device(), crowd, 1, 2.5e-5f);
+  Crowd looping(device(), flatGround(), sceneOf(1, 1, 1, "loop"));
+  simulate(device(), looping, 1, 2e-5f);
   Rig giant = crowd.rig(0);
   giant.legLength = 101;
   EXPECT_THROW(Crowd(device(), flatGround(), sceneOf(1), std::vector<Rig>{giant}), Error);

@@ -123,8 +123,9 @@ struct StageTime {
 class Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
-  // cannot be (an unknown rig or controller, a terrain that reaches beyond 4 km from the origin) and, before
-  // any agent is made, Error(device) when memory does not suffice (as DeviceLimits::availableBytes, but now).
+  // cannot be (an unknown rig or controller, legs of an adaptive herd above 100 m, a terrain that reaches
+  // beyond 4 km from the origin) and, before any agent is made, Error(device) when memory does not suffice
+  // (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // With rigs that the caller made, one a herd, in place of those that the scene names.
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,
@@ -136,7 +137,8 @@ class Crowd {
   // Records one tick of `dt` seconds into the caller's command buffer (outside a render pass). It begins with
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in
-  // order. dt must stay the same from call to call (steps are timed in ticks).
+  // order. Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an
+  // adaptive herd, below 22 microseconds.
   void record(VkCommandBuffer commandBuffer, float dt);
 
   // Replaces a rectangle of the terrain's samples while the crowd walks: columns [x0, x0 + columns), rows
