@@ -26,6 +26,7 @@ void main() {
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
 
   int rigAt = leg * rigStride(BONES);
+  // What is far away in memory is asked for first, though the arc is needed last.
   Body body = LOAD_BODY(agent);
   Step old = LOAD_STEP(record);
   Arc oldArc = LOAD_ARC(record);
