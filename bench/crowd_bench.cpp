@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "base/clock.h"
 #include "bench/crowd/contest.h"
-#include "bench/ik/clock.h"
 #include "bench/ik/machine.h"
 #include "crowd/stage.h"
 #include "skitter/error.h"
@@ -51,7 +51,7 @@ CrowdOptions options(bool fuse) {
   return made;
 }
 
-Run makeRun(const std::string& key, const std::string& controller, Who who, uint32_t agents, bool fuse) {
+Run makeRun(const std::string& key, Controller controller, Who who, uint32_t agents, bool fuse) {
   Scene scene = builtinScene();
   scene.herds.front().controller = controller;
   scene.herds.front().agents = agents;
@@ -64,14 +64,15 @@ Run makeRun(const std::string& key, const std::string& controller, Who who, uint
   run.contestant->timeStages(true);
   for (const validation::StageResult& check : bench::checkTick(
            *run.crowd, *run.contestant, next, bench::demandOf(*run.crowd, options(fuse)), scene.seed))
-    if (!check.pass) run.fault += check.name + ": " + check.worst + "; ";
+    if (!check.pass) run.fault += check.name + ": " + check.why + "; ";
   return run;
 }
 
 // The last one is kept: the stages of a tick are timed one after the other.
-Run& runOf(const std::string& controller, Who who, uint32_t agents, bool fuse) {
+Run& runOf(Controller controller, Who who, uint32_t agents, bool fuse) {
   static Run run;
-  const std::string key = controller + whoNames[int(who)] + std::to_string(agents) + (fuse ? "" : " apart");
+  const std::string key =
+      nameOf(controller) + std::string(whoNames[int(who)]) + std::to_string(agents) + (fuse ? "" : " apart");
   if (run.key != key) {
     run = {};
     run = makeRun(key, controller, who, agents, fuse);
@@ -86,8 +87,7 @@ double millisecondsOf(const std::vector<StageTime>& times, const std::string& st
   return sum;
 }
 
-void timeStage(benchmark::State& state, const std::string& controller, const std::string& stage, Who who,
-               bool fuse) {
+void timeStage(benchmark::State& state, Controller controller, const std::string& stage, Who who, bool fuse) {
   const auto agents = static_cast<uint32_t>(state.range(0));
   Run& run = runOf(controller, who, agents, fuse);
   if (!run.fault.empty()) {
@@ -98,7 +98,7 @@ void timeStage(benchmark::State& state, const std::string& controller, const std
   double seconds = 0;
   for (auto _ : state) {
     const std::vector<StageTime> before = run.contestant->stageTimes();
-    const bench::Seconds spent = bench::timed([&] { run.contestant->tick(); });
+    const base::Seconds spent = base::timed([&] { run.contestant->tick(); });
     const std::vector<StageTime> after = run.contestant->stageTimes();
     const double whole = millisecondsOf(after, "") - millisecondsOf(before, "");
     const double mine = millisecondsOf(after, stage) - millisecondsOf(before, stage);
@@ -109,9 +109,9 @@ void timeStage(benchmark::State& state, const std::string& controller, const std
   state.counters["an_agent_ns"] = 1e9 * seconds / (static_cast<double>(state.iterations()) * agents);
 }
 
-void add(const std::string& controller, const std::string& stage, Who who, bool fuse, int64_t agents) {
+void add(Controller controller, const std::string& stage, Who who, bool fuse, int64_t agents) {
   benchmark::RegisterBenchmark(
-      (controller + "/" + stage + "/" + whoNames[int(who)]).c_str(),
+      (std::string(nameOf(controller)) + "/" + stage + "/" + whoNames[int(who)]).c_str(),
       [=](benchmark::State& state) { timeStage(state, controller, stage, who, fuse); })
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond)
@@ -120,18 +120,16 @@ void add(const std::string& controller, const std::string& stage, Who who, bool 
 }
 
 void addAll(int64_t agents) {
-  for (const std::string controller : {"adaptive", "clip"})
+  for (const Controller controller : {Controller::adaptive, Controller::clip})
     for (const Who who : {Who::device, Who::simd, Who::scalar}) {
-      const auto stagesOf = [&](bool fuse) {
-        return crowd::stagesOf(crowd::controllerNamed(controller), options(fuse));
-      };
+      const auto stagesOf = [&](bool fuse) { return crowd::stagesOf(controller, options(fuse)); };
       const std::vector<crowd::Stage> fused = stagesOf(true);
-      for (const crowd::Stage& stage : fused) add(controller, stage.name, who, true, agents);
+      for (const crowd::Stage& stage : fused) add(controller, stage.makes.name(), who, true, agents);
       // Those that are made at once, one by one.
       for (const crowd::Stage& stage : stagesOf(false))
         if (std::none_of(fused.begin(), fused.end(),
-                         [&](const crowd::Stage& f) { return std::string_view(f.name) == stage.name; }))
-          add(controller, stage.name, who, false, agents);
+                         [&](const crowd::Stage& f) { return f.makes == stage.makes; }))
+          add(controller, stage.makes.name(), who, false, agents);
     }
 }
 
@@ -144,12 +142,13 @@ int main(int argc, char** argv) {
 #endif
   benchmark::Initialize(&argc, argv);
   int64_t agents = kAgents;
-  if (argc == 2 && std::sscanf(argv[1], "--agents=%" SCNd64, &agents) == 1 && agents > 0 && agents <= 1 << 24)
+  if (argc == 2 && std::sscanf(argv[1], "--agents=%" SCNd64, &agents) == 1 && agents > 0 &&
+      agents <= Scene::maxAgents)
     argc = 1;
   addAll(agents);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {
-    std::fprintf(stderr, "%s", bench::machineLines(device().report()).c_str());
+    std::fprintf(stderr, "%s", bench::machineLines(device().report(), bench::opponentBuild()).c_str());
     benchmark::RunSpecifiedBenchmarks();
   } catch (const Error& error) {
     std::fprintf(stderr, "crowd_bench: %s\n", error.what());

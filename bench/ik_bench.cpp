@@ -7,12 +7,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "bench/cpu_baseline/batch.h"
 #include "bench/ik/caliko.h"
 #include "bench/ik/dissertation_figures.h"
 #include "bench/ik/machine.h"
 #include "bench/ik/sweep.h"
 #include "bench/ik/table1.h"
 #include "skitter/error.h"
+#include "skitter/ik.h"
 
 namespace {
 
@@ -66,8 +68,9 @@ int run(const Options& options) {
   DeviceRequest request;
   if (!options.device.empty()) request.device = options.device;
   Device device = Device::create(request);
-  fmt::print("{}", bench::machineLines(device.report()));
+  fmt::print("{}", bench::machineLines(device.report(), baseline::buildDescription()));
   nlohmann::ordered_json made = bench::describeMachine(device.report());
+  made["cpuOpponentBuild"] = baseline::buildDescription();
   int code = 0;
   if (options.table1) {
     made["table1"] = bench::runTable1(device, options.quick ? 20 : 1000);
@@ -99,7 +102,8 @@ int main(int argc, char** argv) {
   app.add_option("--rows", options.rows,
                  "only rows whose name holds each of these words, of a,b either: \"fabrik,ccd J10 cold\"")
       ->type_name("WORDS");
-  app.add_option("--chains", options.chains, "chains a batch [20480]")->check(CLI::Range(1u, 1u << 24));
+  app.add_option("--chains", options.chains, "chains a batch [20480]")
+      ->check(CLI::Range(1u, ik::Batch::maxChains));
   app.add_option("--repetitions", options.repetitions, "of every measurement [7]")
       ->check(CLI::Range(1, 1000));
   app.add_flag("--table1", options.table1,

@@ -9,7 +9,7 @@
 #include <memory>
 #include <random>
 
-#include "cpu_reference/spline_tolerance.h"
+#include "cpu_reference/spline/tolerance.h"
 #include "skitter/error.h"
 #include "skitter/spline.h"
 

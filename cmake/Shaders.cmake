@@ -2,9 +2,9 @@
 # embeds it in the target (skitter_embed), `ik.comp` as `ik_comp`. With LOAD_VARIANTS each file is built twice, with
 # LOAD4_TEXEL=1 as `ik_comp_texel` and with LOAD4_TEXEL=0 as `ik_comp_storage` (shaders/lib/load4.glsl).
 # Includes are found from shaders/ and beside the file. DEFINES <name[=value]>... are passed on.
-find_program(GLSLANG NAMES glslangValidator glslang REQUIRED)
-find_program(SPIRV_OPT spirv-opt REQUIRED)
-find_program(SPIRV_VAL spirv-val REQUIRED)
+skitter_require_program(GLSLANG glslang-tools glslangValidator glslang)
+skitter_require_program(SPIRV_OPT spirv-tools spirv-opt)
+skitter_require_program(SPIRV_VAL spirv-tools spirv-val)
 
 function(skitter_add_shaders target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LOAD_VARIANTS" "" "SOURCES;DEFINES")
@@ -31,7 +31,7 @@ function(skitter_add_shader target source name)
   list(TRANSFORM ARGN PREPEND -D OUTPUT_VARIABLE defines)
   # --quiet would also silence warnings, so the file name that glslang prints is what a clean compile says.
   add_custom_command(OUTPUT ${dir}/${name}.raw.spv
-    COMMAND ${GLSLANG} -V --target-env vulkan1.3 -I${shaders} ${defines}
+    COMMAND ${GLSLANG} -V --target-env vulkan1.3 -I${shaders} -I${shaders}/../engine/include ${defines}
             --depfile ${dir}/${name}.d -o ${dir}/${name}.raw.spv ${source}
     DEPENDS ${source} DEPFILE ${dir}/${name}.d COMMENT "GLSL ${name}" VERBATIM)
   add_custom_command(OUTPUT ${dir}/${name}.spv

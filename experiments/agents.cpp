@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::experiments {
 
-Scene crossing(const std::string& controller, uint32_t agents, double speed, uint64_t seed) {
+Scene crossing(Controller controller, uint32_t agents, double speed, uint64_t seed) {
   Scene scene = builtinScene();
   scene.seed = seed;
   Herd herd;

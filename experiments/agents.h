@@ -2,7 +2,6 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <string>
 #include <vector>
 
 #include "skitter/crowd.h"
@@ -10,23 +9,24 @@
 
 namespace skitter::experiments {
 
-// A controller as the experiments name it, beside what the dissertation found of its like.
-struct Controller {
-  const char* name;
+// A controller as the experiments show it, beside what the dissertation found of its like.
+struct Subject {
+  Controller controller;
   const char* title;
   int dissertationAgents;  // before performance problems were visible; 0: it had none such
   const char* colour;
 };
-inline constexpr std::array<Controller, 5> allControllers = {{
-    {"clip", "clip (pre-animated)", 20, "#0072b2"},
-    {"planted", "planted (clip, feet put down by IK)", 0, "#c98a00"},
-    {"pose", "pose (a few key poses, springs)", 0, "#cc79a7"},
-    {"loop", "loop (procedural, fixed foot loops)", 9, "#009e73"},
-    {"adaptive", "adaptive (procedural, footholds on terrain)", 4, "#d55e00"},
-}};
+inline constexpr std::array subjects = {
+    Subject{Controller::clip, "clip (pre-animated)", 20, "#0072b2"},
+    Subject{Controller::planted, "planted (clip, feet put down by IK)", 0, "#c98a00"},
+    Subject{Controller::pose, "pose (a few key poses, springs)", 0, "#cc79a7"},
+    Subject{Controller::loop, "loop (procedural, fixed foot loops)", 9, "#009e73"},
+    Subject{Controller::adaptive, "adaptive (procedural, footholds on terrain)", 4, "#d55e00"},
+};
+static_assert(subjects.size() == allControllers.size());
 
 // Built-in spiders in lanes across the ground, at a speed in metres a second.
-Scene crossing(const std::string& controller, uint32_t agents, double speed, uint64_t seed);
+Scene crossing(Controller controller, uint32_t agents, double speed, uint64_t seed);
 
 // What an agent does, in world metres.
 struct LegState {

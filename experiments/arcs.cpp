@@ -10,11 +10,11 @@ namespace skitter::experiments {
 namespace {
 
 FootArcs measure(Device& device, const Heightfield& ground, const Settings& settings,
-                 const Controller& controller) {
-  Walk walk(device, ground, crossing(controller.name, 1, 1, settings.seed), settings.dt);
+                 const Subject& subject) {
+  Walk walk(device, ground, crossing(subject.controller, 1, 1, settings.seed), settings.dt);
   walk.ticks(settings.settleTicks);
   FootArcs made;
-  made.controller = controller.name;
+  made.controller = subject.controller;
   made.legLength = walk.rig().legLength;
   for (const Leg& leg : walk.rig().legs) made.legs.push_back(leg.name);
   int lifts = 0;  // of the first leg, which begin and end a cycle
@@ -64,9 +64,9 @@ double FootArcs::height() const {
 std::vector<FootArcs> measureArcs(Device& device, const Heightfield& ground, const Settings& settings,
                                   Course& course) {
   std::vector<FootArcs> made;
-  for (const Controller& controller : allControllers) {
-    course.at(static_cast<double>(made.size()) / allControllers.size());
-    made.push_back(measure(device, ground, settings, controller));
+  for (const Subject& subject : subjects) {
+    course.at(static_cast<double>(made.size()) / subjects.size());
+    made.push_back(measure(device, ground, settings, subject));
   }
   return made;
 }
@@ -77,7 +77,7 @@ Table tableOf(const std::vector<FootArcs>& all) {
     for (size_t t = 0; t < arcs.ticks.size(); ++t) {
       for (size_t l = 0; l < arcs.legs.size(); ++l) {
         const LegState& leg = arcs.ticks[t].legs[l];
-        table.rows.push_back({arcs.controller, fmt::format("{}", t), arcs.legs[l],
+        table.rows.push_back({nameOf(arcs.controller), fmt::format("{}", t), arcs.legs[l],
                               fmt::format("{:.4f}", leg.foot.x), fmt::format("{:.4f}", leg.foot.y),
                               fmt::format("{:.4f}", leg.foot.z), fmt::format("{:.4f}", arcs.ground[t][l]),
                               leg.stance ? "1" : "0"});

@@ -7,13 +7,14 @@
 #include "experiments/course.h"
 #include "experiments/page/table.h"
 #include "experiments/settings.h"
+#include "skitter/controller.h"
 #include "skitter/device.h"
 
 namespace skitter::experiments {
 
 // Figures 9 to 11: where the feet of one walking agent are, tick by tick, over two cycles of its first leg.
 struct FootArcs {
-  std::string controller;
+  Controller controller;
   std::vector<std::string> legs;  // names
   std::vector<AgentState> ticks;
   std::vector<std::vector<double>> ground;  // [tick][leg] height below the foot

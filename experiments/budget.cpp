@@ -18,18 +18,18 @@ namespace {
 // Times crowds of one controller, each size once.
 class Timer {
  public:
-  Timer(Device& device, const Heightfield& ground, const Settings& settings, const Controller& controller,
+  Timer(Device& device, const Heightfield& ground, const Settings& settings, const Subject& subject,
         bool drawn, std::vector<TickCost>& costs)
       : device_(device),
         ground_(ground),
         settings_(settings),
-        controller_(controller),
+        subject_(subject),
         drawn_(drawn),
         costs_(costs) {}
 
   TickCost cost(uint32_t agents) {
     for (const TickCost& known : costs_)
-      if (known.controller == controller_.name && known.drawn == drawn_ && known.agents == agents)
+      if (known.controller == subject_.controller && known.drawn == drawn_ && known.agents == agents)
         return known;
     costs_.push_back(measure(agents));
     return costs_.back();
@@ -37,14 +37,14 @@ class Timer {
 
  private:
   TickCost measure(uint32_t agents) {
-    const Scene scene = crossing(controller_.name, agents, 1, settings_.seed);
+    const Scene scene = crossing(subject_.controller, agents, 1, settings_.seed);
     CrowdOptions options;
     options.measure = false;  // what is judged elsewhere is no part of animating
     Walk walk(device_, ground_, scene, settings_.dt, options);
     std::optional<Renderer> renderer;
     if (drawn_) renderer.emplace(device_, walk.crowd(), settings_.width, settings_.height);
     const auto frame = [&] {
-      return bench::timed([&] {
+      return base::timed([&] {
         gpu::CommandRing& ring = walk.ring();
         const VkCommandBuffer cmd = ring.begin();
         walk.crowd().record(cmd, walk.dt());
@@ -57,11 +57,11 @@ class Timer {
     std::vector<double> wall, cpu;
     const uint32_t count = std::max(1u, drawn_ ? settings_.drawnFrames : settings_.budgetTicks);
     for (uint32_t i = 0; i < count; ++i) {
-      const bench::Seconds spent = frame();
+      const base::Seconds spent = frame();
       wall.push_back(1e3 * spent.wall);
       cpu.push_back(1e3 * spent.cpu);
     }
-    return {controller_.name,
+    return {subject_.controller,
             drawn_,
             agents,
             bench::quantile(wall, 0.5),
@@ -73,7 +73,7 @@ class Timer {
   Device& device_;
   const Heightfield& ground_;
   const Settings& settings_;
-  const Controller& controller_;
+  const Subject& subject_;
   bool drawn_;
   std::vector<TickCost>& costs_;
 };
@@ -87,7 +87,7 @@ double crossing(double budget, double fewAgents, double few, double manyAgents, 
 
 // Where the CPU time of the sizes measured crosses what all threads have to give in the budget; beyond the
 // largest size, in proportion.
-double byCpu(const std::vector<TickCost>& costs, const std::string& controller, double budget) {
+double byCpu(const std::vector<TickCost>& costs, Controller controller, double budget) {
   const double given = budget * std::thread::hardware_concurrency();
   std::vector<TickCost> sizes;
   for (const TickCost& cost : costs)
@@ -143,13 +143,13 @@ AgentLimit search(Timer& timer, const Settings& settings, uint32_t from, double 
 Budget measureBudget(Device& device, const Heightfield& ground, const Settings& settings, bool drawn,
                      Course& course) {
   Budget made;
-  const double searches = static_cast<double>(allControllers.size() * settings.budgets.size());
+  const double searches = static_cast<double>(subjects.size() * settings.budgets.size());
   double done = 0;
-  for (const Controller& controller : allControllers) {
-    Timer timer(device, ground, settings, controller, drawn, made.costs);
+  for (const Subject& subject : subjects) {
+    Timer timer(device, ground, settings, subject, drawn, made.costs);
     // What the dissertation had: its number of agents of that kind.
-    if (controller.dissertationAgents > 0 && settings.budgetFrom > 2)
-      timer.cost(static_cast<uint32_t>(controller.dissertationAgents));
+    if (subject.dissertationAgents > 0 && settings.budgetFrom > 2)
+      timer.cost(static_cast<uint32_t>(subject.dissertationAgents));
     for (const double budget : settings.budgets) {
       double steps = 0;
       AgentLimit limit =
@@ -157,9 +157,9 @@ Budget measureBudget(Device& device, const Heightfield& ground, const Settings& 
             // How many steps it takes is not known before: each takes a share of what is left.
             course.at((done + 1 - std::pow(0.85, ++steps)) / searches);
           });
-      limit.controller = controller.name;
+      limit.controller = subject.controller;
       limit.drawn = drawn;
-      if (bench::isCpu(device.report())) limit.byCpu = byCpu(made.costs, controller.name, budget);
+      if (bench::isCpu(device.report())) limit.byCpu = byCpu(made.costs, subject.controller, budget);
       made.limits.push_back(limit);
       ++done;
     }
@@ -170,7 +170,7 @@ Budget measureBudget(Device& device, const Heightfield& ground, const Settings& 
   return made;
 }
 
-const AgentLimit* Budget::limit(const std::string& controller, bool drawn, double budget) const {
+const AgentLimit* Budget::limit(Controller controller, bool drawn, double budget) const {
   for (const AgentLimit& limit : limits)
     if (limit.controller == controller && limit.drawn == drawn && limit.budget == budget) return &limit;
   return nullptr;
@@ -180,7 +180,7 @@ Table Budget::costTable() const {
   Table table{{"controller", "drawn", "agents", "median_ms", "lower_quartile_ms", "upper_quartile_ms",
                "median_cpu_ms"}};
   for (const TickCost& cost : costs)
-    table.rows.push_back({cost.controller, cost.drawn ? "1" : "0", fmt::format("{}", cost.agents),
+    table.rows.push_back({nameOf(cost.controller), cost.drawn ? "1" : "0", fmt::format("{}", cost.agents),
                           fmt::format("{:.4f}", cost.milliseconds), fmt::format("{:.4f}", cost.lower),
                           fmt::format("{:.4f}", cost.upper), fmt::format("{:.4f}", cost.cpuMilliseconds)});
   return table;
@@ -190,10 +190,10 @@ Table Budget::limitTable() const {
   Table table{{"controller", "drawn", "budget_ms", "agents", "next", "by_upper_quartiles",
                "by_lower_quartiles", "by_cpu"}};
   for (const AgentLimit& limit : limits)
-    table.rows.push_back({limit.controller, limit.drawn ? "1" : "0", fmt::format("{:g}", limit.budget),
-                          fmt::format("{}", limit.agents), fmt::format("{}", limit.next),
-                          fmt::format("{:.0f}", limit.lower), fmt::format("{:.0f}", limit.upper),
-                          fmt::format("{:.0f}", limit.byCpu)});
+    table.rows.push_back({nameOf(limit.controller), limit.drawn ? "1" : "0",
+                          fmt::format("{:g}", limit.budget), fmt::format("{}", limit.agents),
+                          fmt::format("{}", limit.next), fmt::format("{:.0f}", limit.lower),
+                          fmt::format("{:.0f}", limit.upper), fmt::format("{:.0f}", limit.byCpu)});
   return table;
 }
 

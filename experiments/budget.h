@@ -6,6 +6,7 @@
 #include "experiments/course.h"
 #include "experiments/page/table.h"
 #include "experiments/settings.h"
+#include "skitter/controller.h"
 #include "skitter/device.h"
 #include "skitter/heightfield.h"
 
@@ -16,7 +17,7 @@ namespace skitter::experiments {
 
 // One crowd timed: each tick is recorded, submitted and waited for by itself.
 struct TickCost {
-  std::string controller;
+  Controller controller;
   bool drawn = false;  // a picture of it too, in the time
   uint32_t agents = 0;
   double milliseconds = 0, lower = 0, upper = 0;  // median and quartiles, wall clock
@@ -25,7 +26,7 @@ struct TickCost {
 
 // The most agents whose median stays within a budget.
 struct AgentLimit {
-  std::string controller;
+  Controller controller;
   bool drawn = false;
   double budget = 0;            // milliseconds
   uint32_t agents = 0;          // were within; 0: not even one was
@@ -40,7 +41,7 @@ struct Budget {
   std::vector<TickCost> costs;
   std::vector<AgentLimit> limits;
 
-  const AgentLimit* limit(const std::string& controller, bool drawn, double budget) const;
+  const AgentLimit* limit(Controller controller, bool drawn, double budget) const;
   Table costTable() const;
   Table limitTable() const;
 };

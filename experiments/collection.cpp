@@ -2,43 +2,45 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
-#include <string_view>
+#include <glm/gtc/type_ptr.hpp>
 
+#include "bench/cpu_crowd/crowd.h"
 #include "bench/statistics.h"
 #include "crowd/herd.h"
-#include "experiments/collection_cpu.h"
 #include "experiments/walk.h"
 #include "gpu/barrier.h"
 #include "gpu/transfer.h"
+#include "validation/herd_facts.h"
 
 namespace skitter::experiments {
 namespace {
 
 constexpr int inRow = 32;  // dispatches of one submission
 
-size_t footholdIndex(const crowd::Herd& herd) {
-  for (size_t i = 0; i < herd.stages.size(); ++i)
-    if (std::string_view(herd.stages[i].name) == "foothold") return i;
-  return herd.stages.size();
+size_t footholdIndex(const crowd::Kind& kind) {
+  for (size_t i = 0; i < kind.stages.size(); ++i)
+    if (kind.stages[i].makes == crowd::StageId::foothold) return i;
+  return kind.stages.size();
 }
 
 // The foothold stage over the first legs of a crowd that walks, again and again.
 class Stage {
  public:
   Stage(Walk& walk, const gpu::Context& context, uint32_t legs, bool nearestOnly)
-      : walk_(walk), herd_(walk.crowd().impl().herds.front()), index_(footholdIndex(herd_)) {
-    herd_.parameters.nearestOnly = nearestOnly ? 1 : 0;
-    std::memcpy(herd_.parameterBlock.bytes().data(), &herd_.parameters, sizeof herd_.parameters);
+      : walk_(walk), kind_(walk.crowd().impl().kindOf(0)), index_(footholdIndex(kind_)) {
+    kind_.parameters.nearestOnly = nearestOnly ? 1 : 0;
+    std::memcpy(kind_.parameterBlock.bytes().data(), &kind_.parameters, sizeof kind_.parameters);
     uint32_t left = legs;
-    for (const crowd::Page& page : herd_.pages) {
-      const uint32_t here = std::min(left, page.agents * static_cast<uint32_t>(herd_.legs));
+    for (const crowd::Page& page : kind_.pages) {
+      const uint32_t here = std::min(left, page.agents * static_cast<uint32_t>(kind_.legs));
       std::vector<uint32_t> list(here);
       for (uint32_t i = 0; i < here; ++i) {
-        const auto each = static_cast<uint32_t>(herd_.legs);
+        const auto each = static_cast<uint32_t>(kind_.legs);
         list[i] = 2 * static_cast<uint32_t>(shared::legRecord(static_cast<int>(i / each),
                                                               static_cast<int>(i % each),
-                                                              herd_.legs));  // they lift
+                                                              kind_.legs));  // they lift
       }
       gpu::upload(context, page.list, list);
       const std::vector<uint32_t> counters = {gpu::groupsFor(here, shared::WORK_GROUP), 1, 1, here};
@@ -48,37 +50,55 @@ class Stage {
     }
   }
 
-  bench::Seconds run(int times) {
-    const shared::TickConstants constants{
-        .count = 0, .tick = tick(), .first = 0, .every = 1, .watched = 0, .room = 0, .sleepTime = 0};
-    return bench::timed([&] {
+  base::Seconds run(int times) {
+    const shared::TickConstants constants{.count = 0,
+                                          .tick = static_cast<float>(tick()),
+                                          .first = 0,
+                                          .every = 1,
+                                          .watched = 0,
+                                          .room = 0,
+                                          .sleepTime = 0};
+    return base::timed([&] {
       const vk::CommandBuffer cmd = walk_.ring().begin();
       for (int i = 0; i < times; ++i) {
-        for (size_t p = 0; p < herd_.pages.size(); ++p) {
-          const crowd::Page& page = herd_.pages[p];
+        for (size_t p = 0; p < kind_.pages.size(); ++p) {
+          const crowd::Page& page = kind_.pages[p];
           if (listed_[p] > 0)
-            herd_.kernels[index_].dispatchIndirect(cmd, page.bindings[index_], gpu::bytesOf(constants),
-                                                   page.counters);
+            kind_.stages[index_].first.dispatchIndirect(cmd, page.bindings[index_], gpu::bytesOf(constants),
+                                                        page.counters);
         }
         gpu::computeToCompute(cmd);
       }
       walk_.ring().wait(walk_.ring().submit());
     });
   }
-  float tick() const { return static_cast<float>(walk_.crowd().tick() + 1); }
-  crowd::Herd& herd() { return herd_; }
+  uint64_t tick() const { return walk_.crowd().tick() + 1; }
+  crowd::Kind& kind() { return kind_; }
 
  private:
   Walk& walk_;
-  crowd::Herd& herd_;
+  crowd::Kind& kind_;
   size_t index_;
   std::vector<uint32_t> listed_;  // a page
 };
 
+// How far the steps of the first legs are apart, metres: the furthest of the landing, the lift-off and the
+// two vectors of the arc.
+std::vector<double> stepsApart(const HerdState& a, const HerdState& b, uint32_t legs) {
+  static_assert(shared::STEP_STRIDE == 2 && shared::ARC_STRIDE == 2);
+  const auto distance = [](const std::vector<float>& p, const std::vector<float>& q, size_t at) {
+    return static_cast<double>(glm::distance(glm::make_vec3(&p[at]), glm::make_vec3(&q[at])));
+  };
+  std::vector<double> apart;
+  for (size_t at = 0; at < size_t{8} * legs; at += 8)
+    apart.push_back(std::max({distance(a.step, b.step, at), distance(a.step, b.step, at + 4),
+                              distance(a.arc, b.arc, at), distance(a.arc, b.arc, at + 4)}));
+  return apart;
+}
+
 CollectionTime measure(Walk& walk, const gpu::Context& context, const Heightfield& ground,
                        const Settings& settings, uint32_t legs, bool nearestOnly) {
   Stage stage(walk, context, legs, nearestOnly);
-  const crowd::Herd& herd = stage.herd();
   CollectionTime made;
   made.rule = nearestOnly ? "nearest" : "weighed";
   made.legs = legs;
@@ -86,18 +106,13 @@ CollectionTime measure(Walk& walk, const gpu::Context& context, const Heightfiel
   const HerdState before = walk.crowd().download(0);
   stage.run(1);
   const HerdState after = walk.crowd().download(0);
-  const CollectionCpu cpu(herd.parameters, ground, herd.rigRecords, herd.legs, herd.bones);
-  std::vector<float> steps = before.step, arcs = before.arc;
-  cpu.run(before, legs, stage.tick(), steps, arcs);
-  std::vector<double> apart;
-  size_t differing = 0;
-  for (size_t at = 0; at < size_t{legs} * 4 * shared::STEP_STRIDE; at += 4 * shared::STEP_STRIDE) {
-    const glm::vec3 device(after.step[at], after.step[at + 1], after.step[at + 2]);
-    apart.push_back(glm::distance(device, glm::vec3(steps[at], steps[at + 1], steps[at + 2])));
-    differing += apart.back() > 1e-3 ? 1 : 0;
-  }
+  cpu_crowd::CpuCrowd cpu(validation::herdFacts(stage.kind(), ground), before,
+                          {.width = cpu_crowd::Width::scalar});
+  cpu.beginSteps(stage.tick(), legs);
+  const std::vector<double> apart = stepsApart(after, cpu.state(), legs);
   made.apart = bench::quantile(apart, 0.5);
-  made.differing = static_cast<double>(differing) / legs;
+  made.differing =
+      static_cast<double>(std::ranges::count_if(apart, [](double d) { return d > 1e-3; })) / legs;
 
   std::vector<double> alone, row, host;
   for (int i = 0; i < settings.collectionRepetitions; ++i) {
@@ -107,9 +122,8 @@ CollectionTime measure(Walk& walk, const gpu::Context& context, const Heightfiel
   // Short runs are repeated: a clock has its grain.
   const int times = static_cast<int>(std::max(1u, 2000 / legs));
   for (int i = 0; i < std::max(3, settings.collectionRepetitions / 10); ++i) {
-    host.push_back(1e3 / times * bench::timed([&] {
-                                   for (int k = 0; k < times; ++k)
-                                     cpu.run(before, legs, stage.tick(), steps, arcs);
+    host.push_back(1e3 / times * base::timed([&] {
+                                   for (int k = 0; k < times; ++k) cpu.beginSteps(stage.tick(), legs);
                                  }).wall);
   }
   made.deviceMilliseconds = bench::quantile(alone, 0.5);
@@ -128,7 +142,7 @@ Collection measureCollection(Device& device, const Heightfield& ground, const Se
   double done = 0;
   for (const uint32_t legs : settings.collectionLegs) {
     const uint32_t agents = (legs + 7) / 8;
-    Walk walk(device, ground, crossing("adaptive", agents, 1, settings.seed), settings.dt);
+    Walk walk(device, ground, crossing(Controller::adaptive, agents, 1, settings.seed), settings.dt);
     walk.ticks(std::min(settings.settleTicks, 40u));
     for (const bool nearestOnly : {true, false}) {
       course.at(done / static_cast<double>(2 * settings.collectionLegs.size()));

@@ -19,9 +19,9 @@ struct CollectionTime {
   double deviceMilliseconds = 0, lower = 0,
          upper = 0;              // one dispatch, submitted and waited for: quartiles too
   double inRowMilliseconds = 0;  // a dispatch among many in one submission
-  double cpuMilliseconds = 0;    // plain scalar C++, one thread
-  double apart = 0;              // metres, between the device's landing points and those of the CPU, median
-  double differing = 0;          // share of legs whose points differ by more than a millimetre: ties
+  double cpuMilliseconds = 0;    // the CPU crowd's scalar C++, one thread
+  double apart = 0;              // metres, between the device's steps and arcs and those of the CPU, median
+  double differing = 0;          // share of legs whose step or arc differs by more than a millimetre: ties
 };
 
 struct Collection {

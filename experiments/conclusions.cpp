@@ -12,6 +12,7 @@ namespace skitter::experiments {
 namespace {
 
 constexpr double frameBudget = 16.7;
+constexpr const char* notMeasured = "not measured";
 
 // The most agents of the dissertation's three kinds within the budget, by the wall clock or by CPU time.
 struct Fits {
@@ -24,8 +25,11 @@ struct AgentCounts {
   std::optional<Fits> cpu;  // of a software device
 
   explicit AgentCounts(const Results& results) {
-    const auto limit = [&](const char* name) { return results.simulated.limit(name, false, frameBudget); };
-    const AgentLimit *clip = limit("clip"), *loop = limit("loop"), *adaptive = limit("adaptive");
+    const auto limit = [&](Controller controller) {
+      return results.simulated.limit(controller, false, frameBudget);
+    };
+    const AgentLimit *clip = limit(Controller::clip), *loop = limit(Controller::loop),
+                     *adaptive = limit(Controller::adaptive);
     measured = clip && loop && adaptive;
     if (!measured) return;
     exact = clip->next > 0 && loop->next > 0 && adaptive->next > 0;
@@ -44,7 +48,7 @@ struct AgentCounts {
     return held;
   }
   std::string words() const {
-    if (!measured) return "not measured";
+    if (!measured) return notMeasured;
     const auto list = [](const Fits& f) {
       return fmt::format("clip {:.0f}, loop {:.0f}, adaptive {:.0f}", f.clip, f.loop, f.adaptive);
     };
@@ -90,27 +94,36 @@ Conclusion fivefold(const Results& results) {
           words, counts.settled([&](const Fits& f) { return ratio(f) >= 5; })};
 }
 
-// Of all solves of the sweeps of one reading, the share that the accuracy ends, over points of equal weight.
-double accuracyShare(const Results& results, const char* reading) {
+// The mean share of solves that the accuracy ends, over the points of one reading's sweeps.
+std::optional<double> accuracyShare(const Results& results, const char* reading) {
   double sum = 0, count = 0;
   for (const bench::SolveSweep& sweep : results.sweeps) {
     if (!sweep.name.ends_with(reading)) continue;
     for (const bench::SolvePoint& point : sweep.points) sum += point.stops[0], ++count;
   }
-  return count > 0 ? sum / count : 0;
+  if (count == 0) return {};
+  return sum / count;
 }
 
 Conclusion accuracy(const Results& results) {
-  const double steps = accuracyShare(results, "steps"), factors = accuracyShare(results, "factors");
-  return {"The accuracy threshold is rarely what ends a solve", "Figures 3 to 5",
-          "it ends less than half of the solves, in either reading of the figures",
-          fmt::format("it ends {:.1f} % of them in steps of 100, {:.1f} % by factors of 100", 100 * steps,
-                      100 * factors),
-          steps < 0.5 || factors < 0.5};
+  const auto steps = accuracyShare(results, "steps"), factors = accuracyShare(results, "factors");
+  Conclusion made{"The accuracy threshold is rarely what ends a solve",
+                  "Figures 3 to 5",
+                  "it ends less than half of the solves, in both readings of the figures",
+                  notMeasured,
+                  {}};
+  if (!steps || !factors) return made;
+  made.measured = fmt::format("it ends {:.1f} % of them in steps of 100, {:.1f} % by factors of 100",
+                              100 * *steps, 100 * *factors);
+  made.holds = *steps < 0.5 && *factors < 0.5;
+  return made;
 }
 
 // The exponent of time against what is altered, fitted over all series.
-double exponent(const Results& results, const char* altered) {
+std::optional<double> exponent(const Results& results, const std::string& altered) {
+  const auto amount = [&](const bench::InstancePoint& p) -> double {
+    return altered == "instances" ? p.instances : p.iterations;
+  };
   double sum = 0;
   int count = 0;
   for (const bench::InstancePoint& first : results.instances) {
@@ -119,53 +132,60 @@ double exponent(const Results& results, const char* altered) {
     bool begins = true;
     for (const bench::InstancePoint& other : results.instances) {
       if (other.altered != altered || other.series != first.series) continue;
-      const auto amount = [&](const bench::InstancePoint& p) {
-        return std::string(altered) == "instances" ? p.instances : p.iterations;
-      };
       if (amount(other) < amount(first)) begins = false;
       if (amount(other) > amount(*last)) last = &other;
     }
     if (!begins || last == &first) continue;
-    const double more = std::string(altered) == "instances"
-                            ? static_cast<double>(last->instances) / first.instances
-                            : static_cast<double>(last->iterations) / first.iterations;
-    sum += std::log(last->milliseconds / first.milliseconds) / std::log(more);
+    sum += std::log(last->milliseconds / first.milliseconds) / std::log(amount(*last) / amount(first));
     ++count;
   }
-  return count > 0 ? sum / count : 0;
+  if (count == 0) return {};
+  return sum / count;
 }
 
 Conclusion instances(const Results& results) {
-  const double of = exponent(results, "instances"), iterations = exponent(results, "iterations");
-  return {
-      "More iterations cost as more instances do", "Figures 3 to 5, and time against chains",
+  const auto chains = exponent(results, "instances"), iterations = exponent(results, "iterations");
+  Conclusion made{
+      "More iterations cost as more instances do",
+      "Figures 3 to 5, and time against chains",
       "over the ranges measured, time grows with the iterations allowed to a power within 0.2 of that with "
       "which it grows with instances",
-      fmt::format("powers: instances {:.2f}, iterations {:.2f}", of, iterations),
-      std::fabs(of - iterations) <= 0.2};
+      notMeasured,
+      {}};
+  if (!chains || !iterations) return made;
+  made.measured = fmt::format("powers: instances {:.2f}, iterations {:.2f}", *chains, *iterations);
+  made.holds = std::fabs(*chains - *iterations) <= 0.2;
+  return made;
 }
 
 Conclusion collectionOne(const Results& results) {
+  Conclusion made{"Collecting the points of one leg takes a noticeable part of a frame (0.83 ms)",
+                  "point collection",
+                  "it takes 0.83 ms or more, by its own rule, on the device and on the CPU",
+                  notMeasured,
+                  {}};
   const CollectionTime* one = results.collection.find("nearest", 1);
-  if (!one)
-    return {"Collecting the points of a leg takes 0.83 ms", "point collection", "", "not measured", {}};
-  return {"Collecting the points of one leg takes a noticeable part of a frame (0.83 ms)", "point collection",
-          "it takes 0.83 ms or more, by its own rule, on the device or on the CPU",
-          fmt::format("{:.4f} ms on the device, {:.5f} ms on the CPU", one->deviceMilliseconds,
-                      one->cpuMilliseconds),
-          std::min(one->deviceMilliseconds, one->cpuMilliseconds) >= 0.83};
+  if (!one) return made;
+  made.measured = fmt::format("{:.4f} ms on the device, {:.5f} ms on the CPU", one->deviceMilliseconds,
+                              one->cpuMilliseconds);
+  made.holds = one->deviceMilliseconds >= 0.83 && one->cpuMilliseconds >= 0.83;
+  return made;
 }
 
 Conclusion collectionFour(const Results& results) {
+  Conclusion made{"Four legs take about three times as long as one (2.63 to 0.83 ms: 3.2)",
+                  "point collection",
+                  "the ratio is between 2.4 and 4, on the device",
+                  notMeasured,
+                  {}};
   const CollectionTime *one = results.collection.find("nearest", 1),
                        *four = results.collection.find("nearest", 4);
-  if (!one || !four)
-    return {"Four legs take about three times one leg", "point collection", "", "not measured", {}};
+  if (!one || !four) return made;
   const double device = four->deviceMilliseconds / one->deviceMilliseconds,
                cpu = four->cpuMilliseconds / one->cpuMilliseconds;
-  return {"Four legs take about three times as long as one (2.63 to 0.83 ms: 3.2)", "point collection",
-          "the ratio is between 2.4 and 4, on the device",
-          fmt::format("{:.2f} on the device, {:.2f} on the CPU", device, cpu), device >= 2.4 && device <= 4};
+  made.measured = fmt::format("{:.2f} on the device, {:.2f} on the CPU", device, cpu);
+  made.holds = device >= 2.4 && device <= 4;
+  return made;
 }
 
 std::string percent(double value) { return value < 0.001 ? "under 0.001 %" : fmt::format("{:.2g} %", value); }
@@ -175,9 +195,9 @@ Conclusion fidelity(const Results& results) {
   bool better = true, any = false;
   std::string measured;
   for (const FidelityRow& row : results.fidelity.rows) {
-    if (row.controller != "adaptive" || row.ground == "flat") continue;
-    const FidelityRow *clip = results.fidelity.find(row.ground, "clip"),
-                      *loop = results.fidelity.find(row.ground, "loop");
+    if (row.controller != Controller::adaptive || row.ground == "flat") continue;
+    const FidelityRow *clip = results.fidelity.find(row.ground, Controller::clip),
+                      *loop = results.fidelity.find(row.ground, Controller::loop);
     if (!clip || !loop) continue;
     const auto off = [](const FidelityRow& r) { return 100 * (r.depthSeen + r.heightSeen); };
     any = true;
@@ -190,7 +210,7 @@ Conclusion fidelity(const Results& results) {
       "Figures 9 to 14 and the table of fidelity",
       "on every uneven ground its feet are off the ground (penetration plus float, seen) by less than "
       "those of clip and loop",
-      measured.empty() ? "not measured" : measured,
+      measured.empty() ? notMeasured : measured,
       {}};
   if (any) made.holds = better;
   return made;
@@ -200,9 +220,9 @@ Conclusion limits(const Results& results) {
   double violation = 0, error = 0;
   bool any = false;
   for (const FidelityRow& row : results.fidelity.rows) {
-    if (row.controller != "adaptive") continue;
+    if (row.controller != Controller::adaptive) continue;
     any = true;
-    violation = std::max(violation, row.fidelity.limitViolation);
+    violation = std::max(violation, row.fidelity.limitViolation.value_or(0));
     error = std::max(error, row.fidelity.reachErrorP99);
   }
   Conclusion made{
@@ -210,9 +230,12 @@ Conclusion limits(const Results& results) {
       "the table of fidelity",
       "on some ground adaptive agents break a limit by over 1e-3 rad, or miss by over 0.5 % of the leg "
       "length (99th percentile)",
-      fmt::format("limits broken by at most {:.2g} rad, missed by at most {:.3g} %", violation, 100 * error),
+      notMeasured,
       {}};
-  if (any) made.holds = violation > 1e-3 || error > 0.005;
+  if (!any) return made;
+  made.measured =
+      fmt::format("limits broken by at most {:.2g} rad, missed by at most {:.3g} %", violation, 100 * error);
+  made.holds = violation > 1e-3 || error > 0.005;
   return made;
 }
 
@@ -226,7 +249,7 @@ std::vector<Conclusion> conclusionsOf(const Results& results) {
 
 std::string verdictOf(const Conclusion& c) {
   if (c.holds) return *c.holds ? "holds" : "does not hold";
-  return c.measured == "not measured" ? "not measured" : "not settled";
+  return c.measured == notMeasured ? notMeasured : "not settled";
 }
 
 Table tableOf(const std::vector<Conclusion>& conclusions) {

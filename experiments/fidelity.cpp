@@ -15,12 +15,12 @@ constexpr double speed = 1;         // metres a second commanded: a leg length a
 constexpr uint32_t lookEvery = 30;  // ticks between two looks at where agents are
 
 FidelityRow measure(Device& device, const Heightfield& ground, const Settings& settings,
-                    const Controller& controller, const std::function<void(double)>& progress) {
-  Walk walk(device, ground, crossing(controller.name, settings.fidelityAgents, speed, settings.seed),
+                    const Subject& subject, const std::function<void(double)>& progress) {
+  Walk walk(device, ground, crossing(subject.controller, settings.fidelityAgents, speed, settings.seed),
             settings.dt);
   const double length = walk.rig().legLength;
   FidelityRow row;
-  row.controller = controller.name;
+  row.controller = subject.controller;
   std::vector<double> rough, travelled, depths, heights;
   std::vector<AgentState> last;
   for (uint32_t i = 1; i <= settings.fidelityTicks; ++i) {
@@ -78,15 +78,12 @@ const std::vector<FidelityColumn>& fidelityColumns() {
 FidelityStudy measureFidelity(Device& device, const std::vector<Ground>& grounds, const Settings& settings,
                               Course& course) {
   FidelityStudy study;
-  double done = 0, all = 0;
-  for (const Ground& ground : grounds) all += ground.field ? allControllers.size() : 0;
+  double done = 0;
+  const auto all = static_cast<double>(grounds.size() * subjects.size());
   for (const Ground& ground : grounds) {
-    if (!ground.field) {
-      study.absent.push_back(fmt::format("{}: {}", ground.name, ground.what));
-      continue;
-    }
-    for (const Controller& controller : allControllers) {
-      study.rows.push_back(measure(device, *ground.field, settings, controller,
+    study.grounds.push_back(fmt::format("{}: {}", ground.name, ground.what));
+    for (const Subject& subject : subjects) {
+      study.rows.push_back(measure(device, ground.field, settings, subject,
                                    [&](double share) { course.at((done + share) / all); }));
       study.rows.back().ground = ground.name;
       course.at(++done / all);
@@ -95,7 +92,7 @@ FidelityStudy measureFidelity(Device& device, const std::vector<Ground>& grounds
   return study;
 }
 
-const FidelityRow* FidelityStudy::find(const std::string& ground, const std::string& controller) const {
+const FidelityRow* FidelityStudy::find(const std::string& ground, Controller controller) const {
   for (const FidelityRow& row : rows)
     if (row.ground == ground && row.controller == controller) return &row;
   return nullptr;
@@ -107,12 +104,14 @@ Table FidelityStudy::csv() const {
   for (const FidelityRow& row : rows) {
     std::vector<std::string> cells = {row.ground,
                                       fmt::format("{:.6f}", row.roughness),
-                                      row.controller,
+                                      nameOf(row.controller),
                                       fmt::format("{:.5f}", row.speed),
                                       fmt::format("{:.6g}", row.depthSeen),
                                       fmt::format("{:.6g}", row.heightSeen)};
-    for (const FidelityColumn& column : fidelityColumns())
-      cells.push_back(fmt::format("{:.6g}", column.value(row.fidelity)));
+    for (const FidelityColumn& column : fidelityColumns()) {
+      const std::optional<double> value = column.value(row.fidelity);
+      cells.push_back(value ? fmt::format("{:.6g}", *value) : "");
+    }
     table.rows.push_back(std::move(cells));
   }
   return table;

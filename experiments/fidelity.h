@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "experiments/grounds.h"
 #include "experiments/page/table.h"
 #include "experiments/settings.h"
+#include "skitter/controller.h"
 #include "skitter/crowd.h"
 
 namespace skitter::experiments {
@@ -17,13 +19,14 @@ struct FidelityColumn {
   const char* name;  // of the CSV file
   const char* title;
   double scale;
-  std::function<double(const Fidelity&)> value;
+  std::function<std::optional<double>(const Fidelity&)> value;  // none: not judged for this controller
 };
 const std::vector<FidelityColumn>& fidelityColumns();
 
 // How one controller did on one ground.
 struct FidelityRow {
-  std::string ground, controller;
+  std::string ground;
+  Controller controller;
   double roughness = 0;  // under the agents, leg lengths: rms residual from the plane under the feet, mean
   double speed = 0;      // achieved, share of the commanded
   // Seen from outside, by the places of the feet at every look: all feet below the ground, feet in stance
@@ -35,9 +38,9 @@ struct FidelityRow {
 
 struct FidelityStudy {
   std::vector<FidelityRow> rows;
-  std::vector<std::string> absent;  // grounds, with the reason
+  std::vector<std::string> grounds;  // name and origin of each
 
-  const FidelityRow* find(const std::string& ground, const std::string& controller) const;
+  const FidelityRow* find(const std::string& ground, Controller controller) const;
   Table csv() const;
 };
 

@@ -117,10 +117,10 @@ GaitStudy measureGait(Device& device, const Settings& settings, Course& course) 
   GaitStudy study;
   study.dt = settings.dt;
   double done = 0;
-  for (const Controller& controller : allControllers) {
+  for (const Subject& subject : subjects) {
     for (const double speed : settings.gaitSpeeds) {
-      course.at(done++ / static_cast<double>(allControllers.size() * settings.gaitSpeeds.size()));
-      Walk walk(device, ground, crossing(controller.name, settings.gaitAgents, speed, settings.seed),
+      course.at(done++ / static_cast<double>(subjects.size() * settings.gaitSpeeds.size()));
+      Walk walk(device, ground, crossing(subject.controller, settings.gaitAgents, speed, settings.seed),
                 settings.dt);
       if (study.legs.empty()) {
         for (const Leg& leg : walk.rig().legs) {
@@ -135,10 +135,10 @@ GaitStudy measureGait(Device& device, const Settings& settings, Course& course) 
         record.ticks.push_back(walk.agents());
       }
       GaitRow row = judge(record, study, walk.rig().legLength);
-      row.controller = controller.name;
+      row.controller = subject.controller;
       row.commanded = speed;
       study.rows.push_back(std::move(row));
-      if (controller.name == std::string("adaptive") && speed == 1) {
+      if (subject.controller == Controller::adaptive && speed == 1) {
         for (const std::vector<AgentState>& tick : record.ticks) {
           std::vector<bool>& stances = study.footfalls.emplace_back();
           for (const LegState& leg : tick.front().legs) stances.push_back(leg.stance);
@@ -149,7 +149,7 @@ GaitStudy measureGait(Device& device, const Settings& settings, Course& course) 
   return study;
 }
 
-const GaitRow* GaitStudy::find(const std::string& controller, double commanded) const {
+const GaitRow* GaitStudy::find(Controller controller, double commanded) const {
   for (const GaitRow& row : rows)
     if (row.controller == controller && row.commanded == commanded) return &row;
   return nullptr;
@@ -181,7 +181,7 @@ std::string GaitStudy::order(const GaitRow& row, char side) const {
   return text;
 }
 
-GaitStudy::Line GaitStudy::dutyLine(const std::string& controller) const {
+GaitStudy::Line GaitStudy::dutyLine(Controller controller) const {
   Line line;
   double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   for (const GaitRow& row : rows) {
@@ -202,7 +202,7 @@ Table GaitStudy::table() const {
                "groups_apart", "cycles"}};
   for (const std::string& leg : legs) table.head.push_back("phase_" + leg);
   for (const GaitRow& row : rows) {
-    std::vector<std::string> cells = {row.controller};
+    std::vector<std::string> cells = {nameOf(row.controller)};
     for (const double value : {row.commanded, row.speed, row.duty, row.frequency, row.stride, row.bounce,
                                row.lag, row.groupsApart, row.cycles})
       cells.push_back(fmt::format("{:.5g}", value));

@@ -6,6 +6,7 @@
 #include "experiments/course.h"
 #include "experiments/page/table.h"
 #include "experiments/settings.h"
+#include "skitter/controller.h"
 #include "skitter/device.h"
 
 namespace skitter::experiments {
@@ -13,7 +14,7 @@ namespace skitter::experiments {
 // How agents walk on level ground, in the terms in which biologists measure spiders. Lengths in leg lengths,
 // times in seconds, phases in cycles.
 struct GaitRow {
-  std::string controller;
+  Controller controller;
   double commanded = 0, speed = 0;  // a second
   double duty = 0;                  // stance share of all legs and ticks
   double frequency = 0;             // cycles a second; 0: no leg made a whole cycle
@@ -34,7 +35,7 @@ struct GaitStudy {
   std::vector<std::vector<bool>> footfalls;
   double dt = 0;
 
-  const GaitRow* find(const std::string& controller, double commanded) const;
+  const GaitRow* find(Controller controller, double commanded) const;
   // The order in which the legs of a side lift, from the hindmost on, as a biologist writes it: "4-2-3-1";
   // '=' between legs that lift within 0.02 of a cycle.
   std::string order(const GaitRow& row, char side) const;
@@ -43,7 +44,7 @@ struct GaitStudy {
     double slope = 0, correlation = 0;
     int points = 0;
   };
-  Line dutyLine(const std::string& controller) const;
+  Line dutyLine(Controller controller) const;
   Table table() const;
 };
 

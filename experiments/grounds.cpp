@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace skitter::experiments {
 namespace {
@@ -43,10 +44,11 @@ std::vector<Ground> allGrounds(const std::vector<TerrainFileChoice>& files) {
       {"steep", "generated, hills of 6 m every 14 m, five octaves", steepGround()},
   };
   for (const TerrainFileChoice& choice : files) grounds.push_back(fromFile(choice));
-  for (const char* name : {"jacksboro", "everest"}) {
-    const bool there =
-        std::any_of(grounds.begin(), grounds.end(), [&](const Ground& g) { return g.name == name; });
-    if (!there) grounds.push_back({name, "absent: its terrain file was not given", {}});
+  for (const char* file : {"jacksboro_403x344.png", "everest_513x513.png"}) {
+    const std::string name(file, std::strchr(file, '_'));
+    const bool replaced =
+        std::any_of(files.begin(), files.end(), [&](const auto& choice) { return choice.name == name; });
+    if (!replaced) grounds.push_back(fromFile({name, std::filesystem::path(SKITTER_TERRAIN) / file, {}}));
   }
   return grounds;
 }

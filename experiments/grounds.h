@@ -9,10 +9,10 @@
 
 namespace skitter::experiments {
 
-// Ground that agents are judged on. One that is absent says why.
+// Ground that agents are judged on; `what` says where it comes from.
 struct Ground {
   std::string name, what;
-  std::optional<Heightfield> field;
+  Heightfield field;
 };
 
 // A terrain file that a user named. Without a scale its samples come to lie 0.5 m apart: half a leg length of
@@ -27,8 +27,8 @@ Heightfield flatGround();
 Heightfield rollingGround();  // the built-in scene's
 Heightfield steepGround();
 
-// flat, rolling and steep, then the files; jacksboro and everest are always told of, if only as absent.
-// Throws Error(input) for a file that cannot be read.
+// flat, rolling and steep, then the files, then those of jacksboro and everest (assets/terrain) that no file
+// replaces. Throws Error(input) for a file that cannot be read.
 std::vector<Ground> allGrounds(const std::vector<TerrainFileChoice>& files);
 
 }  // namespace skitter::experiments

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "cpu_reference/fabrik.h"
+#include "cpu_reference/ik/fabrik.h"
 
 namespace skitter::experiments {
 

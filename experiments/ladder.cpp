@@ -87,11 +87,12 @@ std::vector<std::vector<glm::dvec3>> groundAbout(const Heightfield& field, const
 }  // namespace
 
 Ladder measureLadder(Device& device, const Heightfield& ground, const Settings& settings, Course& course) {
-  Walk walk(device, ground, crossing("adaptive", settings.gaitAgents, 1, settings.seed), settings.dt);
+  Walk walk(device, ground, crossing(Controller::adaptive, settings.gaitAgents, 1, settings.seed),
+            settings.dt);
   walk.ticks(settings.settleTicks);
-  const crowd::Herd& herd = walk.crowd().impl().herds.front();
-  const Setting setting{validation::tuningOf(herd.parameters), validation::heightsOf(ground, herd.parameters),
-                        validation::creatureOf(herd.rigRecords, herd.legs, herd.bones, herd.groups)};
+  const crowd::Kind& kind = walk.crowd().impl().kindOf(0);
+  const Setting setting{validation::tuningOf(kind.parameters), validation::heightsOf(ground, kind.parameters),
+                        validation::creatureOf(kind.rigRecords, kind.legs, kind.bones, kind.groups)};
   Ladder best;
   HerdState before = walk.crowd().download(0);
   for (uint32_t i = 0; i < settings.arcTicks; ++i) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "cpu_reference/foothold.h"
+#include "cpu_reference/stages/foothold.h"
 #include "experiments/course.h"
 #include "experiments/page/table.h"
 #include "experiments/settings.h"

@@ -74,9 +74,9 @@ std::vector<PlacementPicture> measurePlacement(Device& device, const Heightfield
   std::optional<View> view;
   size_t chosen = 0;
   // The adaptive agent first: where it is, the others are looked at too, as near as they come to it.
-  for (size_t c = allControllers.size(); c-- > 0;) {
-    course.at(static_cast<double>(made.size()) / allControllers.size());
-    Walk walk(device, ground, crossing(allControllers[c].name, settings.placementAgents, 1, settings.seed),
+  for (size_t c = subjects.size(); c-- > 0;) {
+    course.at(static_cast<double>(made.size()) / subjects.size());
+    Walk walk(device, ground, crossing(subjects[c].controller, settings.placementAgents, 1, settings.seed),
               settings.dt);
     walk.ticks(settings.placementTicks);
     const std::vector<AgentState> agents = walk.agents();
@@ -85,7 +85,7 @@ std::vector<PlacementPicture> measurePlacement(Device& device, const Heightfield
     view = viewOfAgent(ground, agent);
 
     PlacementPicture picture;
-    picture.controller = allControllers[c].name;
+    picture.controller = subjects[c].controller;
     picture.width = settings.pictureWidth;
     picture.height = settings.pictureHeight;
     const double length = walk.rig().legLength;

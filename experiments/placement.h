@@ -6,6 +6,7 @@
 
 #include "experiments/course.h"
 #include "experiments/settings.h"
+#include "skitter/controller.h"
 #include "skitter/device.h"
 #include "skitter/heightfield.h"
 
@@ -13,7 +14,7 @@ namespace skitter::experiments {
 
 // Figures 12 to 14: one agent of each kind at the same rough place, from near by.
 struct PlacementPicture {
-  std::string controller;
+  Controller controller;
   uint32_t width = 0, height = 0;
   std::vector<uint8_t> rgba;
   double roughness = 0;    // of the ground below its feet, leg lengths

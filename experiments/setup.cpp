@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <ctime>
 
 #include "bench/ik/machine.h"
+#include "experiments/other_work.h"
 
 namespace skitter::experiments {
 namespace {
@@ -19,29 +19,34 @@ std::string now() {
   return text;
 }
 
-std::string load() {
-  double one = 0;
-  return getloadavg(&one, 1) == 1 ? fmt::format("{:.1f} (mean of the last minute, as measuring ended)", one)
-                                  : "unknown";
-}
-
 }  // namespace
 
-Setup describeSetup(const DeviceReport& device, const Settings& settings, const std::string& command) {
+Setup describeSetup(const DeviceReport& device, const Settings& settings, const std::string& command,
+                    std::optional<double> otherWork) {
   const nlohmann::ordered_json machine = bench::describeMachine(device);
   const auto at = [&](const char* key) { return machine.at(key).get<std::string>(); };
-  return {{"device",
-           fmt::format("{} ({}), records loaded through {}", at("device"), at("deviceType"), at("loads"))},
-          {"driver", at("driver")},
-          {"CPU", at("cpu")},
-          {"load", load()},
-          {"build", fmt::format("{}: {}", SKITTER_BUILD_TYPE, at("engineBuild"))},
-          {"date", now()},
-          {"seed", fmt::format("{}", settings.seed)},
-          {"tick", fmt::format("{:.6g} s", settings.dt)},
-          {"creature", "the built-in spider: eight legs of four bones, leg length 1 m"},
-          {"extent", settings.extent},
-          {"command", command}};
+  Setup setup;
+  setup.facts = {
+      {"device",
+       fmt::format("{} ({}), records loaded through {}", at("device"), at("deviceType"), at("loads"))},
+      {"driver", at("driver")},
+      {"CPU", at("cpu")},
+      {"other work",
+       otherWork ? fmt::format("{:.1f} % of the machine's CPU time", 100 * *otherWork) : "unknown"},
+      {"build", fmt::format("{}: {}", SKITTER_BUILD_TYPE, at("engineBuild"))},
+      {"date", now()},
+      {"seed", fmt::format("{}", settings.seed)},
+      {"tick", fmt::format("{:.6g} s", settings.dt)},
+      {"creature", "the built-in spider: eight legs of four bones, leg length 1 m"},
+      {"extent", settings.extent},
+      {"command", command}};
+  if (otherWork.value_or(0) >= kBusy)
+    setup.warning = fmt::format(
+        "The machine did other work meanwhile, {:.0f} % of its CPU time: times are too long, most of all by "
+        "the wall "
+        "clock. Measure again on a quiet machine.",
+        100 * *otherWork);
+  return setup;
 }
 
 }  // namespace skitter::experiments

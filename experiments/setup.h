@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,7 +11,12 @@
 namespace skitter::experiments {
 
 // With what, where and when it was measured, as name and value.
-using Setup = std::vector<std::pair<std::string, std::string>>;
-Setup describeSetup(const DeviceReport& device, const Settings& settings, const std::string& command);
+struct Setup {
+  std::vector<std::pair<std::string, std::string>> facts;
+  std::string warning;  // of times that mean little, in a sentence; or empty
+};
+// `otherWork`: the share of the machine's CPU time that others took meanwhile, if it is known.
+Setup describeSetup(const DeviceReport& device, const Settings& settings, const std::string& command,
+                    std::optional<double> otherWork);
 
 }  // namespace skitter::experiments

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "bench/ik/clock.h"
+#include "base/clock.h"
 #include "experiments/agents.h"
 #include "gpu/submit.h"
 #include "skitter/crowd.h"
@@ -17,8 +17,8 @@ class Walk {
       : crowd_(device, ground, scene, options), ring_(device.context()), dt_(static_cast<float>(dt)) {}
 
   // One tick to its end, on the host's clocks.
-  bench::Seconds tick() {
-    return bench::timed([&] {
+  base::Seconds tick() {
+    return base::timed([&] {
       crowd_.record(ring_.begin(), dt_);
       ring_.wait(ring_.submit());
     });

@@ -1,6 +1,6 @@
-#include "cpu_reference/body.h"
-#include "cpu_reference/tolerances.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/body.h"
+#include "cpu_reference/stages/tolerances.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 
@@ -49,7 +49,8 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
   const glm::dquat &q = expected.orientation, &r = got.orientation;
   sample.compare("orientation", difference(q, r), bound.orientation, {q.x, q.y, q.z, q.w},
                  {r.x, r.y, r.z, r.w});
-  sample.compare("orientation's sign", std::max(0.0, -glm::dot(r, previous.orientation)), bound.orientation);
+  sample.compare("orientation's sign", std::max(0.0, -glm::dot(r, previous.orientation)), bound.orientation,
+                 {q.x, q.y, q.z, q.w}, {r.x, r.y, r.z, r.w});
   sample.compare("height / leg length", std::abs(expected.y - got.y) / unit, bound.height / unit,
                  {expected.y, 0, 0, 0}, {got.y, 0, 0, 0});
   scalar("surface speed, m/s", expected.v3, got.v3, bound.v3);

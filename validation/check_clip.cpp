@@ -1,6 +1,6 @@
-#include "cpu_reference/play.h"
-#include "cpu_reference/tolerances_clip.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/clip.h"
+#include "cpu_reference/stages/tolerances_clip.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 #include "validation/convert_clip.h"
@@ -30,7 +30,8 @@ void compare(const Setting& setting, const char* which, const Play::Played& expe
     verdict.tie = true;
   }
   sample.compare("time, s", apart, timeBound, {expected.time, 0, 0, 0}, {got.time, 0, 0, 0});
-  sample.compare("time outside the clip, s", std::max({0.0, -got.time, got.time - clip.seconds}), 0);
+  sample.compare("time outside the clip, s", std::max({0.0, -got.time, got.time - clip.seconds}), 0,
+                 {expected.time, 0, 0, 0}, {got.time, 0, 0, 0});
   sample.compare("rate", std::abs(expected.rate - got.rate), 8 * tolerance::roundoff * expected.rate,
                  {expected.rate, 0, 0, 0}, {got.rate, 0, 0, 0});
   // A time that is known to the bit has one frame.

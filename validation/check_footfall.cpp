@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "cpu_reference/footfall.h"
-#include "cpu_reference/tolerances.h"
+#include "cpu_reference/stages/footfall.h"
+#include "cpu_reference/stages/tolerances.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "cpu_reference/foothold.h"
 #include "cpu_reference/heightfield.h"
-#include "cpu_reference/tolerances.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/foothold.h"
+#include "cpu_reference/stages/tolerances.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 
@@ -86,7 +86,7 @@ std::vector<reference::FootholdChoices> alternatives(const Case& c, const refere
   }
   std::vector<reference::FootholdChoices> choices;
   for (size_t i = 0; i < all.size(); ++i) {
-    if (mayFit[i] && lowest[i] <= surelyBest + tolerance::footholdScore) {
+    if (mayFit[i] && lowest[i] <= surelyBest) {
       choices.push_back({static_cast<int>(i), false, {}});
     }
     const bool noneSurelyFits = !std::isfinite(surelyBest);
@@ -131,7 +131,7 @@ struct StepBounds {
 StepBounds stepBounds(const Case& c, const reference::FootholdResult& result) {
   const auto& candidate = result.candidates[static_cast<size_t>(result.chosen)];
   const CandidateBounds b = boundsOf(c, result, candidate);
-  const double world = std::max({std::abs(c.body.y), std::abs(c.before.landing.y), 1.0});
+  const double world = tolerance::stepHeight(c.before, c.body);
   StepBounds bound{};
   bound.landing = b.horizontal + 2 * tolerance::local;
   bound.landingHeight = b.vertical + 2 * tolerance::roundoff * world;
@@ -240,7 +240,10 @@ void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge) {
     stays("arc of a leg that neither lifts nor is aimed anew",
           records(moment.before.arc, leg, shared::ARC_STRIDE),
           records(moment.after.arc, leg, shared::ARC_STRIDE));
-    if (!sample.passes()) judge.add(moment.n, moment.number(), static_cast<int>(l), sample);
+    if (sample.passes())
+      judge.keep();
+    else
+      judge.add(moment.n, moment.number(), static_cast<int>(l), sample);
   }
 }
 

@@ -1,9 +1,9 @@
 #include <bit>
 
-#include "cpu_reference/gait.h"
 #include "cpu_reference/heightfield.h"
-#include "cpu_reference/tolerances.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/gait.h"
+#include "cpu_reference/stages/tolerances.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 
@@ -74,7 +74,8 @@ Verdict compare(const Setting& setting, const Moment& moment, const reference::G
   sample.finite("gait", records(moment.after.gait, moment.agent, shared::GAIT_STRIDE));
   sample.compare("phase", phaseDifference(expected.phase, got.phase), bound.phase, {expected.phase, 0, 0, 0},
                  {got.phase, 0, 0, 0});
-  sample.compare("phase outside [0, 1)", got.phase >= 0 && got.phase < 1 ? 0 : 1, 0);
+  sample.compare("phase outside [0, 1)", got.phase >= 0 && got.phase < 1 ? 0 : 1, 0,
+                 {expected.phase, 0, 0, 0}, {got.phase, 0, 0, 0});
   sample.same("duration, ticks", expected.duration, got.duration);
   sample.compare(
       "half stride / leg length", std::abs(expected.halfStride - got.halfStride) / setting.tuning.legLength,

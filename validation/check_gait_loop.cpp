@@ -1,6 +1,6 @@
-#include "cpu_reference/gait_loop.h"
-#include "cpu_reference/tolerances.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/gait_loop.h"
+#include "cpu_reference/stages/tolerances.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 
@@ -17,7 +17,8 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ga
   const double apart = std::abs(expected.phase - got.phase);
   sample.compare("phase", std::min(apart, std::abs(1 - apart)), bound.phase, {expected.phase, 0, 0, 0},
                  {got.phase, 0, 0, 0});
-  sample.compare("phase outside [0, 1)", got.phase >= 0 && got.phase < 1 ? 0 : 1, 0);
+  sample.compare("phase outside [0, 1)", got.phase >= 0 && got.phase < 1 ? 0 : 1, 0,
+                 {expected.phase, 0, 0, 0}, {got.phase, 0, 0, 0});
   sample.same("duration, ticks", expected.duration, got.duration);
   sample.compare(
       "half stride / leg length", std::abs(expected.halfStride - got.halfStride) / setting.tuning.legLength,

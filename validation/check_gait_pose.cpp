@@ -1,6 +1,6 @@
-#include "cpu_reference/gait_pose.h"
-#include "cpu_reference/tolerances_pose.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/gait_pose.h"
+#include "cpu_reference/stages/tolerances_pose.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 
@@ -18,7 +18,8 @@ void checkPoseGait(const Setting& setting, const Moment& moment, Judge& judge) {
   sample.compare("phase", std::min(apart, std::abs(1 - apart)),
                  reference::tolerance::wheel(setting.tuning, stride, body), {expected, 0, 0, 0},
                  {got.phase, 0, 0, 0});
-  sample.compare("phase outside [0, 1)", got.phase >= 0 && got.phase < 1 ? 0 : 1, 0);
+  sample.compare("phase outside [0, 1)", got.phase >= 0 && got.phase < 1 ? 0 : 1, 0, {expected, 0, 0, 0},
+                 {got.phase, 0, 0, 0});
   sample.same("masks", 0, got.lift | got.reaim | got.air);
   judge.add(moment.n, moment.number(), -1, sample);
 }

@@ -1,8 +1,8 @@
-#include "cpu_reference/ik.h"
-#include "cpu_reference/kinematics.h"
-#include "cpu_reference/swing.h"
-#include "cpu_reference/tolerances.h"
-#include "shared/records.h"
+#include "cpu_reference/ik/kinematics.h"
+#include "cpu_reference/stages/ik.h"
+#include "cpu_reference/stages/swing.h"
+#include "cpu_reference/stages/tolerances.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 #include "validation/solve.h"
@@ -54,15 +54,89 @@ void checkMiss(const Setting& setting, const Moment& moment, size_t l, const ref
   sample.compare("miss / reach", std::abs(want - found), bound, {want, 0, 0, 0}, {found, 0, 0, 0});
 }
 
-// Of the approach's iterations the best is kept, and rounding decides between those that are equally near:
-// from another of them the polish ends elsewhere. In reaches, the larger error of those from the first and
-// the last of them.
-double tiedError(const Setting& setting, const reference::Limb& limb, const reference::AgentBody& body,
-                 const reference::Foot& foot, const reference::Chain& previous,
-                 const reference::Chain& first) {
-  const double tie = 2 * kinematicsError(setting, limb);
-  const reference::Chain last = reference::ik(setting.tuning, limb, body, foot, previous, setting.ik, tie);
-  return std::max(first.reachError, last.reachError) / limb.reach;
+// Erring solves a way, and ways that are tried at most.
+constexpr uint64_t trials = 32;
+constexpr size_t mostWays = 64;
+
+// A leg's solve, as the reference is given it.
+struct Solve {
+  const Setting& setting;
+  const reference::Limb& limb;
+  const reference::AgentBody& body;
+  const reference::Foot& foot;
+  const reference::Chain& previous;
+
+  reference::Posture run(reference::Arithmetic& arithmetic) const {
+    const reference::IkPlan& plan = setting.ik;
+    return {limb, reference::ik(setting.tuning, limb, body, foot, previous, plan, arithmetic).directions};
+  }
+};
+
+// The largest distance of two poses' joints, share of the reach.
+double farthest(const reference::Posture& a, const reference::Posture& b) {
+  double apart = 0;
+  for (size_t i = 1; i <= a.bones(); ++i) apart = std::max(apart, glm::length(a.joint(i) - b.joint(i)));
+  return apart;
+}
+
+// Where a solve ends that decides in one way.
+struct Ending {
+  double apart = 0, tolerance = 0;    // of the pose that was found from it
+  std::vector<bool> decisions, open;  // open: within its margin, so that float32 may decide otherwise
+
+  double ratio() const { return apart / tolerance; }
+};
+
+// The errors of erring solves, all of which decide alike, are those that float32 may have: of the pose, and
+// of each margin.
+Ending endingOf(const Solve& solve, const reference::Arithmetic::Roundings& roundings,
+                const std::vector<bool>& told, const reference::Posture& got, double least) {
+  reference::Arithmetic exact(told);
+  const reference::Posture end = solve.run(exact);
+  const std::vector<double>& margins = exact.margins();
+  double squares = 0;
+  std::vector<double> marginSquares(margins.size(), 0.0);
+  for (uint64_t trial = 0; trial < trials; ++trial) {
+    reference::Arithmetic erring(exact.decisions(), roundings, trial);
+    const double off = farthest(solve.run(erring), end);
+    squares += off * off;
+    for (size_t i = 0; i < std::min(margins.size(), erring.margins().size()); ++i) {
+      const double moved = erring.margins()[i] - margins[i];
+      marginSquares[i] += moved * moved;
+    }
+  }
+  const auto bound = [](double sum) { return tolerance::deviations * std::sqrt(sum / trials); };
+  Ending ending{farthest(got, end), std::max(least, bound(squares)), exact.decisions(), {}};
+  for (size_t i = 0; i < margins.size(); ++i)
+    ending.open.push_back(std::abs(margins[i]) <= bound(marginSquares[i]));
+  return ending;
+}
+
+// Tries all ways to decide what is open: the first that ends where `got` is, or else the one that ends
+// nearest. The exact one is the first.
+Ending nearestEnding(const Solve& solve, const reference::Arithmetic::Roundings& roundings,
+                     const reference::Posture& got, double least, bool& tie) {
+  std::vector<std::vector<bool>> ways = {{}};
+  Ending nearest;
+  for (size_t w = 0; w < ways.size() && w < mostWays; ++w) {
+    const std::vector<bool> told = ways[w];
+    const Ending ending = endingOf(solve, roundings, told, got, least);
+    if (w == 0 || ending.ratio() < nearest.ratio()) nearest = ending;
+    tie = w > 0 && ending.ratio() <= 1;
+    if (ending.ratio() <= 1) break;
+    for (size_t i = told.size(); i < ending.decisions.size(); ++i) {
+      if (!ending.open[i]) continue;
+      ways.emplace_back(ending.decisions.begin(), ending.decisions.begin() + static_cast<ptrdiff_t>(i) + 1);
+      ways.back().back().flip();
+    }
+  }
+  return nearest;
+}
+
+double widestOf(const std::vector<glm::dvec2>& directions) {
+  double widest = 0;
+  for (const glm::dvec2& xy : directions) widest = std::max(widest, glm::length(xy));
+  return widest;
 }
 
 }  // namespace
@@ -82,30 +156,30 @@ SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l
   const reference::Step step = stepOf(moment.after, leg);
   const reference::Foot foot =
       hasFeet ? footOf(moment.after, leg) : reference::swing(step, body, static_cast<double>(moment.n));
-  const double targetError = hasFeet ? 0 : tolerance::foot(step, body, foot.progress >= 1) / limb.reach;
+  const glm::dvec3 target = reference::ikTarget(limb, body, foot.target);
+  const double targetError = tolerance::farTarget(glm::length(target)) +
+                             (hasFeet ? 0 : tolerance::foot(step, body, foot.progress >= 1) / limb.reach);
   const reference::Chain got = chainOf(moment.after, leg, setting.bones);
-  const reference::Chain expected = reference::ik(setting.tuning, limb, body, foot, previous, setting.ik);
-  const reference::Posture posture(limb, got.directions), wanted(limb, expected.directions);
+  const Solve solve{setting, limb, body, foot, previous};
+  reference::Arithmetic exact;
+  const reference::Posture posture(limb, got.directions), wanted = solve.run(exact);
 
   SolveVerdict verdict;
   Sample& sample = verdict.sample;
   sample.finite("chain", records(moment.after.chain, leg, shared::chainStride(setting.bones)));
-  const double error = checkGoals(setting, limb, body, reference::ikTarget(limb, body, foot.target), previous,
-                                  got, posture, targetError, !moment.after.tip.empty(), sample);
+  const double error = checkGoals(setting, limb, body, target, previous, got, posture, targetError,
+                                  !moment.after.tip.empty(), sample);
   if (!moment.after.miss.empty()) checkMiss(setting, moment, l, limb, foot, error, targetError, sample);
 
-  double apart = 0;
-  for (size_t i = 1; i <= posture.bones(); ++i) {
-    apart = std::max(apart, glm::length(posture.joint(i) - wanted.joint(i)));
+  const double swing = std::max(widestOf(wanted.directions()), widestOf(previous.directions));
+  const double least = tolerance::samePose(limb.bones.size(), swing);
+  Ending ending{farthest(posture, wanted), least, {}, {}};
+  if (!(ending.ratio() <= 1)) {
+    const auto roundings = tolerance::solving(limb, foot, swing, targetError);
+    ending = nearestEnding(solve, roundings, posture, least, verdict.tie);
   }
-  verdict.tie = apart > tolerance::jointPosition;
-  if (verdict.tie) {
-    const double wantedError = tiedError(setting, limb, body, foot, previous, expected);
-    sample.compare("error beyond the reference's / reach", std::max(0.0, error - wantedError),
-                   tolerance::ikTie, {wantedError, apart, 0, 0}, {error, 0, 0, 0});
-  } else {
-    sample.compare("joint positions / reach", apart, tolerance::jointPosition);
-  }
+  sample.compare("joint positions / reach", ending.apart, ending.tolerance, {wanted.tip(), 0},
+                 {posture.tip(), 0});
   return verdict;
 }
 

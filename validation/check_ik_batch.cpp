@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "cpu_reference/columns.h"
-#include "cpu_reference/tolerances.h"
+#include "cpu_reference/ik/columns.h"
+#include "cpu_reference/roundoff.h"
 #include "validation/convert_ik.h"
 
 namespace skitter::validation {
@@ -209,7 +209,7 @@ class Comparison {
   std::vector<Difference> differences(size_t c, const Solved& expected, const Spread& spread) const {
     const ik::Report& got = run_.reports[c];
     const double least = inputRounding(expected.result.state, chain_.bones.size());
-    if (spread.tie) return {tied(expected, got, spread)};
+    if (spread.tie) return {tied(expected, got, spread, least)};
     std::vector<Difference> all;
     const auto exact = [&](const char* quantity, double wanted, double found) {
       all.push_back({quantity, 0, wanted == found ? 0.0 : 1.0, 0.5, glm::dvec3(wanted), glm::dvec3(found)});
@@ -249,15 +249,17 @@ class Comparison {
   }
 
   // A batch that goes another way in one iteration comes as near to the target as the reference may. Over a
-  // whole solve it may end elsewhere; what ships must arrive if the reference does whichever way it goes.
-  Difference tied(const Solved& expected, const ik::Report& got, const Spread& spread) const {
+  // whole solve it may end elsewhere; what ships must arrive if the reference does whichever way it goes, but
+  // for what a float32 error is off by, `rounding`.
+  Difference tied(const Solved& expected, const ik::Report& got, const Spread& spread,
+                  double rounding) const {
     const double reached = std::max(expected.result.error, spread.worstError);
     const bool ships = settings_.solver == IkSolver::stretchAlign || settings_.solver == IkSolver::activeSet;
     const bool must = ships && reached <= settings_.tolerance;
     return {"error in a tie",
             0,
             std::max(0.0, got.error - std::max(reached, settings_.tolerance)),
-            must        ? reference::tolerance::ikTie
+            must        ? rounding
             : isWhole() ? elsewhere
                         : otherWay,
             glm::dvec3(expected.result.error),

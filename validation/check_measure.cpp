@@ -2,9 +2,9 @@
 #include <cstring>
 
 #include "cpu_reference/heightfield.h"
-#include "cpu_reference/measure.h"
-#include "cpu_reference/tolerances.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/measure.h"
+#include "cpu_reference/stages/tolerances.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 
@@ -22,14 +22,16 @@ class Comparison {
 
   void length(const char* quantity, double Metric::*member, double bound) {
     const double e = expected_.*member, g = got_.*member;
-    const double rounding = (legs_ + 2) * tolerance::roundoff * std::abs(e);
-    sample_.compare(quantity, std::abs(e - g) / unit_, (bound + rounding) / unit_, {e, 0, 0, 0},
+    sample_.compare(quantity, std::abs(e - g) / unit_, (bound + rounding(e)) / unit_, {e, 0, 0, 0},
                     {g, 0, 0, 0});
   }
   void number(const char* quantity, double Metric::*member, double bound) {
     const double e = expected_.*member, g = got_.*member;
-    const double rounding = (legs_ + 2) * tolerance::roundoff * std::abs(e);
-    sample_.compare(quantity, std::abs(e - g), bound + rounding, {e, 0, 0, 0}, {g, 0, 0, 0});
+    sample_.compare(quantity, std::abs(e - g), bound + rounding(e), {e, 0, 0, 0}, {g, 0, 0, 0});
+  }
+  bool agrees(double Metric::*member, double bound) const {
+    const double e = expected_.*member, g = got_.*member;
+    return std::abs(e - g) <= bound + rounding(e);
   }
   // A count; `close` of its decisions could have gone the other way.
   void count(const char* quantity, double Metric::*member, double close = 0) {
@@ -40,6 +42,8 @@ class Comparison {
   bool ties() const { return ties_; }
 
  private:
+  double rounding(double sum) const { return (legs_ + 2) * tolerance::roundoff * std::abs(sum); }
+
   Sample& sample_;
   const Metric &expected_, &got_;
   double unit_, legs_;
@@ -82,6 +86,42 @@ double pathBound(const reference::Trail& trail, const TrailBounds& bound) {
   return (2 * trail.path + bound.first) * bound.first + 20 * tolerance::roundoff * trail.path * trail.path;
 }
 
+// A window that closes with a path as long as the least that counts, to within rounding: all of its sums are
+// added or nothing.
+struct CloseWindow {
+  double jerk, squaredPath;
+  bool counted;  // by the reference
+};
+
+CloseWindow closeWindow(const reference::Trail& trail, double beyond, double ticks) {
+  return {std::pow(ticks, 5) * trail.jerk, trail.path * trail.path, beyond > 0};
+}
+
+struct BoundedSum {
+  double Metric::*member;
+  double bound;
+};
+
+// Counts the windows in `want` as the device did, if there is a way to. Whether it is another way.
+bool decideWindows(const Comparison& metric, Metric& want, const BoundedSum& jerk, const BoundedSum& path,
+                   const std::vector<CloseWindow>& windows) {
+  const Metric exact = want;
+  // If there are more windows, only the first ten are decided.
+  const size_t ways = size_t{1} << std::min<size_t>(windows.size(), 10);
+  for (size_t way = 0; way < ways; ++way) {
+    want = exact;
+    for (size_t w = 0; w < windows.size(); ++w) {
+      if ((way >> w & 1) == 0) continue;
+      const double sign = windows[w].counted ? -1 : 1;
+      want.*jerk.member += sign * windows[w].jerk;
+      want.*path.member += sign * windows[w].squaredPath;
+    }
+    if (metric.agrees(jerk.member, jerk.bound) && metric.agrees(path.member, path.bound)) return way != 0;
+  }
+  want = exact;
+  return false;
+}
+
 // Nearest two distinct planted tips: a direction between them turns by their rounding over it.
 double nearestPair(const std::vector<reference::Foot>& feet, const std::vector<reference::Chain>& chains,
                    double most) {
@@ -107,11 +147,12 @@ void compareUnwatched(const Moment& moment, Judge& judge) {
 void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
   const uint64_t every = moment.after.watchEvery;
   const reference::WatchTurn turn = reference::watchTurn(moment.n, every);
-  if (moment.number() % every != turn.turn) return compareUnwatched(moment, judge);
+  const uint64_t number = moment.after.watchOffset + moment.number();
+  if (number % every != turn.turn) return compareUnwatched(moment, judge);
 
   const reference::Tuning& tuning = setting.tuning;
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
-  const size_t legs = static_cast<size_t>(setting.legs), slot = moment.number() / every;
+  const size_t legs = static_cast<size_t>(setting.legs), slot = number / every;
   const double unit = tuning.legLength;
   std::vector<reference::Foot> feet;
   std::vector<reference::Chain> chains;
@@ -133,10 +174,11 @@ void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
   TrailBounds bound = compareTrail(expected.watched.body, watched.body, 0, unit, sample);
   const double bodyJerk = expected.closes ? jerkBound(expected.watched.body, bound, tuning.jerkTicks) : 0;
   const double bodyPath = expected.closes ? pathBound(expected.watched.body, bound) : 0;
-  const bool bodyTie = expected.closes && std::abs(expected.bodyPath) <= 2 * bound.first;
+  std::vector<CloseWindow> closeBody, closeFeet;
+  if (expected.closes && std::abs(expected.bodyPath) <= 2 * bound.first)
+    closeBody.push_back(closeWindow(expected.watched.body, expected.bodyPath, tuning.jerkTicks));
   double footJerk = 0, footPath = 0, lengths = 0, vertical = 0, deepest = 0;
   double skates = 0, violations = 0, crossings = 0;
-  bool footTie = false;
   for (size_t l = 0; l < legs; ++l) {
     const reference::Limb& limb = setting.creature.limbs[l];
     const reference::TipTrail& trail = expected.watched.tips[l];
@@ -166,15 +208,16 @@ void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
     deepest = std::max(deepest, depth);
 
     if (leg.stays && std::abs(leg.slide) <= 2 * bound.first) ++skates;
-    if (std::abs(leg.violation) <= tolerance::limit) ++violations;
+    if (std::abs(leg.violation) <= tolerance::violation) ++violations;
     if (leg.paired && std::abs(leg.crossing) <= 4 * joint + 4 * tolerance::roundoff * length) ++crossings;
     if (!leg.closes || leg.path < -2 * bound.first) continue;
-    footTie = footTie || leg.path <= 2 * bound.first;
+    if (leg.path <= 2 * bound.first) closeFeet.push_back(closeWindow(trail, leg.path, tuning.jerkTicks));
     footJerk += jerkBound(trail, bound, tuning.jerkTicks);
     footPath += pathBound(trail, bound);
   }
 
-  Comparison metric(sample, expected.metric, got, unit, static_cast<double>(legs));
+  Metric want = expected.metric;
+  Comparison metric(sample, want, got, unit, static_cast<double>(legs));
   metric.count("ticks", &Metric::ticks);
   metric.count("planted leg-ticks", &Metric::planted);
   metric.count("leg-ticks planted twice", &Metric::stays);
@@ -182,7 +225,7 @@ void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
   metric.count("finished stances", &Metric::stances);
   metric.length("slip over finished stances / leg length", &Metric::slip, 0);
   metric.length("largest reach error / leg length", &Metric::largestError, 0);
-  metric.number("largest limit violation, rad", &Metric::largestViolation, tolerance::limit);
+  metric.number("largest limit violation, rad", &Metric::largestViolation, tolerance::violation);
   metric.count("leg-ticks beyond a limit", &Metric::violations, violations);
   metric.length("penetration / leg length", &Metric::penetration, vertical);
   metric.length("penetration beyond the dead zone / leg length", &Metric::penetrationBeyond, vertical);
@@ -201,15 +244,14 @@ void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
   metric.length("stability margin / leg length", &Metric::margin, margin);
   metric.length("least stability margin / leg length", &Metric::leastMargin, margin);
 
-  // A window whose path is that close to the least adds all of its jerk or nothing.
-  if (!footTie) {
-    metric.number("jerk of the feet", &Metric::footJerk, footJerk);
-    metric.number("squared path of the feet", &Metric::footPath, footPath);
-  }
-  if (!bodyTie) {
-    metric.number("jerk of the body", &Metric::bodyJerk, bodyJerk);
-    metric.number("squared path of the body", &Metric::bodyPath, bodyPath);
-  }
+  const bool footTie =
+      decideWindows(metric, want, {&Metric::footJerk, footJerk}, {&Metric::footPath, footPath}, closeFeet);
+  const bool bodyTie =
+      decideWindows(metric, want, {&Metric::bodyJerk, bodyJerk}, {&Metric::bodyPath, bodyPath}, closeBody);
+  metric.number("jerk of the feet", &Metric::footJerk, footJerk);
+  metric.number("squared path of the feet", &Metric::footPath, footPath);
+  metric.number("jerk of the body", &Metric::bodyJerk, bodyJerk);
+  metric.number("squared path of the body", &Metric::bodyPath, bodyPath);
   judge.add(moment.n, moment.number(), -1, sample, metric.ties() || footTie || bodyTie);
 }
 

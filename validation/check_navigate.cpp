@@ -1,6 +1,6 @@
-#include "cpu_reference/navigate.h"
-#include "cpu_reference/tolerances.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/navigate.h"
+#include "cpu_reference/stages/tolerances.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 
@@ -41,7 +41,7 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::Rest rest{.gait = gaitOf(moment.before, moment.agent),
                              .allowed = moment.after.sleep,
                              .edited = moment.after.watched,
-                             .breathes = setting.controller == crowd::Controller::adaptive};
+                             .breathes = setting.controller == Controller::adaptive};
   const auto run = [&](const reference::NavigateChoices& choices) {
     return reference::navigate(tuning, body, goal, rest, choices);
   };

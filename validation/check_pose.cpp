@@ -1,6 +1,6 @@
-#include "cpu_reference/pose.h"
-#include "cpu_reference/tolerances.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/pose.h"
+#include "cpu_reference/stages/tolerances.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 

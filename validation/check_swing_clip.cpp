@@ -1,7 +1,7 @@
-#include "cpu_reference/swing_clip.h"
+#include "cpu_reference/stages/swing_clip.h"
 
-#include "cpu_reference/tolerances_clip.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/tolerances_clip.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/clip_leg.h"
 #include "validation/convert.h"

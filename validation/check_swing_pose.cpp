@@ -1,6 +1,6 @@
-#include "cpu_reference/swing_pose.h"
-#include "cpu_reference/tolerances_pose.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/swing_pose.h"
+#include "cpu_reference/stages/tolerances_pose.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 

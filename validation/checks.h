@@ -14,14 +14,8 @@ struct Moment {
   size_t number() const { return after.sample.first + agent * after.sample.stride; }  // in the herd
 };
 
-// Records that a stage writes, of a whole agent or leg after leg.
-struct Kept {
-  std::vector<float> HerdState::*records;
-  const char* quantity;
-  bool ofLegs;
-};
-// A sleeper's must be those of before the tick, bit for bit; adds what is not.
-void checkKept(const Setting& setting, const Moment& moment, const Kept& kept, Judge& judge);
+// A sleeper's records must be those of before the tick, bit for bit; adds what is not.
+void checkKept(const Setting& setting, const Moment& moment, Record record, Judge& judge);
 
 void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge);
 void checkBody(const Setting& setting, const Moment& moment, Judge& judge);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cpu_reference/swing_clip.h"
+#include "cpu_reference/stages/swing_clip.h"
 #include "validation/checks.h"
 
 namespace skitter::validation {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "shared/records.h"
+#include "skitter/records.h"
 #include "validation/vec4s.h"
 
 namespace skitter::validation {
@@ -302,12 +302,7 @@ reference::Chain chainOf(const HerdState& state, size_t leg, int bones) {
 }
 
 void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& chain) {
-  const size_t base = at(leg, shared::chainStride(bones));
-  for (int b = 0; b < bones; b += 2) {
-    const size_t first = static_cast<size_t>(b);
-    const glm::dvec2 second = b + 1 < bones ? chain.directions[first + 1] : glm::dvec2(0);
-    store(state.chain, base + first / 2, {chain.directions[first], second});
-  }
+  storePairs(state.chain, at(leg, shared::chainStride(bones)), chain.directions);
   if (!state.tip.empty()) store(state.tip, at(leg, shared::TIP_STRIDE), {chain.tip, chain.reachError});
 }
 
@@ -331,6 +326,10 @@ void putMiss(HerdState& state, size_t agent, size_t leg, int legs, uint64_t n, d
   float* told = &state.miss[missAt(agent, leg, legs)];
   told[0] = static_cast<float>(miss);
   told[1] = static_cast<float>(n);
+}
+
+void putSpring(HerdState& state, size_t leg, int bones, const reference::KeyPoses::Directions& rates) {
+  storePairs(state.spring, at(leg, shared::chainStride(bones)), rates);
 }
 
 reference::KeyPoses::Directions springOf(const HerdState& state, size_t leg, int bones) {
@@ -390,7 +389,7 @@ reference::Metric metricOf(const HerdState& state, size_t agent) {
           .slip = m[4],
           .stances = m[5],
           .largestError = m[6],
-          .largestViolation = m[7],
+          .largestViolation = 2 * std::atan(double{m[7]}),
           .penetration = m[8],
           .penetrationBeyond = m[9],
           .floating = m[10],
@@ -413,7 +412,7 @@ reference::Metric metricOf(const HerdState& state, size_t agent) {
 void putMetric(HerdState& state, size_t agent, const reference::Metric& m) {
   const size_t base = at(agent, shared::METRIC_STRIDE);
   store(state.metric, base, {m.ticks, m.planted, m.stays, m.skates});
-  store(state.metric, base + 1, {m.slip, m.stances, m.largestError, m.largestViolation});
+  store(state.metric, base + 1, {m.slip, m.stances, m.largestError, std::tan(m.largestViolation / 2)});
   store(state.metric, base + 2, {m.penetration, m.penetrationBeyond, m.floating, m.floatingBeyond});
   store(state.metric, base + 3, {m.depth, m.deepest, m.violations, 0});
   store(state.metric, base + 4, {m.pairs, m.crossings, m.supported, m.unstable});

@@ -2,15 +2,15 @@
 
 #include <vector>
 
-#include "cpu_reference/measure.h"
-#include "cpu_reference/swing_pose.h"
+#include "cpu_reference/stages/measure.h"
+#include "cpu_reference/stages/swing_pose.h"
 #include "cpu_reference/types.h"
 #include "crowd/key_poses.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
 
-// Between the float records of shaders/shared/records.h and the reference's structs. An `agent` or `leg`
-// index counts within the herd; a leg is agent * legs + leg of the agent.
+// Between the float records of engine/include/skitter/records.h and the reference's structs. An `agent` or
+// `leg` index counts within the herd; a leg is agent * legs + leg of the agent.
 namespace skitter::validation {
 
 reference::Tuning tuningOf(const shared::Parameters& parameters);
@@ -33,7 +33,7 @@ double missOf(const HerdState& state, size_t agent, size_t leg, int legs, uint64
 reference::KeyPoses::Directions springOf(const HerdState& state, size_t leg, int bones);
 reference::BonePose boneOf(const HerdState& state, size_t entry);
 reference::Metric metricOf(const HerdState& state, size_t agent);
-// `slot`: the agent's number over HerdState::watchEvery.
+// `slot`: the agent's place in HerdState::watch.
 reference::Watched watchedOf(const HerdState& state, size_t slot, int legs);
 
 // Rounded to float into records that are already of full size.
@@ -44,6 +44,7 @@ void putGait(HerdState& state, size_t agent, const reference::Gait& gait);
 void putStep(HerdState& state, size_t leg, const reference::Step& step);
 void putFoot(HerdState& state, size_t leg, const reference::Foot& foot);
 void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& chain);
+void putSpring(HerdState& state, size_t leg, int bones, const reference::KeyPoses::Directions& rates);
 void putMiss(HerdState& state, size_t agent, size_t leg, int legs, uint64_t n, double miss);
 void putBone(HerdState& state, size_t entry, const reference::BonePose& bone);
 void putMetric(HerdState& state, size_t agent, const reference::Metric& metric);

@@ -1,6 +1,6 @@
 #include "validation/convert_clip.h"
 
-#include "shared/records.h"
+#include "skitter/records.h"
 #include "validation/vec4s.h"
 
 namespace skitter::validation {
@@ -85,6 +85,40 @@ FixRecord fixOf(const HerdState& state, size_t leg, int bones, int bone) {
 
 reference::Affine matrixOf(const HerdState& state, size_t entry) {
   return affine(state.pose, at(entry, shared::MATRIX_STRIDE));
+}
+
+void putPlay(HerdState& state, size_t agent, const reference::Play& play) {
+  const size_t base = at(agent, shared::PLAY_STRIDE);
+  const reference::Play::Played &to = play.to, &from = play.from;
+  store(state.play, base, {to.clip, to.time, from.clip, from.time});
+  store(state.play, base + 1, {play.weight, to.rate, from.rate, 0});
+  store(state.play, base + 2, {to.frame, to.fraction, from.frame, from.fraction});
+}
+
+void putPlant(HerdState& state, size_t leg, const reference::Plant& plant) {
+  const size_t base = at(leg, shared::STEP_STRIDE);
+  store(state.step, base, {plant.lock, shared::TILES * plant.tileX + plant.tileZ});
+  store(state.step, base + 1, {plant.offset, plant.locked ? 1 : 0});
+}
+
+void putStart(HerdState& state, size_t leg, int bones, const reference::PlantedStart& start) {
+  const size_t base = at(leg, shared::startStride(bones));
+  storePairs(state.start, base, start.directions);
+  store(state.start, base + static_cast<size_t>(shared::chainStride(bones)), {start.root, 0});
+}
+
+void putFix(HerdState& state, size_t leg, int bones, int bone, const reference::BoneFix& fix) {
+  const size_t base = at(leg * static_cast<size_t>(bones) + static_cast<size_t>(bone), shared::FIX_STRIDE);
+  const glm::dquat turn = glm::quat_cast(fix.turn);
+  store(state.fix, base, {turn.x, turn.y, turn.z, turn.w});
+  store(state.fix, base + 1, {fix.move, 0});
+}
+
+void putMatrix(HerdState& state, size_t entry, const reference::Affine& matrix) {
+  const size_t base = at(entry, shared::MATRIX_STRIDE);
+  for (int row = 0; row < 3; ++row)
+    store(state.pose, base + static_cast<size_t>(row),
+          {matrix[0][row], matrix[1][row], matrix[2][row], matrix[3][row]});
 }
 
 }  // namespace skitter::validation

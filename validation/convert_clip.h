@@ -1,8 +1,8 @@
 #pragma once
 
-#include "cpu_reference/clip_table.h"
-#include "cpu_reference/ik_planted.h"
-#include "cpu_reference/swing_planted.h"
+#include "cpu_reference/clips/table.h"
+#include "cpu_reference/stages/ik_planted.h"
+#include "cpu_reference/stages/swing_planted.h"
 #include "crowd/clip_records.h"
 #include "skitter/crowd.h"
 
@@ -23,5 +23,12 @@ struct FixRecord {
 FixRecord fixOf(const HerdState& state, size_t leg, int bones, int bone);
 // Of the clips' palette; `entry` is agent * joints + joint.
 reference::Affine matrixOf(const HerdState& state, size_t entry);
+
+// Rounded to float into records that are already of full size.
+void putPlay(HerdState& state, size_t agent, const reference::Play& play);
+void putPlant(HerdState& state, size_t leg, const reference::Plant& plant);
+void putStart(HerdState& state, size_t leg, int bones, const reference::PlantedStart& start);
+void putFix(HerdState& state, size_t leg, int bones, int bone, const reference::BoneFix& fix);
+void putMatrix(HerdState& state, size_t entry, const reference::Affine& matrix);
 
 }  // namespace skitter::validation

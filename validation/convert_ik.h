@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "cpu_reference/ik_solve.h"
+#include "cpu_reference/ik/solve.h"
 #include "skitter/ik.h"
 #include "validation/ik_judge.h"
 

@@ -3,73 +3,222 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "cpu_reference/body.h"
-#include "cpu_reference/foothold.h"
-#include "cpu_reference/gait.h"
-#include "cpu_reference/ik.h"
-#include "cpu_reference/navigate.h"
-#include "cpu_reference/pose.h"
-#include "cpu_reference/swing.h"
-#include "skitter/error.h"
+#include "cpu_reference/stages/body.h"
+#include "cpu_reference/stages/clip.h"
+#include "cpu_reference/stages/foothold.h"
+#include "cpu_reference/stages/gait.h"
+#include "cpu_reference/stages/gait_loop.h"
+#include "cpu_reference/stages/gait_pose.h"
+#include "cpu_reference/stages/ik.h"
+#include "cpu_reference/stages/navigate.h"
+#include "cpu_reference/stages/pose.h"
+#include "cpu_reference/stages/pose_clip.h"
+#include "cpu_reference/stages/swing.h"
+#include "cpu_reference/stages/swing_clip.h"
+#include "cpu_reference/stages/swing_loop.h"
+#include "cpu_reference/stages/swing_planted.h"
 #include "validation/convert.h"
+#include "validation/convert_clip.h"
 
 namespace skitter::validation {
+namespace {
 
-void walkAgent(const Setting& setting, uint64_t tick, size_t agent, HerdState& state) {
-  const reference::Tuning& tuning = setting.tuning;
-  const reference::Creature& creature = setting.creature;
-  const double n = static_cast<double>(tick);
-  const size_t legs = static_cast<size_t>(setting.legs), bones = static_cast<size_t>(setting.bones);
-  const size_t first = agent * legs, entry = agent * (1 + legs * bones);
+// A tick of one agent, a member a stage; what a stage reads it reads from the records.
+class Walk {
+ public:
+  Walk(const Setting& setting, uint64_t tick, size_t agent, HerdState& state)
+      : setting_(setting),
+        tuning_(setting.tuning),
+        creature_(setting.creature),
+        tick_(tick),
+        n_(static_cast<double>(tick)),
+        agent_(agent),
+        legs_(static_cast<size_t>(setting.legs)),
+        state_(state) {}
 
-  const reference::Rest rest{
-      .gait = gaitOf(state, agent), .allowed = state.sleep, .edited = state.watched, .breathes = true};
-  const auto way = reference::navigate(tuning, bodyOf(state, agent), goalOf(state, agent), rest);
-  putGoal(state, agent, way.goal);
-  putSteer(state, agent, way.desired, way.asleep);
-  if (way.asleep) return;
-
-  std::vector<reference::Step> steps;
-  std::vector<double> misses;
-  for (size_t l = 0; l < legs; ++l) {
-    steps.push_back(stepOf(state, first + l));
-    misses.push_back(missOf(state, agent, l, setting.legs, tick - 1));
+  void all() {
+    if (navigate()) return;
+    switch (setting_.controller) {
+      case Controller::adaptive:
+        return adaptive();
+      case Controller::loop:
+        return loop();
+      case Controller::clip:
+        return clip();
+      case Controller::planted:
+        return planted();
+      case Controller::pose:
+        return keyPoses();
+    }
   }
-  putBody(state, agent,
-          reference::body(tuning, setting.heights, creature, bodyOf(state, agent), desiredOf(state, agent),
-                          steps, misses, n, gaitOf(state, agent).phase)
-              .body);
-  const reference::AgentBody body = bodyOf(state, agent);
-  putGait(state, agent,
-          reference::gait(tuning, creature, body, gaitOf(state, agent).phase, steps, misses, n).gait);
-  const reference::Gait gait = gaitOf(state, agent);
 
-  putBone(state, entry, reference::bodyPose(body));
-  for (size_t l = 0; l < legs; ++l) {
-    const reference::Limb& limb = creature.limbs[l];
-    const size_t leg = first + l;
-    const bool lifts = (gait.lift >> l & 1u) != 0;
-    if (lifts || (gait.reaim >> l & 1u) != 0)
-      putStep(state, leg,
-              reference::foothold(tuning, setting.heights, limb, body, gait, steps[l], lifts, n).step);
-    putFoot(state, leg, reference::swing(stepOf(state, leg), body, n));
+ private:
+  void adaptive() {
+    const std::vector<reference::Step> before = stepsBefore();
+    const std::vector<double> misses = missesBefore();
+    putBody(state_, agent_,
+            reference::body(tuning_, setting_.heights, creature_, body(), desiredOf(state_, agent_), before,
+                            misses, n_, gait().phase)
+                .body);
+    const reference::WatchedGround ground = state_.watched ? &setting_.heights : nullptr;
+    putGait(state_, agent_,
+            reference::gait(tuning_, creature_, body(), gait().phase, before, misses, n_, {}, ground).gait);
+    for (size_t l = 0; l < legs_; ++l) {
+      const bool lifts = (gait().lift >> l & 1u) != 0;
+      if (lifts || (gait().reaim >> l & 1u) != 0)
+        putStep(state_, leg(l),
+                reference::foothold(tuning_, setting_.heights, limb(l), body(), gait(), before[l], lifts, n_)
+                    .step);
+      putFoot(state_, leg(l), reference::swing(stepOf(state_, leg(l)), body(), n_));
+      solve(l);
+    }
+    pose();
+  }
+
+  void loop() {
+    blindBody();
+    putGait(state_, agent_, reference::loopGait(tuning_, creature_.groups, body(), gait().phase).gait);
+    for (size_t l = 0; l < legs_; ++l) {
+      putFoot(state_, leg(l), reference::loopSwing(tuning_, creature_.groups, limb(l), body(), gait()).foot);
+      solve(l);
+    }
+    pose();
+  }
+
+  void clip() {
+    blindBody();
+    play();
+    for (size_t l = 0; l < legs_; ++l) {
+      const reference::ClipFoot swung = reference::clipSwing(setting_.clips, limb(l), l, body(), played());
+      putFoot(state_, leg(l), swung.foot);
+      putChain(state_, leg(l), setting_.bones, swung.chain);
+    }
+    for (size_t joint = 0; joint < joints(); ++joint)
+      putMatrix(state_, agent_ * joints() + joint,
+                reference::clipPose(setting_.clips, body(), played(), joint));
+  }
+
+  void planted() {
+    blindBody();
+    play();
+    for (size_t l = 0; l < legs_; ++l) plantLeg(l);
+    for (size_t joint = 0; joint < joints(); ++joint) {
+      const reference::ClipTable::BoneOf& owner = setting_.clips.bones[joint];
+      reference::BoneFix fix;
+      if (owner.leg >= 0) {
+        const FixRecord record =
+            fixOf(state_, leg(static_cast<size_t>(owner.leg)), setting_.bones, owner.bone);
+        fix = {glm::mat3_cast(record.turn), record.move};
+      }
+      putMatrix(state_, agent_ * joints() + joint,
+                reference::plantedPose(setting_.clips, body(), played(), joint, fix));
+    }
+  }
+
+  void keyPoses() {
+    blindBody();
+    const double phase = reference::wheelPhase(tuning_, setting_.keyPoses.stride, body(), gait().phase);
+    reference::Gait wheel;
+    wheel.phase = phase;
+    putGait(state_, agent_, wheel);
+    for (size_t l = 0; l < legs_; ++l) {
+      const reference::SprungLeg sprung = reference::poseSwing(
+          tuning_, setting_.keyPoses, limb(l), l, body(), gait().phase,
+          chainOf(state_, leg(l), setting_.bones).directions, springOf(state_, leg(l), setting_.bones));
+      putFoot(state_, leg(l), sprung.foot);
+      putChain(state_, leg(l), setting_.bones, sprung.chain);
+      putSpring(state_, leg(l), setting_.bones, sprung.rates);
+    }
+    pose();
+  }
+
+  // Whether the agent sleeps.
+  bool navigate() {
+    const reference::Rest rest{.gait = gait(),
+                               .allowed = state_.sleep,
+                               .edited = state_.watched,
+                               .breathes = setting_.controller == Controller::adaptive};
+    const auto way = reference::navigate(tuning_, body(), goalOf(state_, agent_), rest);
+    putGoal(state_, agent_, way.goal);
+    putSteer(state_, agent_, way.desired, way.asleep);
+    return way.asleep;
+  }
+  void blindBody() {
+    putBody(
+        state_, agent_,
+        reference::blindBody(tuning_, setting_.heights, creature_, body(), desiredOf(state_, agent_)).body);
+  }
+  void play() { putPlay(state_, agent_, reference::clip(tuning_, setting_.clips, body(), played()).play); }
+  void solve(size_t l) {
+    const reference::Chain chain = reference::ik(tuning_, limb(l), body(), footOf(state_, leg(l)),
+                                                 chainOf(state_, leg(l), setting_.bones), setting_.ik);
+    putChain(state_, leg(l), setting_.bones, chain);
+    putMiss(state_, agent_, l, setting_.legs, tick_, chain.miss);
+  }
+  // swing and ik of planted.
+  void plantLeg(size_t l) {
+    const reference::ClipLeg clipLeg = reference::clipLeg(setting_.clips, limb(l), l, played());
+    const reference::PlantedFoot swung = reference::plantedSwing(
+        tuning_, setting_.heights, body(), clipLeg.joints.back(), clipLeg.stands, plantOf(state_, leg(l)));
+    putFoot(state_, leg(l), swung.foot);
+    putPlant(state_, leg(l), swung.plant);
+    putStart(state_, leg(l), setting_.bones, {clipLeg.directions, clipLeg.joints.front()});
+    const reference::PlantedStart start = startOf(state_, leg(l), setting_.bones);
     const reference::Chain chain =
-        reference::ik(tuning, limb, body, footOf(state, leg), chainOf(state, leg, setting.bones), setting.ik);
-    putChain(state, leg, setting.bones, chain);
-    putMiss(state, agent, l, setting.legs, tick, chain.miss);
-    const auto posed = reference::pose(limb, body, chainOf(state, leg, setting.bones).directions);
-    for (size_t b = 0; b < bones; ++b) putBone(state, entry + 1 + l * bones + b, posed[b]);
+        reference::plantedIk(tuning_, limb(l), body(), footOf(state_, leg(l)), start, setting_.ik);
+    putChain(state_, leg(l), setting_.bones, chain);
+    const auto fixes = reference::boneFixes(reference::plantedLimb(limb(l), start), start,
+                                            chainOf(state_, leg(l), setting_.bones).directions);
+    for (size_t b = 0; b < fixes.size(); ++b)
+      putFix(state_, leg(l), setting_.bones, static_cast<int>(b), fixes[b]);
   }
+  void pose() {
+    const size_t bones = static_cast<size_t>(setting_.bones), entry = agent_ * (1 + legs_ * bones);
+    putBone(state_, entry, reference::bodyPose(body()));
+    for (size_t l = 0; l < legs_; ++l) {
+      const auto posed = reference::pose(limb(l), body(), chainOf(state_, leg(l), setting_.bones).directions);
+      for (size_t b = 0; b < bones; ++b) putBone(state_, entry + 1 + l * bones + b, posed[b]);
+    }
+  }
+
+  std::vector<reference::Step> stepsBefore() const {
+    std::vector<reference::Step> steps;
+    for (size_t l = 0; l < legs_; ++l) steps.push_back(stepOf(state_, leg(l)));
+    return steps;
+  }
+  std::vector<double> missesBefore() const {
+    std::vector<double> misses;
+    for (size_t l = 0; l < legs_; ++l) misses.push_back(missOf(state_, agent_, l, setting_.legs, tick_ - 1));
+    return misses;
+  }
+  reference::AgentBody body() const { return bodyOf(state_, agent_); }
+  reference::Gait gait() const { return gaitOf(state_, agent_); }
+  reference::Play played() const { return playOf(state_, agent_, setting_.clips); }
+  const reference::Limb& limb(size_t l) const { return creature_.limbs[l]; }
+  size_t leg(size_t l) const { return agent_ * legs_ + l; }
+  size_t joints() const { return setting_.clips.joints(); }
+
+  const Setting& setting_;
+  const reference::Tuning& tuning_;
+  const reference::Creature& creature_;
+  uint64_t tick_;
+  double n_;
+  size_t agent_, legs_;
+  HerdState& state_;
+};
+
+}  // namespace
+
+void walkAgent(const Setting& setting, uint64_t n, size_t agent, HerdState& state) {
+  Walk(setting, n, agent, state).all();
 }
 
 FreeRun::FreeRun(const HerdFacts& herd, HerdState start)
-    : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)), state_(std::move(start)) {
-  if (herd.controller != crowd::Controller::adaptive)
-    throw inputError("a free run is of adaptive herds alone");
-}
+    : setting_(settingOf(herd, herd.terrain)), state_(std::move(start)) {}
 
-void FreeRun::tick() {
+void FreeRun::tick(bool watched) {
   ++state_.tick;
+  state_.watched = watched;
   for (size_t agent = 0; agent < state_.agents; ++agent) walkAgent(setting_, state_.tick, agent, state_);
 }
 

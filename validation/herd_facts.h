@@ -6,10 +6,11 @@
 // Apart from replay.h, which does without a device.
 namespace skitter::validation {
 
-// Of a herd whose tick length is known: its parameters are complete only then. Refers to the herd's rig.
-inline HerdFacts herdFacts(const crowd::Herd& herd, const Heightfield& terrain) {
-  return {herd.rig, terrain,         herd.parameters, herd.rigRecords,
-          herd.ik,  herd.controller, herd.clips,      herd.keyPoses};
+// Of a herd's kind, once the tick length is known: its parameters are complete only then. Refers to the
+// kind's rig.
+inline HerdFacts herdFacts(const crowd::Kind& kind, const Heightfield& terrain) {
+  return {kind.rig, terrain,         kind.parameters, kind.rigRecords,
+          kind.ik,  kind.controller, kind.clips,      kind.keyPoses};
 }
 
 }  // namespace skitter::validation

@@ -11,18 +11,22 @@ namespace skitter::validation {
 struct StageResult {
   std::string name;
   uint64_t samples = 0;
+  uint64_t kept = 0;     // records that had to stay as they were, and did
   double maxError = 0;   // of the quantity that is worst relative to its own tolerance
   double tolerance = 0;  // of that quantity, in that sample
-  uint64_t ties = 0;     // samples in which a discrete choice fell the other way within its margin
+  // Samples in which a choice fell the other way within its margin, and the rest of which is right for that
+  // choice.
+  uint64_t ties = 0;
   bool pass = true;
   std::string worst;  // that quantity, agent, leg, expected, got
+  std::string why;    // empty where it passed, else every reason why it did not
 };
 
 // The comparisons of one sample; the one worst relative to its tolerance is kept.
 class Sample {
  public:
-  void compare(const char* quantity, double error, double tolerance, const glm::dvec4& expected = {},
-               const glm::dvec4& got = {});
+  void compare(const char* quantity, double error, double tolerance, const glm::dvec4& expected,
+               const glm::dvec4& got);
   // A quantity that must be the same exactly.
   void same(const char* quantity, double expected, double got);
   // Every float of a record.
@@ -43,7 +47,9 @@ class Judge {
   explicit Judge(std::string name) { result_.name = std::move(name); }
   // leg < 0: the sample is a whole agent.
   void add(uint64_t tick, uint64_t agent, int leg, const Sample& sample, bool tie = false);
-  // Passes if every sample did and ties are rare.
+  // A record had to stay as it was, and did; where it did not, it is a sample that fails.
+  void keep() { ++result_.kept; }
+  // Passes if there was something to compare and every sample passed.
   StageResult result() const;
 
  private:

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 
+#include "base/split_mix.h"
+#include "crowd/controller.h"
+#include "crowd/record.h"
+#include "crowd/stage_id.h"
 #include "shared/ik_batch.h"
-#include "shared/records.h"
 #include "skitter/error.h"
+#include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 #include "validation/convert_clip.h"
@@ -15,79 +18,67 @@
 namespace skitter::validation {
 namespace {
 
-struct Stage {
-  const char* name;
+using crowd::StageId;
+using enum Controller;
+
+// What holds a stage of some controllers against the reference.
+struct Check {
+  StageId stage;
+  std::vector<Controller> of;
   void (*check)(const Setting&, const Moment&, Judge&);
-  std::vector<Kept> writes = {};  // that a sleeper keeps; none: it takes part in the stage as ever
+  std::vector<Record> writes = {};  // that a sleeper keeps; none: it takes part in the stage as ever
 };
-using Stages = std::vector<Stage>;
 
-namespace kept {
-constexpr Kept body{&HerdState::body, "body of a sleeper", false};
-constexpr Kept gait{&HerdState::gait, "gait of a sleeper", false};
-constexpr Kept play{&HerdState::play, "play of a sleeper", false};
-constexpr Kept pose{&HerdState::pose, "pose of a sleeper", false};
-constexpr Kept step{&HerdState::step, "step of a sleeper", true};
-constexpr Kept arc{&HerdState::arc, "arc of a sleeper", true};
-constexpr Kept foot{&HerdState::foot, "foot of a sleeper", true};
-constexpr Kept chain{&HerdState::chain, "chain of a sleeper", true};
-constexpr Kept tip{&HerdState::tip, "tip of a sleeper", true};
-constexpr Kept miss{&HerdState::miss, "miss of a sleeper", false};
-constexpr Kept start{&HerdState::start, "start of a sleeper", true};
-constexpr Kept fix{&HerdState::fix, "fix of a sleeper", true};
-constexpr Kept spring{&HerdState::spring, "spring of a sleeper", true};
-}  // namespace kept
+const std::vector<Controller> every(allControllers.begin(), allControllers.end());
+const std::vector<Controller> blind = {loop, clip, planted, Controller::pose};
 
-const Stages& stagesOf(crowd::Controller controller) {
-  static const Stages adaptive = {
-      {"navigate", checkNavigate},         {"body", checkBody, {kept::body}},
-      {"gait", checkGait, {kept::gait}},   {"foothold", checkFoothold, {kept::step, kept::arc}},
-      {"swing", checkSwing, {kept::foot}}, {"ik", checkIk, {kept::chain, kept::tip, kept::miss}},
-      {"pose", checkPose, {kept::pose}},   {"measure", checkMeasure},
-      {"footfall", checkFootfall}};
-  static const Stages loop = {{"navigate", checkNavigate},
-                              {"body", checkBlindBody, {kept::body}},
-                              {"gait", checkLoopGait, {kept::gait}},
-                              {"swing", checkLoopSwing, {kept::foot}},
-                              {"ik", checkIk, {kept::chain, kept::tip, kept::miss}},
-                              {"pose", checkPose, {kept::pose}},
-                              {"measure", checkMeasure},
-                              {"footfall", checkFootfall}};
-  static const Stages clip = {{"navigate", checkNavigate},
-                              {"body", checkBlindBody, {kept::body}},
-                              {"clip", checkClip, {kept::play}},
-                              {"swing", checkClipSwing, {kept::foot, kept::chain, kept::tip}},
-                              {"pose", checkClipPose, {kept::pose}},
-                              {"measure", checkMeasure},
-                              {"footfall", checkFootfall}};
-  static const Stages planted = {{"navigate", checkNavigate},
-                                 {"body", checkBlindBody, {kept::body}},
-                                 {"clip", checkClip, {kept::play}},
-                                 {"swing", checkPlantedSwing, {kept::step, kept::foot, kept::start}},
-                                 {"ik", checkPlantedIk, {kept::chain, kept::tip, kept::fix}},
-                                 {"pose", checkPlantedPose, {kept::pose}},
-                                 {"measure", checkMeasure},
-                                 {"footfall", checkFootfall}};
-  static const Stages pose = {{"navigate", checkNavigate},
-                              {"body", checkBlindBody, {kept::body}},
-                              {"gait", checkPoseGait, {kept::gait}},
-                              {"swing", checkPoseSwing, {kept::foot, kept::chain, kept::tip, kept::spring}},
-                              {"pose", checkPose, {kept::pose}},
-                              {"measure", checkMeasure},
-                              {"footfall", checkFootfall}};
-  switch (controller) {
-    case crowd::Controller::loop:
-      return loop;
-    case crowd::Controller::clip:
-      return clip;
-    case crowd::Controller::planted:
-      return planted;
-    case crowd::Controller::pose:
-      return pose;
-    case crowd::Controller::adaptive:
-      break;
+// In the order in which a tick makes them.
+const std::vector<Check> checks = {
+    {StageId::navigate, every, checkNavigate},
+    {StageId::body, {adaptive}, checkBody, {Record::body}},
+    {StageId::body, blind, checkBlindBody, {Record::body}},
+    {StageId::clip, {clip, planted}, checkClip, {Record::play}},
+    {StageId::gait, {adaptive}, checkGait, {Record::gait}},
+    {StageId::gait, {loop}, checkLoopGait, {Record::gait}},
+    {StageId::gait, {Controller::pose}, checkPoseGait, {Record::gait}},
+    {StageId::foothold, {adaptive}, checkFoothold, {Record::step, Record::arc}},
+    {StageId::swing, {adaptive}, checkSwing, {Record::foot}},
+    {StageId::swing, {loop}, checkLoopSwing, {Record::foot}},
+    {StageId::swing, {clip}, checkClipSwing, {Record::foot, Record::chain, Record::tip}},
+    {StageId::swing, {planted}, checkPlantedSwing, {Record::step, Record::foot, Record::start}},
+    {StageId::swing,
+     {Controller::pose},
+     checkPoseSwing,
+     {Record::foot, Record::chain, Record::tip, Record::spring}},
+    {StageId::ik, {adaptive, loop}, checkIk, {Record::chain, Record::tip, Record::miss}},
+    {StageId::ik, {planted}, checkPlantedIk, {Record::chain, Record::tip, Record::fix}},
+    {StageId::pose, {adaptive, loop, Controller::pose}, checkPose, {Record::pose}},
+    {StageId::pose, {clip}, checkClipPose, {Record::pose}},
+    {StageId::pose, {planted}, checkPlantedPose, {Record::pose}},
+    {StageId::measure, every, checkMeasure},
+    {StageId::footfall, every, checkFootfall},
+};
+
+std::vector<const Check*> checksOf(Controller controller) {
+  std::vector<const Check*> found;
+  for (const Check& check : checks)
+    if (std::ranges::find(check.of, controller) != check.of.end()) found.push_back(&check);
+  return found;
+}
+
+bool leavesOut(StageId stage, const HerdState& before, const HerdState& after) {
+  switch (stage) {
+    case StageId::swing:
+      return after.foot.empty();
+    case StageId::pose:
+      return after.pose.empty();
+    case StageId::measure:
+      return before.metric.empty() || after.metric.empty();
+    case StageId::footfall:
+      return !after.footfallsKept;
+    default:
+      return false;
   }
-  return adaptive;
 }
 
 void expectSize(const char* what, size_t found, size_t expected) {
@@ -96,59 +87,35 @@ void expectSize(const char* what, size_t found, size_t expected) {
                    std::to_string(expected));
 }
 
+// Of records that may be left out, all or none.
 void expectSizes(const Setting& setting, const HerdState& state) {
   const size_t agents = state.agents;
-  const auto expect = [&](const char* what, const std::vector<float>& buffer, size_t count, int stride) {
-    expectSize(what, buffer.size(), 4 * agents * count * static_cast<size_t>(stride));
-  };
-  const size_t legs = static_cast<size_t>(setting.legs);
-  expect("goal records", state.goal, 1, shared::GOAL_STRIDE);
-  expect("steer records", state.steer, 1, shared::STEER_STRIDE);
-  expect("body records", state.body, 1, shared::BODY_STRIDE);
-  expect("gait records", state.gait, 1, shared::GAIT_STRIDE);
-  expect("step records", state.step, legs, shared::STEP_STRIDE);
-  if (crowd::aimsSteps(setting.controller)) expect("arc records", state.arc, legs, shared::ARC_STRIDE);
-  if (!state.foot.empty()) expect("foot records", state.foot, legs, shared::FOOT_STRIDE);
-  expect("chain records", state.chain, legs, shared::chainStride(setting.bones));
-  if (!state.tip.empty()) expect("tip records", state.tip, legs, shared::TIP_STRIDE);
-  if (crowd::tellsMisses(setting.controller))
-    expect("miss records", state.miss, 1, shared::missStride(setting.legs));
-  const size_t bones = static_cast<size_t>(setting.bones);
-  const bool clips = crowd::playsClips(setting.controller);
-  if (clips) expect("play records", state.play, 1, shared::PLAY_STRIDE);
-  if (clips && !state.pose.empty())
-    expect("pose records", state.pose, setting.clips.joints(), shared::MATRIX_STRIDE);
-  else if (!state.pose.empty())
-    expect("pose records", state.pose, 1 + legs * bones, shared::POSE_STRIDE);
-  if (setting.controller == crowd::Controller::planted) {
-    expect("start records", state.start, legs, shared::startStride(setting.bones));
-    expect("fix records", state.fix, legs * bones, shared::FIX_STRIDE);
+  for (const Record record : allRecords) {
+    const crowd::RecordInfo info = crowd::infoOf(record);
+    if (info.per == crowd::Per::watched || (info.kept != crowd::Kept::always && state.of(record).empty()))
+      continue;
+    const int stride =
+        crowd::strideOf(record, setting.legs, setting.bones, static_cast<int>(setting.clips.joints()));
+    const size_t count = info.per == crowd::Per::leg ? static_cast<size_t>(setting.legs) : 1;
+    expectSize((std::string(info.name) + " records").c_str(), state.of(record).size(),
+               4 * agents * count * static_cast<size_t>(stride));
   }
-  if (setting.controller == crowd::Controller::pose)
-    expect("spring records", state.spring, legs, shared::chainStride(setting.bones));
   if (state.metric.empty() || agents == 0) return;
-  expect("metric records", state.metric, 1, shared::METRIC_STRIDE);
   const auto floats = static_cast<size_t>(4 * shared::watchStride(setting.legs));
   const size_t last = state.sample.first + (agents - 1) * state.sample.stride;
-  if (state.watch.size() % floats != 0 || state.watch.size() / floats <= last / state.watchEvery)
+  if (state.watch.size() % floats != 0 ||
+      state.watch.size() / floats <= (state.watchOffset + last) / state.watchEvery)
     throw inputError("watch records: found " + std::to_string(state.watch.size()) + " floats, " +
                      std::to_string(floats) + " an agent that is watched, and agent " + std::to_string(last) +
                      " is not among them");
 }
 
-// splitmix64: Steele, Lea & Flood 2014.
-uint64_t scrambled(uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-  return x ^ x >> 31;
-}
-
 }  // namespace
 
 AgentSample sampleAt(uint64_t seed, uint64_t n, uint32_t agents, uint32_t most) {
+  using base::SplitMix64;
   const uint32_t stride = agents / most + 1;
-  return {static_cast<uint32_t>(scrambled(seed ^ scrambled(n)) % stride), stride};
+  return {static_cast<uint32_t>(SplitMix64::draw(seed ^ SplitMix64::draw(n)) % stride), stride};
 }
 
 HerdState sampled(const HerdState& whole, const AgentSample& sample) {
@@ -158,16 +125,13 @@ HerdState sampled(const HerdState& whole, const AgentSample& sample) {
   part.watched = whole.watched;
   part.sleep = whole.sleep;
   for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride) ++part.agents;
-  for (const auto records :
-       {&HerdState::goal, &HerdState::steer, &HerdState::body, &HerdState::gait, &HerdState::step,
-        &HerdState::arc, &HerdState::foot, &HerdState::chain, &HerdState::tip, &HerdState::miss,
-        &HerdState::pose, &HerdState::play, &HerdState::start, &HerdState::fix, &HerdState::spring}) {
-    const std::vector<float>& from = whole.*records;
+  for (const Record record : allRecords) {
+    if (crowd::infoOf(record).per == crowd::Per::watched) continue;
+    const std::vector<float>& from = whole.of(record);
     const size_t each = from.size() / std::max(1u, whole.agents);
     for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride)
-      (part.*records)
-          .insert((part.*records).end(), from.begin() + static_cast<ptrdiff_t>(agent * each),
-                  from.begin() + static_cast<ptrdiff_t>((agent + 1) * each));
+      part.of(record).insert(part.of(record).end(), from.begin() + static_cast<ptrdiff_t>(agent * each),
+                             from.begin() + static_cast<ptrdiff_t>((agent + 1) * each));
   }
   return part;
 }
@@ -190,15 +154,15 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   // The reference has no `automatic`.
   setting.ik = {static_cast<reference::IkSolver>(herd.ik.solver - shared::SOLVER_FABRIK), herd.ik.approach,
                 herd.ik.polish};
-  if (crowd::playsClips(herd.controller))
+  if (crowd::traitsOf(herd.controller).playsClips)
     setting.clips = clipTableOf(herd.clips, setting.legs, setting.bones);
-  if (herd.controller == crowd::Controller::pose)
+  if (herd.controller == Controller::pose)
     setting.keyPoses = keyPosesOf(herd.keyPoses, setting.legs, setting.bones);
   return setting;
 }
 
 Replay::Replay(const HerdFacts& herd) : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)) {
-  for (const Stage& stage : stagesOf(herd.controller)) judges_.emplace_back(stage.name);
+  for (const Check* check : checksOf(herd.controller)) judges_.emplace_back(nameOf(check->stage));
 }
 
 void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
@@ -208,20 +172,21 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
   }
   expectSizes(setting_, before);
   expectSizes(setting_, after);
-  const auto left = [&](std::string_view stage) {
-    return (stage == "pose" && after.pose.empty()) || (stage == "swing" && after.foot.empty()) ||
-           (stage == "footfall" && !after.footfallsKept) ||
-           (stage == "measure" && (before.metric.empty() || after.metric.empty()));
-  };
-  const Stages& stages = stagesOf(setting_.controller);
-  for (size_t agent = 0; agent < before.agents; ++agent) {
-    const Moment moment{n, before, after, agent};
-    const bool asleep = asleepOf(after, agent);
-    for (size_t s = 0; s < stages.size(); ++s) {
-      if (left(stages[s].name)) continue;
-      if (!asleep || stages[s].writes.empty()) stages[s].check(setting_, moment, judges_[s]);
-      for (const Kept& kept : stages[s].writes)
-        if (asleep) checkKept(setting_, moment, kept, judges_[s]);
+  const std::vector<const Check*> checks = checksOf(setting_.controller);
+  if (leftOut_.empty()) leftOut_.assign(checks.size(), true);
+  for (size_t c = 0; c < checks.size(); ++c) {
+    const Check& check = *checks[c];
+    if (leavesOut(check.stage, before, after)) continue;
+    leftOut_[c] = false;
+    for (const Record record : check.writes)
+      if (after.agents > 0 && crowd::infoOf(record).kept == crowd::Kept::bound && after.of(record).empty())
+        throw inputError(std::string("replay: found no ") + crowd::infoOf(record).name + " records");
+    for (size_t agent = 0; agent < before.agents; ++agent) {
+      const Moment moment{n, before, after, agent};
+      const bool asleep = asleepOf(after, agent);
+      if (!asleep || check.writes.empty()) check.check(setting_, moment, judges_[c]);
+      for (const Record record : check.writes)
+        if (asleep) checkKept(setting_, moment, record, judges_[c]);
     }
   }
 }
@@ -234,23 +199,32 @@ void Replay::edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std
 
 std::vector<StageResult> Replay::results() const {
   std::vector<StageResult> results;
-  for (const Judge& judge : judges_) results.push_back(judge.result());
+  for (size_t s = 0; s < judges_.size(); ++s)
+    if (leftOut_.empty() || !leftOut_[s]) results.push_back(judges_[s].result());
   return results;
 }
 
 bool Replay::pass() const {
-  return std::all_of(judges_.begin(), judges_.end(), [](const Judge& judge) { return judge.result().pass; });
+  const std::vector<StageResult> all = results();
+  return std::all_of(all.begin(), all.end(), [](const StageResult& result) { return result.pass; });
+}
+
+std::vector<CheckedStage> checkedStages(Controller controller) {
+  std::vector<CheckedStage> stages;
+  for (const Check* check : checksOf(controller)) stages.push_back({check->stage, check->writes});
+  return stages;
 }
 
 std::string table(const std::vector<StageResult>& results) {
-  std::string text = "stage        samples   max error   tolerance    ties  result\n";
+  std::string text = "stage        samples       kept   max error   tolerance    ties  result\n";
   for (const StageResult& result : results) {
     char line[160];
-    std::snprintf(line, sizeof line, "%-10s %9llu  %10.3g  %10.3g  %6llu  %s\n", result.name.c_str(),
-                  static_cast<unsigned long long>(result.samples), result.maxError, result.tolerance,
+    std::snprintf(line, sizeof line, "%-10s %9llu  %9llu  %10.3g  %10.3g  %6llu  %s\n", result.name.c_str(),
+                  static_cast<unsigned long long>(result.samples),
+                  static_cast<unsigned long long>(result.kept), result.maxError, result.tolerance,
                   static_cast<unsigned long long>(result.ties), result.pass ? "pass" : "FAIL");
     text += line;
-    if (!result.pass) text += "           " + result.worst + "\n";
+    if (!result.pass) text += "           " + result.why + "\n";
   }
   return text;
 }

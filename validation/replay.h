@@ -4,13 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "cpu_reference/clip_table.h"
-#include "cpu_reference/ik.h"
-#include "cpu_reference/swing_pose.h"
+#include "cpu_reference/clips/table.h"
+#include "cpu_reference/stages/ik.h"
+#include "cpu_reference/stages/swing_pose.h"
 #include "cpu_reference/types.h"
 #include "crowd/clip_records.h"
 #include "crowd/controller.h"
 #include "crowd/key_poses.h"
+#include "crowd/stage_id.h"
 #include "crowd/tuning.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
@@ -23,16 +24,16 @@ struct HerdFacts {
   const Rig& rig;
   const Heightfield& terrain;
   shared::Parameters parameters;
-  const std::vector<float>& rigRecords;  // shaders/shared/records.h
+  const std::vector<float>& rigRecords;  // engine/include/skitter/records.h
   crowd::IkPlan ik{};
-  crowd::Controller controller = crowd::Controller::adaptive;
+  Controller controller = Controller::adaptive;
   crowd::ClipRecords clips = {};  // where clips are played
   crowd::KeyPoses keyPoses = {};  // of controller pose
 };
 
 // What every check needs to know about the herd.
 struct Setting {
-  crowd::Controller controller = crowd::Controller::adaptive;
+  Controller controller = Controller::adaptive;
   reference::Tuning tuning;
   reference::Heights heights;
   reference::Creature creature;
@@ -58,7 +59,7 @@ HerdState sampled(const HerdState& whole, const AgentSample& sample);
 // what that stage of the engine started from and its result is held against what the engine wrote. Records
 // that a stage itself or a later one writes come from `before`, those of earlier stages from `after`. For an
 // agent that sleeps, as the device has it, the stages from body to pose compute nothing: what they write must
-// be what it was before, and only what is not counts as a sample.
+// be what it was before, and only what is not counts as a sample; what is was kept.
 class Replay {
  public:
   // Copies what it needs. Throws Error(input) when the rig records' size does not fit the rig.
@@ -74,7 +75,7 @@ class Replay {
   // The terrain was edited before the next tick (Crowd::editHeights).
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
 
-  // The controller's stages, in order. One without samples passes.
+  // The controller's stages, in order, less those that every tick left out.
   std::vector<StageResult> results() const;
   bool pass() const;
 
@@ -82,9 +83,17 @@ class Replay {
   Heightfield terrain_;
   Setting setting_;
   std::vector<Judge> judges_;
+  std::vector<bool> leftOut_;  // by every tick so far; before the first, none is
 };
 
-// One line a stage, and what was worst where a stage failed.
+// The controller's stages that are replayed, in order, and the records of each that a sleeper keeps.
+struct CheckedStage {
+  crowd::StageId stage;
+  std::vector<Record> writes;
+};
+std::vector<CheckedStage> checkedStages(Controller controller);
+
+// One line a stage, and why it failed where it did.
 std::string table(const std::vector<StageResult>& results);
 
 }  // namespace skitter::validation

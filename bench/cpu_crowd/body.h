@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/cpu_crowd/ground.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::cpu_crowd {
 
@@ -96,6 +96,20 @@ Vec3<F> leaningNormal(const shared::Parameters& q, const typename PlaneSums<F>::
       Vec3<F>{a.headingZ * lean - plane.slopeX * level, F(1), -a.headingX * lean - plane.slopeZ * level});
 }
 
+// From which the body can brake before the terrain's edge.
+template <class F>
+F speedToEdge(const shared::Parameters& q, const Agent<F>& a) {
+  const auto ahead = [](float extent, const F& tile, const F& local, const F& heading) {
+    const F tiles = tile * shared::TILE_SIZE;
+    const F left = select(heading < F(0), F(extent) + tiles + local, F(extent) - tiles - local);
+    return larger(left, F(0)) * reciprocal(larger(absolute(heading), F(1e-6f)));
+  };
+  const F way = smaller(ahead(q.halfExtentX, a.tileX, a.local.x, a.headingX),
+                        ahead(q.halfExtentZ, a.tileZ, a.local.z, a.headingZ));
+  const float halfTick = 0.5f * q.dt;
+  return way * reciprocal(squareRoot(way * (0.5f / q.braking) + halfTick * halfTick) + halfTick);
+}
+
 template <class F>
 void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
   const shared::Parameters& q = world.q;
@@ -117,6 +131,7 @@ void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
   a.headingZ = turned.z * size;
   const F speed = follow * commanded * larger(F(0), wx * a.headingX + wz * a.headingZ);
   a.speed = a.speed + clamp(speed - a.speed, -q.braking * q.dt, q.acceleration * q.dt);
+  a.speed = smaller(a.speed, speedToEdge(q, a));
   const F movedX = a.headingX * (a.speed * q.dt), movedZ = a.headingZ * (a.speed * q.dt);
 
   const auto plane = footing.ground.fit(q, float(world.legs.size()));

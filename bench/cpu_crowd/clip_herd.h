@@ -46,6 +46,8 @@ class ClipKernel final : public Kernel {
     settleStreams();
   }
 
+  void beginSteps(uint64_t, size_t) override {}  // no leg of a clip steps
+
   void read(HerdState& state) const override {
     for (size_t agent = 0; agent < agents_; ++agent) {
       const size_t block = agent / kAgents;

@@ -1,10 +1,11 @@
 #include "bench/cpu_crowd/crowd.h"
 
+#include "bench/cpu_baseline/lanes.h"
 #include "bench/cpu_crowd/kernel.h"
 #include "bench/cpu_crowd/pool.h"
 #include "shared/ik_batch.h"
-#include "shared/records.h"
 #include "skitter/error.h"
+#include "skitter/records.h"
 
 namespace skitter::cpu_crowd {
 namespace {
@@ -17,8 +18,8 @@ void expectSize(const char* what, const std::vector<float>& records, size_t coun
 }
 
 void check(const validation::HerdFacts& facts, const HerdState& start, const Options& options) {
-  const bool clips = facts.controller == crowd::Controller::clip;
-  if (!clips && facts.controller != crowd::Controller::adaptive)
+  const bool clips = facts.controller == Controller::clip;
+  if (!clips && facts.controller != Controller::adaptive)
     throw inputError(
         "CPU crowd: moves adaptive and clip herds alone; set the herd's controller to one of these");
   if (!clips && (facts.ik.solver != shared::SOLVER_FABRIK || facts.ik.polish < 1))
@@ -70,6 +71,16 @@ void CpuCrowd::tick(uint64_t n) {
                   [&](size_t part, int thread) { kernel.tick(n, part, thread, impl_->timed); });
 }
 
+void CpuCrowd::beginSteps(uint64_t n, size_t legs) {
+  const World& world = impl_->world;
+  const size_t most = world.clips.clips.empty() ? impl_->agents * world.legs.size() : 0;
+  if (legs > most)
+    throw inputError("CPU crowd: found " + std::to_string(legs) +
+                     " legs that begin a step, expected at most " + std::to_string(most));
+  impl_->tick = n;
+  impl_->kernel->beginSteps(n, legs);
+}
+
 void CpuCrowd::timeStages(bool on) { impl_->timed = on; }
 
 HerdState CpuCrowd::state() const {
@@ -103,5 +114,10 @@ HerdState CpuCrowd::state() const {
 std::vector<StageSeconds> CpuCrowd::stageSeconds() const { return impl_->kernel->stageSeconds(); }
 
 size_t CpuCrowd::bytesAnAgent() const { return impl_->kernel->bytes(); }
+
+std::string buildDescription() {
+  return "SIMD " SKITTER_SIMD_FLAGS "; scalar " SKITTER_SCALAR_FLAGS "; " SKITTER_BENCH_COMPILER ", " +
+         std::to_string(baseline::kLanes) + " floats a register";
+}
 
 }  // namespace skitter::cpu_crowd

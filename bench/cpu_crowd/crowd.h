@@ -10,8 +10,7 @@
 #include "validation/replay.h"
 
 // The opponent of the engine's crowd: the same tick (docs/stages.md) in single precision on the CPU, as fast
-// as can be written. validation::Replay judges it as it judges a device; baseline::buildDescription() says
-// how it was compiled.
+// as can be written. validation::Replay judges it as it judges a device.
 namespace skitter::cpu_crowd {
 
 // Agents to an instruction. Both are the same source: what it does to a register of floats it does to one.
@@ -22,6 +21,9 @@ struct Options {
   Width width = Width::simd;
   bool poses = false;  // bone rotations and positions, as CrowdOptions::pose
 };
+
+// All flags that its kernels are compiled with, the compiler and the lanes.
+std::string buildDescription();
 
 struct StageSeconds {
   std::string stage;
@@ -43,6 +45,9 @@ class CpuCrowd {
   // Tick `n`, counted from 1 as Crowd::tick is after it: one more than the tick that the state is of.
   // Allocates nothing. The number of threads does not change a bit of the result.
   void tick(uint64_t n);
+  // The foothold stage of tick `n` only: the herd's first `legs` legs, counted agent by agent, lift and begin
+  // a step. On one thread. Throws Error(input) for a clip herd, and where the herd has fewer legs.
+  void beginSteps(uint64_t n, size_t legs);
   // Whether ticks from now on are timed stage by stage, at first not: reading clocks costs some nanoseconds
   // an agent.
   void timeStages(bool on);

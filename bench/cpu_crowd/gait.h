@@ -4,16 +4,16 @@
 
 #include "bench/cpu_crowd/layout.h"
 #include "bench/cpu_crowd/rig.h"
+#include "skitter/rig.h"
 
 namespace skitter::cpu_crowd {
 
-inline constexpr int kMostLegs = 24;
 // Of the half stride: out of comfort for legs that step without a rhythm.
 inline constexpr float kReachShare = 0.6f;
 
 // Lanes whose leg lifts, or is aimed anew; a set a leg.
 struct Begun {
-  uint64_t lift[kMostLegs], again[kMostLegs];
+  uint64_t lift[Rig::maxLegs], again[Rig::maxLegs];
 };
 
 // Where in model space a foot should land that touches down in `time` seconds: its home in the middle of the
@@ -50,7 +50,7 @@ template <class F, int N>
   const F comfort = halfStride * (reach ? kReachShare : q.liftShare), astray = halfStride * q.strayShare;
   const auto settled = F(q.settleTime) <= a.still;
   const Mat3<F> r = matrixOf(a.orientation);
-  uint64_t air[kMostLegs], wants[kMostLegs];
+  uint64_t air[Rig::maxLegs], wants[Rig::maxLegs];
   F stoodSince(3e38f), first(-1);
   for (int l = 0; l < count; ++l) {
     const LegModel& model = world.legs[l];
@@ -89,7 +89,7 @@ template <class F, int N>
   }
 
   // The leg that must lift and has stood longest goes first, and its neighbours wait for it.
-  uint64_t yields[kMostLegs] = {};
+  uint64_t yields[Rig::maxLegs] = {};
   for (int l = 0; l < count; ++l) {
     const uint64_t goes = bits(absolute(first - float(l)) < F(0.5f));
     begun.lift[l] = goes;

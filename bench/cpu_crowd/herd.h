@@ -6,9 +6,9 @@
 #include "bench/cpu_crowd/body.h"
 #include "bench/cpu_crowd/clip_herd.h"
 #include "bench/cpu_crowd/foothold.h"
-#include "bench/cpu_crowd/ik.h"
 #include "bench/cpu_crowd/kernel.h"
 #include "bench/cpu_crowd/laps.h"
+#include "bench/cpu_crowd/leg_solver.h"
 #include "bench/cpu_crowd/navigate.h"
 #include "bench/cpu_crowd/parts.h"
 #include "bench/cpu_crowd/pose.h"
@@ -68,6 +68,18 @@ class HerdKernel final : public Kernel {
       laps.stage(kPose, first, last, [&](size_t b) { poseBlock(b); });
     });
     settleStreams();
+  }
+
+  void beginSteps(uint64_t n, size_t legs) override {
+    Scratch& scratch = scratch_[0];
+    for (size_t next = 0; next < legs;) {
+      for (scratch.begun = 0; next < legs && scratch.begun < scratch.begins.size(); ++next) {
+        const size_t agent = next / legs_;
+        scratch.begins[scratch.begun++] = {agent / kAgents, uint16_t(next % legs_), uint16_t(agent % kAgents),
+                                           false};
+      }
+      beginSteps(float(n), scratch);
+    }
   }
 
   void read(HerdState& state) const override {

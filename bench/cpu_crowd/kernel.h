@@ -14,6 +14,7 @@ class Kernel {
   virtual ~Kernel() = default;
   virtual size_t parts() const = 0;
   virtual void tick(uint64_t n, size_t part, int thread, bool timed) = 0;
+  virtual void beginSteps(uint64_t n, size_t legs) = 0;
   virtual void read(HerdState& state) const = 0;
   virtual size_t bytes() const = 0;
   virtual std::vector<StageSeconds> stageSeconds() const = 0;

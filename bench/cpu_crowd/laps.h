@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "base/clock.h"
 #include "bench/cpu_crowd/crowd.h"
-#include "bench/ik/clock.h"
 
 namespace skitter::cpu_crowd {
 
@@ -17,8 +17,8 @@ class Laps {
  public:
   explicit Laps(Seconds* sums) : sums_(sums) {
     if (sums_ == nullptr) return;
-    begin_ = bench::readClock(CLOCK_THREAD_CPUTIME_ID);
-    last_ = bench::readClock(CLOCK_MONOTONIC);
+    begin_ = base::threadSeconds();
+    last_ = base::wallSeconds();
   }
   Laps(const Laps&) = delete;
   Laps& operator=(const Laps&) = delete;
@@ -26,7 +26,7 @@ class Laps {
     if (sums_ == nullptr) return;
     double wall = 0;
     for (const double lap : laps_) wall += lap;
-    const double share = (bench::readClock(CLOCK_THREAD_CPUTIME_ID) - begin_) / wall;
+    const double share = (base::threadSeconds() - begin_) / wall;
     for (size_t s = 0; s < laps_.size(); ++s) (*sums_)[s] += laps_[s] * share;
   }
 
@@ -39,7 +39,7 @@ class Laps {
 
   void end(size_t stage) {
     if (sums_ == nullptr) return;
-    const double now = bench::readClock(CLOCK_MONOTONIC);
+    const double now = base::wallSeconds();
     laps_[stage] += now - last_;
     last_ = now;
   }

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "bench/cpu_crowd/rotation.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::cpu_crowd {
 
 // The herd's state in rows of F, a row a number: with Lanes a block is as many agents as a register holds
-// floats, with float it is one. Rows have the meaning and the units of shaders/shared/records.h. They are
-// floats throughout, so that an agent can be taken out of its block and put back.
+// floats, with float it is one. Rows have the meaning and the units of engine/include/skitter/records.h. They
+// are floats throughout, so that an agent can be taken out of its block and put back.
 
 template <class F>
 struct Agent {

@@ -2,7 +2,7 @@
 
 #include "bench/cpu_crowd/layout.h"
 #include "bench/cpu_crowd/rig.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::cpu_crowd {
 

@@ -11,7 +11,7 @@ struct Played {
   F clip, time, rate, frame, fraction;
 };
 
-// play, as in shaders/shared/records.h
+// play, as in engine/include/skitter/records.h
 template <class F>
 struct Play {
   Played<F> to, from;
@@ -46,7 +46,7 @@ void advance(const shared::Parameters& q, const ClipHead<F>& clip, const F& spee
   played.time = smaller(larger(inside, 0), clip.seconds);
 }
 
-// How ill a clip suits a speed, as a ratio: 2 to the power of docs/stages.md's cost, which orders clips
+// How ill a clip suits a speed, as a ratio: 2 to the power of docs/stages/clip.md's cost, which orders clips
 // alike.
 template <class F>
 F misfitOf(const shared::Parameters& q, const ClipTable& table, float clipSpeed, const F& speed) {

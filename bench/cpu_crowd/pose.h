@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/cpu_crowd/ik.h"
+#include "bench/cpu_crowd/leg_solver.h"
 
 namespace skitter::cpu_crowd {
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "bench/cpu_crowd/ik.h"
+#include "bench/cpu_crowd/leg_solver.h"
 #include "bench/cpu_crowd/play.h"
-#include "shared/records.h"
 #include "skitter/crowd.h"
+#include "skitter/records.h"
 
-// One agent's records in the device's layout (shaders/shared/records.h), to and from the herd's own.
+// One agent's records in the device's layout (engine/include/skitter/records.h), to and from the herd's own.
 namespace skitter::cpu_crowd {
 
 inline float* recordAt(std::vector<float>& buffer, size_t index, int stride) {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "shared/records.h"
+#include "crowd/controller.h"
 #include "skitter/error.h"
+#include "skitter/records.h"
 
 namespace skitter::cpu_crowd {
 namespace {
@@ -76,7 +77,7 @@ World worldOf(const validation::HerdFacts& facts) {
   world.groups = facts.rig.groupCount();
   world.approach = facts.ik.approach;
   world.chords = facts.ik.polish - 1;
-  if (crowd::playsClips(facts.controller)) {
+  if (crowd::traitsOf(facts.controller).playsClips) {
     world.clips = clipTableOf(facts.clips);
     world.q.leanGain = world.q.leanLevel = world.q.breathHeight = 0;
   }

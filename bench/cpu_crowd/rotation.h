@@ -68,7 +68,7 @@ Quaternion<F> quaternionOf(const Mat3<F>& m) {
   return {q.x * inverse, q.y * inverse, q.z * inverse, q.w * inverse};
 }
 
-// About +Y by 2 atan(theta / 2) (docs/stages.md, body).
+// About +Y by 2 atan(theta / 2) (docs/stages.md, turn).
 template <class F>
 struct Turn {
   F cosine, sine;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <random>
 #include <thread>
 
+#include "base/clock.h"
 #include "bench/crowd/contestant.h"
-#include "bench/ik/clock.h"
 #include "bench/statistics.h"
 #include "crowd/herd.h"
 #include "crowd/stage.h"
@@ -24,12 +26,42 @@ constexpr uint32_t kTicksAWatchedOne = 4;
 // The reference takes about a millisecond for one of them.
 constexpr uint32_t kAgentsChecked = 1024;
 
+// A tick's states before and after, of every herd.
+struct Witness {
+  std::vector<HerdState> before, after;
+};
+
 // One contestant and what its turns took, a tick; by stage the sum of the turns.
 struct Corner {
   std::unique_ptr<Contestant> contestant;
-  std::vector<double> wall, cpu;
-  std::vector<StageTime> stages;
+  std::vector<double> wall = {}, cpu = {};
+  std::vector<StageTime> stages = {};
+  Witness witness = {};  // of a counted tick
 };
+
+// Of large herds the agents that `seed` draws for the tick `tick`.
+std::vector<HerdState> statesOf(const Crowd& crowd, const Contestant& contestant, uint64_t tick,
+                                uint64_t seed) {
+  std::vector<HerdState> states;
+  for (const crowd::Herd& herd : crowd.impl().herds)
+    states.push_back(contestant.state(static_cast<uint32_t>(states.size()),
+                                      validation::sampleAt(seed, tick, herd.agents, kAgentsChecked)));
+  return states;
+}
+
+std::vector<validation::StageResult> judge(const Crowd& crowd, const Witness& witness,
+                                           const std::vector<StageDemand>& timed) {
+  std::vector<validation::StageResult> results;
+  for (uint32_t h = 0; h < witness.before.size(); ++h) {
+    validation::Replay replay(validation::herdFacts(crowd.impl().kindOf(h), crowd.impl().terrain));
+    replay.tick(witness.after[h].tick, witness.before[h], witness.after[h]);
+    for (const validation::StageResult& result : replay.results())
+      if (std::any_of(timed.begin(), timed.end(),
+                      [&](const StageDemand& d) { return crowd::makes(d.stage, result.name); }))
+        results.push_back(result);
+  }
+  return results;
+}
 
 Spread spreadOf(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.25), quantile(values, 0.75)};
@@ -38,7 +70,7 @@ Spread spreadOf(const std::vector<double>& values) {
 std::vector<Corner> cornersOf(Device& device, Crowd& crowd, const ContestOptions& options) {
   std::vector<Corner> corners;
   const auto enter = [&](std::unique_ptr<Contestant> contestant) {
-    corners.push_back({std::move(contestant), {}, {}, {}});
+    corners.push_back({.contestant = std::move(contestant)});
   };
   enter(deviceContestant(device, crowd, static_cast<float>(options.dt)));
   if (!hasCpuContestant(crowd)) return corners;
@@ -49,14 +81,28 @@ std::vector<Corner> cornersOf(Device& device, Crowd& crowd, const ContestOptions
   return corners;
 }
 
-void takeTurn(Corner& corner, uint32_t ticks) {
+// The clocks stop while `states` keeps those before and after the counted tick `witnessed`.
+void takeTurn(Corner& corner, uint32_t ticks, std::optional<uint32_t> witnessed,
+              const std::function<std::vector<HerdState>(const Contestant&)>& states) {
   corner.contestant->timeStages(false);
   corner.contestant->tick();
   corner.contestant->finish();
-  const Seconds spent = timed([&] {
-    for (uint32_t t = 0; t < ticks; ++t) corner.contestant->tick();
-    corner.contestant->finish();
-  });
+  base::Seconds spent;
+  const auto count = [&](uint32_t some) {
+    spent += base::timed([&] {
+      for (uint32_t t = 0; t < some; ++t) corner.contestant->tick();
+      corner.contestant->finish();
+    });
+  };
+  if (witnessed) {
+    count(*witnessed);
+    corner.witness.before = states(*corner.contestant);
+    count(1);
+    corner.witness.after = states(*corner.contestant);
+    count(ticks - *witnessed - 1);
+  } else {
+    count(ticks);
+  }
   const uint32_t watched = std::max(kFewestTicksATurn, ticks / kTicksAWatchedOne);
   const std::vector<StageTime> before = corner.contestant->stageTimes();
   corner.contestant->timeStages(true);
@@ -72,29 +118,11 @@ void takeTurn(Corner& corner, uint32_t ticks) {
 
 std::vector<validation::StageResult> checkTick(const Crowd& crowd, Contestant& contestant, uint64_t tick,
                                                const std::vector<StageDemand>& timed, uint64_t seed) {
-  const auto states = [&] {
-    std::vector<HerdState> made;
-    for (const crowd::Herd& herd : crowd.impl().herds) {
-      uint32_t agents = 0;
-      for (const crowd::Page& page : herd.pages) agents += page.agents;
-      made.push_back(contestant.state(static_cast<uint32_t>(made.size()),
-                                      validation::sampleAt(seed, tick, agents, kAgentsChecked)));
-    }
-    return made;
-  };
-  const std::vector<HerdState> before = states();
+  Witness witness;
+  witness.before = statesOf(crowd, contestant, tick, seed);
   contestant.tick();
-  const std::vector<HerdState> after = states();
-  std::vector<validation::StageResult> results;
-  for (size_t h = 0; h < before.size(); ++h) {
-    validation::Replay replay(validation::herdFacts(crowd.impl().herds[h], crowd.impl().terrain));
-    replay.tick(tick, before[h], after[h]);
-    for (const validation::StageResult& result : replay.results())
-      if (std::any_of(timed.begin(), timed.end(),
-                      [&](const StageDemand& d) { return crowd::makes(d.stage, result.name); }))
-        results.push_back(result);
-  }
-  return results;
+  witness.after = statesOf(crowd, contestant, tick, seed);
+  return judge(crowd, witness, timed);
 }
 
 Match contest(Device& device, const Heightfield& terrain, const Scene& scene, const ContestOptions& options,
@@ -109,7 +137,7 @@ Match contest(Device& device, const Heightfield& terrain, const Scene& scene, co
     warm->timeStages(false);
     for (uint32_t i = 0; i < options.warmUp; ++i) {
       if (stopped()) return {};
-      const double seconds = timed([&] {
+      const double seconds = base::timed([&] {
                                warm->tick();
                                warm->finish();
                              }).wall;
@@ -122,18 +150,23 @@ Match contest(Device& device, const Heightfield& terrain, const Scene& scene, co
                                        double{kFewestTicksATurn}, double{kMostTicksATurn}));
 
   std::vector<Corner> corners = cornersOf(device, crowd, options);
+  // Drawn, so that no tick is known to be looked at.
+  std::mt19937_64 random(options.seed);
+  const uint64_t witnessedRound = random() % options.rounds;
+  const auto witnessedTick = static_cast<uint32_t>(random() % match.ticks);
+  const uint64_t sample = crowd.tick();
   for (uint32_t round = 0; round < options.rounds; ++round)
     for (size_t i = 0; i < corners.size(); ++i) {
       if (stopped()) return {};
       // Another one begins each round, so that nobody always follows the same one.
       Corner& corner = corners[(i + round) % corners.size()];
-      takeTurn(corner, match.ticks);
+      takeTurn(corner, match.ticks, round == witnessedRound ? std::optional(witnessedTick) : std::nullopt,
+               [&](const Contestant& c) { return statesOf(crowd, c, sample, options.seed); });
       step(0.2 +
            0.7 * (round + static_cast<double>(i + 1) / static_cast<double>(corners.size())) / options.rounds);
     }
   match.demands = demandOf(crowd, options.crowd);
 
-  const uint64_t next = crowd.tick() + 1;
   for (Corner& corner : corners) {
     if (stopped()) return {};
     Result& result = match.results.emplace_back();
@@ -143,7 +176,8 @@ Match contest(Device& device, const Heightfield& terrain, const Scene& scene, co
     result.cpu = spreadOf(corner.cpu);
     for (StageTime& stage : corner.stages) stage.milliseconds /= options.rounds;
     result.stages = std::move(corner.stages);
-    result.checks = checkTick(crowd, *corner.contestant, next, match.demands, options.seed);
+    result.checkedTick = corner.witness.after.front().tick;
+    result.checks = judge(crowd, corner.witness, match.demands);
     result.pass = std::all_of(result.checks.begin(), result.checks.end(),
                               [](const validation::StageResult& c) { return c.pass; });
     corner.contestant.reset();

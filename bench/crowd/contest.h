@@ -28,11 +28,11 @@ struct Spread {
 
 struct Result {
   std::string name;
-  int threads = 0;                // of the CPU that it may use; 0: the device
-  Spread wall, cpu;               // cpu: of all threads of the process
-  std::vector<StageTime> stages;  // a tick: the device's clock, or CPU time
-  std::vector<validation::StageResult>
-      checks;  // of the first tick after the last round, against the reference
+  int threads = 0;                              // of the CPU that it may use; 0: the device
+  Spread wall, cpu;                             // cpu: of all threads of the process
+  std::vector<StageTime> stages;                // a tick: the device's clock, or CPU time
+  uint64_t checkedTick = 0;                     // a counted tick of one of the turns, drawn by the seed
+  std::vector<validation::StageResult> checks;  // of that tick, against the reference
   bool pass = false;
 };
 
@@ -50,8 +50,8 @@ struct Match {
 std::vector<validation::StageResult> checkTick(const Crowd&, Contestant&, uint64_t tick,
                                                const std::vector<StageDemand>& timed, uint64_t seed);
 
-// Lets the device and the CPU animate the same crowd from the same state, turn by turn in one run, then
-// checks a tick of each in lock-step against the reference. `step` is called with the share that is done;
+// Lets the device and the CPU animate the same crowd from the same state, turn by turn in one run, and checks
+// a counted tick of each in lock-step against the reference. `step` is called with the share that is done;
 // `stopped` ends it early with an empty match.
 Match contest(Device&, const Heightfield&, const Scene&, const ContestOptions&,
               const std::function<void(double)>& step, const std::function<bool()>& stopped);

@@ -51,7 +51,7 @@ class CpuContestant : public Contestant {
       : options_(options), tick_(crowd.tick()) {
     for (uint32_t h = 0; h < crowd.herdCount(); ++h)
       herds_.push_back(std::make_unique<cpu_crowd::CpuCrowd>(
-          validation::herdFacts(crowd.impl().herds[h], crowd.impl().terrain), crowd.download(h), options));
+          validation::herdFacts(crowd.impl().kindOf(h), crowd.impl().terrain), crowd.download(h), options));
   }
 
   std::string name() const override {
@@ -106,11 +106,13 @@ std::unique_ptr<Contestant> cpuContestant(const Crowd& crowd, bool scalar, int t
   return std::make_unique<CpuContestant>(crowd, options);
 }
 
+std::string opponentBuild() { return cpu_crowd::buildDescription(); }
+
 bool hasCpuContestant(const Crowd& crowd) {
-  return std::all_of(crowd.impl().herds.begin(), crowd.impl().herds.end(), [](const crowd::Herd& herd) {
-    return herd.controller == crowd::Controller::clip ||
-           (herd.controller == crowd::Controller::adaptive && herd.ik.solver == shared::SOLVER_FABRIK &&
-            herd.ik.polish > 0 && !herd.reachTriggered);
+  return std::all_of(crowd.impl().kinds.begin(), crowd.impl().kinds.end(), [](const crowd::Kind& kind) {
+    return kind.controller == Controller::clip ||
+           (kind.controller == Controller::adaptive && kind.ik.solver == shared::SOLVER_FABRIK &&
+            kind.ik.polish > 0 && !kind.reachTriggered);
   });
 }
 

@@ -30,6 +30,8 @@ void add(std::vector<StageTime>& sums, const std::string& stage, double millisec
 std::unique_ptr<Contestant> deviceContestant(Device&, Crowd&, float dt);
 // From the crowd's present state on. `scalar` does with one float what it else does with a register of them.
 std::unique_ptr<Contestant> cpuContestant(const Crowd&, bool scalar, int threads, bool poses);
+// How the CPU's contestants were compiled.
+std::string opponentBuild();
 // Whether there is one for every herd of the crowd.
 bool hasCpuContestant(const Crowd&);
 

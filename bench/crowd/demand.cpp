@@ -1,46 +1,42 @@
 #include "bench/crowd/demand.h"
 
-#include <string_view>
+#include <algorithm>
+#include <string>
 
 #include "bench/crowd/operations.h"
 #include "crowd/herd.h"
 #include "crowd/page.h"
+#include "crowd/record.h"
 #include "gpu/context.h"
 #include "gpu/transfer.h"
 
 namespace skitter::bench {
 namespace {
 
-// Counters, lists, tables and heights are shared by all, or small.
-bool isRecord(uint32_t binding) {
-  using namespace shared;
-  return binding >= BINDING_GOAL && binding != BINDING_KEY && binding < BINDING_AWAKE &&
-         (binding < BINDING_CLIP || binding > BINDING_CLIP_JOINT);
-}
-
-double boundBytes(const Crowd::Impl& crowd, const crowd::Herd& herd, const crowd::Page& page,
+double boundBytes(const Crowd::Impl& crowd, const crowd::Kind& kind, const crowd::Page& page,
                   const crowd::Stage& stage) {
   double bytes = 0;
   for (const gpu::BindingDecl& declared : stage.bindings) {
-    if (!isRecord(declared.binding)) continue;
+    // Counters, lists, tables and heights are shared by all, or small.
+    if (!crowd::recordAt(declared.binding)) continue;
     // Gait looks at arcs after an edit of the heights alone.
-    if (declared.binding == shared::BINDING_ARC && crowd::makes(stage.name, "gait")) continue;
-    const gpu::Binding bound = crowd::bindingOf(crowd, herd, page, declared.binding);
+    if (declared.binding == shared::BINDING_ARC && stage.makes.has(crowd::StageId::gait)) continue;
+    const gpu::Binding bound = crowd::bindingOf(crowd, kind, page, declared.binding);
     if (const auto* buffer = std::get_if<const gpu::Buffer*>(&bound.resource))
       bytes += static_cast<double>((*buffer)->size());
   }
   return bytes;
 }
 
-double invocationsOf(const crowd::Herd& herd, const crowd::Page& page, crowd::Stage::Over over) {
+double invocationsOf(const crowd::Kind& kind, const crowd::Page& page, crowd::Stage::Over over) {
   const double agents = page.agents;
   switch (over) {
     case crowd::Stage::Over::legs:
     case crowd::Stage::Over::everyLeg:
     case crowd::Stage::Over::listed:
-      return agents * herd.legs;
+      return agents * kind.legs;
     case crowd::Stage::Over::joints:
-      return agents * herd.clips.joints;
+      return agents * kind.clips.joints;
     case crowd::Stage::Over::blocks:
     case crowd::Stage::Over::everyone:
     case crowd::Stage::Over::agents:
@@ -56,28 +52,24 @@ std::vector<StageDemand> demandOf(const Crowd& crowd, const CrowdOptions& option
   const Crowd::Impl& impl = crowd.impl();
   const gpu::Context& context = *impl.context;
   std::vector<StageDemand> demands;
-  for (const std::string_view name : crowd::frame()) {
-    if (name == "measure" || name == "footfall") continue;
-    StageDemand sum{std::string(name)};
-    bool found = false;
-    for (const crowd::Herd& herd : impl.herds)
-      for (const crowd::Stage& stage : herd.stages) {
-        if (stage.name != name) continue;
-        found = true;
-        const gpu::KernelInfo info = crowd::kernelsOf(context, stage, options, herd).first;
-        const double operations = operationsAnInvocation(info.code.pick(context), info.constants);
-        for (const crowd::Page& page : herd.pages) {
-          const double invocations = invocationsOf(herd, page, stage.over);
-          double share = 1;
-          if (stage.over == crowd::Stage::Over::listed)
-            share = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_LISTED] /
-                    std::max(invocations, 1.0);
-          sum.bytes += share * boundBytes(impl, herd, page, stage);
-          sum.operations += share * invocations * operations;
-        }
+  for (const crowd::Kind& kind : impl.kinds)
+    for (const crowd::ReadyStage& stage : kind.stages) {
+      if (stage.makes == crowd::StageId::measure || stage.makes == crowd::StageId::footfall) continue;
+      const std::string name = stage.makes.name();
+      const auto found = std::ranges::find(demands, name, &StageDemand::stage);
+      StageDemand& sum = found != demands.end() ? *found : demands.emplace_back(StageDemand{name});
+      const gpu::KernelInfo info = crowd::kernelsOf(stage, {context, options, kind}).first;
+      const double operations = operationsAnInvocation(info.code.pick(context), info.constants);
+      for (const crowd::Page& page : kind.pages) {
+        const double invocations = invocationsOf(kind, page, stage.over);
+        double share = 1;
+        if (stage.over == crowd::Stage::Over::listed)
+          share = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_LISTED] /
+                  std::max(invocations, 1.0);
+        sum.bytes += share * boundBytes(impl, kind, page, stage);
+        sum.operations += share * invocations * operations;
       }
-    if (found) demands.push_back(sum);
-  }
+    }
   return demands;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "bench/ik/clock.h"
+#include "base/clock.h"
 #include "bench/ik/machine.h"
 #include "embedded/arithmetic_comp.h"
 #include "embedded/copy_comp_storage.h"
@@ -31,7 +31,7 @@ template <typename Record>
 double bestSeconds(const gpu::Context& context, const Record& record) {
   double best = 1e30;
   for (int i = 0; i <= kRepetitions; ++i) {
-    const Seconds spent = timed([&] { gpu::submitAndWait(context, record); });
+    const base::Seconds spent = base::timed([&] { gpu::submitAndWait(context, record); });
     const double shared = spent.cpu / std::max(1u, std::thread::hardware_concurrency());
     if (i > 0)
       best = std::min(best, isCpu(context.report()) ? shared : spent.wall);  // the first one compiles

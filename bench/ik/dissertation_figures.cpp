@@ -90,7 +90,9 @@ SolvePoint pointOf(const Series& series, const Point& point, const MeasuredBatch
                   1e6 * batch.seconds / chains,
                   quality.meanIterations(),
                   quality.meanError(),
-                  {}};
+                  {},
+                  1e6 * batch.leastSeconds / chains,
+                  1e6 * batch.mostSeconds / chains};
   for (size_t i = 0; i < made.stops.size(); ++i) made.stops[i] = quality.stopShare(ik::Stop(i));
   return made;
 }
@@ -193,11 +195,12 @@ std::vector<InstancePoint> measureInstances(Device& device, const FigureSizes& s
 std::string csvOf(const SolveSweep& sweep) {
   std::string text =
       "series,iterations,tolerance,us_a_solve,mean_iterations,mean_error,"
-      "stop_tolerance,stop_cap,stop_stall,stop_unreachable\n";
+      "stop_tolerance,stop_cap,stop_stall,stop_unreachable,us_least,us_most\n";
   for (const SolvePoint& point : sweep.points) {
-    text += fmt::format("{},{},{:g},{:.4f},{:.3f},{:.3e},{:.5f},{:.5f},{:.5f},{:.5f}\n", point.series,
-                        point.iterations, point.tolerance, point.microseconds, point.meanIterations,
-                        point.meanError, point.stops[0], point.stops[1], point.stops[2], point.stops[3]);
+    text += fmt::format("{},{},{:g},{:.4f},{:.3f},{:.3e},{:.5f},{:.5f},{:.5f},{:.5f},{:.4f},{:.4f}\n",
+                        point.series, point.iterations, point.tolerance, point.microseconds,
+                        point.meanIterations, point.meanError, point.stops[0], point.stops[1], point.stops[2],
+                        point.stops[3], point.leastMicroseconds, point.mostMicroseconds);
   }
   for (const std::string& line : sweep.leftOut) text += "# " + line + "\n";
   return text;

@@ -34,9 +34,11 @@ struct SolvePoint {
   std::string series;
   uint32_t iterations = 0;  // allowed
   float tolerance = 0;      // share of the reach
-  double microseconds = 0;  // a solve: CPU time of all threads on a software device, else the wall's
+  // A solve, median of the repetitions: CPU time of all threads on a software device, else the wall's.
+  double microseconds = 0;
   double meanIterations = 0, meanError = 0;
-  std::array<double, 4> stops{};  // shares: ik::Stop tolerance, cap, stall, unreachable
+  std::array<double, 4> stops{};                       // shares: ik::Stop tolerance, cap, stall, unreachable
+  double leastMicroseconds = 0, mostMicroseconds = 0;  // of the repetitions
 };
 struct SolveSweep {
   std::string name;  // "iterations-steps", "accuracy-factors", ...

@@ -5,8 +5,6 @@
 #include <fstream>
 #include <thread>
 
-#include "bench/cpu_baseline/batch.h"
-
 namespace skitter::bench {
 namespace {
 
@@ -32,14 +30,13 @@ nlohmann::ordered_json describeMachine(const DeviceReport& device) {
           {"driver", device.driver},
           {"loads", device.loads.path == LoadPath::texel ? "texel buffers" : "storage buffers"},
           {"cpu", processor()},
-          {"engineBuild", engineBuild()},
-          {"cpuOpponentBuild", baseline::buildDescription()}};
+          {"engineBuild", engineBuild()}};
 }
 
-std::string machineLines(const DeviceReport& device) {
+std::string machineLines(const DeviceReport& device, const std::string& opponentBuild) {
   return fmt::format("device        {} ({}), {}\ncpu           {}\nengine        {}\ncpu opponent  {}\n",
                      device.name, device.typeName(), device.driver, processor(), engineBuild(),
-                     baseline::buildDescription());
+                     opponentBuild);
 }
 
 }  // namespace skitter::bench

@@ -25,7 +25,7 @@ MeasuredBatch measureBatch(Device& device, const baseline::Chain& chain,
   ik::Batch batch(device, deviceChain(chain), uint32_t(targets.size()), options);
   batch.setTargets(targets);
   const auto solve = [&](int times) {
-    return timed([&] {
+    return base::timed([&] {
       for (int i = 0; i < times; ++i) batch.solve();
     });
   };
@@ -37,10 +37,13 @@ MeasuredBatch measureBatch(Device& device, const baseline::Chain& chain,
   if (first > kLongSeconds) repetitions = 1;
   std::vector<double> seconds, wall;
   for (int i = 0; i < repetitions; ++i) {
-    const Seconds spent = solve(times);
+    const base::Seconds spent = solve(times);
     seconds.push_back((isCpu(device.report()) ? spent.cpu : spent.wall) / times);
     wall.push_back(spent.wall / times);
   }
+  const auto [least, most] = std::minmax_element(seconds.begin(), seconds.end());
+  measured.leastSeconds = *least;
+  measured.mostSeconds = *most;
   measured.seconds = median(seconds);
   measured.wallSeconds = median(wall);
   return measured;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/ik/clock.h"
+#include "base/clock.h"
 #include "bench/ik/problem.h"
 #include "bench/ik/quality.h"
 #include "skitter/device.h"
@@ -10,9 +10,10 @@ namespace skitter::bench {
 // One batch on the device under options of one's own, judged, then timed.
 struct MeasuredBatch {
   Quality quality;
-  double seconds =
-      0;  // of a whole batch, median: CPU time of all threads on a software device, else the wall's
-  double wallSeconds = 0;
+  // Of a whole batch, median, least and most of the repetitions: CPU time of all threads on a software
+  // device, else the wall's.
+  double seconds = 0, leastSeconds = 0, mostSeconds = 0;
+  double wallSeconds = 0;  // median
 };
 
 MeasuredBatch measureBatch(Device&, const baseline::Chain&, const std::vector<glm::vec3>& targets,

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "bench/ik/clock.h"
+#include "base/clock.h"
 #include "bench/ik/contestant.h"
 #include "bench/ik/machine.h"
 #include "validation/convert_ik.h"
@@ -125,7 +125,7 @@ class Run {
     solves_ = int(std::clamp(std::ceil(leastSeconds / std::max(counted(advance()), 1e-6)), 1.0, 1000.0));
   }
   void measure() {
-    Seconds spent;
+    base::Seconds spent;
     for (int i = 0; i < solves_; ++i) spent += advance();
     samples_.push_back(counted(spent) / solves_);
     wallSamples_.push_back(spent.wall / solves_);
@@ -143,20 +143,20 @@ class Run {
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];
   }
-  double counted(const Seconds& spent) const { return wall_ ? spent.wall : spent.cpu; }
+  double counted(const base::Seconds& spent) const { return wall_ ? spent.wall : spent.cpu; }
 
   void judge() {
     quality_.add(ground_.judge, ground_.targets.vectors[set_], ik::Options{}.tolerance,
                  contestant_->results());
   }
-  Seconds advance() {
+  base::Seconds advance() {
     const size_t sets = ground_.targets.rows.size();
     if (sets > 1) {
       if ((set_ == 0 && step_ < 0) || (set_ + 1 == sets && step_ > 0)) step_ = -step_;
       set_ = size_t(int(set_) + step_);
       contestant_->aim(set_);
     }
-    return timed([&] { contestant_->solve(); });
+    return base::timed([&] { contestant_->solve(); });
   }
 
   std::string name_;

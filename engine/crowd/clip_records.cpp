@@ -30,28 +30,25 @@ void appendFrames(const Clip& clip, size_t joints, size_t legs, ClipRecords& rec
 std::vector<const Clip*> chosenClips(const ClipSet& set, const std::vector<std::string>& names) {
   std::vector<const Clip*> clips;
   for (const std::string& name : names) clips.push_back(&set.clip(name));
-  // What does not move is only to stand, and the first of that is enough.
-  bool stands = false;
-  for (const Clip& clip : set.clips) {
-    if (!names.empty() || clip.speed < 0 || (clip.speed == 0 && stands)) continue;
-    stands = stands || clip.speed == 0;
-    clips.push_back(&clip);
-  }
-  if (clips.empty()) {
-    std::string message = set.name + ": no clip that can be played";
-    for (const std::string& note : set.notes) message += "; " + note;
-    throw inputError(message);
-  }
-  return clips;
+  if (names.empty()) clips = set.locomotion();
+  if (!clips.empty()) return clips;
+  std::string message = set.name + ": no clip to walk or to stand by";
+  if (!set.clips.empty()) message += ", of";
+  for (const Clip& clip : set.clips) message += " '" + clip.name + "'";
+  if (!set.clips.empty()) message += "; name one by `clips`";
+  for (const std::string& note : set.notes) message += "; " + note;
+  throw inputError(message);
 }
 
 ClipRecords clipRecords(const ClipSet& set, const std::vector<std::string>& names, int maxBones) {
   ClipRecords records;
   records.joints = static_cast<int>(set.joints.size());
   int first = 0;
-  for (const Clip* clip : chosenClips(set, names)) {
+  const std::vector<const Clip*> chosen = chosenClips(set, names);
+  const auto stands = std::ranges::find_if(chosen, [](const Clip* clip) { return !(clip->speed > 0); });
+  if (stands != chosen.end()) records.standing = static_cast<int>(stands - chosen.begin());
+  for (const Clip* clip : chosen) {
     const auto frames = static_cast<int>(clip->frames());
-    if (clip->speed == 0 && records.heads.empty()) records.standing = records.clips;
     push(records.heads, static_cast<float>(first), static_cast<float>(frames),
          static_cast<float>(clip->seconds), std::max(clip->speed, 0.0f));
     appendFrames(*clip, set.joints.size(), set.legs.size(), records);

@@ -7,14 +7,14 @@
 
 namespace skitter::crowd {
 
-// The clips that a herd plays, as the stages read them (shaders/shared/records.h).
+// The clips that a herd plays, as the stages read them (engine/include/skitter/records.h).
 struct ClipRecords {
   int clips = 0, joints = 0, frames = 0;  // frames of the longest clip
-  int standing = 0;                       // the clip that an agent begins with
+  int standing = 0;  // the clip that an agent begins with: the first that stands, else the first
   std::vector<float> heads, times, rows, legs, bones;
 };
 
-// Those that are named or, without names, all that move forward and the first that stands. Throws
+// Those that are named or, without names, ClipSet::locomotion. Throws
 // Error(input) that names the file where there is none, or none of that name.
 std::vector<const Clip*> chosenClips(const ClipSet& set, const std::vector<std::string>& names);
 

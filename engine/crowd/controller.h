@@ -1,20 +1,31 @@
 #pragma once
 
-#include <string>
+#include "skitter/controller.h"
 
+// What sets the controllers apart, as plain data; their stages are in crowd/controllers.
 namespace skitter::crowd {
 
-// How a herd moves; the names are those of a scene's `controller`.
-enum class Controller { clip, planted, pose, loop, adaptive };
-// Throws Error(input) where it is unknown.
-Controller controllerNamed(const std::string& name);
-constexpr bool playsClips(Controller c) { return c == Controller::clip || c == Controller::planted; }
-// Played, or sampled for key poses.
-constexpr bool needsClips(Controller c) { return playsClips(c) || c == Controller::pose; }
-
-// Whether feet go by steps that foothold aims.
-constexpr bool aimsSteps(Controller c) { return c == Controller::adaptive; }
-// Whether ik tells which planted feet miss their targets.
-constexpr bool tellsMisses(Controller c) { return c == Controller::adaptive || c == Controller::loop; }
+struct ControllerTraits {
+  bool playsClips = false;   // in every tick
+  bool needsClips = false;   // played, or sampled for key poses
+  bool aimsSteps = false;    // feet go by steps that foothold aims
+  bool tellsMisses = false;  // ik tells which planted feet miss their targets
+  bool keepsLimits = false;  // legs are solved within the rig's limits; clips know none
+  bool breathes = false;     // a body at rest does, and sleeps once it has breathed out
+};
+constexpr ControllerTraits traitsOf(Controller controller) {
+  switch (controller) {
+    case Controller::adaptive:
+      return {.aimsSteps = true, .tellsMisses = true, .keepsLimits = true, .breathes = true};
+    case Controller::loop:
+      return {.tellsMisses = true, .keepsLimits = true};
+    case Controller::clip:
+    case Controller::planted:
+      return {.playsClips = true, .needsClips = true};
+    case Controller::pose:
+      return {.needsClips = true};
+  }
+  return {};
+}
 
 }  // namespace skitter::crowd

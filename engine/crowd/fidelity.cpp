@@ -1,9 +1,11 @@
 // The sums that measure keeps, as figures.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
-#include "crowd/herd.h"
+#include "crowd/controller.h"
+#include "crowd/page.h"
 #include "gpu/context.h"
 #include "gpu/transfer.h"
 #include "skitter/crowd.h"
@@ -11,37 +13,42 @@
 namespace skitter {
 namespace {
 
-using crowd::Page;
-
 constexpr size_t kFloats = shared::METRIC_STRIDE * 4;
 
 // The metric records of any number of agents added up; lengths in leg lengths.
 struct Sums {
   double ticks = 0, legTicks = 0, planted = 0, stays = 0, skates = 0, slip = 0, stances = 0;
   double penetration = 0, penetrationBeyond = 0, floating = 0, floatingBeyond = 0;
-  double depth = 0, violations = 0, pairs = 0, crossings = 0;
+  double depth = 0, pairs = 0, crossings = 0;
   double supported = 0, unstable = 0, margin = 0;
+  bool limitsAreKept = false;  // by some herd
+  double limitedLegTicks = 0, violations = 0, violation = 0;
   double footJerk = 0, footPath = 0, bodyJerk = 0, bodyPath = 0;
-  double reachError = 0, violation = 0, deepest = 0, leastMargin = HUGE_VAL;
+  double reachError = 0, deepest = 0, leastMargin = HUGE_VAL;
 
-  void add(std::span<const float, kFloats> m, const crowd::Herd& herd) {
-    const double length = herd.rig.legLength;
+  explicit Sums(bool keepsLimits) : limitsAreKept(keepsLimits) {}
+
+  void add(std::span<const float, kFloats> m, const crowd::Kind& kind) {
+    const double length = kind.rig.legLength;
     ticks += m[0];
-    legTicks += double{m[0]} * herd.legs;
+    legTicks += double{m[0]} * kind.legs;
     planted += m[1];
     stays += m[2];
     skates += m[3];
     slip += m[4] / length;
     stances += m[5];
     reachError = std::max(reachError, m[6] / length);
-    violation = std::max(violation, double{m[7]});
     penetration += m[8] / length;
     penetrationBeyond += m[9] / length;
     floating += m[10] / length;
     floatingBeyond += m[11] / length;
     depth += m[12] / length;
     deepest = std::max(deepest, m[13] / length);
-    violations += m[14];
+    if (crowd::traitsOf(kind.controller).keepsLimits) {
+      limitedLegTicks += double{m[0]} * kind.legs;
+      violations += m[14];
+      violation = std::max(violation, 2 * std::atan(double{m[7]}));
+    }
     pairs += m[16];
     crossings += m[17];
     supported += m[18];
@@ -69,8 +76,10 @@ struct Sums {
     f.segmentPenetrationMost = deepest;
     f.crossing = over(crossings, pairs);
     f.reachErrorMost = reachError;
-    f.limitViolation = violation;
-    f.limitViolations = over(violations, legTicks);
+    if (limitsAreKept) {
+      f.limitViolation = violation;
+      f.limitViolations = over(violations, limitedLegTicks);
+    }
     f.footJerk = over(footJerk, footPath);
     f.bodyJerk = over(bodyJerk, bodyPath);
     f.margin = over(margin, supported);
@@ -92,34 +101,39 @@ double percentile99(const std::vector<uint64_t>& buckets) {
 }
 
 template <class Each>
-void eachAgent(const Crowd::Impl& crowd, const crowd::Herd& herd, const Each& each) {
+void eachAgent(const Crowd::Impl& crowd, const crowd::Part& part, const Each& each) {
   if (!crowd.options.measure) return;
-  for (const Page& page : herd.pages) {
-    const std::vector<float> m = gpu::download<float>(*crowd.context, page.metric);
-    for (size_t at = 0; at + kFloats <= m.size(); at += kFloats)
-      each(std::span<const float, kFloats>(m.data() + at, kFloats));
-  }
+  std::vector<float> m(part.agents * kFloats);
+  gpu::downloadBytes(*crowd.context, part.page->metric, std::as_writable_bytes(std::span(m)),
+                     part.first * kFloats * sizeof(float));
+  for (size_t at = 0; at < m.size(); at += kFloats)
+    each(std::span<const float, kFloats>(m.data() + at, kFloats));
 }
 
-Fidelity figuresOf(const Crowd::Impl& crowd, std::span<const crowd::Herd> herds) {
+// Of herds from `first` to before `end`.
+Fidelity figuresOf(const Crowd::Impl& crowd, uint32_t first, uint32_t end) {
   crowd.context->waitIdle();
-  Sums sums;
+  bool limitsAreKept = false;
+  for (uint32_t h = first; h < end; ++h)
+    limitsAreKept = limitsAreKept || crowd::traitsOf(crowd.kindOf(h).controller).keepsLimits;
+  Sums sums(limitsAreKept);
   std::vector<uint64_t> buckets(shared::HISTOGRAM_BUCKETS);
   uint64_t lastResorts = 0, notFinite = 0;
-  for (const crowd::Herd& herd : herds) {
-    eachAgent(crowd, herd, [&](std::span<const float, kFloats> m) { sums.add(m, herd); });
-    for (const Page& page : herd.pages) {
-      if (page.histogram) {
-        const std::vector<uint32_t> counts = gpu::download<uint32_t>(*crowd.context, page.histogram);
+  for (uint32_t h = first; h < end; ++h)
+    for (const crowd::Part& part : crowd::partsOf(crowd, h)) {
+      eachAgent(crowd, part, [&](std::span<const float, kFloats> m) { sums.add(m, crowd.kindOf(h)); });
+      if (part.page->histogram) {
+        std::array<uint32_t, shared::HISTOGRAM_BUCKETS> counts;
+        gpu::downloadBytes(*crowd.context, part.page->histogram, std::as_writable_bytes(std::span(counts)),
+                           part.row * sizeof counts);
         for (size_t i = 0; i < buckets.size(); ++i) buckets[i] += counts[i];
       }
-      const std::vector<uint32_t> counters = gpu::download<uint32_t>(*crowd.context, page.counters);
-      lastResorts += counters[shared::COUNTER_LAST_RESORTS];
-      notFinite += counters[shared::COUNTER_NOT_FINITE];
+      const crowd::CounterRow row = crowd::rowOf(*crowd.context, part);
+      lastResorts += row[shared::ROW_LAST_RESORTS];
+      notFinite += row[shared::ROW_NOT_FINITE];
     }
-  }
   Fidelity f = sums.figures();
-  f.reachErrorP99 = percentile99(buckets);
+  f.reachErrorP99 = std::min(percentile99(buckets), f.reachErrorMost);
   f.lastResorts = lastResorts;
   f.notFinite = notFinite;
   return f;
@@ -127,19 +141,20 @@ Fidelity figuresOf(const Crowd::Impl& crowd, std::span<const crowd::Herd> herds)
 
 }  // namespace
 
-Fidelity Crowd::fidelity() const { return figuresOf(*impl_, impl_->herds); }
+Fidelity Crowd::fidelity() const { return figuresOf(*impl_, 0, herdCount()); }
 
-Fidelity Crowd::fidelity(uint32_t herd) const { return figuresOf(*impl_, {&impl_->herds.at(herd), 1}); }
+Fidelity Crowd::fidelity(uint32_t herd) const { return figuresOf(*impl_, herd, herd + 1); }
 
-std::vector<Fidelity> Crowd::agentFidelity(uint32_t herdIndex) const {
+std::vector<Fidelity> Crowd::agentFidelity(uint32_t herd) const {
   impl_->context->waitIdle();
-  const crowd::Herd& herd = impl_->herds.at(herdIndex);
+  const crowd::Kind& kind = impl_->kindOf(herd);
   std::vector<Fidelity> agents;
-  eachAgent(*impl_, herd, [&](std::span<const float, kFloats> m) {
-    Sums sums;
-    sums.add(m, herd);
-    agents.push_back(sums.figures());
-  });
+  for (const crowd::Part& part : crowd::partsOf(*impl_, herd))
+    eachAgent(*impl_, part, [&](std::span<const float, kFloats> m) {
+      Sums sums(crowd::traitsOf(kind.controller).keepsLimits);
+      sums.add(m, kind);
+      agents.push_back(sums.figures());
+    });
   return agents;
 }
 

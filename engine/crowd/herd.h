@@ -16,25 +16,17 @@
 #include "gpu/timer.h"
 #include "shared/bindings.h"
 #include "shared/parameters.h"
-#include "shared/records.h"
 #include "skitter/crowd.h"
+#include "skitter/records.h"
 
 // What a crowd is made of on the device; the stages and the renderer read it.
 namespace skitter::crowd {
 
-// A run of agents whose records fit the device's bindings. Layouts: shaders/shared/records.h.
-struct Page {
+// A run of a kind's agents whose records fit the device's bindings.
+struct Page : ForRecords<gpu::Buffer> {
   uint32_t firstAgent = 0;
   uint32_t agents = 0;
-  gpu::Buffer goal, steer, body, gait, step, foot, chain;
-  gpu::Buffer arc;               // where feet are swung by steps
-  gpu::Buffer miss;              // where ik tells of it
-  gpu::Buffer tip;               // of one agent alone unless somebody looks at feet
-  gpu::Buffer pose;              // none unless poses are wanted
-  gpu::Buffer metric, watch;     // none unless fidelity is measured
-  gpu::Buffer play, start, fix;  // where clips are played, the latter two where they are planted
-  gpu::Buffer spring;            // of controller pose
-  gpu::Buffer flight, footfall;  // none unless footfalls are kept
+  gpu::Buffer footfall;  // none unless footfalls are kept
   uint32_t footfallRoom = 0;
   gpu::Buffer awake;                    // blocks with somebody awake, where agents may sleep
   gpu::Buffer list;                     // legs that begin a step this tick
@@ -43,7 +35,12 @@ struct Page {
   std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
-struct Herd {
+// What equal herds have in common, and their agents: herd after herd in the same pages, so that a tick's
+// dispatches do not grow with their number.
+struct Kind {
+  std::vector<uint64_t> firstAgents;  // the first agent of each of its herds
+  uint64_t agents = 0;
+  int herdSteps = 0;  // 2 to their power is at least the number of herds in a page
   Rig rig;
   Controller controller = Controller::adaptive;
   int legs = 0, bones = 0, groups = 0;  // bones of the longest chain
@@ -58,11 +55,18 @@ struct Herd {
   gpu::HostBuffer parameterBlock;  // Parameters; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
   gpu::Buffer rigBuffer;
-  std::vector<Stage> stages;             // of the controller, those that were asked for
-  std::vector<gpu::Kernel> kernels;      // one a stage, specialised
-  std::vector<gpu::Kernel> restKernels;  // one a stage: for what that leaves out (Stage::rest), mostly none
-  gpu::Kernel watchingGait;              // gait in the ticks after an edit of the heights
+  std::vector<ReadyStage> stages;  // of the controller, those that were asked for
   std::vector<Page> pages;
+
+  // The place among the kind's herds of the one that an agent is of.
+  uint32_t herdOf(uint64_t agent) const;
+};
+
+// A herd of the scene: a run of its kind's agents.
+struct Herd {
+  uint32_t kind = 0;   // which of the crowd's
+  uint32_t place = 0;  // among the kind's herds
+  uint32_t firstAgent = 0, agents = 0;
 };
 
 }  // namespace skitter::crowd
@@ -74,13 +78,17 @@ struct Crowd::Impl {
   CrowdOptions options;
   Heightfield terrain;  // heights in memory too: cameras and tools look up the ground
   gpu::Image heights;   // R32F, columns x rows, in state sampled; what every stage and the picture read
-  std::vector<crowd::Herd> herds;
-  uint32_t watchEvery = 1;  // measure watches one agent of this many
+  std::vector<crowd::Kind> kinds;
+  std::vector<crowd::Herd> herds;  // as in the scene
+  uint32_t watchEvery = 1;         // measure watches one agent of this many
   crowd::HeightEdits edits;
   uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground; 0: never
   uint64_t tick = 0;
   float dt = 0;  // of the first tick; 0 before it
   gpu::StageTimer timer;
+
+  crowd::Kind& kindOf(uint32_t herd) { return kinds[herds.at(herd).kind]; }
+  const crowd::Kind& kindOf(uint32_t herd) const { return kinds[herds.at(herd).kind]; }
 };
 
 }  // namespace skitter

@@ -7,13 +7,11 @@
 
 namespace skitter::crowd {
 
-// Key poses of a rig's legs, as the stages read them; docs/stages.md, controller pose.
+// Key poses of a rig's legs, as the stages read them; docs/stages/key-poses.md.
 struct KeyPoses {
-  static constexpr uint32_t least = 2, most = 8;
-
   int keys = 0;
   float stride = 0;            // metres a cycle
-  std::vector<float> records;  // shaders/shared/records.h, key
+  std::vector<float> records;  // engine/include/skitter/records.h, key
 };
 
 // Of the clips that are named or, without names, of all. Throws Error(input) that names the file where none

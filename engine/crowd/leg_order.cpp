@@ -10,7 +10,7 @@ namespace {
 // Below it a creature stands on too few legs for legs of two groups to be in the air: a hexapod on four of
 // them, the front one of one side and the rear one of the other lifted, may come to lean over their edge.
 constexpr size_t kFewLegs = 8;
-// Neighbours further apart in lag would have to wait for each other (docs/stages.md, gait).
+// Neighbours further apart in lag would have to wait for each other (docs/stages/gait.md).
 constexpr float kMostBetweenNeighbours = 0.75f;
 
 // Leg indices by their homes' direction from the middle of all homes.

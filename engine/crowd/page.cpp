@@ -1,13 +1,18 @@
 #include "crowd/page.h"
 
 #include <algorithm>
+#include <bit>
+#include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 
+#include "crowd/record.h"
 #include "crowd/stage.h"
 #include "gpu/barrier.h"
 #include "gpu/context.h"
 #include "gpu/submit.h"
+#include "gpu/transfer.h"
 #include "skitter/error.h"
 
 namespace skitter::crowd {
@@ -17,196 +22,188 @@ constexpr uint32_t kMostPageAgents = 65536;
 
 }  // namespace
 
-gpu::Binding bindingOf(const Crowd::Impl& crowd, const Herd& herd, const Page& page, uint32_t binding) {
+uint32_t Kind::herdOf(uint64_t agent) const {
+  return static_cast<uint32_t>(std::ranges::upper_bound(firstAgents, agent) - firstAgents.begin()) - 1;
+}
+
+gpu::Binding bindingOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page, uint32_t binding) {
   using namespace shared;
+  if (const std::optional<Record> record = recordAt(binding)) return {binding, &page.of(*record)};
   switch (binding) {
     case BINDING_PARAMETERS:
-      return {binding, &herd.parameterBlock};
+      return {binding, &kind.parameterBlock};
     case BINDING_HEIGHTS:
       return {binding, &crowd.heights};
     case BINDING_RIG:
-      return {binding, &herd.rigBuffer};
+      return {binding, &kind.rigBuffer};
+    case BINDING_KEY:
+      return {binding, &kind.keyBuffer};
+    case BINDING_CLIP:
+      return {binding, &kind.clipHeads};
+    case BINDING_CLIP_FRAME:
+      return {binding, &kind.clipTimes};
+    case BINDING_CLIP_ROW:
+      return {binding, &kind.clipRows};
+    case BINDING_CLIP_LEG:
+      return {binding, &kind.clipLegs};
+    case BINDING_CLIP_JOINT:
+      return {binding, &kind.clipBones};
     case BINDING_LIST:
       return {binding, &page.list};
     case BINDING_COUNTERS:
       return {binding, &page.counters};
+    case BINDING_HISTOGRAM:
+      return {binding, &page.histogram};
     case BINDING_AWAKE:
     case BINDING_AWAKE_OUT:
       return {binding, &page.awake};
-    case BINDING_HISTOGRAM:
-      return {binding, &page.histogram};
-    case BINDING_GOAL:
-    case BINDING_GOAL_OUT:
-      return {binding, &page.goal};
-    case BINDING_STEER:
-    case BINDING_STEER_OUT:
-      return {binding, &page.steer};
-    case BINDING_BODY:
-    case BINDING_BODY_OUT:
-      return {binding, &page.body};
-    case BINDING_GAIT:
-    case BINDING_GAIT_OUT:
-      return {binding, &page.gait};
-    case BINDING_STEP:
-    case BINDING_STEP_OUT:
-      return {binding, &page.step};
-    case BINDING_ARC:
-    case BINDING_ARC_OUT:
-      return {binding, &page.arc};
-    case BINDING_FOOT:
-    case BINDING_FOOT_OUT:
-      return {binding, &page.foot};
-    case BINDING_CHAIN:
-    case BINDING_CHAIN_OUT:
-      return {binding, &page.chain};
-    case BINDING_MISS:
-    case BINDING_MISS_OUT:
-      return {binding, &page.miss};
-    case BINDING_TIP:
-    case BINDING_TIP_OUT:
-      return {binding, &page.tip};
-    case BINDING_POSE:
-    case BINDING_POSE_OUT:
-      return {binding, &page.pose};
-    case BINDING_PLAY:
-    case BINDING_PLAY_OUT:
-      return {binding, &page.play};
-    case BINDING_START:
-    case BINDING_START_OUT:
-      return {binding, &page.start};
-    case BINDING_FIX:
-    case BINDING_FIX_OUT:
-      return {binding, &page.fix};
-    case BINDING_SPRING:
-    case BINDING_SPRING_OUT:
-      return {binding, &page.spring};
-    case BINDING_KEY:
-      return {binding, &herd.keyBuffer};
-    case BINDING_CLIP:
-      return {binding, &herd.clipHeads};
-    case BINDING_CLIP_FRAME:
-      return {binding, &herd.clipTimes};
-    case BINDING_CLIP_ROW:
-      return {binding, &herd.clipRows};
-    case BINDING_CLIP_LEG:
-      return {binding, &herd.clipLegs};
-    case BINDING_CLIP_JOINT:
-      return {binding, &herd.clipBones};
-    case BINDING_WATCH:
-    case BINDING_WATCH_OUT:
-      return {binding, &page.watch};
-    case BINDING_FLIGHT:
-    case BINDING_FLIGHT_OUT:
-      return {binding, &page.flight};
     case BINDING_FOOTFALL_OUT:
       return {binding, &page.footfall};
     default:
-      return {binding, &page.metric};
+      throw std::logic_error("a stage has binding " + std::to_string(binding) +
+                             ", which nothing is bound to");
   }
+}
+
+bool keeps(const Kind& kind, const CrowdOptions& options, Record record) {
+  bool read = false, written = false;
+  for (const Stage& stage : kind.stages)
+    for (const gpu::BindingDecl& declared : stage.bindings)
+      if (recordAt(declared.binding) == record) (isWritten(declared.binding) ? written : read) = true;
+  switch (infoOf(record).kept) {
+    case Kept::always:
+      return true;
+    case Kept::bound:
+      return read || written;
+    case Kept::exchanged:
+      break;
+  }
+  return options.feet ? read || written : read && written;
 }
 
 namespace {
 
+// The herd of that place; one without agents in the page has none.
+Part partOf(const Kind& kind, uint32_t herd, const Page& page) {
+  const auto begin = static_cast<uint32_t>(kind.firstAgents[herd]);
+  const auto end =
+      static_cast<uint32_t>(herd + 1 < kind.firstAgents.size() ? kind.firstAgents[herd + 1] : kind.agents);
+  const uint32_t from = std::max(begin, page.firstAgent), to = std::min(end, page.firstAgent + page.agents);
+  return {&page, from - begin, from - page.firstAgent, to > from ? to - from : 0,
+          herd - kind.herdOf(page.firstAgent)};
+}
+
+// Where the page's herds begin, for shaders to look up an agent's.
+void uploadHerds(const gpu::Context& context, const Kind& kind, const Page& page) {
+  const int rows = 1 << kind.herdSteps;
+  std::vector<uint32_t> begins(static_cast<size_t>(rows), UINT32_MAX);
+  const uint32_t first = kind.herdOf(page.firstAgent);
+  const uint32_t last = kind.herdOf(page.firstAgent + page.agents - 1);
+  for (uint32_t herd = first; herd <= last; ++herd) begins[herd - first] = partOf(kind, herd, page).first;
+  gpu::uploadBytes(context, page.counters, std::as_bytes(std::span(begins)),
+                   bytesOfCounters(shared::counterHerd(0, rows)));
+}
+
 // What is spawned is written once, to where the device copies it from; all else begins as zeros.
-void spawn(const gpu::Context& context, const std::vector<PageBuffer>& buffers, const Spawner& spawner,
-           const gpu::HostBuffer& staging, const Page& page) {
+void spawn(const gpu::Context& context, const std::vector<PageBuffer>& buffers, const Kind& kind,
+           std::span<const Spawner> spawners, const gpu::HostBuffer& staging, const Page& page) {
   SpawnRecords records;
   gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
     uint64_t end = 0;
     for (const PageBuffer& each : buffers) {
-      const gpu::Buffer& buffer = page.*each.buffer;
-      if (each.spawned == nullptr) {
+      const gpu::Buffer& buffer = each.in(page);
+      if (!each.spawned) {
         cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 0);
         continue;
       }
-      records.*each.spawned = staging.as<float>().subspan(end / sizeof(float), buffer.size() / sizeof(float));
+      records.of(*each.record) =
+          staging.as<float>().subspan(end / sizeof(float), buffer.size() / sizeof(float));
       cmd.copyBuffer(staging.handle(), buffer.handle(),
                      vk::BufferCopy{.srcOffset = end, .size = buffer.size()});
       end += buffer.size();
     }
     gpu::allToAll(cmd);
-    spawner.write(page.firstAgent, page.agents, records);
+    for (uint32_t herd = 0; herd < spawners.size(); ++herd)
+      if (const Part part = partOf(kind, herd, page); part.agents > 0)
+        spawners[herd].write(part.firstAgent, part.agents, part.first, records);
   });
 }
 
 }  // namespace
 
-std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Herd& herd) {
+namespace {
+
+bool binds(const Kind& kind, Record record) {
+  return std::ranges::any_of(kind.stages, [&](const Stage& stage) {
+    return std::ranges::any_of(stage.bindings, [&](const gpu::BindingDecl& declared) {
+      return recordAt(declared.binding) == record;
+    });
+  });
+}
+
+PageBuffer recordBuffer(const Crowd::Impl& crowd, const Kind& kind, Record record) {
+  const RecordInfo info = infoOf(record);
+  const auto vec4s = static_cast<uint64_t>(strideOf(record, kind.legs, kind.bones, kind.clips.joints));
+  PageBuffer made{.name = info.name, .bytes = 16 * vec4s, .record = record};
+  if (info.per == Per::leg) {
+    made.bytes *= static_cast<uint64_t>(kind.legs);
+    made.inBlocks = true;
+  }
+  if (info.per == Per::watched) made.agents = crowd.watchEvery;
+  if (keeps(kind, crowd.options, record))
+    made.spawned = info.spawned;
+  else
+    made.most = made.bytes;
+  return made;
+}
+
+}  // namespace
+
+std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Kind& kind) {
   using namespace shared;
   constexpr uint32_t aPage = UINT32_MAX;
+  const int rows = 1 << kind.herdSteps;
   const CrowdOptions& options = crowd.options;
-  const Rig& rig = herd.rig;
-  const bool clips = playsClips(herd.controller), planted = herd.controller == Controller::planted;
-  const auto legs = static_cast<uint64_t>(rig.legCount());
-  const auto vec4s = [](uint64_t count, int stride) { return count * static_cast<uint64_t>(stride) * 16; };
-  const auto ofLegs = [&](const char* name, gpu::Buffer Page::*buffer, int stride,
-                          std::span<float> SpawnRecords::*spawned = nullptr) {
-    PageBuffer made{name, buffer, vec4s(legs, stride), spawned};
-    made.inBlocks = true;
-    return made;
-  };
-  std::vector<PageBuffer> buffers = {
-      {"goal", &Page::goal, vec4s(1, GOAL_STRIDE), &SpawnRecords::goal},
-      {"steer", &Page::steer, vec4s(1, STEER_STRIDE)},
-      {"body", &Page::body, vec4s(1, BODY_STRIDE), &SpawnRecords::body},
-      {"gait", &Page::gait, vec4s(1, GAIT_STRIDE), &SpawnRecords::gait},
-      ofLegs("step", &Page::step, STEP_STRIDE, &SpawnRecords::step),
-      ofLegs("chain", &Page::chain, chainStride(rig.maxBones()), &SpawnRecords::chain),
-      {"list", &Page::list, legs * sizeof(uint32_t)}};
-  // What is not kept is bound all the same.
-  const auto ofFeet = [&](const char* name, gpu::Buffer Page::*buffer, int stride,
-                          std::span<float> SpawnRecords::*spawned, bool kept) {
-    PageBuffer made = ofLegs(name, buffer, stride, kept ? spawned : nullptr);
-    if (!kept) made.most = made.bytes;
-    buffers.push_back(made);
-  };
-  ofFeet("foot", &Page::foot, FOOT_STRIDE, &SpawnRecords::foot, hasFootRecords(herd, options));
-  ofFeet("tip", &Page::tip, TIP_STRIDE, &SpawnRecords::tip, keepsFeet(options));
-  if (aimsSteps(herd.controller)) buffers.push_back(ofLegs("arc", &Page::arc, ARC_STRIDE));
-  if (tellsMisses(herd.controller))
-    buffers.push_back({"miss", &Page::miss, vec4s(1, missStride(rig.legCount()))});
-  if (clips) buffers.push_back({"play", &Page::play, vec4s(1, PLAY_STRIDE), &SpawnRecords::play});
-  if (planted) {
-    buffers.push_back(ofLegs("start", &Page::start, startStride(rig.maxBones())));
-    buffers.push_back(ofLegs("fix", &Page::fix, rig.maxBones() * FIX_STRIDE));
-  }
-  if (herd.controller == Controller::pose)
-    buffers.push_back(ofLegs("spring", &Page::spring, chainStride(rig.maxBones())));
-  if (options.pose)
-    buffers.push_back({"pose", &Page::pose,
-                       clips ? vec4s(static_cast<uint64_t>(herd.clips.joints), MATRIX_STRIDE)
-                             : vec4s(static_cast<uint64_t>(rig.paletteSize()), POSE_STRIDE)});
-  if (options.measure) {
-    buffers.push_back({"metric", &Page::metric, vec4s(1, METRIC_STRIDE)});
-    buffers.push_back(
-        {"watch", &Page::watch, vec4s(1, watchStride(rig.legCount())), nullptr, crowd.watchEvery});
-    buffers.push_back({"histogram", &Page::histogram, HISTOGRAM_BUCKETS * sizeof(uint32_t), nullptr, aPage});
-  }
-  if (options.footfalls > 0) {
-    buffers.push_back(ofLegs("flight", &Page::flight, FLIGHT_STRIDE));
-    buffers.push_back({"footfall", &Page::footfall, vec4s(legs, FOOTFALL_STRIDE), nullptr, 1,
-                       vec4s(options.footfalls, FOOTFALL_STRIDE)});
-  }
+  const auto legs = static_cast<uint64_t>(kind.legs);
+  std::vector<PageBuffer> buffers;
+  for (const Record record : allRecords)
+    if (keeps(kind, options, record) || binds(kind, record))
+      buffers.push_back(recordBuffer(crowd, kind, record));
+  buffers.push_back({.name = "list", .bytes = legs * sizeof(uint32_t), .buffer = &Page::list});
+  if (options.measure)
+    buffers.push_back({.name = "histogram",
+                       .bytes = bytesOfCounters(rows * HISTOGRAM_BUCKETS),
+                       .buffer = &Page::histogram,
+                       .agents = aPage});
+  if (options.footfalls > 0)
+    buffers.push_back({.name = "footfall",
+                       .bytes = legs * FOOTFALL_STRIDE * 16,
+                       .buffer = &Page::footfall,
+                       .most = uint64_t{options.footfalls} * FOOTFALL_STRIDE * 16});
   // The last work group reads on after the list's end.
-  PageBuffer awake{"awake", &Page::awake, vec4s(1, AWAKE_STRIDE), nullptr, BLOCK};
+  constexpr uint64_t anEntry = AWAKE_STRIDE * 16;
+  PageBuffer awake{.name = "awake", .bytes = anEntry, .buffer = &Page::awake, .agents = BLOCK};
   if (options.sleep)
-    awake.more = vec4s(WORK_GROUP, AWAKE_STRIDE);
+    awake.more = WORK_GROUP * anEntry;
   else
-    awake.most = awake.bytes;
+    awake.most = anEntry;
   buffers.push_back(awake);
-  buffers.push_back({"counters", &Page::counters, COUNTERS * sizeof(uint32_t), nullptr, aPage, UINT64_MAX,
-                     gpu::BufferUse::indirect});
+  buffers.push_back({.name = "counters",
+                     .bytes = bytesOfCounters(counterHerd(rows, rows)),
+                     .buffer = &Page::counters,
+                     .agents = aPage,
+                     .use = gpu::BufferUse::indirect});
   return buffers;
 }
 
-uint32_t agentsPerPage(const Crowd::Impl& crowd, const Herd& herd) {
+uint32_t agentsPerPage(const Crowd::Impl& crowd, const Kind& kind) {
   using shared::BLOCK;
   const gpu::Context& context = *crowd.context;
   uint64_t limit = context.limits().maxStorageBufferRange;
   if (context.texelLoads()) limit = std::min(limit, context.limits().maxTexelBufferElements * 16);
   uint64_t agents =
       crowd.options.pageAgents > 0 ? std::min(crowd.options.pageAgents, kMostPageAgents) : kMostPageAgents;
-  for (const PageBuffer& buffer : pageBuffers(crowd, herd)) {
+  for (const PageBuffer& buffer : pageBuffers(crowd, kind)) {
     const uint64_t fit = limit / buffer.bytes * buffer.agents;
     agents = std::min(agents, buffer.inBlocks ? fit / BLOCK * BLOCK : fit);
     if (agents == 0)
@@ -216,23 +213,33 @@ uint32_t agentsPerPage(const Crowd::Impl& crowd, const Herd& herd) {
   return static_cast<uint32_t>(agents);
 }
 
-uint64_t bytesOf(const Crowd::Impl& crowd, const Herd& herd, uint32_t agents) {
-  const std::vector<PageBuffer> buffers = pageBuffers(crowd, herd);
-  const uint32_t most = agentsPerPage(crowd, herd);
-  const auto ofPage = [&](uint32_t count) {
-    uint64_t bytes = 0;
-    for (const PageBuffer& buffer : buffers) bytes += buffer.bytesOf(count);
-    return bytes;
-  };
-  return agents / most * ofPage(most) + ofPage(agents % most);
+int herdStepsOf(const Crowd::Impl& crowd, const Kind& kind) {
+  const uint64_t most = agentsPerPage(crowd, kind);
+  uint32_t rows = 1;
+  for (uint64_t first = 0; first < kind.agents; first += most) {
+    const uint64_t last = std::min(first + most, kind.agents) - 1;
+    rows = std::max(rows, kind.herdOf(last) - kind.herdOf(first) + 1);
+  }
+  return std::bit_width(rows - 1);
 }
 
-std::vector<Page> makePages(const Crowd::Impl& crowd, const Herd& herd, const Spawner& spawner,
-                            uint32_t agents) {
-  const uint32_t most = std::min(agents, agentsPerPage(crowd, herd));
-  const std::vector<PageBuffer> buffers = pageBuffers(crowd, herd);
+uint64_t bytesOf(const Crowd::Impl& crowd, const Kind& kind) {
+  const std::vector<PageBuffer> buffers = pageBuffers(crowd, kind);
+  const uint32_t most = agentsPerPage(crowd, kind);
+  const auto ofPage = [&](uint64_t count) {
+    uint64_t bytes = 0;
+    for (const PageBuffer& buffer : buffers) bytes += buffer.bytesOf(static_cast<uint32_t>(count));
+    return bytes;
+  };
+  return kind.agents / most * ofPage(most) + ofPage(kind.agents % most);
+}
+
+std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::span<const Spawner> spawners) {
+  const auto agents = static_cast<uint32_t>(kind.agents);
+  const uint32_t most = std::min(agents, agentsPerPage(crowd, kind));
+  const std::vector<PageBuffer> buffers = pageBuffers(crowd, kind);
   uint64_t staged = 0;
-  for (const PageBuffer& each : buffers) staged += each.spawned != nullptr ? each.bytesOf(most) : 0;
+  for (const PageBuffer& each : buffers) staged += each.spawned ? each.bytesOf(most) : 0;
   const gpu::HostBuffer staging(*crowd.context, staged, gpu::HostUse::upload, "spawn staging");
   std::vector<Page> pages;
   for (uint32_t first = 0; first < agents; first += most) {
@@ -240,25 +247,41 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Herd& herd, const Sp
     page.firstAgent = first;
     page.agents = std::min(most, agents - first);
     for (const PageBuffer& each : buffers)
-      page.*each.buffer = gpu::Buffer(*crowd.context, each.bytesOf(page.agents), each.name, each.use);
+      each.in(page) = gpu::Buffer(*crowd.context, each.bytesOf(page.agents), each.name, each.use);
     page.footfallRoom = static_cast<uint32_t>(page.footfall.size() / (shared::FOOTFALL_STRIDE * 16));
-    spawn(*crowd.context, buffers, spawner, staging, page);
-    for (size_t i = 0; i < herd.stages.size(); ++i) {
+    spawn(*crowd.context, buffers, kind, spawners, staging, page);
+    if (kind.herdSteps > 0) uploadHerds(*crowd.context, kind, page);
+    for (size_t i = 0; i < kind.stages.size(); ++i) {
       std::vector<gpu::Binding> list;
-      for (const gpu::BindingDecl& declared : herd.stages[i].bindings)
-        list.push_back(bindingOf(crowd, herd, page, declared.binding));
-      page.bindings.push_back(herd.kernels[i].bind(*crowd.context, list));
+      for (const gpu::BindingDecl& declared : kind.stages[i].bindings)
+        list.push_back(bindingOf(crowd, kind, page, declared.binding));
+      page.bindings.push_back(kind.stages[i].first.bind(*crowd.context, list));
     }
   }
   return pages;
 }
 
-PageSample sampleOf(const Page& page, const AgentSample& sample) {
-  const uint32_t past = page.firstAgent > sample.first ? (page.firstAgent - sample.first) % sample.stride : 0;
-  const uint32_t first = page.firstAgent <= sample.first ? sample.first - page.firstAgent
-                         : past > 0                      ? sample.stride - past
-                                                         : 0;
-  return {first, page.agents > first ? (page.agents - first + sample.stride - 1) / sample.stride : 0};
+std::vector<Part> partsOf(const Crowd::Impl& crowd, uint32_t herd) {
+  const Kind& kind = crowd.kindOf(herd);
+  std::vector<Part> parts;
+  for (const Page& page : kind.pages)
+    if (const Part part = partOf(kind, crowd.herds[herd].place, page); part.agents > 0) parts.push_back(part);
+  return parts;
+}
+
+CounterRow rowOf(const gpu::Context& context, const Part& part) {
+  CounterRow row;
+  gpu::downloadBytes(context, part.page->counters, std::as_writable_bytes(std::span(row)),
+                     bytesOfCounters(shared::counterRow(static_cast<int>(part.row))));
+  return row;
+}
+
+RunSample sampleOf(uint32_t firstAgent, uint32_t agents, const AgentSample& sample) {
+  const uint32_t past = firstAgent > sample.first ? (firstAgent - sample.first) % sample.stride : 0;
+  const uint32_t first = firstAgent <= sample.first ? sample.first - firstAgent
+                         : past > 0                 ? sample.stride - past
+                                                    : 0;
+  return {first, agents > first ? (agents - first + sample.stride - 1) / sample.stride : 0};
 }
 
 }  // namespace skitter::crowd

@@ -5,7 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "crowd/leg_order.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::crowd {
 namespace {

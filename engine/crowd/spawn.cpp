@@ -6,17 +6,16 @@
 #include <thread>
 #include <vector>
 
-#include "shared/records.h"
+#include "base/split_mix.h"
+#include "skitter/records.h"
 
 namespace skitter::crowd {
 namespace {
 
-// SplitMix64 (Steele, Lea & Flood 2014): one draw per agent and purpose, whatever the order.
+// One draw per agent and purpose, whatever the order.
 float uniform(uint64_t seed, uint64_t agent, uint64_t purpose) {
-  uint64_t z = seed + 0x9e3779b97f4a7c15ull * (agent * 4 + purpose + 1);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return static_cast<float>((z ^ (z >> 31)) >> 40) * 0x1p-24f;
+  const uint64_t drawn = base::SplitMix64::draw(seed, agent * 4 + purpose + 1);
+  return static_cast<float>(drawn >> 40) * 0x1p-24f;
 }
 
 // Below that many a thread costs more than it saves.
@@ -49,13 +48,13 @@ class Spawner::Writer {
   float* at_ = records_;
 };
 
-Spawner::Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield& terrain, uint64_t seed)
+Spawner::Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield& terrain, uint64_t seed)
     : herd_(from),
-      rig_(herd.rig),
-      clips_(herd.clips),
-      keyPoses_(herd.keyPoses),
+      rig_(kind.rig),
+      clips_(kind.clips),
+      keyPoses_(kind.keyPoses),
       terrain_(terrain),
-      tuning_(herd.parameters),
+      tuning_(kind.parameters),
       seed_(seed) {
   // A block about as deep as wide; closer together only where the terrain has no room.
   const float spacing = from.spawn.spacing;
@@ -115,28 +114,29 @@ Spawner::Placement Spawner::place(uint32_t agent) const {
   return p;
 }
 
-void Spawner::write(uint32_t first, uint32_t count, const SpawnRecords& records) const {
+void Spawner::write(uint32_t first, uint32_t count, uint32_t at, const SpawnRecords& records) const {
   if (count == 0) return;
   const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, count / kAgentsAThread + 1);
   std::vector<std::jthread> runs;
   for (uint32_t i = 0; i < threads; ++i) {
     const auto from = static_cast<uint32_t>(uint64_t{count} * i / threads);
     const auto to = static_cast<uint32_t>(uint64_t{count} * (i + 1) / threads);
+    const auto run = [=, this, &records] { writeRun(first + from, to - from, at + from, records); };
     if (i + 1 == threads)
-      writeRun(first, from, to, records);
+      run();
     else
-      runs.emplace_back([this, first, from, to, &records] { writeRun(first, from, to, records); });
+      runs.emplace_back(run);
   }
 }
 
-void Spawner::writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRecords& records) const {
+void Spawner::writeRun(uint32_t first, uint32_t count, uint32_t at, const SpawnRecords& records) const {
   using namespace shared;
   Writer goal(records.goal, GOAL_STRIDE), body(records.body, BODY_STRIDE), gait(records.gait, GAIT_STRIDE),
       step(records.step, STEP_STRIDE), foot(records.foot, FOOT_STRIDE),
       chain(records.chain, chainStride(rig_.maxBones())), tip(records.tip, TIP_STRIDE),
       play(records.play, PLAY_STRIDE);
-  for (uint32_t record = from; record < to; ++record) {
-    const uint32_t agent = first + record;
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint32_t agent = first + i, record = at + i;
     for (Writer* each : {&goal, &body, &gait, &play}) each->seek(static_cast<int>(record));
     const Placement p = place(agent);
     const float kind = herd_.goal.kind == Goal::Kind::cross   ? shared::GOAL_CROSS

@@ -9,33 +9,33 @@
 
 namespace skitter::crowd {
 
-// The records that a page's agents begin with, laid out as shaders/shared/records.h says; all others begin as
+// Where the records go that a page's agents begin with; empty where the page keeps none or they begin as
 // zeros.
-struct SpawnRecords {
-  std::span<float> goal, body, gait, step, foot, chain, tip, play;
-};
+using SpawnRecords = ForRecords<std::span<float>>;
 
 // Where agent i of n starts: the herd's spawn, goal and seed decide alone, so neither pages nor threads ever
 // change a crowd.
 class Spawner {
  public:
-  Spawner(const skitter::Herd& from, const Herd& herd, const Heightfield& terrain, uint64_t seed);
+  Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield& terrain, uint64_t seed);
 
   struct Placement {
     float x, z, heading;                     // world metres; radians from +z toward +x
     float targetX, targetZ, otherX, otherZ;  // of the goal, world metres
   };
   Placement place(uint32_t agent) const;
+  // Agents side by side: agent i starts in row i / lanes(), in lane i % lanes().
+  uint32_t lanes() const { return lanes_; }
 
-  // Agents [first, first + count), a page's, standing at home, feet on the ground; on all cores where there
-  // are many.
-  void write(uint32_t first, uint32_t count, const SpawnRecords& records) const;
+  // Agents [first, first + count), standing at home, feet on the ground, into a page's records from the
+  // at-th on; on all cores where there are many.
+  void write(uint32_t first, uint32_t count, uint32_t at, const SpawnRecords& records) const;
 
  private:
   class Writer;
   void pushDirections(size_t leg, Writer& chain) const;
-  // Of the page whose first agent that is, agents [from, to).
-  void writeRun(uint32_t first, uint32_t from, uint32_t to, const SpawnRecords& records) const;
+  // Agents [first, first + count), on this core.
+  void writeRun(uint32_t first, uint32_t count, uint32_t at, const SpawnRecords& records) const;
 
   const skitter::Herd& herd_;
   const Rig& rig_;

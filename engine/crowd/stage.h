@@ -1,62 +1,70 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "crowd/controller.h"
+#include "crowd/stage_id.h"
 #include "gpu/kernel.h"
 #include "skitter/crowd.h"
 
 namespace skitter::crowd {
 
-// A stage of the frame: one compute shader, the records it binds, and what it runs over.
+struct Kind;
+
+// A stage's shader, specialised: for its first dispatch, for what that leaves out (Stage::restArguments), and
+// for the ticks after an edit of the heights.
+struct StageKernels {
+  gpu::KernelInfo first;
+  std::optional<gpu::KernelInfo> rest = {}, afterEdit = {};
+};
+// What it is specialised by.
+struct StageNeeds {
+  const gpu::Context& context;
+  const CrowdOptions& options;
+  const Kind& kind;
+};
+
+// One compute shader: the stages that it makes, the records that it binds, and what it runs over.
 struct Stage {
   // agents, legs, joints (of the clips' palette): of those that are awake; listed: the legs that begin a
   // step, counted on the device; watched: agents whom measure looks at.
   enum class Over { everyone, everyLeg, blocks, agents, legs, joints, listed, watched };
 
-  const char* name;
+  StageSet makes;
   gpu::ShaderCode code;
   std::vector<gpu::BindingDecl> bindings;
   Over over;
+  // Adds what this shader alone is specialised by, and says which kernels it has beside the first.
+  void (*specialise)(const StageNeeds& needs, StageKernels& kernels) = nullptr;
   // Where the counters have the indirect dispatch over what few agents or legs need and the first dispatch
   // leaves out; -1: it leaves out nothing.
-  int rest = -1;
+  int restArguments = -1;
+
+  // Whether it passes over those who sleep.
+  bool isOfTheAwake() const { return over == Over::agents || over == Over::legs || over == Over::joints; }
 };
 
-// Every stage's name in the order in which they are recorded; a controller has those that it needs.
-const std::vector<const char*>& frame();
-// A controller's stages, in that order, less those that make what nobody asked for.
-std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options);
-
-// Whether a stage of that name is the other, or makes several at once, as "body+gait" does, the other among
-// them.
-bool makes(std::string_view stage, std::string_view part);
+// A stage of a kind, with its pipelines.
+struct ReadyStage : Stage {
+  gpu::Kernel first = {}, rest = {}, afterEdit = {};
+};
 
 // Whether somebody looks at feet: ik, or what takes its place, writes tips, and what makes swing and ik at
 // once feet.
 bool keepsFeet(const CrowdOptions& options);
 
-// Whether it passes over those who sleep.
-bool isOfTheAwake(const Stage& stage);
+// A controller's stages, in order, less those that make what nobody asked for.
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options);
+StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs);
+// Makes the pipelines, for the kind's rig, controller and tuning.
+void makeKernels(const StageNeeds& needs, ReadyStage& stage);
 
-struct Herd;
-
-// Whether feet go from one stage to another through records, or somebody looks at them.
-bool hasFootRecords(const Herd& herd, const CrowdOptions& options);
-
-// A stage's shader, specialised by the herd's legs, bones and groups: for its first dispatch, for what that
-// leaves out (Stage::rest) and, of gait, for the ticks after an edit of the heights.
-struct StageKernels {
-  gpu::KernelInfo first;
-  std::optional<gpu::KernelInfo> rest, watching;
-};
-StageKernels kernelsOf(const gpu::Context& context, const Stage& stage, const CrowdOptions& options,
-                       const Herd& herd);
-// The pipelines of all stages of the controller.
-void makeKernels(const gpu::Context& context, const CrowdOptions& options, Herd& herd);
+// For what stages have in common.
+//
+// A second kernel, for what the first dispatch lists and leaves out.
+void addRest(StageKernels& kernels);
+// The numbers with which the rig's records of legs begin.
+void addRigLegs(const Kind& kind, gpu::KernelInfo& info);
 
 // Each in a file of its own name.
 Stage navigateStage();
@@ -78,8 +86,6 @@ Stage keyPoseSwingStage();
 Stage ikStage();
 Stage swingAndIkStage();
 Stage plantedIkStage();
-// Of ik, or of swing and ik, with the solvers that are there to be compared.
-gpu::ShaderCode comparedIkCode(bool withSwing);
 Stage poseStage();
 Stage clipPoseStage();
 Stage plantedPoseStage();

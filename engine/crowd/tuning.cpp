@@ -1,9 +1,9 @@
 #include "crowd/tuning.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <utility>
 
 #include "shared/ik_batch.h"
 #include "skitter/error.h"
@@ -14,14 +14,10 @@ namespace {
 // Each may take as long as the approach and the polish of the plan that ships.
 constexpr int kComparedIterations = 4;
 
-constexpr std::pair<const char*, int> kCompared[] = {
-    {"fabrik", shared::SOLVER_FABRIK},
-    {"ccd", shared::SOLVER_CCD},
-    {"transpose", shared::SOLVER_TRANSPOSE},
-    {"pseudoinverse", shared::SOLVER_PSEUDOINVERSE},
-    {"dls", shared::SOLVER_DLS},
-    {"target-attached", shared::SOLVER_TARGET_ATTACHED},
-};
+// A solver's number in shaders.
+constexpr int numberOf(Solver solver) { return static_cast<int>(solver); }
+static_assert(numberOf(Solver::fabrik) == shared::SOLVER_FABRIK);
+static_assert(numberOf(Solver::activeSet) == shared::SOLVER_ACTIVE_SET);
 
 // E of a tick; damping below 1.
 void setSpring(shared::Parameters& p, float frequency, float damping) {
@@ -39,13 +35,12 @@ void setSpring(shared::Parameters& p, float frequency, float damping) {
 
 }  // namespace
 
-IkPlan ikPlanFor(const std::string& solver) {
-  if (solver == "active-set") return {shared::SOLVER_FABRIK, 4, 2};
-  for (const auto& [name, id] : kCompared)
-    if (solver == name) return {id, kComparedIterations, 0};
-  throw inputError("solver '" + solver +
-                   "' is unknown; there are: active-set, fabrik, ccd, transpose, pseudoinverse, dls, "
-                   "target-attached");
+IkPlan ikPlanFor(Solver solver) {
+  if (solver == Solver::activeSet) return {shared::SOLVER_FABRIK, 4, 2};
+  if (std::find(herdSolvers.begin(), herdSolvers.end(), solver) == herdSolvers.end())
+    throw inputError(
+        fmt::format("a herd's solver is {}, expected one of {}", nameOf(solver), namesOf(herdSolvers)));
+  return {numberOf(solver), kComparedIterations, 0};
 }
 
 // Each value says its unit, and what breaks when it is wrong. L is the leg length.

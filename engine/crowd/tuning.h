@@ -1,21 +1,20 @@
 #pragma once
 
-#include <string>
-
 #include "shared/parameters.h"
 #include "skitter/heightfield.h"
 #include "skitter/rig.h"
+#include "skitter/solver.h"
 
 namespace skitter::crowd {
 
-// What the ik stage does a tick; docs/stages.md says what each buys.
+// What the ik stage does a tick; docs/stages/ik.md says what each buys.
 struct IkPlan {
   int solver;    // shared::SOLVER_, of the approach
   int approach;  // its iterations, at most
   int polish;    // the active set's step and chord steps
 };
-// Of a scene's `solver`. Throws Error(input) where it is unknown.
-IkPlan ikPlanFor(const std::string& solver);
+// Throws Error(input) where the solver is none of herdSolvers.
+IkPlan ikPlanFor(Solver);
 
 // The tuning that ships, scaled to the rig, for ticks of `dt` seconds on this terrain.
 shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield& terrain, float dt);

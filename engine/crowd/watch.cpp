@@ -20,9 +20,9 @@ uint32_t watchEvery(const CrowdOptions& options, uint64_t agents) {
 Watch watchAt(uint64_t tick, uint32_t every, const Page& page) {
   const uint64_t past = tick > 0 ? tick - 1 : 0;
   if (every == 1) return {0, page.agents, static_cast<uint32_t>(past)};
-  // Counted within the herd, so that pages do not show.
+  // Counted through the kind's agents, so that pages do not show.
   const auto turn = static_cast<uint32_t>(past / shared::WATCH_TICKS % every);
-  const PageSample sample = sampleOf(page, {turn, every});
+  const RunSample sample = sampleOf(page.firstAgent, page.agents, {turn, every});
   return {sample.first, sample.count, static_cast<uint32_t>(past % shared::WATCH_TICKS)};
 }
 

@@ -4,7 +4,7 @@
 
 #include "crowd/herd.h"
 
-// Whom measure looks at (docs/stages.md, measure): one agent of every `every`, for WATCH_TICKS in a row.
+// Whom measure looks at (docs/stages/measure.md): one agent of every `every`, for WATCH_TICKS in a row.
 namespace skitter::crowd {
 
 // As asked for; else everybody in a small crowd, and few enough in a large one that measure takes less than

@@ -85,9 +85,10 @@ HostBuffer::HostBuffer(const Context& context, uint64_t bytes, HostUse use, std:
   using Usage = vk::BufferUsageFlagBits;
   using Memory = vk::MemoryPropertyFlagBits;
   checkSize(context, bytes_, name_);
-  buffer_ = makeBuffer(
-      context, allocatedBytes(bytes_),
-      Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eTransferSrc | Usage::eTransferDst, name_);
+  buffer_ = makeBuffer(context, allocatedBytes(bytes_),
+                       Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eVertexBuffer |
+                           Usage::eIndexBuffer | Usage::eTransferSrc | Usage::eTransferDst,
+                       name_);
   const auto preferred =
       use == HostUse::readback ? vk::MemoryPropertyFlags(Memory::eHostCached) : vk::MemoryPropertyFlags();
   memory_ = context.allocate(buffer_.getMemoryRequirements(), Memory::eHostVisible | Memory::eHostCoherent,

@@ -47,7 +47,7 @@ class Buffer {
 };
 
 enum class HostUse {
-  upload,    // the host writes, the device reads: staging and per-tick uniforms
+  upload,    // the host writes, the device reads: staging, per-tick uniforms, vertices of a frame
   readback,  // the device writes, the host reads: cached, or reading crawls
 };
 

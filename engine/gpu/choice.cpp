@@ -1,15 +1,15 @@
 #include "gpu/choice.h"
 
 #include "gpu/context.h"
-#include "gpu/loads.h"
+#include "gpu/device_memory.h"
+#include "gpu/extensions.h"
+#include "gpu/record_access.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 
 namespace skitter::gpu {
 namespace {
@@ -35,26 +35,6 @@ int rankOf(VkPhysicalDeviceType type) {
     default:
       return 0;
   }
-}
-
-uint64_t largestDeviceHeap(const vk::PhysicalDeviceMemoryProperties& memory) {
-  uint64_t bytes = 0;
-  for (uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
-    if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal) {
-      bytes = std::max<uint64_t>(bytes, memory.memoryHeaps[i].size);
-    }
-  }
-  return bytes;
-}
-
-// 0 where the system does not tell.
-uint64_t freeRam() {
-  std::ifstream file("/proc/meminfo");
-  std::string key;
-  for (uint64_t kibibytes = 0; file >> key >> kibibytes; file.ignore(64, '\n')) {
-    if (key == "MemAvailable:") return kibibytes * 1024;
-  }
-  return 0;
 }
 
 std::optional<uint32_t> findQueueFamily(const std::vector<vk::QueueFamilyProperties>& families) {
@@ -110,7 +90,9 @@ void inspectLimits(const vk::raii::PhysicalDevice& physical, DeviceReport& repor
   limits.maxComputeWorkGroupCountX = core.maxComputeWorkGroupCount[0];
   limits.maxPushConstantsSize = core.maxPushConstantsSize;
   limits.heapBytes = largestDeviceHeap(physical.getMemoryProperties());
-  limits.availableBytes = availableBytes(physical);
+  FreeMemory available = availableMemory(physical);
+  limits.availableBytes = available.bytes;
+  limits.availableOf = std::move(available.of);
   limits.timestampPeriod = double(core.timestampPeriod);
   limits.texelRgba32f = bool(physical.getFormatProperties(vk::Format::eR32G32B32A32Sfloat).bufferFeatures &
                              vk::FormatFeatureFlagBits::eUniformTexelBuffer);
@@ -183,33 +165,6 @@ bool selects(const std::string& selector, const DeviceReport& report) {
 }
 
 }  // namespace
-
-bool hasExtension(const vk::raii::PhysicalDevice& physical, const char* name) {
-  const auto list = physical.enumerateDeviceExtensionProperties();
-  return std::any_of(list.begin(), list.end(), [&](const auto& extension) {
-    return std::strcmp(extension.extensionName.data(), name) == 0;
-  });
-}
-
-uint64_t availableBytes(const vk::raii::PhysicalDevice& physical) {
-  const auto memory = physical.getMemoryProperties();
-  if (physical.getProperties().deviceType == vk::PhysicalDeviceType::eCpu) {
-    if (const uint64_t ram = freeRam(); ram > 0) return ram;
-  } else if (hasExtension(physical, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME)) {
-    const auto chain = physical.getMemoryProperties2<vk::PhysicalDeviceMemoryProperties2,
-                                                     vk::PhysicalDeviceMemoryBudgetPropertiesEXT>();
-    const auto& budget = chain.get<vk::PhysicalDeviceMemoryBudgetPropertiesEXT>();
-    uint64_t bytes = 0;
-    for (uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
-      if (!(memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)) continue;
-      if (budget.heapBudget[i] > budget.heapUsage[i]) {
-        bytes = std::max<uint64_t>(bytes, budget.heapBudget[i] - budget.heapUsage[i]);
-      }
-    }
-    return bytes;
-  }
-  return largestDeviceHeap(memory);
-}
 
 Candidate inspect(vk::raii::PhysicalDevice physical, uint32_t index, const DeviceRequest& request,
                   std::optional<uint32_t> queueFamily) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gpu/device_memory.h"
 #include "gpu/vulkan.h"
 #include "skitter/device.h"
 
@@ -12,10 +13,6 @@ struct Candidate {
   DeviceReport report;
   uint32_t queueFamily = 0;
 };
-
-// Bytes that can be allocated on it now (DeviceLimits::availableBytes).
-uint64_t availableBytes(const vk::raii::PhysicalDevice&);
-bool hasExtension(const vk::raii::PhysicalDevice&, const char* name);
 
 // Reports on a device and what speaks against it; the queue family is the best one, or the one given.
 Candidate inspect(vk::raii::PhysicalDevice, uint32_t index, const DeviceRequest&,

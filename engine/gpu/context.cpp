@@ -1,11 +1,14 @@
 #include "gpu/context.h"
 
-#include "gpu/choice.h"
+#include "gpu/device_memory.h"
 
 #include <fmt/format.h>
 
 namespace skitter::gpu {
 namespace {
+
+// Bytes. To ask the system for its free memory takes as long as many downloads of a small buffer.
+constexpr uint64_t kLeastChecked = 1 << 20;
 
 std::string mebibytes(uint64_t bytes) { return fmt::format("{:.1f} MiB", double(bytes) / (1 << 20)); }
 
@@ -51,10 +54,11 @@ vk::raii::DeviceMemory Context::allocate(const vk::MemoryRequirements& requireme
   };
   const uint64_t heap = memory.memoryHeaps[memory.memoryTypes[*type].heapIndex].size;
   if (requirements.size > heap) throw refuse(fmt::format("the heap has {}", mebibytes(heap)));
-  if (isCpu()) {
+  if (isCpu() && requirements.size >= kLeastChecked) {
     // A software driver takes what it is asked for, and the system kills us for it later.
-    const uint64_t available = availableBytes(physical());
-    if (requirements.size > available) throw refuse(fmt::format("{} are free", mebibytes(available)));
+    const FreeMemory available = availableMemory(physical());
+    if (requirements.size > available.bytes)
+      throw refuse(fmt::format("{} are free ({})", mebibytes(available.bytes), available.of));
   }
   try {
     return {device(), vk::MemoryAllocateInfo{.allocationSize = requirements.size, .memoryTypeIndex = *type}};

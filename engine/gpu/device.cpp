@@ -3,9 +3,9 @@
 #include "gpu/adopt.h"
 #include "gpu/choice.h"
 #include "gpu/context.h"
+#include "gpu/extensions.h"
 #include "gpu/instance.h"
-#include "gpu/loads.h"
-#include "gpu/stores.h"
+#include "gpu/record_access.h"
 
 #include <fmt/format.h>
 
@@ -47,10 +47,7 @@ vk::raii::Device makeDevice(const gpu::Candidate& candidate, bool presentation) 
 
 std::unique_ptr<gpu::Context> open(gpu::Context::Parts parts, const DeviceRequest& request) {
   auto context = std::make_unique<gpu::Context>(std::move(parts));
-  context->setLoads(gpu::chooseLoads(context->limits(), context->features(), gpu::wantedLoads(request.loads),
-                                     [&] { return gpu::measureLoads(*context); }));
-  context->setStores(gpu::chooseStores(context->report().loads.path, gpu::wantedStores(request.stores),
-                                       [&] { return gpu::measureStores(*context); }));
+  gpu::chooseAccess(*context, request);
   return context;
 }
 

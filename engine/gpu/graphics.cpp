@@ -59,7 +59,10 @@ GraphicsPipeline::GraphicsPipeline(const Context& context, const GraphicsInfo& i
                                                          .pName = "main",
                                                          .pSpecializationInfo = &constants.info}};
   if (info.fragment)
-    stages.push_back({.stage = vk::ShaderStageFlagBits::eFragment, .module = *fragment, .pName = "main"});
+    stages.push_back({.stage = vk::ShaderStageFlagBits::eFragment,
+                      .module = *fragment,
+                      .pName = "main",
+                      .pSpecializationInfo = &constants.info});
 
   const VertexInput vertexInput(info.streams);
   const vk::PipelineVertexInputStateCreateInfo input{
@@ -79,10 +82,18 @@ GraphicsPipeline::GraphicsPipeline(const Context& context, const GraphicsInfo& i
   const vk::PipelineMultisampleStateCreateInfo multisample{.rasterizationSamples = info.samples};
   const vk::PipelineDepthStencilStateCreateInfo depth = depthState(info.depthUse);
   using C = vk::ColorComponentFlagBits;
-  const vk::PipelineColorBlendAttachmentState opaque{.colorWriteMask = C::eR | C::eG | C::eB | C::eA};
+  const vk::PipelineColorBlendAttachmentState colours{
+      .blendEnable = info.blended,
+      .srcColorBlendFactor = vk::BlendFactor::eSrcAlpha,
+      .dstColorBlendFactor = vk::BlendFactor::eOneMinusSrcAlpha,
+      .colorBlendOp = vk::BlendOp::eAdd,
+      .srcAlphaBlendFactor = vk::BlendFactor::eOne,
+      .dstAlphaBlendFactor = vk::BlendFactor::eOneMinusSrcAlpha,
+      .alphaBlendOp = vk::BlendOp::eAdd,
+      .colorWriteMask = C::eR | C::eG | C::eB | C::eA};
   const bool coloured = info.colour != vk::Format::eUndefined;
   const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = coloured ? 1u : 0u,
-                                                    .pAttachments = &opaque};
+                                                    .pAttachments = &colours};
   const std::array dynamics{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
   const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = uint32_t(dynamics.size()),
                                                    .pDynamicStates = dynamics.data()};
@@ -121,7 +132,7 @@ Rendering::Rendering(vk::CommandBuffer cmd, const RenderTargets& targets, bool y
   if (targets.colour) {
     colour = {.imageView = targets.colour->view(),
               .imageLayout = vk::ImageLayout::eColorAttachmentOptimal,
-              .loadOp = vk::AttachmentLoadOp::eClear,
+              .loadOp = targets.drawnOver ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eClear,
               .storeOp = targets.resolve ? vk::AttachmentStoreOp::eDontCare : vk::AttachmentStoreOp::eStore};
     if (targets.resolve) {
       colour.resolveMode = vk::ResolveModeFlagBits::eAverage;
@@ -132,7 +143,7 @@ Rendering::Rendering(vk::CommandBuffer cmd, const RenderTargets& targets, bool y
   if (targets.depth) {
     depth = {.imageView = targets.depth->view(),
              .imageLayout = layoutOf(ImageState::depth),
-             .loadOp = vk::AttachmentLoadOp::eClear,
+             .loadOp = targets.drawnOver ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eClear,
              .storeOp = targets.keepDepth ? vk::AttachmentStoreOp::eStore : vk::AttachmentStoreOp::eDontCare};
     depth.clearValue.depthStencil = vk::ClearDepthStencilValue{targets.depthClear, 0};
   }
@@ -171,11 +182,6 @@ vk::raii::Sampler makeSampler(const Context& context, const SamplerInfo& info) {
                                       [&] { return vk::raii::Sampler(context.device(), create); });
   context.name(*sampler, info.name);
   return sampler;
-}
-
-bool filtersLinearly(const Context& context, vk::Format format) {
-  const vk::FormatProperties found = context.physical().getFormatProperties(format);
-  return bool(found.optimalTilingFeatures & vk::FormatFeatureFlagBits::eSampledImageFilterLinear);
 }
 
 void graphicsToTransfer(vk::CommandBuffer cmd) {

@@ -43,6 +43,7 @@ struct GraphicsInfo {
   vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   DepthUse depthUse = DepthUse::reversed;
   vk::CullModeFlags cull = vk::CullModeFlagBits::eBack;  // front faces are counter-clockwise
+  bool blended = false;                                  // over what is there, by alpha
   std::vector<SpecConstant> constants = {};
 };
 
@@ -68,11 +69,12 @@ class GraphicsPipeline {
 };
 
 struct RenderTargets {
-  const Image* colour = nullptr;   // cleared to black; in state colour
+  const Image* colour = nullptr;   // cleared to black unless drawnOver; in state colour
   const Image* resolve = nullptr;  // where multisampled colour ends; in state colour
   const Image* depth = nullptr;    // in state depth
   float depthClear = 0;
   bool keepDepth = false;
+  bool drawnOver = false;  // colour and depth are kept, not cleared
 };
 
 // Dynamic rendering from construction to destruction. `yUp` makes clip y point up in the picture, as the
@@ -99,9 +101,6 @@ struct SamplerInfo {
 };
 // Clamped to the edge, one mip level.
 vk::raii::Sampler makeSampler(const Context&, const SamplerInfo&);
-
-// Linear filtering of sampled images of this format.
-bool filtersLinearly(const Context&, vk::Format);
 
 // The picture has been drawn from memory that a copy, fill or update overwrites next (write after read).
 void graphicsToTransfer(vk::CommandBuffer);

@@ -25,8 +25,8 @@ class StageTimer {
   void measure(bool on) { wanted_ = on; }
   // First in the command buffer, before any begin().
   void reset(vk::CommandBuffer);
-  // Stages may nest. The same name twice is two entries. Beyond maxStages a caller's bug. `stage` is a
-  // literal.
+  // Stages may nest. The same name twice is two entries. Beyond maxStages a caller's bug. `stage`
+  // outlives the timer's use.
   void begin(vk::CommandBuffer, const char* stage);
   void end(vk::CommandBuffer, const char* stage);
   // Ends the stage that is open, if one is, and begins another at the same timestamp: on a software device

@@ -18,9 +18,9 @@
 #include "ik/skeleton.h"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
-#include "shared/records.h"
 #include "skitter/error.h"
 #include "skitter/ik.h"
+#include "skitter/records.h"
 
 namespace skitter::ik {
 namespace {
@@ -54,7 +54,9 @@ void checkSolver(const Chain& chain, Solver solver) {
   }
 }
 
-void checkOptions(const Chain& chain, const Options& options) {
+void checkOptions(const Chain& chain, uint32_t chains, const Options& options) {
+  if (chains > Batch::maxChains)
+    throw inputError(fmt::format("{} chains, expected at most {}", chains, Batch::maxChains));
   if (!(std::isfinite(options.tolerance) && options.tolerance > 0))
     throw inputError(fmt::format("the tolerance is {}, expected more than 0", options.tolerance));
   const float restPull = restPullOf(chain, options);
@@ -69,6 +71,14 @@ struct Page {
   gpu::Bindings bindings;
 };
 
+// What BATCH_LIST begins with; the numbers of the chains follow.
+struct ListHead {
+  VkDispatchIndirectCommand dispatch;
+  uint32_t count;
+};
+static_assert(offsetof(ListHead, count) == shared::LIST_COUNT * sizeof(uint32_t) &&
+              sizeof(ListHead) == shared::LIST_FIRST * sizeof(uint32_t));
+
 std::vector<glm::vec4> unpausedReports(uint32_t chains) {
   return std::vector<glm::vec4>(chains, {0, 0, 0, 1});
 }
@@ -80,8 +90,8 @@ glm::quat turnedBack(const glm::vec4& rotation) {
 
 // No chain listed: an empty dispatch.
 void clearList(const Page& page, vk::CommandBuffer cmd) {
-  const std::array<uint32_t, shared::LIST_FIRST> none = {0, 1, 1, 0};
-  cmd.updateBuffer(page.list.handle(), 0, sizeof none, none.data());
+  constexpr ListHead none = {.dispatch = {.x = 0, .y = 1, .z = 1}, .count = 0};
+  cmd.updateBuffer(page.list.handle(), 0, sizeof none, &none);
 }
 
 std::vector<glm::vec4> widened(std::span<const glm::vec3> values) {
@@ -142,7 +152,7 @@ Batch::Impl::Impl(Device& device, const Chain& of, uint32_t count, const Options
       positional(isPositional(of, solver)),
       skeleton(of) {
   checkSolver(chain, solver);
-  checkOptions(chain, options);
+  checkOptions(chain, chains, options);
   twists = !positional && skeleton.hasTwists();
   // A free chain about a base at 0 goes on from the joints that it wrote.
   ownState = options.start == Start::previous && !(positional && !options.bases);

@@ -9,11 +9,7 @@
 namespace skitter::ik {
 namespace {
 
-constexpr size_t kMostBones = 15;
 constexpr float kWidest = 3.1f, kAlmostAlong = 0.999f;
-constexpr std::array<const char*, allSolvers.size()> kNames = {
-    "auto",          "fabrik", "dissertation-keep", "dissertation-edge", "ccd",           "transpose",
-    "pseudoinverse", "dls",    "target-attached",   "two-bone",          "stretch-align", "active-set"};
 
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -49,14 +45,6 @@ void checkLimit(size_t bone, const Bone& b) {
 
 }  // namespace
 
-const char* nameOf(Solver solver) { return kNames[static_cast<size_t>(solver)]; }
-
-std::optional<Solver> solverNamed(std::string_view name) {
-  for (const Solver solver : allSolvers)
-    if (name == nameOf(solver)) return solver;
-  return {};
-}
-
 bool Chain::isFree() const {
   for (const Bone& bone : bones)
     if (!std::holds_alternative<Free>(bone.limit) || bone.twistMin != 0 || bone.twistMax != 0) return false;
@@ -80,9 +68,9 @@ std::vector<glm::vec3> Chain::rest() const {
 }
 
 void check(const Chain& chain) {
-  if (chain.bones.empty() || chain.bones.size() > kMostBones)
+  if (chain.bones.empty() || chain.bones.size() > Chain::maxBones)
     throw inputError(fmt::format("a chain of {} bones, expected 1 to {} (2 to {} joints)", chain.bones.size(),
-                                 kMostBones, kMostBones + 1));
+                                 Chain::maxBones, Chain::maxBones + 1));
   for (size_t i = 0; i < chain.bones.size(); ++i) {
     const Bone& bone = chain.bones[i];
     if (!(std::isfinite(bone.length) && bone.length >= 0))

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "shared/ik_batch.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::ik {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "ik/skeleton.h"
 
-// A chain as the shaders read it: shaders/shared/records.h (rig, bone) and shaders/shared/ik_batch.h.
+// A chain as the shaders read it: engine/include/skitter/records.h (rig, bone) and shaders/shared/ik_batch.h.
 namespace skitter::ik {
 
 std::vector<float> boneRecords(const Skeleton&);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "base/split_mix.h"
+
 namespace skitter::ik {
 namespace {
 
@@ -13,31 +15,20 @@ using glm::dvec3;
 constexpr uint32_t kCandidates = 1024;
 constexpr double kPulled = 0.7;  // of the way out from rest is left
 
-// SplitMix64 (Steele et al. 2014).
-class Random {
- public:
-  double operator()() {
-    uint64_t z = state_ += 0x9e3779b97f4a7c15;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
-  double within(double low, double high) { return low + (high - low) * (*this)(); }
+double within(base::SplitMix64& random, double low, double high) {
+  return low + (high - low) * random.uniform();
+}
 
- private:
-  uint64_t state_ = 1;
-};
-
-dvec3 randomDirection(const Limit& limit, Random& random) {
+dvec3 randomDirection(const Limit& limit, base::SplitMix64& random) {
   if (const auto* hinge = std::get_if<Hinge>(&limit)) {
     const double middle = std::clamp<double>(0, hinge->min, hinge->max);
-    const double q = middle + kPulled * (random.within(hinge->min, hinge->max) - middle);
+    const double q = middle + kPulled * (within(random, hinge->min, hinge->max) - middle);
     return {0, -std::sin(q), std::cos(q)};
   }
-  const double phi = random.within(0, 2 * std::numbers::pi);
+  const double phi = within(random, 0, 2 * std::numbers::pi);
   const double most = greatestAngle(limit, phi);
   // Uniform on the cap.
-  const double theta = std::acos(random.within(std::cos(most), 1));
+  const double theta = std::acos(within(random, std::cos(most), 1));
   return leaning(std::holds_alternative<Free>(limit) ? theta : kPulled * theta, phi);
 }
 
@@ -58,7 +49,7 @@ bool aimsSeeds(const Skeleton& skeleton, const std::optional<glm::vec3>& pole) {
 
 std::vector<Skeleton::Pose> seedPoses(const Skeleton& skeleton, const std::optional<glm::vec3>& pole,
                                       uint32_t most) {
-  Random random;
+  base::SplitMix64 random(1);
   const bool aimed = aimsSeeds(skeleton, pole);
   std::vector<Skeleton::Pose> candidates;
   std::vector<dvec3> tips;
@@ -66,7 +57,7 @@ std::vector<Skeleton::Pose> seedPoses(const Skeleton& skeleton, const std::optio
     Skeleton::Pose pose;
     for (const Skeleton::Joint& joint : skeleton.joints()) {
       pose.directions.push_back(joint.length > 0 ? randomDirection(joint.limit, random) : dvec3(0, 0, 1));
-      pose.twists.push_back(kPulled * random.within(joint.twistMin, joint.twistMax));
+      pose.twists.push_back(kPulled * within(random, joint.twistMin, joint.twistMax));
     }
     if (aimed) pose.directions[0] = {0, 0, 1};
     const std::vector<dvec3> places = skeleton.place(pose);

@@ -11,9 +11,9 @@
 #include "gpu/transfer.h"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
-#include "shared/records.h"
 #include "skitter/error.h"
 #include "skitter/ik.h"
+#include "skitter/records.h"
 
 namespace skitter::ik {
 namespace {

@@ -11,18 +11,18 @@ namespace {
 constexpr float kFollowRow = 0.3f;   // share of the crowd that walks behind the one followed
 constexpr float kElevation = 0.30f;  // radians above the ground's horizon
 constexpr float kAside = 0.62f;      // radians off the line behind the one followed
-constexpr float kClearance = 0.5f;   // metres that eye and line of sight keep above the ground
+constexpr float kClearance = 0.5f;   // metres that eye and line of sight keep above gentle ground
+constexpr float kLeast = 0.2f;       // the same above the ground itself, which may be a cliff
 
 // Where the middle one of a herd walks if nothing holds it up.
 struct Walk {
   glm::vec2 at, along;  // world x, z; along is the way that it first goes, unit
 };
-Walk walkOf(const Herd& herd, const crowd::Herd& live, const Heightfield& terrain, uint64_t seed,
+Walk walkOf(const Herd& herd, const crowd::Kind& live, const Heightfield& terrain, uint64_t seed,
             double seconds) {
-  const auto side = uint32_t(std::ceil(std::sqrt(double(herd.agents))));
-  const uint32_t row = uint32_t(float(herd.agents) * kFollowRow) / side;
-  const auto placed =
-      crowd::Spawner(herd, live, terrain, seed).place(std::min(herd.agents - 1, row * side + side / 2));
+  const crowd::Spawner spawner(herd, live, terrain, seed);
+  const uint32_t lanes = spawner.lanes(), row = uint32_t(float(herd.agents) * kFollowRow) / lanes;
+  const auto placed = spawner.place(std::min(herd.agents - 1, row * lanes + lanes / 2));
   const glm::vec2 start(placed.x, placed.z);
   const glm::vec2 there(placed.targetX, placed.targetZ), back(placed.otherX, placed.otherZ);
   const float length = glm::distance(start, there);
@@ -42,10 +42,10 @@ Walk walkOf(const Herd& herd, const crowd::Herd& live, const Heightfield& terrai
 
 // The ground's mean height about a point, so that the camera glides over what feet climb.
 float gentleHeight(const Heightfield& terrain, glm::vec2 at, float radius) {
-  float sum = terrain.at(at.x, at.y);
+  float sum = terrain.seenAt(at.x, at.y);
   for (int i = 0; i < 12; ++i) {
     const float angle = float(i) * 2.0943951f / 4, reach = radius * (i % 2 == 0 ? 1.0f : 0.5f);
-    sum += terrain.at(at.x + reach * std::cos(angle), at.y + reach * std::sin(angle));
+    sum += terrain.seenAt(at.x + reach * std::cos(angle), at.y + reach * std::sin(angle));
   }
   return sum / 13;
 }
@@ -64,7 +64,8 @@ View followed(const Camera& camera, const Walk& walk, const Heightfield& terrain
   for (int i = 0; i <= 8; ++i) {
     const float t = float(i) / 12;  // from the eye; the ground beside the target may hide its feet
     const glm::vec2 p = glm::mix(eye, walk.at, t);
-    const float needed = gentleHeight(terrain, p, 0.1f * distance) + kClearance;
+    const float needed =
+        std::max(gentleHeight(terrain, p, 0.1f * distance) + kClearance, terrain.seenAt(p.x, p.y) + kLeast);
     const float line = view.eye.y + t * (view.target.y - view.eye.y);
     if (line < needed) view.eye.y += (needed - line) / (1 - t);
   }
@@ -79,9 +80,9 @@ View viewOf(const Scene& scene, const Crowd& crowd, double seconds) {
     return {.eye = camera.position, .target = camera.target, .fieldOfView = camera.fieldOfView};
   const Crowd::Impl& live = crowd.impl();
   Walk walk{{0, 0}, {0, 1}};
-  for (size_t i = 0; i < scene.herds.size() && i < live.herds.size(); ++i) {
+  for (uint32_t i = 0; i < scene.herds.size() && i < live.herds.size(); ++i) {
     if (scene.herds[i].agents == 0) continue;
-    walk = walkOf(scene.herds[i], live.herds[i], live.terrain, scene.seed, seconds);
+    walk = walkOf(scene.herds[i], live.kindOf(i), live.terrain, scene.seed, seconds);
     break;
   }
   return followed(camera, walk, live.terrain);

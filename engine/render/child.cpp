@@ -1,14 +1,19 @@
 #include "render/child.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 extern char** environ;
 
@@ -76,6 +81,20 @@ struct SpawnOptions {
   SpawnOptions& operator=(const SpawnOptions&) = delete;
 };
 
+// The process groups that run, where a signal handler finds them. Of more than these, the last ones are not
+// there.
+std::array<std::atomic<pid_t>, 8> running{};
+static_assert(std::atomic<pid_t>::is_always_lock_free);
+
+void exchangeRunning(pid_t from, pid_t to) {
+  for (std::atomic<pid_t>& place : running) {
+    pid_t expected = from;
+    if (place.compare_exchange_strong(expected, to)) return;
+  }
+}
+
+constexpr std::chrono::milliseconds look{20};  // how often one looks whether a child goes on
+
 void closeOnce(int& file) {
   if (file >= 0) close(file);
   file = -1;
@@ -83,7 +102,14 @@ void closeOnce(int& file) {
 
 }  // namespace
 
-Child::Child(const std::vector<std::string>& command) {
+void killChildren() noexcept {
+  for (const std::atomic<pid_t>& group : running)
+    if (const pid_t child = group; child > 0) kill(-child, SIGKILL);
+}
+
+Child::Child(const std::vector<std::string>& command, std::filesystem::path output,
+             std::chrono::milliseconds patience)
+    : output_(std::move(output)), patience_(patience), lastProgress_(std::chrono::steady_clock::now()) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "making a pipe");
   input_ = ends[1];
@@ -104,16 +130,32 @@ Child::Child(const std::vector<std::string>& command) {
     closeOnce(words_);
     throw std::system_error(failure, std::generic_category(), command.front());
   }
+  exchangeRunning(0, process_);
+  fcntl(input_, F_SETFL, O_NONBLOCK);
 }
 
 Child::~Child() {
   closeOnce(input_);
-  if (process_ > 0) {
-    kill(process_, SIGKILL);
-    while (waitpid(process_, nullptr, 0) == -1 && errno == EINTR) {
-    }
-  }
+  if (process_ > 0) killGroup();
   closeOnce(words_);
+}
+
+void Child::killGroup() {
+  kill(-process_, SIGKILL);
+  while (waitpid(process_, nullptr, 0) == -1 && errno == EINTR) {
+  }
+  exchangeRunning(std::exchange(process_, -1), 0);
+}
+
+bool Child::progresses() {
+  const auto now = std::chrono::steady_clock::now();
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(output_, error);
+  if (!error && written != lastWrite_) {
+    lastWrite_ = written;
+    lastProgress_ = now;
+  }
+  return now - lastProgress_ < patience_;
 }
 
 bool Child::write(std::span<const std::byte> bytes) {
@@ -121,18 +163,41 @@ bool Child::write(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(input_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    bytes = bytes.subspan(size_t(written));
+    if (written < 0 && errno != EAGAIN) return false;
+    if (written > 0) {
+      lastProgress_ = std::chrono::steady_clock::now();
+      bytes = bytes.subspan(size_t(written));
+      continue;
+    }
+    pollfd room{input_, POLLOUT, 0};
+    poll(&room, 1, int(look.count()));
+    if (!progresses()) {
+      hung_ = true;
+      return false;
+    }
   }
+  // The time until the next call is the caller's.
+  lastProgress_ = std::chrono::steady_clock::now();
   return true;
 }
 
 bool Child::finish() {
   closeOnce(input_);
+  lastProgress_ = std::chrono::steady_clock::now();
   int status = -1;
-  while (waitpid(process_, &status, 0) == -1)
-    if (errno != EINTR) return false;
-  process_ = -1;
+  for (pid_t ended = 0; ended == 0;) {
+    ended = hung_ ? 0 : waitpid(process_, &status, WNOHANG);
+    if (ended < 0 && errno != EINTR) return false;
+    if (ended > 0) break;
+    ended = 0;
+    if (hung_ || !progresses()) {
+      hung_ = true;
+      killGroup();
+      return false;
+    }
+    poll(nullptr, 0, int(look.count()));
+  }
+  exchangeRunning(std::exchange(process_, -1), 0);
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 

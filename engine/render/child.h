@@ -2,7 +2,9 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,9 +15,11 @@ namespace skitter::render {
 // by), and what it says kept for error messages.
 class Child {
  public:
-  // Throws std::system_error when the program cannot be started.
-  explicit Child(const std::vector<std::string>& command);
-  // Kills it if it still runs.
+  // `output` is the file that it writes. While it neither reads nor writes for as long as `patience`, it
+  // counts as hung and is killed. Throws std::system_error when the program cannot be started.
+  Child(const std::vector<std::string>& command, std::filesystem::path output,
+        std::chrono::milliseconds patience);
+  // Kills it, and whatever it has started in its group, if it still runs.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
@@ -26,10 +30,23 @@ class Child {
   bool finish();
   // The last line of its error output.
   std::string lastWords() const;
+  bool hung() const { return hung_; }
 
  private:
+  // Whether something happened lately, as far as one can see from here.
+  bool progresses();
+  void killGroup();
+
+  std::filesystem::path output_;
+  std::chrono::milliseconds patience_;
+  std::chrono::steady_clock::time_point lastProgress_;
+  std::filesystem::file_time_type lastWrite_;
+  bool hung_ = false;
   pid_t process_ = -1;
   int input_ = -1, words_ = -1;
 };
+
+// Kills every child that runs, and its group. For a signal handler that is about to end the program.
+void killChildren() noexcept;
 
 }  // namespace skitter::render

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::render {
 namespace {
@@ -116,7 +116,6 @@ Composition compose(const View& view, const Heightfield& terrain, float lowest, 
   b.eye = glm::vec4(glm::vec3(position), float(2 * eye.tanY / height));
   b.right = glm::vec4(glm::vec3(eye.right * eye.tanX), 0);
   b.up = glm::vec4(glm::vec3(eye.up * eye.tanY), 0);
-  b.forward = glm::vec4(glm::vec3(eye.forward), 0);
   b.sun = glm::vec4(sunDirection(), 0);
   b.tile = glm::vec4(float(tileAt.x), float(tileAt.y), c.viewDistance, 1 / fog);
   b.ground = glm::vec4(float(terrain.originX() - c.origin.x), float(terrain.originZ() - c.origin.y),
@@ -124,7 +123,9 @@ Composition compose(const View& view, const Heightfield& terrain, float lowest, 
 
   const double nearReach = std::clamp(kNearShadow * eye.toTarget, 4.0, 400.0);
   const Cascade nearCascade = fitCascade(eye, c.origin, nearReach, shadowTexels);
-  const Cascade farCascade = fitCascade(eye, c.origin, nearReach * kFarShadow, shadowTexels);
+  const double farReach = nearReach * kFarShadow;
+  const Cascade farCascade = fitCascade(eye, c.origin, farReach, shadowTexels);
+  b.forward = glm::vec4(glm::vec3(eye.forward), float(farReach));
   b.clipFromPicture[shared::VIEW_CAMERA + 1] = glm::mat4(nearCascade.clip);
   b.clipFromPicture[shared::VIEW_CAMERA + 2] = glm::mat4(farCascade.clip);
   b.shadow = glm::vec4(float(nearCascade.texel), float(farCascade.texel),

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "crowd/controller.h"
 #include "embedded/crowd_frag.h"
 #include "embedded/crowd_vert_storage.h"
 #include "embedded/crowd_vert_texel.h"
@@ -28,10 +29,9 @@ std::vector<gpu::VertexStream> streams(bool shaded) {
                              .attributes = {{1, F::eR16G16B16A16Uint, offsetof(MeshVertex, bones)}}};
   for (uint32_t i = 0; i < 4; ++i)
     vertices.attributes.push_back({2 + i, F::eR32G32B32A32Sfloat, influence(i)});
-  if (shaded) {
-    vertices.attributes.push_back({6, F::eR32G32B32Sfloat, offsetof(MeshVertex, normal)});
-    vertices.attributes.push_back({7, F::eR32G32B32Sfloat, offsetof(MeshVertex, colour)});
-  }
+  vertices.attributes.push_back({6, F::eR32G32B32Sfloat, offsetof(MeshVertex, normal)});
+  vertices.attributes.push_back({7, F::eR32Sfloat, offsetof(MeshVertex, halfWidth)});
+  if (shaded) vertices.attributes.push_back({8, F::eR32G32B32Sfloat, offsetof(MeshVertex, colour)});
   return {vertices,
           {.stride = sizeof(uint32_t),
            .rate = vk::VertexInputRate::eInstance,
@@ -39,21 +39,12 @@ std::vector<gpu::VertexStream> streams(bool shaded) {
 }
 
 gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences, bool matrices) {
-  return {s.context,
-          {.name = "crowd",
-           .vertex = {embedded::crowd_vert_texel(), embedded::crowd_vert_storage()},
-           .fragment = embedded::crowd_frag(),
-           .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
-                        {shared::DRAW_BODY, BindingKind::load4},
-                        {shared::DRAW_POSE, BindingKind::load4},
-                        {shared::DRAW_GROUND, BindingKind::texture},
-                        {shared::DRAW_SHADOW, BindingKind::texture}},
-           .pushBytes = sizeof(shared::CrowdConstants),
-           .streams = streams(true),
-           .colour = s.colour,
-           .depth = s.depth,
-           .samples = s.samples,
-           .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}}};
+  gpu::GraphicsInfo info = crowdShading(influences, matrices);
+  info.colour = s.colour;
+  info.depth = s.depth;
+  info.samples = s.samples;
+  info.constants.push_back({shared::CONSTANT_ROOTS, s.filtered()});
+  return {s.context, info};
 }
 
 // Both faces cast: a closed skin loses nothing by it, an open one keeps its shadow.
@@ -75,16 +66,30 @@ gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences, bool matr
 
 }  // namespace
 
+gpu::GraphicsInfo crowdShading(int influences, bool matrices) {
+  return {.name = "crowd",
+          .vertex = {embedded::crowd_vert_texel(), embedded::crowd_vert_storage()},
+          .fragment = embedded::crowd_frag(),
+          .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
+                       {shared::DRAW_BODY, BindingKind::load4},
+                       {shared::DRAW_POSE, BindingKind::load4},
+                       {shared::DRAW_GROUND, BindingKind::texture},
+                       {shared::DRAW_SHADOW, BindingKind::texture}},
+          .pushBytes = sizeof(shared::CrowdConstants),
+          .streams = streams(true),
+          .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}};
+}
+
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s.context) {
   if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
-  for (const crowd::Herd& source : crowd.herds) {
-    Herd herd;
-    const bool clips = crowd::playsClips(source.controller);
-    herd.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
-    herd.mesh =
+  for (const crowd::Kind& source : crowd.kinds) {
+    Kind kind;
+    const bool clips = crowd::traitsOf(source.controller).playsClips;
+    kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
+    kind.mesh =
         uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
-    herd.draw = drawPipeline(s, herd.mesh.influences, clips);
-    herd.shadow = shadowPipeline(s, herd.mesh.influences, clips);
+    kind.draw = drawPipeline(s, kind.mesh.influences, clips);
+    kind.shadow = shadowPipeline(s, kind.mesh.influences, clips);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
       Page page;
@@ -93,23 +98,23 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s
       std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &s.picture},
                                      {shared::DRAW_BODY, &records.body},
                                      {shared::DRAW_POSE, &records.pose}};
-      page.shadow = herd.shadow.bind(s.context, list);
+      page.shadow = kind.shadow.bind(s.context, list);
       list.push_back({shared::DRAW_GROUND, &s.ground, s.groundSampler});
       list.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
-      page.draw = herd.draw.bind(s.context, list);
-      herd.pages.push_back(std::move(page));
+      page.draw = kind.draw.bind(s.context, list);
+      kind.pages.push_back(std::move(page));
     }
-    herds_.push_back(std::move(herd));
+    kinds_.push_back(std::move(kind));
   }
 }
 
 void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
-  for (const Herd& herd : herds_)
-    for (const Page& page : herd.pages) {
+  for (const Kind& kind : kinds_)
+    for (const Page& page : kind.pages) {
       VkDrawIndexedIndirectCommand draws[shared::INSTANCE_LISTS];
       for (int list = 0; list < shared::INSTANCE_LISTS; ++list) {
         const bool camera = list < shared::CAMERA_LODS;
-        const MeshLod& lod = herd.mesh.lods[size_t(camera ? list : kShadowLod[list - shared::CAMERA_LODS])];
+        const MeshLod& lod = kind.mesh.lods[size_t(camera ? list : kShadowLod[list - shared::CAMERA_LODS])];
         draws[list] = {.indexCount = lod.indexCount,
                        .instanceCount = 0,
                        .firstIndex = lod.firstIndex,
@@ -121,42 +126,42 @@ void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
 }
 
 void CrowdDrawing::cull(vk::CommandBuffer cmd) const {
-  for (const Herd& herd : herds_)
-    for (const Page& page : herd.pages) cull_.record(cmd, page.culled, herd.mesh.radius);
+  for (const Kind& kind : kinds_)
+    for (const Page& page : kind.pages) cull_.record(cmd, page.culled, kind.mesh.radius);
 }
 
 void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
-  for (uint32_t h = 0; h < herds_.size(); ++h)
-    for (const Page& page : herds_[h].pages) {
+  for (uint32_t k = 0; k < kinds_.size(); ++k)
+    for (const Page& page : kinds_[k].pages) {
       const shared::CrowdConstants constants{.view = uint32_t(shared::VIEW_CAMERA + 1 + cascade),
-                                             .palette = herds_[h].palette,
+                                             .palette = kinds_[k].palette,
                                              .firstAgent = page.firstAgent,
-                                             .herd = h};
-      herds_[h].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
-      drawList(cmd, herds_[h], page, shared::CAMERA_LODS + cascade);
+                                             .kind = k};
+      kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
+      drawList(cmd, kinds_[k], page, shared::CAMERA_LODS + cascade);
     }
 }
 
 void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
-  for (uint32_t h = 0; h < herds_.size(); ++h)
-    for (const Page& page : herds_[h].pages) {
+  for (uint32_t k = 0; k < kinds_.size(); ++k)
+    for (const Page& page : kinds_[k].pages) {
       const shared::CrowdConstants constants{.view = shared::VIEW_CAMERA,
-                                             .palette = herds_[h].palette,
+                                             .palette = kinds_[k].palette,
                                              .firstAgent = page.firstAgent,
-                                             .herd = h};
-      herds_[h].draw.use(cmd, page.draw, gpu::bytesOf(constants));
-      for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawList(cmd, herds_[h], page, lod);
+                                             .kind = k};
+      kinds_[k].draw.use(cmd, page.draw, gpu::bytesOf(constants));
+      for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawList(cmd, kinds_[k], page, lod);
     }
 }
 
-void CrowdDrawing::drawList(vk::CommandBuffer cmd, const Herd& herd, const Page& page, int list) const {
+void CrowdDrawing::drawList(vk::CommandBuffer cmd, const Kind& kind, const Page& page, int list) const {
   // The list's place comes by the vertex buffer's offset: firstInstance in an indirect draw is optional in
   // Vulkan.
   const vk::DeviceSize place = vk::DeviceSize(list) * page.culled.agents * sizeof(uint32_t);
-  const std::array buffers{herd.mesh.vertices.handle(), page.culled.instances.handle()};
+  const std::array buffers{kind.mesh.vertices.handle(), page.culled.instances.handle()};
   const std::array<vk::DeviceSize, 2> offsets{0, place};
   cmd.bindVertexBuffers(0, buffers, offsets);
-  cmd.bindIndexBuffer(herd.mesh.indices.handle(), 0, vk::IndexType::eUint32);
+  cmd.bindIndexBuffer(kind.mesh.indices.handle(), 0, vk::IndexType::eUint32);
   cmd.drawIndexedIndirect(page.culled.commands.handle(),
                           vk::DeviceSize(list) * sizeof(VkDrawIndexedIndirectCommand), 1,
                           sizeof(VkDrawIndexedIndirectCommand));

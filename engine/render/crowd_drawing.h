@@ -7,6 +7,10 @@
 
 namespace skitter::render {
 
+// The pipeline that shades a kind, without its targets. `influences` is the most bones that carry a vertex;
+// `matrices` says that poses are matrices instead of rotations.
+gpu::GraphicsInfo crowdShading(int influences, bool matrices);
+
 // The crowd, skinned where its poses lie: one indirect draw a page and level of detail.
 class CrowdDrawing {
  public:
@@ -25,16 +29,16 @@ class CrowdDrawing {
     CulledPage culled;
     gpu::Bindings draw, shadow;
   };
-  struct Herd {
+  struct Kind {
     uint32_t palette = 0;
     Mesh mesh;
     gpu::GraphicsPipeline draw, shadow;
     std::vector<Page> pages;
   };
-  void drawList(vk::CommandBuffer, const Herd&, const Page&, int list) const;
+  void drawList(vk::CommandBuffer, const Kind&, const Page&, int list) const;
 
   Cull cull_;
-  std::vector<Herd> herds_;
+  std::vector<Kind> kinds_;
 };
 
 }  // namespace skitter::render

@@ -6,16 +6,10 @@
 #include "embedded/cull_comp_storage.h"
 #include "embedded/cull_comp_texel.h"
 #include "render/bindings.h"
-#include "shared/records.h"
+#include "render/mesh.h"
+#include "skitter/records.h"
 
 namespace skitter::render {
-namespace {
-
-// Pixels that an agent's radius covers, down to which each level of detail serves.
-constexpr float kLodPixels[shared::CAMERA_LODS] = {75, 28, 12, 0};
-
-}  // namespace
-
 Cull::Cull(const gpu::Context& context)
     : kernel_(context, {.name = "cull",
                         .code = {embedded::cull_comp_texel(), embedded::cull_comp_storage()},

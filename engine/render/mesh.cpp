@@ -5,21 +5,28 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <tuple>
 
 #include "gpu/transfer.h"
+#include "render/ribbons.h"
 
 namespace skitter::render {
 namespace {
 
 // Share of the triangles at each level. Triangle setup is what drawing costs on software devices.
 constexpr std::array<float, shared::CAMERA_LODS> kShare{1.0f, 0.35f, 0.12f, 0.05f};
-constexpr float kLargestError = 0.05f;  // of the mesh's extent
+constexpr float kLargestError = 0.05f;    // of the mesh's extent
+constexpr float kLeastHalfWidth = 1e-6f;  // metres, so that a point has two sides
+// That the radius of a bone has, at most, where the bone is a ribbon; of an agent as near as the level
+// allows.
+constexpr float kRibbonPixels = 2;
 
 // A skin, and where each entry of its palette starts: vertices are stored relative to it.
 struct Skin {
   const std::vector<SkinVertex>& vertices;
   const std::vector<uint32_t>& indices;
   std::vector<glm::vec3> starts;
+  const Rig* rig = nullptr;  // where legs are known
 };
 
 std::vector<glm::vec3> restStarts(const Rig& rig) {
@@ -52,21 +59,22 @@ MeshVertex meshVertex(const Skin& from, const SkinVertex& skin, int& influences)
 // simplifier from collapsing edges along them.
 struct Welded {
   std::vector<SkinVertex> vertices;
-  std::vector<uint32_t> indices;
+  std::vector<uint32_t> remap;  // of the skin's vertices; those of no triangle lead nowhere
 };
 Welded weld(const Skin& skin) {
   std::vector<glm::vec3> positions;
   for (const SkinVertex& vertex : skin.vertices) positions.push_back(vertex.position);
-  std::vector<uint32_t> remap(positions.size());
-  const size_t count = meshopt_generateVertexRemap(remap.data(), skin.indices.data(), skin.indices.size(),
-                                                   positions.data(), positions.size(), sizeof(glm::vec3));
-  Welded welded;
+  Welded welded{{}, std::vector<uint32_t>(positions.size())};
+  const size_t count =
+      meshopt_generateVertexRemap(welded.remap.data(), skin.indices.data(), skin.indices.size(),
+                                  positions.data(), positions.size(), sizeof(glm::vec3));
   welded.vertices.resize(count);
   std::vector<float> shared(count, 0.0f);
-  for (size_t i = 0; i < remap.size(); ++i) {
-    if (remap[i] >= count) continue;  // a vertex of no triangle
-    SkinVertex& vertex = welded.vertices[remap[i]];
-    const float before = shared[remap[i]]++;
+  for (size_t i = 0; i < welded.remap.size(); ++i) {
+    const uint32_t place = welded.remap[i];
+    if (place >= count) continue;
+    SkinVertex& vertex = welded.vertices[place];
+    const float before = shared[place]++;
     if (before == 0) {
       vertex = skin.vertices[i];
     } else {
@@ -75,15 +83,17 @@ Welded weld(const Skin& skin) {
     }
   }
   for (SkinVertex& vertex : welded.vertices) vertex.normal /= std::max(glm::length(vertex.normal), 1e-6f);
-  for (const uint32_t index : skin.indices) welded.indices.push_back(remap[index]);
   return welded;
 }
 
-std::vector<uint32_t> simplified(const Welded& mesh, float share) {
-  const size_t wanted = size_t(float(mesh.indices.size() / 3) * share) * 3;
-  std::vector<uint32_t> indices(mesh.indices.size());
-  indices.resize(meshopt_simplify(indices.data(), mesh.indices.data(), mesh.indices.size(),
-                                  &mesh.vertices[0].position.x, mesh.vertices.size(), sizeof(SkinVertex),
+// Of triangles of the skin.
+std::vector<uint32_t> simplified(const Welded& welded, std::vector<uint32_t> triangles, float share) {
+  if (triangles.empty()) return {};
+  for (uint32_t& index : triangles) index = welded.remap[index];
+  const size_t wanted = size_t(float(triangles.size() / 3) * share) * 3;
+  std::vector<uint32_t> indices(triangles.size());
+  indices.resize(meshopt_simplify(indices.data(), triangles.data(), triangles.size(),
+                                  &welded.vertices[0].position.x, welded.vertices.size(), sizeof(SkinVertex),
                                   wanted, kLargestError, 0, nullptr));
   return indices;
 }
@@ -101,22 +111,64 @@ void append(MeshData& data, MeshLod& lod, const Skin& skin, std::vector<SkinVert
   data.indices.insert(data.indices.end(), indices.begin(), indices.end());
 }
 
+// A quad, whose corners the vertex shader moves apart.
+void append(MeshData& data, MeshLod& lod, const Ribbon& ribbon) {
+  const auto first = uint32_t(data.vertices.size()) - uint32_t(lod.firstVertex);
+  // Counter-clockwise, as seen from the eye that they are spread for.
+  for (const auto& [end, out, side] :
+       {std::tuple(ribbon.from, -1, 1), {ribbon.from, -1, -1}, {ribbon.to, 1, 1}, {ribbon.to, 1, -1}}) {
+    MeshVertex vertex{};
+    vertex.bones[0] = ribbon.bone;
+    vertex.influences[0] = glm::vec4(end.along * ribbon.direction, 1);
+    vertex.normal = float(out) * ribbon.direction;
+    vertex.colour = end.colour;
+    vertex.halfWidth = float(side) * std::max(end.radius, kLeastHalfWidth);
+    data.vertices.push_back(vertex);
+  }
+  for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) data.indices.push_back(first + corner);
+  lod.indexCount += 6;
+}
+
 void appendLods(MeshData& data, const Skin& skin) {
   if (skin.indices.empty()) return;
   append(data, data.lods[0], skin, skin.vertices, skin.indices);
   const Welded welded = weld(skin);
-  for (size_t i = 1; i < data.lods.size(); ++i)
-    append(data, data.lods[i], skin, welded.vertices, simplified(welded, kShare[i]));
+  for (size_t i = 1; i < data.lods.size(); ++i) {
+    const float radius = kRibbonPixels * data.radius / kLodPixels[i - 1];
+    const Ribbons thin = skin.rig ? ribbonsOf(*skin.rig, radius) : Ribbons{{}, skin.indices};
+    append(data, data.lods[i], skin, welded.vertices, simplified(welded, thin.others, kShare[i]));
+    for (const Ribbon& ribbon : thin.ribbons) append(data, data.lods[i], ribbon);
+  }
+}
+
+// At most how far a vertex gets from the body: each leg straight, pointing away from it. What lies along a
+// bone adds to the length of the leg, what lies beside it does not.
+float furthestOf(const Rig& rig, const SkinVertex& vertex) {
+  float mean = 0;
+  for (int i = 0; i < 4; ++i) {
+    if (vertex.weights[i] <= 0) continue;
+    float furthest = glm::length(vertex.position);
+    if (const int entry = vertex.bones[i]; entry > 0) {
+      const Leg& leg = rig.legs.at(size_t((entry - 1) / rig.maxBones()));
+      const size_t last = std::min(size_t((entry - 1) % rig.maxBones()), leg.bones.size() - 1);
+      const glm::vec3 from = vertex.position - leg.bones[last].start;
+      const float along = glm::dot(from, leg.bones[last].direction);
+      float straight = glm::length(leg.root()) + along;
+      for (size_t k = 0; k < last; ++k) straight += leg.bones[k].length;
+      furthest = glm::length(glm::vec2(straight, glm::length(from - along * leg.bones[last].direction)));
+    }
+    mean += vertex.weights[i] * furthest;
+  }
+  return mean;
 }
 
 }  // namespace
 
 MeshData makeMesh(const Rig& rig) {
   MeshData data;
-  for (const SkinVertex& vertex : rig.vertices)
-    data.radius = std::max(data.radius, glm::length(vertex.position));
+  for (const SkinVertex& vertex : rig.vertices) data.radius = std::max(data.radius, furthestOf(rig, vertex));
   for (const Leg& leg : rig.legs) data.radius = std::max(data.radius, glm::length(leg.root()) + leg.reach);
-  appendLods(data, {rig.vertices, rig.indices, restStarts(rig)});
+  appendLods(data, {rig.vertices, rig.indices, restStarts(rig), &rig});
   return data;
 }
 

@@ -13,9 +13,13 @@ namespace skitter::render {
 struct MeshVertex {
   uint16_t bones[4];
   glm::vec4 influences[4];  // vertex relative to the bone's rest start, weight
-  glm::vec3 normal;
+  glm::vec3 normal;         // of a ribbon the way along it, out of the end
   glm::vec3 colour;
+  float halfWidth;  // of a ribbon, metres, below 0 on one side and above on the other; 0 on surfaces
 };
+
+// Pixels that an agent's radius covers, down to which each level of detail but the last serves.
+inline constexpr std::array<float, shared::CAMERA_LODS - 1> kLodPixels{75, 40, 14};
 
 // Indices of one level of detail; its vertices are a range of their own.
 struct MeshLod {

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "gpu/barrier.h"
+#include "gpu/timer.h"
 #include "gpu/transfer.h"
 #include "render/antialias.h"
 #include "render/composition.h"
@@ -13,8 +16,9 @@
 namespace skitter {
 namespace {
 
-constexpr vk::Format kColour = vk::Format::eR8G8B8A8Srgb;
+constexpr vk::Format kColour = vk::Format(Renderer::colourFormat);
 constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
+constexpr uint32_t kPasses = 6;  // cull, shadow, crowd, terrain, sky, edges
 
 vk::Extent2D checkedExtent(const gpu::Context& context, uint32_t width, uint32_t height) {
   const uint32_t most = context.limits().maxImageDimension2D;
@@ -36,13 +40,15 @@ vk::SampleCountFlagBits sampleCount(const gpu::Context& context) {
 struct Renderer::Impl {
   Impl(const gpu::Context& context, const Crowd::Impl& crowd, uint32_t width, uint32_t height);
 
-  void record(vk::CommandBuffer, const View&);
+  void record(vk::CommandBuffer, const View&, const std::function<void(VkCommandBuffer)>& over);
   bool filtered() const { return samples == vk::SampleCountFlagBits::e1; }
+  vk::Format drawnFormat() const { return filtered() ? vk::Format::eR8G8B8A8Unorm : kColour; }
   void drawShadows(vk::CommandBuffer);
   void drawPicture(vk::CommandBuffer);
   void smoothEdges(vk::CommandBuffer);
 
   const gpu::Context& context;
+  gpu::StageTimer timer;
   vk::SampleCountFlagBits samples;
   gpu::Image colour, depth;
   gpu::Image drawn;  // before its edges are smoothed: multisampled, or to be filtered
@@ -59,6 +65,7 @@ struct Renderer::Impl {
 
 Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height)
     : context(c),
+      timer(c, kPasses),
       samples(sampleCount(c)),
       colour(c,
              {.format = kColour,
@@ -74,14 +81,15 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       picture(c, sizeof(shared::Picture), "picture block", gpu::BufferUse::uniform),
       ground(render::makeGroundMap(c, source.terrain, render::sunDirection())),
       groundSampler(gpu::makeSampler(c, {.name = "ground map"})),
-      shadow(c),
+      shadow(c, height),
       setting{c,      source.terrain, source.heights, picture, ground, *groundSampler,
-              shadow, kColour,        kDepth,         samples},
+              shadow, drawnFormat(),  kDepth,         samples},
       terrain(setting),
       crowd(setting, source),
       sky(setting) {
+  timer.measure(false);
   drawn = gpu::Image(c,
-                     {.format = kColour,
+                     {.format = drawnFormat(),
                       .extent = {width, height},
                       .usage = vk::ImageUsageFlagBits::eColorAttachment |
                                (filtered() ? vk::ImageUsageFlagBits::eSampled : vk::ImageUsageFlags()),
@@ -91,12 +99,15 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
 }
 
 // The whole picture.
-void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view) {
+void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
+                            const std::function<void(VkCommandBuffer)>& over) {
   const vk::Extent2D extent = colour.extent();
   const render::Composition composition =
       render::compose(view, setting.terrain, terrain.lowest(), terrain.highest(), extent.width, extent.height,
                       shadow.texels());
   context.beginLabel(cmd, "picture");
+  timer.reset(cmd);
+  timer.next(cmd, "cull");
 
   gpu::graphicsToTransfer(cmd);  // the last picture may still be reading what is written now
   gpu::graphicsToCompute(cmd);
@@ -109,9 +120,15 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view) {
   crowd.cull(cmd);
   gpu::computeToGraphics(cmd);
 
+  timer.next(cmd, "shadow");
   drawShadows(cmd);
   drawPicture(cmd);
   if (filtered()) smoothEdges(cmd);
+  if (over) {
+    gpu::transition(cmd, colour, gpu::ImageState::colour, gpu::ImageState::colour);
+    const gpu::Rendering rendering(cmd, {.colour = &colour, .drawnOver = true}, false);
+    over(cmd);
+  }
   gpu::transition(cmd, colour, gpu::ImageState::colour, gpu::ImageState::transferSrc);
   context.endLabel(cmd);
 }
@@ -133,19 +150,43 @@ void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
   gpu::transition(cmd, colour, gpu::ImageState::discard, gpu::ImageState::colour);
   gpu::transition(cmd, depth, gpu::ImageState::discard, gpu::ImageState::depth);
   gpu::transition(cmd, drawn, gpu::ImageState::discard, gpu::ImageState::colour);
-  {
-    const gpu::Rendering rendering(
-        cmd, {.colour = &drawn, .resolve = filtered() ? nullptr : &colour, .depth = &depth}, true);
-    crowd.draw(cmd);
-    terrain.draw(cmd);
-    sky.draw(cmd);
-  }
+  // Timed, each pass renders by itself: a software device takes all timestamps of one rendering at its end.
+  const bool parted = timer.measures();
+  std::optional<gpu::Rendering> rendering;
+  const auto pass = [&](const char* name, bool first, bool last) {
+    if (parted) rendering.reset();
+    timer.next(cmd, name);
+    if (parted && !first) {
+      gpu::transition(cmd, drawn, gpu::ImageState::colour, gpu::ImageState::colour);
+      gpu::transition(cmd, depth, gpu::ImageState::depth, gpu::ImageState::depth);
+    }
+    if (!rendering)
+      rendering.emplace(cmd,
+                        gpu::RenderTargets{.colour = &drawn,
+                                           .resolve = filtered() || (parted && !last) ? nullptr : &colour,
+                                           .depth = &depth,
+                                           .keepDepth = parted,
+                                           .drawnOver = !first},
+                        true);
+  };
+  pass("crowd", true, false);
+  crowd.draw(cmd);
+  pass("terrain", false, false);
+  terrain.draw(cmd);
+  pass("sky", false, true);
+  sky.draw(cmd);
+  rendering.reset();
+  if (!filtered()) timer.end(cmd, "sky");
 }
 
 void Renderer::Impl::smoothEdges(vk::CommandBuffer cmd) {
+  timer.next(cmd, "edges");
   gpu::transition(cmd, drawn, gpu::ImageState::colour, gpu::ImageState::sampled);
-  const gpu::Rendering rendering(cmd, {.colour = &colour}, true);
-  antialias.draw(cmd);
+  {
+    const gpu::Rendering rendering(cmd, {.colour = &colour}, true);
+    antialias.draw(cmd);
+  }
+  timer.end(cmd, "edges");
 }
 
 Renderer::Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height)
@@ -153,10 +194,23 @@ Renderer::Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t 
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 
-void Renderer::record(VkCommandBuffer commandBuffer, const View& view) { impl_->record(commandBuffer, view); }
+void Renderer::record(VkCommandBuffer commandBuffer, const View& view,
+                      const std::function<void(VkCommandBuffer)>& over) {
+  impl_->record(commandBuffer, view, over);
+}
 VkImage Renderer::image() const { return impl_->colour.handle(); }
 uint32_t Renderer::width() const { return impl_->colour.extent().width; }
 uint32_t Renderer::height() const { return impl_->colour.extent().height; }
+
+void Renderer::timeStages(bool on) { impl_->timer.measure(on); }
+
+std::vector<StageTime> Renderer::stageTimes() const {
+  std::vector<StageTime> times;
+  if (!impl_->timer.measures()) return times;
+  impl_->context.waitIdle();
+  for (const gpu::StageTime& t : impl_->timer.milliseconds()) times.push_back({t.stage, t.milliseconds});
+  return times;
+}
 
 std::vector<uint8_t> Renderer::download() const {
   impl_->context.waitIdle();

@@ -18,6 +18,8 @@ struct Setting {
   const ShadowMap& shadow;
   vk::Format colour, depth;
   vk::SampleCountFlagBits samples;
+
+  bool filtered() const { return samples == vk::SampleCountFlagBits::e1; }  // edges are smoothed afterwards
 };
 
 }  // namespace skitter::render

@@ -1,8 +1,14 @@
 #include "render/shadow.h"
 
 namespace skitter::render {
+namespace {
 
-ShadowMap::ShadowMap(const gpu::Context& context) : texels_(2048) {
+constexpr uint32_t kTallest = 1440;  // pixels; a taller picture would show the texels of the smaller map
+
+}  // namespace
+
+ShadowMap::ShadowMap(const gpu::Context& context, uint32_t pictureHeight)
+    : texels_(pictureHeight > kTallest ? 4096 : 2048) {
   const vk::Format format = vk::Format::eD32Sfloat;
   image_ = gpu::Image(
       context,
@@ -11,9 +17,8 @@ ShadowMap::ShadowMap(const gpu::Context& context) : texels_(2048) {
        .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled},
       "shadow map");
   sampler_ = gpu::makeSampler(
-      context, {.name = "shadow comparison",
-                .filter = gpu::filtersLinearly(context, format) ? vk::Filter::eLinear : vk::Filter::eNearest,
-                .compare = vk::CompareOp::eLessOrEqual});
+      context,
+      {.name = "shadow comparison", .filter = vk::Filter::eNearest, .compare = vk::CompareOp::eLessOrEqual});
 }
 
 vk::Rect2D ShadowMap::square(int cascade) const {

@@ -10,7 +10,7 @@ namespace skitter::render {
 class ShadowMap {
  public:
   ShadowMap() = default;
-  explicit ShadowMap(const gpu::Context&);
+  ShadowMap(const gpu::Context&, uint32_t pictureHeight);
 
   uint32_t texels() const { return texels_; }  // side of a cascade
   const gpu::Image& image() const { return image_; }

@@ -16,7 +16,8 @@ Sky::Sky(const Setting& s) {
                                         .depth = s.depth,
                                         .samples = s.samples,
                                         .depthUse = gpu::DepthUse::background,
-                                        .cull = {}});
+                                        .cull = {},
+                                        .constants = {{shared::CONSTANT_ROOTS, s.filtered()}}});
   const std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &s.picture}};
   bindings_ = pipeline_.bind(s.context, list);
 }

@@ -121,7 +121,8 @@ Terrain::Terrain(const Setting& s) : field_(s.terrain) {
                                                   .attributes = {{0, vk::Format::eR32G32B32A32Sfloat, 0}}}},
                                      .colour = s.colour,
                                      .depth = s.depth,
-                                     .samples = s.samples});
+                                     .samples = s.samples,
+                                     .constants = {{shared::CONSTANT_ROOTS, s.filtered()}}});
   const std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &s.picture},
                                        {shared::DRAW_HEIGHTS, &s.heights},
                                        {shared::DRAW_GROUND, &s.ground, s.groundSampler},

@@ -13,9 +13,9 @@
 #include "gpu/kernel.h"
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
-#include "shared/records.h"
 #include "shared/spline_batch.h"
 #include "skitter/error.h"
+#include "skitter/records.h"
 #include "skitter/spline.h"
 #include "spline/checks.h"
 

@@ -23,6 +23,7 @@ tr.holds td.v { color: #00664a; font-weight: bold; } tr.fails td.v { color: #a33
 figure { margin: 1rem 0; } figcaption { font-size: 0.9rem; color: #444; }
 svg, img { max-width: 100%; height: auto; vertical-align: top; }
 .raw { font-size: 0.85rem; color: #555; }
+.warning { border-left: 4px solid #d55e00; padding-left: 0.6rem; }
 )";
 
 // Numbers are set flush right.
@@ -90,8 +91,12 @@ void Page::picture(std::span<const std::byte> png, const std::string& alternativ
       escaped(alternative), base64(png), escaped(caption));
 }
 
+void Page::warning(const std::string& text) {
+  body_ += fmt::format("<p class=\"warning\">{}</p>\n", escaped(text));
+}
+
 void Page::raw(const std::string& file) {
-  body_ += fmt::format("<p class=\"raw\">Raw figures: {}</p>\n", escaped(file));
+  body_ += fmt::format("<p class=\"raw\">Raw figures: <a href=\"{0}\">{0}</a></p>\n", escaped(file));
 }
 
 std::string Page::html() const {

@@ -19,6 +19,7 @@ class Page {
   void section(const std::string& id, const std::string& heading);
   void heading(const std::string& text);  // within a section
   void paragraph(const std::string& text);
+  void warning(const std::string& text);
   void facts(const std::vector<std::pair<std::string, std::string>>& rows);  // name and value
   void table(const Table& table);
   // Drawings side by side as far as there is room, with one caption. SVG as it is.

@@ -58,6 +58,12 @@ void drawSeries(Svg& svg, const Frame& frame, const Axis& x, const Axis& y, cons
   for (const glm::dvec2& p : series.points)
     if (x.holds(p.x) && y.holds(p.y)) path.push_back(frame.at(x.place(p.x), y.place(p.y)));
   if (series.line) svg.polyline(path, stroke, 1.8, series.dash);
+  for (size_t i = 0; i < series.spreads.size(); ++i) {
+    const double at = series.points[i].x;
+    const glm::dvec2 spread = series.spreads[i];
+    if (!x.holds(at) || !y.holds(spread.x) || !y.holds(spread.y)) continue;
+    svg.line(frame.at(x.place(at), y.place(spread.x)), frame.at(x.place(at), y.place(spread.y)), stroke);
+  }
   if (!series.markers) return;
   for (const glm::dvec2& p : path) svg.disc(p, 3, stroke);
 }
@@ -70,6 +76,7 @@ std::string draw(const Plot& plot) {
   for (const Series& series : plot.series) {
     names.push_back(series.name);
     for (const glm::dvec2& p : series.points) xs.push_back(p.x), ys.push_back(p.y);
+    for (const glm::dvec2& p : series.spreads) ys.push_back(p.x), ys.push_back(p.y);
   }
   for (const Level& level : plot.levels) ys.push_back(level.y);
   std::vector<glm::dvec2> places;

@@ -12,9 +12,10 @@ namespace skitter::experiments {
 struct Series {
   std::string name;
   std::vector<glm::dvec2> points;
-  std::string colour = {};  // empty: by its place in the row
+  std::string colour = {};               // empty: by its place in the row
   bool line = true, markers = true;
   std::string dash = {};
+  std::vector<glm::dvec2> spreads = {};  // least and most y of each point, drawn as a bar; or none
 };
 
 // A level that the eye should compare with, dashed.

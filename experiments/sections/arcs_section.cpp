@@ -9,7 +9,7 @@ namespace {
 constexpr double below = 0.01;  // leg lengths under the ground from which a foot is drawn as sunk
 
 std::string drawing(const FootArcs& arcs) {
-  const std::string title = fmt::format("{}: feet over two cycles", arcs.controller);
+  const std::string title = fmt::format("{}: feet over two cycles", nameOf(arcs.controller));
   Svg svg(930, 300, title);
   svg.text({12, 20}, title, Svg::Anchor::start, 13);
   if (arcs.ticks.empty()) return svg.str();
@@ -70,7 +70,7 @@ void showArcs(const std::vector<FootArcs>& all, Report& report) {
         {drawing(all[i])},
         fmt::format("{}. {}: feet {:.2f} % of the leg length deep in the ground in the mean (all feet, all "
                     "ticks), planted ones {:.2f} % above it.",
-                    numbers[std::min<size_t>(i, 4)], all[i].controller, 100 * all[i].depth(),
+                    numbers[std::min<size_t>(i, 4)], nameOf(all[i].controller), 100 * all[i].depth(),
                     100 * all[i].height()));
   }
   report.raw("figures9-11.csv", tableOf(all).csv());

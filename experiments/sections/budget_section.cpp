@@ -12,10 +12,10 @@ std::string costPlot(const Budget& budget, const Settings& settings, const char*
   plot.title = title;
   plot.x = {.label = "agents", .log = true};
   plot.y = {.label = what, .log = true};
-  for (const Controller& controller : allControllers) {
-    Series series{controller.name, {}, controller.colour};
+  for (const Subject& subject : subjects) {
+    Series series{nameOf(subject.controller), {}, subject.colour};
     for (const TickCost& cost : budget.costs)
-      if (cost.controller == controller.name) series.points.emplace_back(cost.agents, cost.milliseconds);
+      if (cost.controller == subject.controller) series.points.emplace_back(cost.agents, cost.milliseconds);
     plot.series.push_back(std::move(series));
   }
   for (const double level : settings.budgets) plot.levels.push_back({level, fmt::format("{:g} ms", level)});
@@ -40,14 +40,13 @@ Table limitTable(const Budget& budget, const Settings& settings) {
     table.head.push_back("spread");
     table.head.push_back("by CPU time");
   }
-  for (const Controller& controller : allControllers) {
-    std::vector<std::string> row = {controller.title, controller.dissertationAgents > 0
-                                                          ? fmt::format("{}", controller.dissertationAgents)
-                                                          : "-"};
+  for (const Subject& subject : subjects) {
+    std::vector<std::string> row = {
+        subject.title, subject.dissertationAgents > 0 ? fmt::format("{}", subject.dissertationAgents) : "-"};
     for (const double level : settings.budgets) {
       const AgentLimit* limit = nullptr;
       for (const AgentLimit& one : budget.limits)
-        if (one.controller == controller.name && one.budget == level) limit = &one;
+        if (one.controller == subject.controller && one.budget == level) limit = &one;
       row.push_back(agentsWithin(limit));
       row.push_back(spread(limit));
       row.push_back(limit && limit->byCpu > 0 ? fmt::format("{:.0f}", limit->byCpu) : "-");
@@ -59,14 +58,15 @@ Table limitTable(const Budget& budget, const Settings& settings) {
 
 Table ownCounts(const Budget& simulated, const Budget& drawn) {
   Table table{{"controller", "agents", "simulation, ms", "with drawing, ms"}};
-  for (const Controller& controller : allControllers) {
-    if (controller.dissertationAgents == 0) continue;
-    std::vector<std::string> row = {controller.name, fmt::format("{}", controller.dissertationAgents)};
+  for (const Subject& subject : subjects) {
+    if (subject.dissertationAgents == 0) continue;
+    std::vector<std::string> row = {nameOf(subject.controller),
+                                    fmt::format("{}", subject.dissertationAgents)};
     for (const Budget* budget : {&simulated, &drawn}) {
       std::string cell = "-";
       for (const TickCost& cost : budget->costs)
-        if (cost.controller == controller.name &&
-            cost.agents == static_cast<uint32_t>(controller.dissertationAgents))
+        if (cost.controller == subject.controller &&
+            cost.agents == static_cast<uint32_t>(subject.dissertationAgents))
           cell = figure(cost.milliseconds);
       row.push_back(cell);
     }

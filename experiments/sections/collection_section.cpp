@@ -28,7 +28,9 @@ void showCollection(const Collection& collection, const Settings& settings, Repo
       "Device: one "
       "dispatch over a prepared list, submitted and waited for, median of {} (quartiles); and a dispatch "
       "among 32 in "
-      "one submission, which is what it adds to a frame. CPU: the same in plain scalar C++ on one thread.",
+      "one submission, which is what it adds to a frame. CPU: the same stage of the CPU crowd, one leg at a "
+      "time in scalar C++ on one thread. Both repeat on the records that they wrote, so all steps but the "
+      "first lead from a landing point to the same point.",
       settings.collectionRepetitions));
   Table table{
       {"legs", "rule", "device, ms", "quartiles", "device in a row, ms", "CPU, ms", "dissertation, ms"}};
@@ -59,8 +61,9 @@ void showCollection(const Collection& collection, const Settings& settings, Repo
   };
   page.drawings({draw(plot)}, "Point collection against the number of legs.");
   page.paragraph(
-      fmt::format("Device and CPU choose the same points: their medians differ by at most {:.1g} m; at most "
-                  "{:.2f} % of the legs differ by over a millimetre, where two candidates are as good.",
+      fmt::format("Device and CPU choose the same points and arcs: their medians differ by at most {:.1g} m; "
+                  "at most {:.2f} % of the legs differ by over a millimetre, where two candidates or two "
+                  "lanes are as good.",
                   apart, 100 * differing));
   report.raw("point-collection.csv", collection.table().csv());
 }

@@ -17,7 +17,8 @@ void showConclusions(const std::vector<Conclusion>& conclusions, Report& report)
 void showSetup(const Setup& setup, Report& report) {
   Page& page = report.page;
   page.section("setup", "Set-up");
-  page.facts(setup);
+  if (!setup.warning.empty()) page.warning(setup.warning);
+  page.facts(setup.facts);
   page.paragraph(
       "Lengths are shares of the leg length where they have no unit. Times are by the wall clock unless "
       "told: on a "
@@ -25,7 +26,7 @@ void showSetup(const Setup& setup, Report& report) {
       "them "
       "in the raw figures.");
   Table table{{"name", "value"}};
-  for (const auto& [name, value] : setup) table.rows.push_back({name, value});
+  for (const auto& [name, value] : setup.facts) table.rows.push_back({name, value});
   report.raw("setup.csv", table.csv());
 }
 

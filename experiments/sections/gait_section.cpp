@@ -15,10 +15,10 @@ std::string plotOf(const GaitStudy& study, const char* title, const char* label,
   plot.title = title;
   plot.x = {.label = "speed, leg lengths a second", .least = 0};
   plot.y = {.label = label, .least = 0};
-  for (const Controller& controller : allControllers) {
-    Series series{controller.name, {}, controller.colour};
+  for (const Subject& subject : subjects) {
+    Series series{nameOf(subject.controller), {}, subject.colour};
     for (const GaitRow& row : study.rows)
-      if (row.controller == controller.name && row.frequency > 0)
+      if (row.controller == subject.controller && row.frequency > 0)
         series.points.emplace_back(row.speed, row.*value);
     plot.series.push_back(std::move(series));
   }
@@ -56,7 +56,7 @@ std::string footfalls(const GaitStudy& study) {
 std::string agrees(bool yes) { return yes ? "agrees" : "differs"; }
 
 Table literature(const GaitStudy& study, const GaitRow& walk) {
-  const GaitStudy::Line line = study.dutyLine("adaptive");
+  const GaitStudy::Line line = study.dutyLine(Controller::adaptive);
   const std::string left = study.order(walk, 'L'), right = study.order(walk, 'R');
   // Legs that lift at once are in no order: such a walk does not contradict one, nor show it.
   const auto ordered = [](std::string order) {
@@ -68,7 +68,7 @@ Table literature(const GaitStudy& study, const GaitRow& walk) {
       strict ? "agrees" : (ordered(left) && ordered(right) ? "does not contradict" : "differs");
   double bounce = 0;
   for (const GaitRow& row : study.rows)
-    if (row.controller == "adaptive") bounce = std::max(bounce, row.bounce);
+    if (row.controller == Controller::adaptive) bounce = std::max(bounce, row.bounce);
   return {{"of spiders it is known", "source", "adaptive here", "comparison"},
           {{"duty factor 0.5 to 0.7 in walking", "recalled, not looked up",
             fmt::format("{:.2f} at {:.2f} leg lengths/s", walk.duty, walk.speed),
@@ -107,7 +107,7 @@ void showGait(const GaitStudy& study, Report& report) {
                 "(Spagna et al. 2011).");
   if (!study.footfalls.empty())
     page.drawings({footfalls(study)}, "Footfall diagram: bars are legs in the air, a colour a group.");
-  const GaitRow* walk = study.find("adaptive", 1);
+  const GaitRow* walk = study.find(Controller::adaptive, 1);
   if (walk && walk->cycles > 0) {
     page.table(literature(study, *walk));
     Table phases{{"leg", "group", "lifts at (cycle)", "steadiness"}};

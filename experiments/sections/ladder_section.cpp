@@ -16,7 +16,7 @@ std::string drawing(const Ladder& ladder, const char* title, double rise) {
   project.include(ladder.root);
   project.include(ladder.target);
   Svg svg(470, 380, title);
-  project.fit({20, 40}, {430, 300});
+  project.fit({20, 40}, {430, 280});
   svg.text({12, 20}, title, Svg::Anchor::start, 13);
 
   const auto path = [&](const std::vector<glm::dvec3>& points) {
@@ -47,14 +47,21 @@ std::string drawing(const Ladder& ladder, const char* title, double rise) {
              chosen ? colour::red : (fits ? colour::blue : "#ffffff"),
              chosen ? colour::ink : (fits ? colour::blue : colour::faint));
   }
-  const glm::dvec2 root = project(ladder.root), target = project(ladder.target),
-                   chosen = project(ladder.points[static_cast<size_t>(ladder.result.chosen)]);
+  const glm::dvec2 root = project(ladder.root), target = project(ladder.target);
+  const auto cross = [&](const glm::dvec2& centre) {
+    svg.line(centre + glm::dvec2(-6, -6), centre + glm::dvec2(6, 6), colour::ink, 2);
+    svg.line(centre + glm::dvec2(-6, 6), centre + glm::dvec2(6, -6), colour::ink, 2);
+  };
   svg.disc(root, 5, colour::ink);
-  svg.text(root + glm::dvec2(0, -10), "leg's root at touchdown", Svg::Anchor::middle);
-  svg.line(target + glm::dvec2(-6, -6), target + glm::dvec2(6, 6), colour::ink, 2);
-  svg.line(target + glm::dvec2(-6, 6), target + glm::dvec2(6, -6), colour::ink, 2);
-  svg.text(target + glm::dvec2(8, -10), "predicted landing");
-  svg.text(chosen + glm::dvec2(0, 22), "chosen", Svg::Anchor::middle, 12, colour::red);
+  cross(target);
+  // Names beside the marks would run into each other where these are close.
+  const double names = 340;
+  svg.disc({22, names}, 5, colour::ink);
+  svg.text({33, names + 4}, "leg's root at touchdown");
+  cross({190, names});
+  svg.text({202, names + 4}, "predicted landing");
+  svg.disc({326, names}, 7, colour::red, colour::ink);
+  svg.text({339, names + 4}, "chosen");
   drawScale(svg, project, 0.2 * ladder.legLength, "0.2 leg lengths");
   return svg.str();
 }

@@ -39,8 +39,11 @@ std::string timePlot(const Altered& altered, const bench::SolveSweep& sweep, boo
   plot.y = {.label = "time a solve, microseconds", .log = true};
   for (const std::string& name : seriesOf(sweep)) {
     Series series{bench::seriesTitle(name), {}};
-    for (const bench::SolvePoint& point : sweep.points)
-      if (point.series == name) series.points.emplace_back(amount(altered, point), point.microseconds);
+    for (const bench::SolvePoint& point : sweep.points) {
+      if (point.series != name) continue;
+      series.points.emplace_back(amount(altered, point), point.microseconds);
+      series.spreads.emplace_back(point.leastMicroseconds, point.mostMicroseconds);
+    }
     plot.series.push_back(std::move(series));
   }
   return draw(plot);
@@ -106,7 +109,9 @@ void showSolves(const std::vector<bench::SolveSweep>& sweeps,
                             *factors = find(sweeps, fmt::format("{}-factors", altered.sweep));
     if (steps && factors) {
       page.drawings({timePlot(altered, *steps, false), timePlot(altered, *factors, true)},
-                    fmt::format("Figure {}. Time of one solve.", number));
+                    fmt::format("Figure {}. Time of one solve: the median of {} repetitions, and a bar from "
+                                "the quickest to the slowest.",
+                                number, settings.solves.repetitions));
       std::vector<std::string> bars;
       for (const std::string& name : seriesOf(*steps)) {
         bars.push_back(stopBars(altered, *steps, name));

@@ -2,8 +2,9 @@
 #include "lib/load4.glsl"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 #include "lib/math.glsl"
+#include "lib/rarely.glsl"
 
 layout(local_size_x = WORK_GROUP) in;
 layout(constant_id = CONSTANT_BONES) const int BONES = 4;
@@ -48,9 +49,8 @@ int chainHere() {
   return int(here < list[LIST_COUNT] ? list[LIST_FIRST + here] : constants.count);
 }
 
-// In a loop, because an `if` would not skip the atomics on a device that masks lanes.
 void enlist(bool needsMore, int chain) {
-  for (bool rare = needsMore; rare; rare = false) {
+  RARELY(needsMore) {
     uint place = atomicAdd(list[LIST_COUNT], 1u);
     list[LIST_FIRST + place] = uint(chain);
     atomicMax(list[0], place / uint(WORK_GROUP) + 1u);

@@ -82,8 +82,7 @@ void main() {
   reason = reachFor && error > constants.tolerance ? STOP_UNREACHABLE : reason;
   k = reachFor ? 1 : 0;
   open = open && !far;
-  // Rare work stands in a loop, which is skipped where no chain of a subgroup needs it.
-  for (bool stuck = STRAIGHT && SOLVER != SOLVER_STRETCH_ALIGN && open && freeDeadlocked(target, pose); stuck; stuck = false) {
+  RARELY(STRAIGHT && SOLVER != SOLVER_STRETCH_ALIGN && open && freeDeadlocked(target, pose)) {
     freeBend(bone, pole, pose);
     error = last = distance(target, pose.joint[BONES]);
   }

@@ -4,7 +4,7 @@
 #include "lib/load4.glsl"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 #include "lib/math.glsl"
 
 layout(local_size_x = WORK_GROUP) in;

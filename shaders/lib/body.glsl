@@ -1,6 +1,6 @@
 #ifndef BODY_GLSL
 #define BODY_GLSL
-// The pieces of the body stage (docs/stages.md, body).
+// The pieces of the body stage (docs/stages/body.md).
 
 // 1. Of the planted legs, in reaches: the longest that is being stretched, squared, and the largest miss.
 struct Hold {
@@ -28,6 +28,16 @@ float turnRateToward(Parameters q, vec2 heading, vec2 wanted, float turnRate, fl
   float rate = clamp(q.turnGain * e, -q.turnRate, q.turnRate) * mix(0.25, 1.0, follow);
   float limit = q.turnAcceleration * q.dt;
   return turnRate + clamp(rate - turnRate, -limit, limit);
+}
+
+// 3. From this speed `braking` stops the body at the terrain's edge: the way that is left along the heading is
+// s^2 / (2 braking) + s dt. Tiles are subtracted first, which is exact near the edge.
+float speedToEdge(Parameters q, vec3 local, vec2 tile, vec2 heading) {
+  vec2 outward = sign(heading);
+  vec2 left = vec2(q.halfExtentX, q.halfExtentZ) - outward * (tile * TILE_SIZE) - outward * local.xz;
+  vec2 ways = max(left, vec2(0.0)) / max(abs(heading), vec2(1e-6));
+  float way = min(ways.x, ways.y), halfTick = 0.5 * q.dt;
+  return way / (halfTick + sqrt(halfTick * halfTick + way / (2.0 * q.braking)));
 }
 
 // 4. Weighted sums of ground points for the plane y = mean + b (x - mean.x) + c (z - mean.z).

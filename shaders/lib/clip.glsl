@@ -1,6 +1,7 @@
 #ifndef CLIP_GLSL
 #define CLIP_GLSL
-// Clips as they are played (docs/stages.md, clip).
+// Clips as they are played (docs/stages/clip.md).
+#include "lib/rarely.glsl"
 
 layout(constant_id = CONSTANT_JOINTS) const int JOINTS = 1;
 // PASS_QUICK leaves out the agents that fade between clips, PASS_LISTED has no others.
@@ -14,14 +15,13 @@ struct Play {
 
 Play unpackPlay(vec4 a, vec4 b, vec4 c) { return Play(a.x, a.y, a.z, a.w, b.x, b.y, b.z, c); }
 
-// Rows of a joint's matrix: between frames, then between clips. In a loop where both kinds may come: a device
-// that masks lanes may at least leave it early, while it always pays for an `if`.
+// Rows of a joint's matrix: between frames, then between clips.
 #define LOAD_MATRIX(m, rows, play, joint)                                                           \
   {                                                                                                 \
     int a_ = (int((play).frames.x) * JOINTS + (joint)) * MATRIX_STRIDE, next_ = JOINTS * MATRIX_STRIDE; \
     for (int r_ = 0; r_ < 3; ++r_)                                                                  \
       m[r_] = mix(LOAD4(rows, a_ + r_), LOAD4(rows, a_ + next_ + r_), (play).frames.y);             \
-    for (bool fading_ = PASS != PASS_QUICK && (play).weight < 1.0; fading_; fading_ = false) {                            \
+    RARELY(PASS != PASS_QUICK && (play).weight < 1.0) {                                             \
       int b_ = (int((play).frames.z) * JOINTS + (joint)) * MATRIX_STRIDE;                           \
       for (int r_ = 0; r_ < 3; ++r_)                                                                \
         m[r_] = mix(mix(LOAD4(rows, b_ + r_), LOAD4(rows, b_ + next_ + r_), (play).frames.w), m[r_], \

@@ -1,6 +1,6 @@
 #ifndef FOOTHOLD_GLSL
 #define FOOTHOLD_GLSL
-// Point collection (docs/stages.md, foothold): a ladder of rungs from the leg's root toward its predicted
+// Point collection (docs/stages/foothold.md): a ladder of rungs from the leg's root toward its predicted
 // landing, each rung as wide as its number.
 
 const int RUNGS = 4;

@@ -8,7 +8,7 @@ const int AHEAD = 3;
 // Ticks that a step aimed anew has left at least: what rises under a landing foot is climbed, not jumped on.
 const float AGAIN_LEAST = 2.0;
 
-// What speed asks of the legs (docs/stages.md, gait).
+// What speed asks of the legs (docs/stages/gait.md).
 struct Stride {
   float halfStride, ticks, swing, cycle;
   float spread;  // of a group's lift-offs, share of a cycle

@@ -2,7 +2,7 @@
 #define HERMITE_GLSL
 #include "lib/records.glsl"
 
-// The swing's spline: two cubic Hermite segments through p0, (p0 + p1)/2 + lift, p1 (docs/stages.md, swing).
+// The swing's spline: two cubic Hermite segments through p0, (p0 + p1)/2 + lift, p1 (docs/stages/swing.md).
 struct Swing {
   vec3 p0, p1, lift, m0;
 };

@@ -6,10 +6,10 @@
 #endif
 
 // Records of vec4, read by LOAD4 and written by STORE4. Reads go through an RGBA32F texel buffer or a storage
-// buffer, as LOAD4_TEXEL says, whichever a device is measured to be quicker at (engine/gpu/loads.h); on some
-// devices texel buffers are too small. A device that is quicker by texels reaches storage buffers lane by lane
-// and number by number, so there a vec4 is written as two numbers of 64 bits, if that is measured to be quicker
-// too (engine/gpu/stores.h). Nothing else differs, so all variants compute the same bits.
+// buffer, as LOAD4_TEXEL says, whichever a device is measured to be quicker at (engine/gpu/record_access.h); on
+// some devices texel buffers are too small. A device that is quicker by texels reaches storage buffers lane by
+// lane and number by number, so there a vec4 is written as two numbers of 64 bits, if that is measured to be
+// quicker too. Nothing else differs, so all variants compute the same bits.
 //
 //   LOAD4_BUFFER(0, legs)           declares; set 0, binding 0
 //   vec4 a = LOAD4(legs, i);

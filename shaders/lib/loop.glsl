@@ -1,6 +1,6 @@
 #ifndef LOOP_GLSL
 #define LOOP_GLSL
-// A foot on its fixed loop (docs/stages.md, swing of loop).
+// A foot on its fixed loop (docs/stages/loop.md).
 #include "lib/gait.glsl"
 #include "lib/hermite.glsl"
 

@@ -1,7 +1,7 @@
 #ifndef NAVIGATE_GLSL
 #define NAVIGATE_GLSL
 
-// Desired velocity toward the goal; `ends` is swapped on arrival where the goal is to cross (docs/stages.md).
+// Desired velocity toward the goal; `ends` is swapped on arrival where the goal is to cross (docs/stages/navigate.md).
 vec2 navigate(Parameters q, vec2 position, vec4 manner, inout vec4 ends) {
   float speed = manner.x, arrival = manner.y, kind = manner.z;
   vec2 delta = ends.xy - position;

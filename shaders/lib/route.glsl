@@ -1,6 +1,6 @@
 #ifndef ROUTE_GLSL
 #define ROUTE_GLSL
-// The way of a step over what lies between (docs/stages.md, foothold): a grid of WAYS lanes, bowed to the sides,
+// The way of a step over what lies between (docs/stages/foothold.md): a grid of WAYS lanes, bowed to the sides,
 // by SAMPLES places along each, and the shortest lift vector that clears the ground at all places of its lane.
 
 const int WAYS = 5;

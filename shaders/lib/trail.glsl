@@ -1,6 +1,6 @@
 #ifndef TRAIL_GLSL
 #define TRAIL_GLSL
-// A point's way as measure remembers it (docs/stages.md, measure): positions are local to the body's tile.
+// A point's way as measure remembers it (docs/stages/measure.md): positions are local to the body's tile.
 
 struct Trail {
   vec3 at;             // x_(n-1)

@@ -2,7 +2,7 @@
 #define UNHELD_STEP_GLSL
 #include "columns.glsl"
 // The active set's step (active_set.glsl) and chord steps of a chain of cones of which no bone meets its limit: nothing
-// is held then and nothing clamped, which is half of the work (docs/stages.md, ik).
+// is held then and nothing clamped, which is half of the work (docs/stages/ik.md).
 
 // Whether a step leads no bone to its limit, from n (1 + d.z) and n of the direction d after it; c: cos(alpha).
 // Clamped is what has cos(theta) < c; held what has n cos(theta) < c times a number from 1 to n.

@@ -7,8 +7,8 @@
 layout(set = 0, binding = DRAW_DRAWN) uniform sampler2D drawn;
 layout(location = 0) out vec4 outColour;
 
-// As bright as it looks, not as it is.
-float luma(vec3 c) { return sqrt(dot(c, vec3(0.25, 0.6, 0.15))); }
+// The picture holds roots, which are as bright as they look.
+float luma(vec3 c) { return dot(c, vec3(0.25, 0.6, 0.15)); }
 
 void main() {
   ivec2 last = textureSize(drawn, 0) - 1, p = ivec2(gl_FragCoord.xy);
@@ -27,5 +27,6 @@ void main() {
   vec2 texel = 1.0 / vec2(last + 1), at = gl_FragCoord.xy * texel;
   along *= texel;
   vec3 smoothed = 0.5 * (texture(drawn, at - 0.3 * along).rgb + texture(drawn, at + 0.3 * along).rgb);
-  outColour = vec4(most - least < max(0.05, 0.12 * most) ? middle : smoothed, 1.0);
+  vec3 root = most - least < max(0.05, 0.12 * most) ? middle : smoothed;
+  outColour = vec4(root * root, 1.0);
 }

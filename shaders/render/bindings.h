@@ -21,6 +21,7 @@ BINDING DRAW_DRAWN = 8;      // the picture before its edges are smoothed
 
 BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
+BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter
 #undef BINDING
 
 #ifdef __cplusplus

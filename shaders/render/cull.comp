@@ -36,7 +36,7 @@ void main() {
   if (seen) {
     float pixels = constants.radius / (max(away, 1e-3) * picture.eye.w);
     uint lod = 0u;
-    for (int i = 0; i + 1 < CAMERA_LODS; ++i) lod += pixels < constants.lodPixels[i] ? 1u : 0u;
+    for (int i = 0; i < CAMERA_LODS - 1; ++i) lod += pixels < constants.lodPixels[i] ? 1u : 0u;
     append(lod, agent);
   }
   // An agent outside the picture may cast its shadow into it.

@@ -1,4 +1,4 @@
-#include "shared/records.h"
+#include "skitter/records.h"
 #include "render/bindings.h"
 #include "render/picture.h"
 

@@ -33,7 +33,7 @@ struct Picture {
   vec4 eye;        // xyz; metres across a pixel one metre away
   vec4 right;      // scaled to the edge of the picture one metre ahead
   vec4 up;         // likewise
-  vec4 forward;    // unit
+  vec4 forward;    // unit; metres ahead at which shadows have faded
   vec4 sun;        // unit, towards the sun
   vec4 tile;       // x, z of the tile at the origin of picture space; distance at which drawing ends;
                    // 1 / distance at which fog has taken 63 %
@@ -46,15 +46,15 @@ struct Picture {
 struct CrowdConstants {
   uint view;        // into clipFromPicture
   uint palette;     // pose entries an agent
-  uint firstAgent;  // of the page in its herd
-  uint herd;
+  uint firstAgent;  // of the page among its kind's
+  uint kind;
 };
 
 // Push constants of cull.
 struct CullConstants {
   uint agents;
   float radius;                  // about the body's position, metres
-  float lodPixels[CAMERA_LODS];  // the radius in pixels from which each level serves; the last is 0
+  float lodPixels[CAMERA_LODS - 1];  // the radius in pixels from which each level but the last serves
 };
 
 #ifdef __cplusplus

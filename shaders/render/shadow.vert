@@ -4,6 +4,7 @@
 #include "skin.glsl"
 
 void main() {
-  vec3 position = skinned(vec3(0.0, 1.0, 0.0)).position;
-  gl_Position = picture.clipFromPicture[constants.view] * vec4(position, 1.0);
+  Skinned s = skinned();
+  spread(s, picture.sun.xyz, constants.view == 1u ? picture.shadow.x : picture.shadow.y);
+  gl_Position = picture.clipFromPicture[constants.view] * vec4(s.position, 1.0);
 }

@@ -15,6 +15,8 @@ layout(location = 2) in vec4 influence0;  // vertex - rest start, weight
 layout(location = 3) in vec4 influence1;
 layout(location = 4) in vec4 influence2;
 layout(location = 5) in vec4 influence3;
+layout(location = 6) in vec3 normal;      // of a ribbon the way along it, out of the end
+layout(location = 7) in float halfWidth;  // of a ribbon, metres, of either sign; 0 on surfaces
 
 struct Skinned {
   vec3 position, normal;  // picture space
@@ -36,7 +38,7 @@ void influence(uint bone, vec4 part, vec3 normal, inout Skinned s) {
   s.normal += part.w * rotate(rotation, normal);
 }
 
-Skinned skinned(vec3 normal) {
+Skinned skinned() {
   vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE);
   Skinned s;
   s.body = a.xyz + TILE_SIZE * vec3(tileX(a.w) - picture.tile.x, 0.0, tileZ(a.w) - picture.tile.y);
@@ -47,4 +49,14 @@ Skinned skinned(vec3 normal) {
   if (INFLUENCES > 2) influence(bones.z, influence2, normal, s);
   if (INFLUENCES > 3) influence(bones.w, influence3, normal, s);
   return s;
+}
+
+// Spreads a ribbon across the way to the eye (unit), at least a pixel wide, and rounds it by its normals. Half a pixel
+// at either end closes the gap to a ribbon that goes another way.
+void spread(inout Skinned s, vec3 toEye, float pixel) {
+  if (halfWidth == 0.0) return;
+  vec3 side = cross(s.normal, toEye);
+  side *= sign(halfWidth) / max(length(side), 1e-6);
+  s.position += side * max(abs(halfWidth), 0.5 * pixel) + s.normal * (0.5 * pixel);
+  s.normal = normalize(toEye + side);
 }

@@ -2,11 +2,15 @@
 #extension GL_GOOGLE_include_directive : require
 #include "picture.glsl"
 #include "light.glsl"
+#include "hash.glsl"
 #include "noise.glsl"
+#include "fold.glsl"
 #include "shadow.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 at;
+layout(location = 2) in vec3 nearAt;
+layout(location = 3) in vec3 farAt;
 layout(location = 0) out vec4 outColour;
 layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
 
@@ -22,48 +26,53 @@ void main() {
   vec3 sun = picture.sun.xyz;
 
   vec2 size = vec2(textureSize(groundMap, 0));
-  vec4 ground = texture(groundMap, (at + 0.5) / size);
-  vec2 within = step(vec2(0.0), at) * step(at, size - 1.0);  // beyond the edge the ground goes on level
-  vec2 gradient = ground.xy * within;
+  Folded folded = foldedAt(at, size - 1.0);
+  vec4 ground = texture(groundMap, (folded.at + 0.5) / size);
+  vec2 gradient = ground.xy * folded.way;
   float slope = dot(gradient, gradient);
   vec3 smoothNormal = normalize(vec3(-gradient.x, 1.0, -gradient.y));
   float footprint = away * picture.eye.w * inversesqrt(max(dot(toEye, smoothNormal), 0.02));
 
   vec2 metres = at * picture.ground.zw;
-  vec3 broad = noise(metres * (1.0 / 9.7));
-  vec3 clumps = noise(metres.yx * (1.0 / 1.7) + 31.7) * visible(1.7, footprint);
-  vec3 clods = noise(metres * (1.0 / 0.31) + 11.3) * visible(0.31, footprint);
-  vec3 grains = noise(metres.yx * (1.0 / 0.062) + 5.1) * visible(0.062, footprint);
+  vec3 place = NOISE_AXES * vec3(metres.x, position.y, metres.y);
+  float broad = noise(place * (1.0 / 9.7)).x;
+  vec4 clumps = noise(place.yzx * (1.0 / 1.7) + 31.7) * visible(1.7, footprint);
+  // Each is bent by the one before, so that no lattice shows.
+  vec4 clods = noise(place * (1.0 / 0.31) + 0.4 * clumps.yzw) * visible(0.31, footprint);
+  vec4 grains = noise(place.yzx * (1.0 / 0.062) + 0.4 * clods.yzw) * visible(0.062, footprint);
 
-  // One pebble in some cells, a flat dome that stays inside its cell.
+  // One pebble in some cells, a flat dome that stays inside its cell. None lies on a steep slope.
   const float CELL = 0.31;
   vec2 cell = floor(metres / CELL), inCell = metres / CELL - cell;
   uint h = hashed(uvec2(ivec2(cell)) + 77u);
   float radius = 0.035 + 0.12 * unitOf(h * 0x85EBCA77u) * unitOf(h * 0x85EBCA77u);
+  radius *= 1.0 - smoothstep(0.08, 0.28, slope);
   vec2 centre = vec2(unitOf(h), unitOf(h * 0x9E3779B1u)) * (1.0 - 2.0 * radius) + radius;
-  vec2 fromCentre = (inCell - centre) / radius;
+  vec2 fromCentre = (inCell - centre) / max(radius, 1e-3);
   float reach = dot(fromCentre, fromCentre);
   float stone = (unitOf(h * 0xC2B2AE3Du) < 0.55 ? 1.0 : 0.0) * visible(radius * CELL, footprint);
   float onStone = stone * clamp((1.0 - reach) * 8.0, 0.0, 1.0);
   float besideStone = stone * clamp(1.45 - reach, 0.0, 1.0) * (1.0 - onStone);
 
-  float dryness = clamp(0.5 + 0.55 * broad.x + 0.35 * clumps.x - 0.6 * slope, 0.0, 1.0);
-  float rock = smoothstep(0.25, 0.75, slope + 0.12 * clumps.x + 0.08 * clods.x);
+  float dryness = clamp(0.5 + 0.64 * broad + 0.40 * clumps.x - 0.6 * slope, 0.0, 1.0);
+  float rock = smoothstep(0.25, 0.75, slope + 0.14 * clumps.x + 0.09 * clods.x);
   vec3 soil = mix(vec3(0.175, 0.118, 0.070), vec3(0.340, 0.245, 0.150), dryness);
-  soil = mix(soil, vec3(0.150, 0.150, 0.062), 0.55 * smoothstep(0.1, 0.8, clumps.x - 0.9 * broad.x));
+  soil = mix(soil, vec3(0.150, 0.150, 0.062), 0.55 * smoothstep(0.1, 0.8, 1.16 * clumps.x - 1.04 * broad));
   vec3 albedo = mix(soil, vec3(0.275, 0.245, 0.215), rock);
-  albedo *= 1.0 + 0.16 * clods.x + 0.13 * grains.x + 0.10 * clumps.x;
   albedo = mix(albedo, vec3(0.24, 0.205, 0.165) * (0.55 + 0.7 * unitOf(h * 0x27D4EB2Fu)), onStone);
+  albedo *= 1.0 + 0.11 * clods.x + 0.15 * grains.x + 0.12 * clumps.x;
 
-  vec2 bump = 0.07 * clumps.zy + 0.11 * clods.yz + 0.17 * grains.zy;
-  bump = mix(bump, -1.1 * fromCentre, onStone) + 0.5 * clods.yz * onStone;
-  vec3 normal = normalize(vec3(-gradient.x - bump.x, 1.0, -gradient.y - bump.y));
-  float openness = ground.z * (1.0 - 0.45 * besideStone) * (1.0 + 0.10 * clods.x);
+  vec3 bump = (0.08 * clumps.wyz + 0.11 * clods.yzw + 0.18 * grains.wyz) * NOISE_AXES;
+  bump *= 1.0 - 0.45 * rock;  // where the sun goes along a wall it would look pitted
+  bump = mix(bump, vec3(-1.1, 0.0, -1.1) * fromCentre.xxy, onStone);
+  vec3 normal = normalize(smoothNormal * (1.0 + dot(smoothNormal, bump)) - bump);
+  float openness = ground.z * (1.0 - 0.45 * besideStone) * (1.0 + 0.12 * clods.x);
 
   // Who takes the sunlight away takes some of the sky with it, so that feet are tied to ground that faces
   // away from the sun as well.
-  float open = sunlight(position, vec3(0.0, 1.0, 0.0), 0.0);
-  float lit = ground.w * open;
+  float open = sunlightAt(position, nearAt, farAt);
+  // A mirror image's hills cast their shadows the wrong way.
+  float lit = mix(ground.w, 1.0, folded.beyond) * open;
   openness *= 0.62 + 0.38 * open;
   vec3 light = albedo * (SUN_LIGHT * (max(dot(normal, sun), 0.0) * lit) + ambientLight(normal) * openness);
   outColour = vec4(developed(hazed(light, -toEye, away, picture.tile.w, sun)), 1.0);

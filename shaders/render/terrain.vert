@@ -5,6 +5,7 @@
 // the coarser patch beside it without a crack and never pops (Strugar 2009, "Continuous Distance-Dependent
 // Level of Detail").
 #include "picture.glsl"
+#include "fold.glsl"
 #include "lib/heightfield.glsl"
 
 layout(set = 0, binding = DRAW_HEIGHTS) uniform sampler2D heights;
@@ -12,6 +13,8 @@ layout(location = 0) in vec4 patchAt;  // first sample x, z; samples a cell; met
 
 layout(location = 0) out vec3 outPosition;
 layout(location = 1) out vec2 outSample;
+layout(location = 2) out vec3 outNearAt;  // in the shadow map's cascades
+layout(location = 3) out vec3 outFarAt;
 
 vec2 pictureAt(vec2 at) { return picture.ground.xy + at * picture.ground.zw; }
 
@@ -22,7 +25,10 @@ void main() {
   float morph = clamp((away / patchAt.w - 0.87) / 0.12, 0.0, 1.0);
   at -= 2.0 * fract(0.5 * grid) * morph * patchAt.z;
   vec2 p = pictureAt(at);
-  outPosition = vec3(p.x, heightAt(heights, fieldOf(heights, vec2(0.0), vec2(1.0)), at).x, p.y);
+  Field field = fieldOf(heights, vec2(0.0), vec2(1.0));
+  outPosition = vec3(p.x, heightAt(heights, field, foldedAt(at, field.last).at).x, p.y);
   outSample = at;
+  outNearAt = (picture.clipFromPicture[1] * vec4(outPosition, 1.0)).xyz;
+  outFarAt = (picture.clipFromPicture[2] * vec4(outPosition, 1.0)).xyz;
   gl_Position = picture.clipFromPicture[VIEW_CAMERA] * vec4(outPosition, 1.0);
 }

@@ -2,6 +2,8 @@
 #ifndef SKITTER_BINDINGS_H
 #define SKITTER_BINDINGS_H
 
+#include "skitter/records.h"
+
 #ifdef __cplusplus
 namespace skitter::shared {
 #define BINDING inline constexpr int
@@ -11,60 +13,30 @@ namespace skitter::shared {
 
 BINDING BINDING_PARAMETERS = 0;  // uniform block Parameters
 BINDING BINDING_HEIGHTS = 1;     // R32F image, sampled by textureGather
+// Of a kind of herds, constant.
 BINDING BINDING_RIG = 2;
+BINDING BINDING_KEY = 3;
+BINDING BINDING_CLIP = 4;
+BINDING BINDING_CLIP_FRAME = 5;
+BINDING BINDING_CLIP_ROW = 6;
+BINDING BINDING_CLIP_LEG = 7;
+BINDING BINDING_CLIP_JOINT = 8;
+// Records: BINDING_BODY, BINDING_BODY_OUT and so on.
+#define BIND(NAME, name, binding, per, stride, kept, spawned, hashed) \
+  BINDING BINDING_##NAME = binding;                                   \
+  BINDING BINDING_##NAME##_OUT = binding + 1;
+SKITTER_RECORDS(BIND)
+#undef BIND
+// Of a page, for its stages alone.
 // Legs that begin a step: uint, leg record * 2 + (1 if aimed anew); later in the tick, legs that ik's first
 // dispatch leaves: uint, leg record. Of clip: agents that fade, uint.
-BINDING BINDING_LIST = 3;
-BINDING BINDING_COUNTERS = 4;
-BINDING BINDING_HISTOGRAM = 5;
-// Records: read at the even number, written at the odd one.
-BINDING BINDING_GOAL = 6;
-BINDING BINDING_GOAL_OUT = 7;
-BINDING BINDING_STEER = 8;
-BINDING BINDING_STEER_OUT = 9;
-BINDING BINDING_BODY = 10;
-BINDING BINDING_BODY_OUT = 11;
-BINDING BINDING_GAIT = 12;
-BINDING BINDING_GAIT_OUT = 13;
-BINDING BINDING_STEP = 14;
-BINDING BINDING_STEP_OUT = 15;
-BINDING BINDING_FOOT = 16;
-BINDING BINDING_FOOT_OUT = 17;
-BINDING BINDING_CHAIN = 18;
-BINDING BINDING_CHAIN_OUT = 19;
-BINDING BINDING_POSE = 20;
-BINDING BINDING_POSE_OUT = 21;
-BINDING BINDING_METRIC = 22;
-BINDING BINDING_METRIC_OUT = 23;
-BINDING BINDING_PLAY = 24;
-BINDING BINDING_PLAY_OUT = 25;
-BINDING BINDING_START = 26;
-BINDING BINDING_START_OUT = 27;
-BINDING BINDING_FIX = 28;
-BINDING BINDING_FIX_OUT = 29;
-// Of a herd's clips, constant.
-BINDING BINDING_CLIP = 30;
-BINDING BINDING_CLIP_FRAME = 31;
-BINDING BINDING_CLIP_ROW = 32;
-BINDING BINDING_CLIP_LEG = 33;
-BINDING BINDING_CLIP_JOINT = 34;
-BINDING BINDING_WATCH = 35;
-BINDING BINDING_WATCH_OUT = 36;
-BINDING BINDING_FLIGHT = 37;
-BINDING BINDING_FLIGHT_OUT = 38;
-BINDING BINDING_FOOTFALL_OUT = 39;
-BINDING BINDING_SPRING = 40;
-BINDING BINDING_SPRING_OUT = 41;
-BINDING BINDING_KEY = 42;  // constant
-BINDING BINDING_MISS = 43;
-BINDING BINDING_MISS_OUT = 44;
-BINDING BINDING_ARC = 45;
-BINDING BINDING_ARC_OUT = 46;
+BINDING BINDING_LIST = 60;
+BINDING BINDING_COUNTERS = 61;
+BINDING BINDING_HISTOGRAM = 62;
 // Blocks with somebody awake, where agents may sleep.
-BINDING BINDING_AWAKE = 47;
-BINDING BINDING_AWAKE_OUT = 48;
-BINDING BINDING_TIP = 49;
-BINDING BINDING_TIP_OUT = 50;
+BINDING BINDING_AWAKE = 63;
+BINDING BINDING_AWAKE_OUT = 64;
+BINDING BINDING_FOOTFALL_OUT = 65;
 
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
@@ -82,7 +54,8 @@ BINDING CONSTANT_SEARCH_STEPS = 22;  // 2 to their power is more than a clip has
 BINDING CONSTANT_REACH = 23;         // gait steps when out of reach, without a rhythm
 BINDING CONSTANT_WATCH = 24;  // gait looks at the ground under every foot: the heights were edited lately
 BINDING CONSTANT_SLEEP = 25;  // SLEEP_
-BINDING CONSTANT_FEET = 26;   // tips are written, and feet where only ik reads them
+BINDING CONSTANT_FEET = 26;   // tips are written, and feet where no other stage needs them
+BINDING CONSTANT_HERD_STEPS = 28;  // 2 to their power is at least the number of herds in a page
 // From here on the numbers with which the rig's records of legs begin, 4 * RIG_LEG_STRIDE a leg.
 BINDING CONSTANT_RIG_LEGS = 100;
 // And those of the bones of rigs with CHOSEN_LEGS legs and CHOSEN_BONES bones at most: a number of one bone,
@@ -101,7 +74,7 @@ struct TickConstants {
   uint32_t count;  // agents of the page; of measure those that are watched
   float tick;      // n, the tick being computed
   // Of measure: invocation i looks at agent first + i * every of the page, watched for so many ticks. Of
-  // footfall: the page's first agent in its herd, and the events that there is room for.
+  // footfall: the page's first agent in its kind, and the events that there is room for.
   uint32_t first;
   uint32_t every;
   uint32_t watched;

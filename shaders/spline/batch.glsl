@@ -1,6 +1,6 @@
 // What all entry points of the batch begin with.
 #include "lib/load4.glsl"
-#include "shared/records.h"
+#include "skitter/records.h"
 #include "shared/spline_batch.h"
 #include "lib/cubic.glsl"
 

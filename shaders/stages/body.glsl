@@ -40,6 +40,7 @@ Body makeBody(int agent, Body body, vec2 velocity) {
   body.heading = unit(turn(body.turnRate * dt, vec3(body.heading.x, 0.0, body.heading.y)).xz);
   float speed = follow * commanded * max(0.0, dot(wanted, body.heading));
   body.speed += clamp(speed - body.speed, -parameters.braking * dt, parameters.acceleration * dt);
+  body.speed = min(body.speed, speedToEdge(parameters, body.local, body.tile, body.heading));
   vec2 moved = body.heading * (body.speed * dt);
 
   vec3 plane = fitPlane(parameters, sums, float(LEGS));

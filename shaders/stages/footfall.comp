@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/stage.glsl"
+#include "lib/rarely.glsl"
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_FOOT, feet);
@@ -8,7 +9,7 @@ LOAD4_BUFFER(BINDING_TIP, tips);
 LOAD4_BUFFER(BINDING_FLIGHT, flights);
 STORE4_BUFFER(BINDING_FLIGHT_OUT, flightsOut);
 STORE4_BUFFER(BINDING_FOOTFALL_OUT, footfalls);
-layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+#include "stages/counters.glsl"
 
 void main() {
   int record = int(gl_GlobalInvocationID.x);
@@ -20,11 +21,10 @@ void main() {
   vec4 before = LOAD4(flights, record);
   STORE4(flightsOut, record, vec4(tip, planted ? 0.0 : 1.0));
 
-  // A loop, because an `if` would not skip the atomic on a device that masks lanes; few feet land in a tick.
-  for (bool landed = planted && before.w == 1.0; landed; landed = false) {
+  RARELY(planted && before.w == 1.0) {
     uint place = atomicAdd(counters[COUNTER_FOOTFALLS], 1u);
     if (place >= constants.room) {
-      atomicAdd(counters[COUNTER_FOOTFALLS_DROPPED], 1u);
+      countForHerd(true, agent, ROW_FOOTFALLS_DROPPED);
       break;
     }
     // The body may have changed its tile; nothing moves half a tile in a tick.

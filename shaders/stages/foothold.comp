@@ -16,7 +16,7 @@ LOAD4_BUFFER(BINDING_ARC, arcs);
 STORE4_BUFFER(BINDING_STEP_OUT, stepsOut);
 STORE4_BUFFER(BINDING_ARC_OUT, arcsOut);
 layout(set = 0, binding = BINDING_LIST, std430) readonly buffer ListBlock { uint list[]; };
-layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+#include "stages/counters.glsl"
 
 void main() {
   uint listed = gl_GlobalInvocationID.x;
@@ -91,7 +91,7 @@ void main() {
     vec3 d = nearest - rootWorld;
     float far = length(d);
     best.point = rootWorld + d * (clamp(far, range.least, range.most) / max(far, 1e-6));
-    atomicAdd(counters[COUNTER_LAST_RESORTS], 1u);
+    countForHerd(true, agent, ROW_LAST_RESORTS);
   }
 
   // Relative to the body's position, as the old step too; stored relative to its tile.

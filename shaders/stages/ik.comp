@@ -8,6 +8,7 @@
 #include "lib/unheld_step.glsl"
 #include "lib/fabrik.glsl"
 #include "lib/limb.glsl"
+#include "lib/rarely.glsl"
 #include "stages/rig_bones.glsl"
 // What is there to be compared stays out of what ships: some drivers take long over code that is never run.
 #ifdef COMPARED_SOLVERS
@@ -41,7 +42,7 @@ STORE2_BUFFER(BINDING_MISS_OUT, missesOut);
 #endif
 STORE4_BUFFER(BINDING_CHAIN_OUT, chainsOut);
 STORE4_BUFFER(BINDING_TIP_OUT, tipsOut);
-layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
+#include "stages/counters.glsl"
 layout(set = 0, binding = BINDING_LIST, std430) buffer ListBlock { uint list[]; };
 
 void approach(Limb limb, vec3 target, inout Pose pose) {
@@ -164,8 +165,8 @@ void main() {
       return;
     }
   } else {
-    if (lost) atomicAdd(counters[COUNTER_NOT_FINITE], 1u);
-    for (; stuck; stuck = false) {
+    countForHerd(lost, agent, ROW_NOT_FINITE);
+    RARELY(stuck) {
       bend(limb, pose);
       error = distance(target, pose.tip);
     }

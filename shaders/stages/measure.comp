@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "stages/stage.glsl"
 #include "lib/crossing.glsl"
+#include "lib/rarely.glsl"
 #include "stages/ground.glsl"
 #include "lib/trail.glsl"
 
@@ -14,6 +15,7 @@ LOAD4_BUFFER(BINDING_WATCH, watches);
 STORE4_BUFFER(BINDING_WATCH_OUT, watchesOut);
 LOAD4_BUFFER(BINDING_METRIC, metrics);
 STORE4_BUFFER(BINDING_METRIC_OUT, metricsOut);
+#include "stages/counters.glsl"
 layout(set = 0, binding = BINDING_HISTOGRAM, std430) buffer HistogramBlock { uint histogram[]; };
 
 const float FAR = 3e38;
@@ -46,7 +48,8 @@ int neighbourOf(int leg) {
   return found;
 }
 
-// Joint positions in model space, and the worst violation of a limit.
+// Joint positions in model space, and the tangent of half the worst violation of a limit: the host takes the angle, for
+// the precision of an arc tangent differs between devices.
 struct Stretched {
   vec3 joint[BONES + 1];
   float violation;
@@ -63,7 +66,8 @@ void stretch(int leg, int record, inout Stretched s) {
     vec3 axis = cross(b.xyz, a.xyz) * xy.x - a.xyz * xy.y;
     r = quaternionProduct(r, vec4(axis, 1.0) * inversesqrt(1.0 + dot(xy, xy)));
     s.joint[i + 1] = s.joint[i] + root.w * a.w * rotate(r, b.xyz);
-    s.violation = max(s.violation, 2.0 * (length(xy) - b.w) / (1.0 + b.w * b.w));
+    float swing = length(xy);
+    s.violation = max(s.violation, (swing - b.w) / (1.0 + swing * b.w));
   }
 }
 
@@ -134,6 +138,7 @@ void measure(int slot, int agent) {
   storeTrail(watchAt, trail, 0.0);
   m6.zw += windowJerk(trail, closes, parameters.jerkTicks, parameters.jerkPath);
 
+  int buckets = rowOf(agent) * HISTOGRAM_BUCKETS;
   bool supported = false;
   vec2 anchor = vec2(0.0);
   for (int leg = 0; leg < LEGS; ++leg) {
@@ -164,7 +169,8 @@ void measure(int slot, int agent) {
     m1.z = max(m1.z, tip.w);
     m1.w = max(m1.w, limb.violation);
     float depth = depthOf(limb, body.orientation, body.local.y, world);
-    m3 = vec4(m3.x + depth, max(m3.y, depth), m3.z + (limb.violation > parameters.limitDeadZone ? 1.0 : 0.0), 0.0);
+    bool breaks = 2.0 * limb.violation > parameters.limitDeadZone;
+    m3 = vec4(m3.x + depth, max(m3.y, depth), m3.z + (breaks ? 1.0 : 0.0), 0.0);
 
     int neighbour = neighbourOf(leg);
     stretch(max(neighbour, 0), firstLeg + max(neighbour, 0) * BLOCK, other);
@@ -172,7 +178,7 @@ void measure(int slot, int agent) {
     m4.xy += neighbour >= 0 ? vec2(1.0, crosses ? 1.0 : 0.0) : vec2(0.0);
 
     float bucket = 4.0 * (log2(max(tip.w / parameters.legLength, 1e-30)) + 20.0);
-    atomicAdd(histogram[int(clamp(floor(bucket), 0.0, float(HISTOGRAM_BUCKETS - 1)))], 1u);
+    atomicAdd(histogram[buckets + int(clamp(floor(bucket), 0.0, float(HISTOGRAM_BUCKETS - 1)))], 1u);
   }
 
   float margin = supportMargin(firstLeg, centre, anchor);
@@ -191,7 +197,6 @@ void measure(int slot, int agent) {
 
 void main() {
   int slot = int(gl_GlobalInvocationID.x);
-  // A loop, because an `if` would not skip lanes without work on a device that masks them, and few have any.
-  for (bool due = gl_GlobalInvocationID.x < constants.count; due; due = false)
+  RARELY(gl_GlobalInvocationID.x < constants.count)
     measure(slot, int(constants.first + gl_GlobalInvocationID.x * constants.every));
 }

@@ -1,7 +1,7 @@
 // What every stage's entry point begins with.
 #include "lib/load4.glsl"
 #include "shared/bindings.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 #include "shared/parameters.h"
 #include "lib/math.glsl"
 #include "lib/records.glsl"

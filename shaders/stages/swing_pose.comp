@@ -60,6 +60,6 @@ void main() {
   vec4 root = LOAD4(rig, rigAt), contact = LOAD4(poses, poseAt);
   vec3 tip = rotate(body.orientation, root.xyz + root.w * pose.tip);
   bool stands = walking < 0.5 || fract(phase - contact.x) < contact.y;
-  STORE4(feetOut, record, vec4(tip, stands ? 1.0 : 0.5));
+  if (FEET) STORE4(feetOut, record, vec4(tip, stands ? 1.0 : 0.5));
   if (FEET) STORE4(tipsOut, record, vec4(tip, 0.0));
 }

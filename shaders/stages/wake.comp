@@ -3,6 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #define WITHOUT_PARAMETERS
 #include "stages/stage.glsl"
+#include "lib/rarely.glsl"
 
 layout(constant_id = CONSTANT_JOINTS) const int JOINTS = 1;
 LOAD4_BUFFER(BINDING_STEER, steers);
@@ -19,8 +20,7 @@ void main() {
     bool sleeps = LOAD4(steers, clamp(agent, 0, max(count - 1, 0))).z != 0.0;
     mask |= agent < count && !sleeps ? 1u << lane : 0u;
   }
-  // A loop, because an `if` would not skip the atomics on a device that masks lanes.
-  for (bool any = mask != 0u; any; any = false) {
+  RARELY(mask != 0u) {
     uint place = atomicAdd(counters[COUNTER_AWAKE_BLOCKS], 1u), agents = (place + 1u) * uint(BLOCK);
     atomicAdd(counters[COUNTER_AWAKE], uint(bitCount(mask)));
     STORE4(awakeOut, place, vec4(float(block), float(mask), 0.0, 0.0));

@@ -9,7 +9,13 @@ TEST_F(Bench, TimesAndChecksEveryContestant) {
   const Result result =
       skitter({"bench", "--quick", "--rounds", "1", "--agents", "1,33", "--json", file("b.json")});
   ASSERT_EQ(result.code, 0) << result.out << result.err;
-  const nlohmann::json device = json("b.json").at("devices").at(0);
+  const nlohmann::json device = json("b.json").at("devices").at(0), manifest = json("b.json").at("manifest");
+  for (const auto& [name, value] : manifest.items()) EXPECT_FALSE(value.is_null()) << name;
+  // With what follows them, for the scalar ones begin as the others do.
+  for (const std::string flags : {SKITTER_SIMD_FLAGS "; scalar ", SKITTER_SCALAR_FLAGS "; "}) {
+    EXPECT_NE(device.at("cpuOpponentBuild").get<std::string>().find(flags), std::string::npos) << flags;
+    EXPECT_NE(result.out.find(flags), std::string::npos) << result.out;
+  }
   EXPECT_GT(device.at("copyBytesPerSecond"), 0);
   EXPECT_GT(device.at("operationsPerSecond"), 0);
   ASSERT_EQ(device.at("matches").size(), 4u);  // two controllers, two sizes

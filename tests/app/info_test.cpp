@@ -17,7 +17,11 @@ TEST_F(Info, TableAndJsonNameTheChosenDevice) {
   for (const nlohmann::json& device : info.at("devices")) {
     EXPECT_NE(result.out.find(device.at("name").get<std::string>()), std::string::npos);
     EXPECT_TRUE(device.at("limits").at("maxStorageBufferRange").is_number_unsigned());
-    EXPECT_TRUE(device.at("features").at("presentation").is_boolean());
+    const auto of = device.at("limits").at("availableOf").get<std::string>();
+    EXPECT_NE(result.out.find(" free (" + of + ")"), std::string::npos) << of;
+    if (device.at("type") == "cpu") {
+      EXPECT_TRUE(of == "machine" || of.starts_with("cgroup /")) << of;
+    }
     for (const nlohmann::json& lack : device.at("lacks")) {
       EXPECT_NE(result.out.find(lack.get<std::string>()), std::string::npos) << lack;
     }

@@ -3,17 +3,25 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 
 namespace skitter::test {
 
-float Npy::at(const std::vector<uint64_t>& index) const {
+namespace {
+
+uint64_t flatIndex(const std::vector<uint64_t>& shape, const std::vector<uint64_t>& index) {
   uint64_t flat = 0;
   for (size_t axis = 0; axis < shape.size(); ++axis) flat = flat * shape[axis] + index.at(axis);
-  return values.at(flat);
+  return flat;
 }
+
+}  // namespace
+
+float Npy::at(const std::vector<uint64_t>& index) const { return values.at(flatIndex(shape, index)); }
+float& Npy::at(const std::vector<uint64_t>& index) { return values.at(flatIndex(shape, index)); }
 
 Npy readNpy(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
@@ -48,6 +56,25 @@ Npy readNpy(const std::string& file) {
     }
   }
   return npy;
+}
+
+void writeNpy(const std::string& file, const Npy& npy) {
+  std::filesystem::create_directories(std::filesystem::path(file).parent_path());
+  std::string header = "{'descr': '" + npy.type + "', 'fortran_order': False, 'shape': (";
+  for (const uint64_t axis : npy.shape) header += std::to_string(axis) + ",";
+  header += ")}";
+  header.resize((10 + header.size()) / 64 * 64 + 64 - 11, ' ');
+  header += '\n';
+  std::ofstream out(file, std::ios::binary);
+  out << std::string("\x93NUMPY\x01\x00", 8) << static_cast<char>(header.size() % 256)
+      << static_cast<char>(header.size() / 256) << header;
+  for (const float value : npy.values) {
+    if (npy.type == "<f4") {
+      out.write(reinterpret_cast<const char*>(&value), 4);
+    } else {
+      out.put(static_cast<char>(value));
+    }
+  }
 }
 
 }  // namespace skitter::test

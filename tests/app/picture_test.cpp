@@ -1,3 +1,5 @@
+#include <gmock/gmock.h>
+
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -31,19 +33,42 @@ std::pair<int, int> sizeOf(const std::string& file) {
 }
 
 TEST_F(Picture, FolderOfFramesAndVideo) {
-  fs::create_directory(file("out"));
-  write("out/frame_00007.png", "of an earlier run");
+  ASSERT_EQ(skitter({"run", "--agents", "1", "--frames", "5", "--size", "64x48", "--out", file("out")}).code,
+            0);
   write("out/mine.png", "the user's");
   const Result result = skitter({"run", "--agents", "10", "--frames", "3", "--size", "64x48", "--out",
                                  file("out"), "--json", file("r.json")});
   ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find("in place of an earlier run's 6 files"), std::string::npos) << result.out;
   EXPECT_EQ(files(),
-            (std::vector<std::string>{"out/frame_00000.png", "out/frame_00001.png", "out/frame_00002.png",
-                                      "out/mine.png", "out/skitter.mp4", "r.json"}));
+            (std::vector<std::string>{"out/.skitter-files", "out/frame_00000.png", "out/frame_00001.png",
+                                      "out/frame_00002.png", "out/mine.png", "out/skitter.mp4", "r.json"}));
   EXPECT_EQ(sizeOf(file("out/frame_00002.png")), std::pair(64, 48));
   EXPECT_EQ(framesIn(file("out/skitter.mp4")), 3);
   EXPECT_TRUE(json("r.json").at("cpuMicrosecondsPerAgentTick").is_null());
   EXPECT_GT(json("r.json").at("tickMilliseconds").at("median"), 0);
+}
+
+TEST_F(Picture, AVideoPlaysInRealTimeOrSlower) {
+  struct Case {
+    std::vector<std::string> options;
+    int frames;
+  };
+  for (const Case& c : {Case{{"--dt", "0.1"}, 60},                 // 10 ticks of 0.1 s
+                        Case{{"--dt", "0.1", "--fps", "30"}, 30},  //
+                        Case{{"--ticks-per-frame", "2"}, 20},      // 20 ticks of 1/60 s
+                        Case{{"--slow", "4"}, 40},                 // each picture is shown four times
+                        Case{{"--slow", "4", "--dt", "0.0041666666667"}, 10}}) {  // and here once
+    std::vector<std::string> command = {"run",    "--agents", "1",     "--frames",      "10",
+                                        "--size", "64x48",    "--out", file("walk.mp4")};
+    command.insert(command.end(), c.options.begin(), c.options.end());
+    const Result result = skitter(command);
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_NEAR(framesIn(file("walk.mp4")), c.frames, 1) << c.options.back();
+  }
+  expectRefusal(skitter({"run", "--headless", "--slow", "4"}), 2, {"--slow", "--out"});
+  expectRefusal(skitter({"run", "--frames", "1", "--dt", "0.002", "--out", file("short.mp4")}), 2,
+                {"short.mp4", "no frame", "--slow"});
 }
 
 TEST_F(Picture, LastFrameOfAnEmptyTerrain) {
@@ -54,13 +79,26 @@ TEST_F(Picture, LastFrameOfAnEmptyTerrain) {
   EXPECT_EQ(sizeOf(file("last.png")), std::pair(65, 33));
 }
 
+TEST_F(Picture, TimingsTellEveryPassOfAFrame) {
+  const std::vector<std::string> command{"run",    "--agents", "5",     "--frames",      "2",
+                                         "--size", "65x33",    "--out", file("last.png")};
+  const Result plain = skitter(command);
+  std::vector<std::string> timed = command;
+  timed.push_back("--timings");
+  const Result result = skitter(timed);
+  ASSERT_EQ(result.code, 0) << result.err;
+  for (const char* pass : {"cull", "shadow", "crowd", "terrain", "sky", "edges", "readback", "write"})
+    EXPECT_THAT(result.out, ::testing::ContainsRegex(pass + std::string(" +[0-9.]+ ms a frame"))) << pass;
+  EXPECT_EQ(plain.out.find("ms a frame"), std::string::npos) << plain.out;
+}
+
 TEST_F(Picture, InterruptedVideoIsPlayable) {
   bool sent = false;
   const Result result =
-      skitter({"run", "--agents", "10", "--frames", "100000", "--size", "64x48", "--out", file("walk.mp4"),
-               "--trace", file("trace"), "--force", "--json", file("run.json")},
+      skitter({"run", "--agents", "2", "--frames", "20000", "--size", "64x48", "--out", file("walk.mp4"),
+               "--trace", file("trace"), "--large", "--json", file("run.json")},
               {}, [&](int child) {
-                const std::string joints = file("trace/herd0/joints.npy.part");
+                const std::string joints = file("trace/.skitter.part/herd0/joints.npy.part");
                 std::error_code error;
                 if (sent || !(fs::file_size(joints, error) > 20000) || error) return;
                 EXPECT_TRUE(fs::exists(file("walk.mp4.part")));
@@ -69,27 +107,29 @@ TEST_F(Picture, InterruptedVideoIsPlayable) {
                 sent = true;
               });
   ASSERT_TRUE(sent);
-  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.code, 130) << result.err;
   EXPECT_NE(result.out.find("interrupted"), std::string::npos);
+  EXPECT_TRUE(json("run.json").at("interrupted"));
+  EXPECT_EQ(json("run.json").at("ticksWanted"), 20000);
   for (const std::string& name : files()) EXPECT_EQ(name.find(".part"), std::string::npos) << name;
   const int ticks = json("run.json").at("ticks");
   EXPECT_GT(ticks, 0);
-  EXPECT_LT(ticks, 100000);
+  EXPECT_LT(ticks, 20000);
   EXPECT_EQ(framesIn(file("walk.mp4")), ticks);
   EXPECT_EQ(json("trace/trace.json").at("ticks"), ticks);
 }
 
 TEST_F(Picture, ASecondInterruptKills) {
   int sent = 0;
-  const Result result =
-      skitter({"run", "--headless", "--agents", "10", "--frames", "1000000", "--out", file("walk.mp4")}, {},
-              [&](int child) {
-                if (!fs::exists(file("walk.mp4.part")) || sent == 2) return;
-                kill(child, SIGINT);
-                ++sent;
-              });
-  EXPECT_TRUE(result.code == 128 + SIGINT || result.code == 0) << result.code;
-  if (result.code != 0) {
+  const Result result = skitter({"run", "--headless", "--agents", "10", "--frames", "1000000", "--size",
+                                 "64x48", "--out", file("walk.mp4")},
+                                {}, [&](int child) {
+                                  if (!fs::exists(file("walk.mp4.part")) || sent == 2) return;
+                                  kill(child, SIGINT);
+                                  ++sent;
+                                });
+  EXPECT_TRUE(result.code == 128 + SIGINT || result.code == 130) << result.code;
+  if (result.code != 130) {
     EXPECT_FALSE(fs::exists(file("walk.mp4")));
   }
 }

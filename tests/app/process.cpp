@@ -70,6 +70,14 @@ Result skitter(std::vector<std::string> arguments, const Environment& environmen
   return runProgram(arguments, environment, whileRunning);
 }
 
+bool catches(int process, int signal) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("SigCgt:"))
+      return (std::stoull(line.substr(8), nullptr, 16) >> (signal - 1) & 1) != 0;
+  return false;
+}
+
 AppTest::AppTest() : folder_(makeFolder()) {}
 AppTest::~AppTest() { fs::remove_all(folder_); }
 

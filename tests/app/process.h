@@ -28,6 +28,9 @@ Result runProgram(const std::vector<std::string>& command, const Environment& en
 Result skitter(std::vector<std::string> arguments, const Environment& environment = {},
                const std::function<void(int)>& whileRunning = {});
 
+// Whether a process handles the signal by now: a test must not send it before.
+bool catches(int process, int signal);
+
 // A folder of its own for each test, gone afterwards.
 class AppTest : public ::testing::Test {
  protected:

@@ -58,7 +58,10 @@ std::string withoutPictures(std::string html) {
 TEST_F(Reproduce, WritesOnePageAndItsRawFigures) {
   const Result result = skitter({"reproduce", "--frames", "20", "--out", file("page"), "--quiet"});
   ASSERT_EQ(result.code, 0) << result.out << result.err;
-  EXPECT_EQ(result.err, "");
+  // Other tests may run beside it.
+  if (result.err.find("skitter: The machine did other work meanwhile") != 0) {
+    EXPECT_EQ(result.err, "");
+  }
   const std::string html = withoutPictures(text("page/index.html"));
   for (const char* section : {"conclusions", "setup", "figure-1", "figure-2", "figures-3-5", "figures-6-8",
                               "point-collection", "figures-9-11", "figures-12-14", "fidelity", "spiders"}) {
@@ -83,6 +86,8 @@ TEST_F(Reproduce, WritesOnePageAndItsRawFigures) {
     EXPECT_NE(html.find(name.substr(5)), std::string::npos) << name << " is not told of";
   }
   EXPECT_GE(tables, 15u);
+  for (const char* ground : {"flat", "rolling", "steep", "jacksboro", "everest"})
+    EXPECT_EQ(count(text("page/fidelity.csv"), std::string("\n") + ground + ","), 5u) << ground;
 }
 
 TEST_F(Reproduce, RefusesAFolderThatIsNotEmpty) {
@@ -112,7 +117,7 @@ TEST_F(Reproduce, InterruptedItLeavesNothing) {
         kill(process, SIGINT);
         sent = true;
       });
-  EXPECT_EQ(result.code, 1) << result.out;
+  EXPECT_EQ(result.code, 130) << result.out;
   EXPECT_NE(result.err.find("interrupted"), std::string::npos) << result.err;
   EXPECT_TRUE(files().empty());
 }

@@ -21,12 +21,15 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(files(), std::vector<std::string>{"run.json"});
   const nlohmann::json run = json("run.json");
-  EXPECT_EQ(keysOf(run), (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
-                                                "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity",
-                                                "herds", "sleeping", "stateHash"}));
+  EXPECT_EQ(keysOf(run),
+            (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
+                                   "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity", "herds",
+                                   "sleeping", "stateHash", "ticksWanted", "interrupted", "manifest"}));
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
   EXPECT_EQ(run.at("agents"), 20);
   EXPECT_EQ(run.at("ticks"), 30);
+  EXPECT_EQ(run.at("ticksWanted"), 30);
+  EXPECT_FALSE(run.at("interrupted"));
   EXPECT_EQ(run.at("seed"), 7);
   const nlohmann::json& tick = run.at("tickMilliseconds");
   EXPECT_EQ(keysOf(tick), (std::set<std::string>{"min", "median", "max"}));
@@ -67,6 +70,27 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   }
 }
 
+// Those that stand sleep, those that walk do not.
+TEST_F(Running, SleepersAreReported) {
+  write("some.json",
+        R"({"herds": [{"agents": 3}, {"agents": 5, "controller": "loop", "goal": {"kind": "none"}}]})");
+  const Result result = skitter({"run", file("some.json"), "--headless", "--sleep", "--frames", "240",
+                                 "--json", file("some-run.json")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(json("some-run.json").at("sleeping"), 5);
+  EXPECT_NE(result.out.find("5 agents at the end"), std::string::npos) << result.out;
+}
+
+// A clip's poses are not made within the rig's limits.
+TEST_F(Running, JudgesNoLimitsOfClips) {
+  const Result result = skitter({"run", "--headless", "--agents", "2", "--frames", "2", "--controller",
+                                 "clip", "--json", file("run.json")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find("limits      not judged"), std::string::npos) << result.out;
+  EXPECT_TRUE(json("run.json").at("fidelity").at("limitViolation").is_null());
+  EXPECT_TRUE(json("run.json").at("fidelity").at("limitViolations").is_null());
+}
+
 TEST_F(Running, WritesEveryFootfall) {
   const Result result = skitter({"run", "--headless", "--agents", "3", "--frames", "90", "--watch-every", "2",
                                  "--footfalls", file("feet.csv"), "--json", file("run.json")});
@@ -100,6 +124,8 @@ TEST_F(Running, NoAgentsAndNoFramesAreLegal) {
       skitter({"run", "--headless", "--agents", "0", "--frames", "5", "--json", file("agents.json")}).code,
       0);
   EXPECT_EQ(json("agents.json").at("agents"), 0);
+  EXPECT_EQ(json("agents.json").at("fidelity").at("limitViolation"), 0)
+      << "limits are kept, though by nobody";
   EXPECT_EQ(json("agents.json").at("ticks"), 5);
   EXPECT_TRUE(json("agents.json").at("cpuMicrosecondsPerAgentTick").is_null());
 

@@ -88,6 +88,7 @@ TEST_F(Usage, Numbers) {
   expectInputError({"run", "--dt", "0"}, {"--dt"});
   expectInputError({"run", "--dt", "-0.01"}, {"--dt", "-0.01"});
   expectInputError({"run", "--dt", "inf"}, {"--dt", "inf"});
+  expectInputError({"run", "--dt", "0.151"}, {"--dt", "0.151", "0.15"});
   expectInputError({"run", "--size", "0x720"}, {"--size", "0x720"});
   expectInputError({"run", "--size", "1280"}, {"--size", "1280"});
   expectInputError({"run", "--size", "20000x20000"}, {"--size", "20000x20000"});
@@ -104,6 +105,7 @@ TEST_F(Usage, Numbers) {
   expectInputError({"run", "--void-value", "nan"}, {"--void-value", "nan"});
   expectInputError({"run", "--view", "sideways"}, {"--view", "sideways"});
   expectInputError({"validate", "--agents", "-5"}, {"--agents", "-5"});
+  expectInputError({"validate", "--page-agents", "0"}, {"--page-agents", "0"});
 }
 
 TEST_F(Usage, AgentsBeyondTheMemory) {
@@ -136,9 +138,9 @@ TEST_F(Usage, OutWhereADirectoryHasAVideosName) {
   expectInputError({"run", "--out", file("walk.mp4")}, {"--out", "walk.mp4", "directory"});
 }
 
-TEST_F(Usage, TraceBeyondFourGibibytesNeedsForce) {
+TEST_F(Usage, TraceBeyondFourGibibytesNeedsLarge) {
   expectInputError({"run", "--headless", "--agents", "1000", "--frames", "10000", "--trace", file("trace")},
-                   {"--trace", "--force"});
+                   {"--trace", "--large"});
 }
 
 TEST_F(Usage, NoDevice) {

@@ -1,3 +1,6 @@
+#include <signal.h>
+
+#include <fstream>
 #include <map>
 
 #include "process.h"
@@ -14,6 +17,9 @@ TEST_F(Validate, EveryStageAgreesWithTheReference) {
   EXPECT_NE(result.out.find("seed 5"), std::string::npos);
   const nlohmann::json validation = json("v.json");
   EXPECT_TRUE(validation.at("pass"));
+  EXPECT_FALSE(validation.at("interrupted"));
+  EXPECT_EQ(validation.at("ticks"), 30);
+  EXPECT_EQ(validation.at("ticksWanted"), 30);
   EXPECT_TRUE(validation.at("device").is_string());
   std::vector<std::string> names;
   for (const nlohmann::json& stage : validation.at("stages")) {
@@ -22,6 +28,7 @@ TEST_F(Validate, EveryStageAgreesWithTheReference) {
     EXPECT_GT(stage.at("samples"), 0) << names.back();
     EXPECT_LE(stage.at("maxError"), stage.at("tolerance")) << names.back();
     EXPECT_TRUE(stage.at("ties").is_number_unsigned());
+    EXPECT_EQ(stage.at("why"), "");
   }
   EXPECT_EQ(names, (std::vector<std::string>{"navigate", "body", "gait", "foothold", "swing", "ik", "pose",
                                              "measure", "footfall"}));
@@ -52,6 +59,20 @@ TEST_F(Validate, EveryControllerHasItsStages) {
   }
 }
 
+// Neither changes a bit of what is compared.
+TEST_F(Validate, PagesAndFusionChangeNothing) {
+  const std::vector<std::string> plain = {"validate", "--agents", "40", "--frames", "40", "--dt", "0.15"};
+  std::vector<std::string> parted = plain;
+  parted.insert(parted.end(), {"--page-agents", "17", "--apart", "--json", file("parted.json")});
+  std::vector<std::string> whole = plain;
+  whole.insert(whole.end(), {"--json", file("whole.json")});
+  EXPECT_EQ(skitter(whole).code, 0);
+  EXPECT_EQ(skitter(parted).code, 0);
+  nlohmann::json parts = json("parted.json"), all = json("whole.json");
+  for (nlohmann::json* each : {&parts, &all}) each->at("manifest").erase("command");
+  EXPECT_EQ(parts, all);
+}
+
 TEST_F(Validate, HerdsWithDifferentStagesAreOneTable) {
   write("mixed.json", R"({"terrain": {"kind": "noise"}, "herds": [
     {"rig": "spider", "controller": "clip", "agents": 4},
@@ -63,18 +84,80 @@ TEST_F(Validate, HerdsWithDifferentStagesAreOneTable) {
                                       "measure", "footfall"}));
 }
 
+constexpr const char* kControllers[] = {"adaptive", "loop", "clip", "planted", "pose"};
+
 TEST_F(Validate, AFreeRunStaysTogether) {
-  const Result result =
-      skitter({"validate", "--agents", "8", "--frames", "120", "--free-run", "--json", file("v.json")});
-  EXPECT_EQ(result.code, 0) << result.out << result.err;
-  EXPECT_NE(result.out.find("free run: "), std::string::npos) << result.out;
-  EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
+  for (const char* controller : kControllers) {
+    SCOPED_TRACE(controller);
+    const Result result = skitter({"validate", "--controller", controller, "--agents", "8", "--frames", "120",
+                                   "--free-run", "--json", file("v.json")});
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    EXPECT_NE(result.out.find("free run: "), std::string::npos) << result.out;
+    EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
+  }
 }
 
-TEST_F(Validate, AFreeRunIsOfAdaptiveHerds) {
-  const Result result = skitter({"validate", "--controller", "loop", "--frames", "2", "--free-run"});
-  EXPECT_EQ(result.code, 2) << result.out;
-  EXPECT_NE(result.err.find("adaptive"), std::string::npos) << result.err;
+TEST_F(Validate, TheGroundMayChangeUnderTheCrowd) {
+  for (const char* controller : kControllers) {
+    SCOPED_TRACE(controller);
+    const Result result = skitter({"validate", "--controller", controller, "--agents", "24", "--frames", "90",
+                                   "--edits", "--free-run", "--json", file("v.json")});
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    // Four times, near 16 agents each.
+    EXPECT_EQ(json("v.json").at("edits"), 64);
+    EXPECT_NE(result.out.find("edits of the ground: 64\n"), std::string::npos) << result.out;
+    EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
+  }
+}
+
+TEST_F(Validate, NothingToCompareIsAWrongInput) {
+  expectRefusal(skitter({"validate", "--frames", "0"}), 2, {"--frames", "0", "1"});
+  expectRefusal(skitter({"validate", "--agents", "0"}), 2, {"no agents", "at least one"});
+}
+
+// Foothold must leave the steps of legs that never step as they are.
+TEST_F(Validate, ACrowdThatStandsIsCompared) {
+  write("standing.json", R"({"herds": [{"rig": "spider", "agents": 4, "goal": {"kind": "none"}},
+                                       {"rig": "spider", "agents": 0}]})");
+  const Result result = skitter(
+      {"validate", file("standing.json"), "--agents", "4", "--frames", "20", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  const nlohmann::json foothold = json("v.json").at("stages").at(3);
+  EXPECT_EQ(foothold.at("name"), "foothold");
+  EXPECT_EQ(foothold.at("samples").get<int>() + foothold.at("kept").get<int>(), 4 * 8 * 20);
+  EXPECT_GT(foothold.at("kept"), 4 * 8 * 10);
+}
+
+TEST_F(Validate, InterruptedIsNoPass) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    SCOPED_TRACE(signal);
+    bool sent = false;
+    const Result result = skitter({"validate", "--agents", "8", "--frames", "2000", "--json", file("v.json")},
+                                  {}, [&](int child) {
+                                    if (sent || !catches(child, signal)) return;
+                                    kill(child, signal);
+                                    sent = true;
+                                  });
+    ASSERT_TRUE(sent);
+    EXPECT_EQ(result.code, 130) << result.out;
+    const nlohmann::json validation = json("v.json");
+    EXPECT_FALSE(validation.at("pass"));
+    EXPECT_TRUE(validation.at("interrupted"));
+    EXPECT_EQ(validation.at("ticksWanted"), 2000);
+    const auto ticks = validation.at("ticks").get<uint64_t>();
+    EXPECT_LT(ticks, 2000u);
+    EXPECT_EQ(result.err, "skitter: interrupted after " + std::to_string(ticks) + " of 2000 ticks\n");
+    // Before the first tick nothing was compared.
+    for (const nlohmann::json& stage : validation.at("stages"))
+      EXPECT_EQ(stage.at("why") == "no samples", stage.at("samples") == 0 && stage.at("kept") == 0);
+  }
+}
+
+TEST_F(Validate, HelpListsTheExitCodes) {
+  const std::string help = runProgram({SKITTER_BINARY, "validate", "--help"}).out;
+  for (const char* words :
+       {"Exit codes: 0 ", "1 a check failed", "2 wrong usage", "3 no usable", "130 interr"})
+    EXPECT_NE(help.find(words), std::string::npos) << words << help;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "clip_sampler.h"
+#include "assets/clips/clip_sampler.h"
 
 #include <gtest/gtest.h>
 

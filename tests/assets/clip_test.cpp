@@ -6,12 +6,15 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <random>
 
-#include "clip_sampler.h"
+#include "assets/clips/clip_sampler.h"
+#include "assets/rigs/placement.h"
+#include "assets/rigs/rig_source.h"
 #include "files.h"
 #include "glb_builder.h"
-#include "placement.h"
-#include "rig_source.h"
+#include "gltf_pose.h"
+#include "made_models.h"
 #include "skitter/rig_setup.h"
 
 // Clips as they are baked, of files that nobody prepared and of the smallest rig with all sorts of channels.
@@ -20,8 +23,6 @@ namespace {
 
 using test::Glb;
 using test::inputFault;
-
-const std::filesystem::path data = std::filesystem::path(SKITTER_SHARED_DATA) / "gltf";
 
 Rig rigFor(const std::filesystem::path& file) {
   try {
@@ -113,28 +114,41 @@ double worstMiss(const std::filesystem::path& file, const ClipSet& set, size_t i
   return worst;
 }
 
-struct Foreign {
-  const char* file;
-  size_t clips, joints;
+class MadeClips : public ::testing::Test {
+ protected:
+  MadeClips() { test::writeMadeModels(folder_.path()); }
+
+  test::TemporaryFolder folder_;
 };
 
-TEST(Clips, ForeignModelsAsTheyCome) {
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is absent";
-  for (const Foreign& foreign :
-       {Foreign{"Fox.glb", 3, 22}, Foreign{"luanti_spider_animated.gltf", 1, 37},
-        Foreign{"RiggedFigure.glb", 1, 19}, Foreign{"RiggedSimple.glb", 1, 2},
-        Foreign{"SimpleSkin.gltf", 1, 2}, Foreign{"luanti_simple_skin_step.gltf", 1, 2},
-        Foreign{"InterpolationTest/interpolation_test.gltf", 9, 10}}) {
-    const std::filesystem::path file = data / foreign.file;
+// Metres that a unit of the model has become.
+double scaleOf(const Model& model, const Rig& rig) {
+  const Leg& leg = rig.legs[0];
+  const auto at = [&](const std::string& joint) {
+    const auto named = [&](const Model::Node& node) { return node.name == joint; };
+    return std::find_if(model.nodes.begin(), model.nodes.end(), named)->position();
+  };
+  return double{leg.bones[0].length} / glm::distance(at(leg.bones[0].joint), at(leg.bones[1].joint));
+}
+
+TEST_F(MadeClips, AsTheyCome) {
+  struct Expected {
+    const char* file;
+    size_t clips, joints;
+  };
+  for (const Expected& expected :
+       {Expected{"fox.glb", 3, 23}, Expected{"spider.gltf", 1, 49}, Expected{"figure.glb", 1, 19},
+        Expected{"column.glb", 1, 2}, Expected{"simple_skin.gltf", 1, 2}, Expected{"step_skin.gltf", 1, 2},
+        Expected{"interpolations.gltf", 9, 10}}) {
+    const std::filesystem::path file = folder_ / expected.file;
     const ClipSet set = loadClips(file, rigFor(file));
-    EXPECT_EQ(set.joints.size(), foreign.joints) << foreign.file;
-    ASSERT_EQ(set.clips.size(), foreign.clips) << foreign.file;
+    EXPECT_EQ(set.joints.size(), expected.joints) << expected.file;
+    ASSERT_EQ(set.clips.size(), expected.clips) << expected.file;
     EXPECT_TRUE(set.notes.empty());
     for (size_t i = 0; i < set.clips.size(); ++i) {
       const Clip& clip = set.clips[i];
-      SCOPED_TRACE(std::string(foreign.file) + " " + clip.name);
+      SCOPED_TRACE(std::string(expected.file) + " " + clip.name);
       EXPECT_LE(clip.error, 1e-4 * set.size);
-      // The bound is of boxes at quarter points, this of vertices elsewhere too.
       EXPECT_LE(worstMiss(file, set, i), 1e-4 * set.size);
       EXPECT_EQ(clip.times.front(), 0);
       EXPECT_EQ(clip.times.back(), static_cast<float>(clip.seconds));
@@ -155,16 +169,19 @@ TEST(Clips, ForeignModelsAsTheyCome) {
   }
 }
 
-TEST(Clips, FoxWalksRunsAndStands) {
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is absent";
-  const Rig rig = proposedRig(data / "Fox.glb");
-  const ClipSet set = loadClips(data / "Fox.glb", rig);
+TEST_F(MadeClips, FoxWalksRunsAndStands) {
+  const Model model = loadModel(folder_ / "fox.glb");
+  const Rig rig = proposedRig(folder_ / "fox.glb");
+  const ClipSet set = loadClips(folder_ / "fox.glb", rig);
+  const double scale = scaleOf(model, rig);
   EXPECT_EQ(set.clip("Survey").speed, 0);
-  EXPECT_NEAR(set.clip("Walk").speed, 2.0, 0.1);
-  EXPECT_NEAR(set.clip("Run").speed, 3.0, 0.3);
+  // The keys lie on the way of the feet; between them, joints that turn carry a foot off it.
+  EXPECT_NEAR(set.clip("Walk").speed, test::madeFoxWalk * scale, 0.02 * test::madeFoxWalk * scale);
+  EXPECT_NEAR(set.clip("Run").speed, test::madeFoxRun * scale, 0.02 * test::madeFoxRun * scale);
+  const double rest = (1 - proposeRig(model).setup.origin->y) * scale;  // feet rest at a height of 1
   for (const Clip& clip : set.clips) {
     EXPECT_EQ(clip.rootVelocity, glm::vec3(0)) << "it runs on the spot";
-    EXPECT_NEAR(clip.ground, -0.22, 0.01);
+    EXPECT_NEAR(clip.ground, rest, 0.01);
   }
   for (const uint8_t stands : set.clip("Survey").stance) EXPECT_EQ(stands, 1);
   // Nearly always a paw stands.
@@ -178,19 +195,19 @@ TEST(Clips, FoxWalksRunsAndStands) {
   EXPECT_LE(none, walk.frames() / 20);
 }
 
-TEST(Clips, AWalkCutOutOfATake) {
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is absent";
-  const std::filesystem::path file = data / "luanti_spider_animated.gltf";
+TEST_F(MadeClips, AWalkCutOutOfATake) {
+  const std::filesystem::path file = folder_ / "spider.gltf";
   const Rig rig = proposedRig(file);
-  const ClipCut cut{"ArmatureAction", "walk", 35 / 24.0, 51 / 24.0};
+  const ClipCut cut{"Take", "walk", test::madeSpiderWalks, test::madeSpiderWalks + test::madeSpiderCycle};
   const ClipSet set = loadClips(file, rig, std::span(&cut, 1));
   ASSERT_EQ(set.clips.size(), 2u);
   const Clip &whole = set.clips[0], &walk = set.clip("walk");
-  EXPECT_NEAR(walk.seconds, 16 / 24.0, 1e-6);
+  EXPECT_NEAR(walk.seconds, test::madeSpiderCycle, 1e-6);
   EXPECT_LE(walk.error, 1e-4 * set.size);
-  EXPECT_NEAR(walk.speed, 0.54, 0.05);
+  // Feet that stand are carried straight back, so nothing but single precision is lost.
+  EXPECT_NEAR(walk.speed, test::madeSpiderSpeed * scaleOf(loadModel(file), rig), 1e-3);
   for (double t = 0; t <= walk.seconds; t += 0.01) {
-    const std::vector<glm::vec4> part = play(set, walk, t), all = play(set, whole, 35 / 24.0 + t);
+    const std::vector<glm::vec4> part = play(set, walk, t), all = play(set, whole, test::madeSpiderWalks + t);
     for (const SkinVertex& vertex : set.vertices) {
       const glm::dvec3 given(static_cast<double>(walk.rootVelocity.x) * t, 0,
                              static_cast<double>(walk.rootVelocity.z) * t);
@@ -198,31 +215,15 @@ TEST(Clips, AWalkCutOutOfATake) {
     }
   }
   for (const ClipCut& wrong :
-       {ClipCut{"none", "walk", 0, 1}, ClipCut{"ArmatureAction", "walk", 2, 2},
-        ClipCut{"ArmatureAction", "walk", -1, 2}, ClipCut{"ArmatureAction", "walk", 0, 5.1},
-        ClipCut{"ArmatureAction", "walk", 0, NAN}}) {
+       {ClipCut{"none", "walk", 0, 1}, ClipCut{"Take", "walk", 2, 2}, ClipCut{"Take", "walk", -1, 2},
+        ClipCut{"Take", "walk", 0, 5.1}, ClipCut{"Take", "walk", 0, NAN}}) {
     const std::string what = inputFault([&] { loadClips(file, rig, std::span(&wrong, 1)); });
-    EXPECT_NE(what.find("luanti_spider_animated.gltf: cut \"walk\" is"), std::string::npos) << what;
+    EXPECT_NE(what.find("spider.gltf: cut \"walk\" is"), std::string::npos) << what;
   }
 }
 
 class SmallClips : public ::testing::Test {
  protected:
-  // More data at the buffer's end; its accessor's index.
-  static size_t append(Glb& glb, const std::vector<float>& numbers, const char* type, size_t width) {
-    glb.binary.resize((glb.binary.size() + 3) / 4 * 4);
-    const size_t offset = glb.binary.size();
-    const auto* bytes = reinterpret_cast<const uint8_t*>(numbers.data());
-    glb.binary.insert(glb.binary.end(), bytes, bytes + 4 * numbers.size());
-    glb.json["buffers"][0]["byteLength"] = glb.binary.size();
-    glb.json["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", 4 * numbers.size()}});
-    glb.json["accessors"].push_back({{"bufferView", glb.json["bufferViews"].size() - 1},
-                                     {"componentType", 5126},
-                                     {"count", numbers.size() / width},
-                                     {"type", type}});
-    return glb.json["accessors"].size() - 1;
-  }
   // The smallest rig, its skin bound in its rest pose.
   static Glb small() {
     Glb glb = test::smallestRig();
@@ -231,25 +232,14 @@ class SmallClips : public ::testing::Test {
     for (const auto& offset : offsets) {
       bind.insert(bind.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, offset[0], offset[1], offset[2], 1});
     }
-    glb.json["skins"][0]["inverseBindMatrices"] = append(glb, bind, "MAT4", 16);
+    glb.json["skins"][0]["inverseBindMatrices"] = glb.append(bind, "MAT4");
     return glb;
   }
-  // One more channel of the last clip, or of a first one.
-  static void move(Glb& glb, const char* node, const char* path, const char* interpolation,
+  static void move(Glb& glb, const std::string& node, const char* path, const char* interpolation,
                    const std::vector<float>& times, const std::vector<float>& values) {
-    auto& animations = glb.json["animations"];
-    if (animations.empty())
-      animations.push_back(
-          {{"name", "clip"}, {"samplers", nlohmann::json::array()}, {"channels", nlohmann::json::array()}});
-    auto& clip = animations.back();
-    const bool turns = std::string(path) == "rotation";
-    const size_t input = append(glb, times, "SCALAR", 1);
-    const size_t output = append(glb, values, turns ? "VEC4" : "VEC3", turns ? 4 : 3);
     size_t index = 0;
     while (glb.json["nodes"][index].value("name", "") != node) ++index;
-    clip["channels"].push_back(
-        {{"sampler", clip["samplers"].size()}, {"target", {{"node", index}, {"path", path}}}});
-    clip["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", interpolation}});
+    glb.animate(index, path, interpolation, times, values);
   }
   ClipSet load(const Glb& glb) const {
     test::writeBytes(folder_ / "odd.glb", glb.bytes());
@@ -350,6 +340,123 @@ TEST_F(SmallClips, PosesSingleKeysAndLateFirstKeys) {
   set = load(glb);
   EXPECT_EQ(set.clips.at(0).times, (std::vector<float>{0, 2}));
   EXPECT_EQ(at(set, set.clips[0], 0, joint(set, "knee"), {1, 1, 0}), glm::dvec3(3, 1, 0));
+}
+
+// A channel with keys at random times.
+void moveAtRandom(Glb& glb, const std::string& node, const std::string& path,
+                  const std::string& interpolation, std::mt19937& random) {
+  const auto uniform = [&](float low, float high) {
+    return std::uniform_real_distribution<float>(low, high)(random);
+  };
+  std::vector<float> times, values, rest(3, path == "scale" ? 1.0f : 0.0f);
+  if (path == "translation") rest = glb.node(node).value("translation", rest);
+  const auto value = [&] {
+    if (path == "rotation") {
+      const glm::quat q =
+          glm::normalize(glm::quat(1, uniform(-0.4f, 0.4f), uniform(-0.4f, 0.4f), uniform(-0.4f, 0.4f)));
+      values.insert(values.end(), {q.x, q.y, q.z, q.w});
+    } else {
+      for (const float v : rest) values.push_back(v + uniform(-0.3f, 0.3f));
+    }
+  };
+  const auto tangent = [&] {
+    for (size_t k = 0; k < (path == "rotation" ? 4 : 3); ++k) values.push_back(uniform(-2, 2));
+  };
+  float time = 0;
+  for (int key = 0; key < 5; ++key, time += uniform(0.05f, 0.4f)) {
+    times.push_back(time);
+    if (interpolation == "CUBICSPLINE") tangent();
+    value();
+    if (interpolation == "CUBICSPLINE") tangent();
+  }
+  size_t index = 0;
+  while (glb.json["nodes"][index].value("name", "") != node) ++index;
+  glb.animate(index, path, interpolation, times, values);
+}
+
+// How far the frames, as `docs/clip.md` plays them, are from the file's own nodes at `samples` random times:
+// of what a palette entry moves, which are its vertices and the joint of its leg.
+double worstOf(const Glb& glb, const ClipSet& set, const Clip& clip, int samples, std::mt19937& random) {
+  const test::GltfPose pose(glb);
+  std::vector<std::pair<size_t, glm::dvec3>> points;
+  for (const SkinVertex& vertex : set.vertices)
+    for (int k = 0; k < 4; ++k)
+      if (vertex.weights[k] > 0) points.emplace_back(vertex.bones[k], vertex.position);
+  for (const ClipLeg& leg : set.legs)
+    for (size_t i = 0; i < leg.joints.size(); ++i) points.emplace_back(leg.joints[i], leg.starts[i]);
+  double worst = 0;
+  for (int i = 0; i < samples; ++i) {
+    const double time = std::uniform_real_distribution<double>(0, clip.seconds)(random);
+    size_t f = 0;
+    while (f + 2 < clip.frames() && double{clip.times[f + 1]} <= time) ++f;
+    const double from = clip.times[f], u = (time - from) / (double{clip.times[f + 1]} - from);
+    for (const auto& [entry, point] : points) {
+      const auto frameAt = [&, e = entry, p = point](size_t frame) {
+        return transform(&clip.rows[3 * (frame * set.joints.size() + e)], p);
+      };
+      const std::string& node = set.joints[entry].name;
+      const glm::dmat4 matrix = pose.at(clip.name, node, time) * pose.inverseBind(node);
+      const glm::dvec3 exact =
+          glm::dvec3(matrix * glm::dvec4(point, 1)) - time * glm::dvec3(clip.rootVelocity);
+      worst = std::max(worst, glm::length((1 - u) * frameAt(f) + u * frameAt(f + 1) - exact));
+    }
+  }
+  return worst;
+}
+
+// Whatever moves, and however it does between its keys.
+TEST_F(SmallClips, NoMomentErrsMore) {
+  constexpr const char* kinds[] = {"STEP", "LINEAR", "CUBICSPLINE"};
+  constexpr const char* paths[] = {"translation", "rotation", "scale"};
+  constexpr const char* nodes[] = {"body", "hip", "knee", "foot"};
+  std::mt19937 random(7);
+  for (const std::string kind : kinds)
+    for (const std::string path : paths)
+      for (const std::string node : nodes) {
+        Glb glb = small();
+        moveAtRandom(glb, node, path, kind, random);
+        const ClipSet set = load(glb);
+        const double worst = worstOf(glb, set, set.clips.at(0), 150, random);
+        EXPECT_LE(worst, 1e-4 * set.size) << kind << " " << path << " of " << node;
+        EXPECT_LE(worst, set.clips[0].error + 1e-6) << kind << " " << path << " of " << node;
+      }
+  for (int mixture = 0; mixture < 4; ++mixture) {
+    Glb glb = small();
+    for (const char* node : nodes)
+      for (const char* path : paths) moveAtRandom(glb, node, path, kinds[random() % 3], random);
+    const ClipSet set = load(glb);
+    const double worst = worstOf(glb, set, set.clips.at(0), 150, random);
+    EXPECT_LE(worst, 1e-4 * set.size) << "mixture " << mixture;
+    EXPECT_LE(worst, set.clips[0].error + 1e-6) << "mixture " << mixture;
+  }
+}
+
+// Curves that are small at all quarter points between keys and largest elsewhere: each is the cubic that
+// grows most beyond them, in an interval of its own, beside one key, and between two.
+TEST_F(SmallClips, NoCubicErrsMoreBetweenTheQuarterPoints) {
+  struct Curve {
+    std::vector<float> values, in, out;  // at keys a second apart, and slopes there
+  };
+  const double size = load(small()).size;
+  for (const Curve& curve : {Curve{{0, 0}, {0, -4 / 3.0f}, {20 / 3.0f, 0}},
+                             Curve{{0, -1, 0}, {0, 13 / 3.0f, 1}, {29 / 3.0f, 1, 0}},
+                             Curve{{0, 1, 1, 0}, {0, 1, 16, -1}, {1, 16 / 3.0f, -1, 0}}}) {
+    Glb glb = small();
+    std::vector<float> times, values;
+    const auto scale = static_cast<float>(0.99e-4 * size);
+    for (size_t key = 0; key < curve.values.size(); ++key) {
+      times.push_back(static_cast<float>(key));
+      for (const float x : {scale * curve.in[key], 1 + scale * curve.values[key], scale * curve.out[key]})
+        values.insert(values.end(), {x, 0, 0});
+    }
+    move(glb, "knee", "translation", "CUBICSPLINE", times, values);
+    const ClipSet set = load(glb);
+    std::mt19937 random(1);
+    const double worst = worstOf(glb, set, set.clips.at(0), 600, random);
+    EXPECT_LE(worst, 1e-4 * set.size) << times.size() << " keys";
+    EXPECT_LE(worst, set.clips[0].error) << times.size() << " keys";
+    EXPECT_GT(set.clips[0].frames(), 2u) << times.size() << " keys";
+  }
 }
 
 TEST_F(SmallClips, FaultsCostTheClip) {

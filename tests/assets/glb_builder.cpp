@@ -1,6 +1,7 @@
 #include "glb_builder.h"
 
 #include <cstring>
+#include <map>
 #include <stdexcept>
 
 #include "files.h"
@@ -8,14 +9,14 @@
 namespace skitter::test {
 namespace {
 
-void append(std::vector<uint8_t>& to, const void* from, size_t size) {
+void appendBytes(std::vector<uint8_t>& to, const void* from, size_t size) {
   const auto* bytes = static_cast<const uint8_t*>(from);
   to.insert(to.end(), bytes, bytes + size);
 }
 
 void appendWord(std::vector<uint8_t>& to, size_t word) {
   const auto narrow = static_cast<uint32_t>(word);
-  append(to, &narrow, 4);
+  appendBytes(to, &narrow, 4);
 }
 
 }  // namespace
@@ -29,11 +30,11 @@ std::vector<uint8_t> Glb::bytes() const {
   appendWord(bytes, 2);
   appendWord(bytes, 12 + 8 + text.size() + 8 + padded.size());
   appendWord(bytes, text.size());
-  append(bytes, "JSON", 4);
-  append(bytes, text.data(), text.size());
+  appendBytes(bytes, "JSON", 4);
+  appendBytes(bytes, text.data(), text.size());
   appendWord(bytes, padded.size());
-  append(bytes, "BIN\0", 4);
-  append(bytes, padded.data(), padded.size());
+  appendBytes(bytes, "BIN\0", 4);
+  appendBytes(bytes, padded.data(), padded.size());
   return bytes;
 }
 
@@ -47,6 +48,41 @@ nlohmann::json& Glb::node(const std::string& name) {
 uint8_t* Glb::data(const nlohmann::json& accessor) {
   const size_t view = json["accessors"][accessor.get<size_t>()]["bufferView"].get<size_t>();
   return binary.data() + json["bufferViews"][view].value("byteOffset", size_t{0});
+}
+
+size_t Glb::append(std::span<const std::byte> bytes, int component, const std::string& type, size_t numbers) {
+  const std::map<std::string, size_t> widths = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
+  binary.resize((binary.size() + 3) / 4 * 4);
+  json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes.size()}});
+  appendBytes(binary, bytes.data(), bytes.size());
+  json["buffers"][0]["byteLength"] = binary.size();
+  json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
+                               {"componentType", component},
+                               {"count", numbers / widths.at(type)},
+                               {"type", type}});
+  return json["accessors"].size() - 1;
+}
+
+void Glb::animate(size_t node, const std::string& path, const std::string& interpolation,
+                  const std::vector<float>& times, const std::vector<float>& values) {
+  auto& clips = json["animations"];
+  if (clips.empty()) clips.push_back({{"name", "clip"}});
+  const size_t input = append(times, "SCALAR");
+  const size_t output = append(values, path == "rotation" ? "VEC4" : "VEC3");
+  auto& clip = clips.back();
+  clip["channels"].push_back(
+      {{"sampler", clip["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+  clip["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", interpolation}});
+}
+
+void Glb::write(const std::filesystem::path& file) const {
+  if (file.extension() == ".glb") return writeBytes(file, bytes());
+  const std::filesystem::path buffer = std::filesystem::path(file).replace_extension(".bin");
+  nlohmann::json text = json;
+  text["buffers"][0]["uri"] = buffer.filename().string();
+  writeText(file, text.dump());
+  writeBytes(buffer, binary);
 }
 
 Glb readGlb(const std::filesystem::path& file) {
@@ -64,9 +100,9 @@ Glb smallestRig() {
   const float positions[] = {0, 1, 0, 1, 1, 0, 1, 0, 0};
   const uint8_t joints[] = {0, 1, 0, 0, 1, 2, 0, 0, 2, 3, 0, 0};
   const float weights[] = {0.5f, 0.5f, 0, 0, 0.25f, 0.75f, 0, 0, 0.5f, 0.5f, 0, 0};
-  append(glb.binary, positions, sizeof(positions));
-  append(glb.binary, joints, sizeof(joints));
-  append(glb.binary, weights, sizeof(weights));
+  appendBytes(glb.binary, positions, sizeof(positions));
+  appendBytes(glb.binary, joints, sizeof(joints));
+  appendBytes(glb.binary, weights, sizeof(weights));
   glb.json = nlohmann::json::parse(R"({
     "asset": {"version": "2.0"},
     "scenes": [{"nodes": [0, 1], "extras": {"skitter": {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstring>
 #include <functional>
+#include <limits>
 
 #include "files.h"
 #include "glb_builder.h"
@@ -36,23 +37,6 @@ class Models : public ::testing::Test {
       if (note.find(words) != std::string::npos) return true;
     }
     return false;
-  }
-  // More data at the buffer's end; its accessor's index.
-  template <typename Number, size_t Count>
-  static size_t append(Glb& glb, const Number (&numbers)[Count], int component, const char* type,
-                       size_t count) {
-    glb.binary.resize((glb.binary.size() + 3) / 4 * 4);
-    const size_t offset = glb.binary.size();
-    const auto* bytes = reinterpret_cast<const uint8_t*>(numbers);
-    glb.binary.insert(glb.binary.end(), bytes, bytes + sizeof(numbers));
-    glb.json["buffers"][0]["byteLength"] = glb.binary.size();
-    glb.json["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", sizeof(numbers)}});
-    glb.json["accessors"].push_back({{"bufferView", glb.json["bufferViews"].size() - 1},
-                                     {"componentType", component},
-                                     {"count", count},
-                                     {"type", type}});
-    return glb.json["accessors"].size() - 1;
   }
   static nlohmann::json& attributes(Glb& glb) { return glb.json["meshes"][0]["primitives"][0]["attributes"]; }
 
@@ -91,9 +75,9 @@ TEST_F(Models, BuffersThatCannotBeHad) {
   const std::pair<const char*, const char*> cases[] = {
       {"none.bin", "none.bin: no such file"},
       {"short.bin", "has 3 bytes, its byteLength says 96"},
-      {"/etc/passwd", "expected a file relative to its folder"},
-      {"http://example.com/a.bin", "expected a file relative to its folder"},
-      {"file:a.bin", "expected a file relative to its folder"},
+      {"/etc/passwd", "expected a file in its folder"},
+      {"http://example.com/a.bin", "expected a file in its folder"},
+      {"file:a.bin", "expected a file in its folder"},
       {".", "is a directory"},
       {"data:application/octet-stream,text", "not base64"},
       {"data:application/octet-stream;base64,A*==", "not base64"},
@@ -102,6 +86,26 @@ TEST_F(Models, BuffersThatCannotBeHad) {
     const std::string what = inputFault([&, from = uri] { loadModel(writeText(glb, from)); });
     EXPECT_NE(what.find("odd.gltf: buffers[0]"), std::string::npos) << what;
     EXPECT_NE(what.find(expected), std::string::npos) << what;
+  }
+}
+
+TEST_F(Models, BuffersOutsideTheFolderAreNotRead) {
+  const Glb glb = smallestRig();
+  const test::TemporaryFolder outside;
+  test::writeBytes(outside / "a.bin", glb.binary);
+  test::writeBytes(folder_ / "a.bin", glb.binary);
+  std::filesystem::create_directory_symlink(outside.path(), folder_ / "elsewhere");
+  std::filesystem::create_symlink(outside / "a.bin", folder_ / "out.bin");
+  std::filesystem::create_symlink("a.bin", folder_ / "in.bin");
+  const std::string up = "../" + outside.path().filename().string() + "/a.bin";
+  for (const std::string& uri : {up, "%2e%2e" + up.substr(2), "elsewhere/../" + up,
+                                 std::string("elsewhere/a.bin"), std::string("out.bin")}) {
+    const std::string what = inputFault([&] { loadModel(writeText(glb, uri)); });
+    EXPECT_NE(what.find("expected a file in its folder"), std::string::npos) << what;
+  }
+  const std::string back = "../" + folder_.path().filename().string() + "/a.bin";
+  for (const std::string& uri : {std::string("in.bin"), std::string("./a.bin"), back}) {
+    EXPECT_EQ(loadModel(writeText(glb, uri)).vertices.size(), 3u) << uri;
   }
 }
 
@@ -132,13 +136,13 @@ TEST_F(Models, NegativeScaleTurnsTheTrianglesRound) {
 
 TEST_F(Models, TwelveInfluences) {
   Glb glb = smallestRig();
-  const uint8_t joints[12] = {2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1};
-  const float weights[12] = {0.5f, 0.25f, 0.125f, 0.0625f, 0.5f, 0, 0, 0, 0.5f, 0, 0, 0};
-  const float none[12] = {};
-  attributes(glb)["JOINTS_1"] = append(glb, joints, 5121, "VEC4", 3);
-  attributes(glb)["WEIGHTS_1"] = append(glb, weights, 5126, "VEC4", 3);
-  attributes(glb)["JOINTS_2"] = append(glb, joints, 5121, "VEC4", 3);
-  attributes(glb)["WEIGHTS_2"] = append(glb, none, 5126, "VEC4", 3);
+  const std::vector<uint8_t> joints = {2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1};
+  const std::vector<float> weights = {0.5f, 0.25f, 0.125f, 0.0625f, 0.5f, 0, 0, 0, 0.5f, 0, 0, 0};
+  const std::vector<float> none(12);
+  attributes(glb)["JOINTS_1"] = glb.append(joints, "VEC4");
+  attributes(glb)["WEIGHTS_1"] = glb.append(weights, "VEC4");
+  attributes(glb)["JOINTS_2"] = glb.append(joints, "VEC4");
+  attributes(glb)["WEIGHTS_2"] = glb.append(none, "VEC4");
   const Model model = load(glb);
   EXPECT_EQ(model.vertices[0].influences, 6u);
   double sum = 0;
@@ -148,12 +152,30 @@ TEST_F(Models, TwelveInfluences) {
   EXPECT_TRUE(hasNote(model, "1 vertices have over four joints"));
 }
 
+// Some exporters write weights of 0 / 0.
+TEST_F(Models, WeightsThatAreNotFiniteCountAsZero) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
+  Glb glb = smallestRig();
+  const float weights[] = {nan, 0.5f, 0, 0, nan, nan, nan, infinity, 0.5f, 0.5f, 0, 0};
+  std::memcpy(glb.data(2), weights, sizeof(weights));
+  const Model model = load(glb);
+  EXPECT_TRUE(hasNote(model, "WEIGHTS_0 has 5 weights that are not finite: they count as 0"));
+  EXPECT_TRUE(hasNote(model, "1 vertices have no weight: each follows the joint that it names first"));
+  const auto follows = [&](size_t vertex) {
+    const Model::Vertex& v = model.vertices[vertex];
+    EXPECT_EQ(v.influences, 1u);
+    EXPECT_EQ(model.influences[v.firstInfluence].weight, 1);
+    return model.nodes[model.influences[v.firstInfluence].node].name;
+  };
+  EXPECT_EQ(follows(0), "hip");
+  EXPECT_EQ(follows(1), "hip");  // it names hip, then knee
+}
+
 TEST_F(Models, SparsePositions) {
   Glb glb = smallestRig();
-  const uint16_t index[2] = {2, 0};  // padded
-  const float value[3] = {7, 8, 9};
-  append(glb, index, 5123, "SCALAR", 1);
-  append(glb, value, 5126, "VEC3", 1);
+  glb.append(std::vector<uint16_t>{2}, "SCALAR");
+  glb.append(std::vector<float>{7, 8, 9}, "VEC3");
   glb.json["accessors"][0]["sparse"] = {{"count", 1},
                                         {"indices", {{"bufferView", 3}, {"componentType", 5123}}},
                                         {"values", {{"bufferView", 4}}}};
@@ -168,8 +190,8 @@ TEST_F(Models, SparsePositions) {
 
 TEST_F(Models, StridedPositions) {
   Glb glb = smallestRig();
-  const float strided[] = {1, 2, 3, 99, 4, 5, 6, 99, 7, 8, 9, 99};
-  const size_t accessor = append(glb, strided, 5126, "VEC3", 3);
+  const size_t accessor = glb.append(std::vector<float>{1, 2, 3, 99, 4, 5, 6, 99, 7, 8, 9, 99}, "VEC4");
+  glb.json["accessors"].back()["type"] = "VEC3";
   glb.json["bufferViews"].back()["byteStride"] = 16;
   attributes(glb)["POSITION"] = accessor;
   glb.json["nodes"][0].erase("skin");
@@ -207,8 +229,7 @@ TEST_F(Models, MissingImagesAndBadClipsAreNotFatal) {
 
 TEST_F(Models, ClipsAreNamedAndTimed) {
   Glb glb = smallestRig();
-  const float times[] = {0, 0.5f, 1.25f};
-  const size_t input = append(glb, times, 5126, "SCALAR", 3);
+  const size_t input = glb.append(std::vector<float>{0, 0.5f, 1.25f}, "SCALAR");
   glb.json["animations"] = {
       {{"name", "walk"},
        {"samplers", {{{"input", input}, {"output", 0}}}},
@@ -259,8 +280,7 @@ TEST_F(Models, WholeNumbersMayBeWrittenAsFloats) {
 
 TEST_F(Models, ColoursAreWithinOne) {
   Glb glb = smallestRig();
-  const float colours[] = {-1, 0.5f, 3e38f, 0, 0, 0, 1, 1, 1};
-  attributes(glb)["COLOR_0"] = append(glb, colours, 5126, "VEC3", 3);
+  attributes(glb)["COLOR_0"] = glb.append(std::vector<float>{-1, 0.5f, 3e38f, 0, 0, 0, 1, 1, 1}, "VEC3");
   EXPECT_EQ(load(glb).vertices[0].colour, glm::vec3(0, 0.5f, 1));
 }
 

@@ -1,5 +1,6 @@
 #include "skitter/rig_setup.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,6 +59,16 @@ TEST_F(Sidecar, ScaleAndLegLength) {
   json_["legLength"] = 3;
   EXPECT_FLOAT_EQ(load().legLength, 3);
   EXPECT_FLOAT_EQ(load().bodyRadius, 0.75f);
+}
+
+// The body stands as high as the legs' roots on average, where the file does not say.
+TEST_F(Sidecar, BodyHeightIsTheRoots) {
+  json_["origin"] = {0, -0.7, 0};
+  const float given = load().bodyHeight;
+  json_.erase("bodyHeight");
+  const Rig rig = load();
+  EXPECT_NE(rig.bodyHeight, given);
+  EXPECT_FLOAT_EQ(rig.bodyHeight, rig.legs[0].root().y);
 }
 
 TEST_F(Sidecar, ForwardUpAndOrigin) {
@@ -120,9 +131,13 @@ TEST_F(Sidecar, BendMovesTheKneeAndTheSkin) {
 TEST_F(Sidecar, JointsByIndex) {
   leg()["joints"] = {"#2", "knee", "#4"};
   EXPECT_EQ(load().legs[0].home, glm::vec3(1, 0, 0));
-  leg()["joints"] = {"#2", "knee", "#99"};
-  EXPECT_NE(inputFault([&] { load(); }).find("legs[0].joints[2] is \"#99\", but there are 5 nodes"),
-            std::string::npos);
+  for (const char* absent : {"#99", "#99999999999999999999"}) {
+    leg()["joints"] = {"#2", "knee", absent};
+    const std::string what = inputFault([&] { load(); });
+    EXPECT_NE(what.find(fmt::format("legs[0].joints[2] is \"{}\", but there are 5 nodes", absent)),
+              std::string::npos)
+        << what;
+  }
 }
 
 TEST_F(Sidecar, FaultsNameTheKey) {

@@ -1,8 +1,13 @@
 #include "skitter/scene.h"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "files.h"
+#include "skitter/error.h"
 
 namespace skitter {
 namespace {
@@ -24,6 +29,14 @@ TEST(Scene, BuiltinIsTheFileInTheTree) {
   const Scene file = loadScene(SKITTER_ROOT "/assets/scenes/crossing.json");
   EXPECT_EQ(file.name, builtinScene().name);
   EXPECT_EQ(file.herds[0].agents, builtinScene().herds[0].agents);
+}
+
+TEST(Scene, MayHaveComments) {
+  const Scene scene = loadScene(SKITTER_ROOT "/assets/scenes/three_herds.json");
+  ASSERT_EQ(scene.herds.size(), 3u);
+  EXPECT_EQ(scene.herds[1].goal.kind, Goal::Kind::point);
+  EXPECT_EQ(parseScene("{/* none */ \"seed\": 3 // three\n}", "a.json", "").seed, 3u);
+  EXPECT_THAT(inputFault([] { parseScene("{} /* for ever", "a.json", ""); }), testing::HasSubstr("a.json"));
 }
 
 TEST(Scene, EmptyObjectIsAllDefaults) {
@@ -60,7 +73,7 @@ TEST(Scene, EveryKey) {
   ASSERT_EQ(scene.herds.size(), 2u);
   const Herd& herd = scene.herds[0];
   EXPECT_EQ(std::filesystem::path(herd.rig), std::filesystem::path("folder/crab.glb"));
-  EXPECT_EQ(herd.controller, "loop");
+  EXPECT_EQ(herd.controller, Controller::loop);
   EXPECT_EQ(herd.agents, 7u);
   EXPECT_EQ(herd.keys, 6u);
   EXPECT_EQ(herd.spawn.kind, Spawn::Kind::grid);
@@ -76,11 +89,21 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(scene.agentCount(), 7u);
 }
 
+TEST(Scene, WholeNumbersHoweverTheyAreWritten) {
+  const std::pair<const char*, uint64_t> cases[] = {{"-0", 0}, {"-0.0", 0}, {"7.0", 7}, {"1e3", 1000}};
+  for (const auto& [number, expected] : cases) {
+    const Scene scene =
+        parseScene(fmt::format(R"({{"herds": [{{"agents": {}}}]}})", number), "whole.json", "");
+    EXPECT_EQ(scene.agentCount(), expected) << number;
+  }
+}
+
 TEST(Scene, FaultsNameFileAndField) {
   const std::pair<const char*, const char*> cases[] = {
       {R"([])", "the scene"},
       {R"({"sed": 1})", "sed is no known key"},
       {R"({"seed": -1})", "seed is -1"},
+      {R"({"seed": 1e308})", "seed is 1e+308, expected a whole number from 0 to 18446744073709551615"},
       {R"({"seed": 1.5})", "seed is 1.5"},
       {R"({"name": 5})", "name is 5"},
       {R"({"herds": {}})", "herds is an object"},
@@ -95,7 +118,7 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"herds": [{"spawn": {"spacing": null}}]})", "herds[0].spawn.spacing is null"},
       {R"({"herds": [{"spawn": {"kind": "ring"}}]})", "herds[0].spawn.kind is \"ring\""},
       {R"({"herds": [{"spawn": {"centre": [1]}}]})", "herds[0].spawn.centre is an array of 1"},
-      {R"({"herds": [{"spawn": {"centre": [1, 4001]}}]})", "herds[0].spawn.centre[1] is 4001"},
+      {R"({"herds": [{"spawn": {"centre": [1, 4097]}}]})", "herds[0].spawn.centre[1] is 4097"},
       {R"({"herds": [{"spawn": {"center": [1, 2]}}]})", "herds[0].spawn.center is no known key"},
       {R"({"herds": [{"goal": {"speed": -0.5}}]})", "herds[0].goal.speed is -0.5"},
       {R"({"terrain": {"columns": 1}})", "terrain.columns is 1"},
@@ -140,6 +163,31 @@ TEST(Scene, TerrainFileIsRelativeToTheScene) {
   test::writePng(folder / "flat.png", 4, 3, 8, std::vector<uint16_t>(12, 9));
   test::writeText(folder / "scene.json", R"({"terrain": {"kind": "file", "file": "flat.png"}})");
   EXPECT_EQ(loadScene(folder / "scene.json").loadTerrain().columns, 4u);
+}
+
+Herd herdWith(const char* key, const std::string& value) {
+  return parseScene(fmt::format(R"({{"herds": [{{"{}": "{}"}}]}})", key, value), "names", {}).herds.at(0);
+}
+
+TEST(Scene, knowsEveryNameOfAHerdsChoices) {
+  for (const Controller each : allControllers) {
+    EXPECT_EQ(controllerNamed(nameOf(each)), each);
+    EXPECT_EQ(herdWith("controller", nameOf(each)).controller, each);
+  }
+  for (const Stepping each : allSteppings) {
+    EXPECT_EQ(steppingNamed(nameOf(each)), each);
+    EXPECT_EQ(herdWith("stepping", nameOf(each)).stepping, each);
+  }
+  for (const Solver each : herdSolvers) EXPECT_EQ(herdWith("solver", nameOf(each)).solver, each);
+  for (const Solver each : allSolvers) {
+    EXPECT_EQ(solverNamed(nameOf(each)), each);
+    if (std::find(herdSolvers.begin(), herdSolvers.end(), each) == herdSolvers.end()) {
+      EXPECT_THROW(herdWith("solver", nameOf(each)), Error) << nameOf(each);
+    }
+  }
+  EXPECT_FALSE(controllerNamed("magic"));
+  EXPECT_FALSE(controllerNamed(""));
+  EXPECT_EQ(namesOf(allSteppings), "gait, reach");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "void_fill.h"
+#include "assets/heights/void_fill.h"
 
 #include <gtest/gtest.h>
 

@@ -31,7 +31,7 @@ struct Start {
     simulate(device, crowd, ticks);
     state = crowd.download(0);
   }
-  validation::HerdFacts facts() { return validation::herdFacts(crowd.impl().herds[0], terrain); }
+  validation::HerdFacts facts() { return validation::herdFacts(crowd.impl().kindOf(0), terrain); }
 
   Heightfield terrain;
   Crowd crowd;
@@ -91,7 +91,7 @@ TEST_P(CpuCrowdTest, WalksAsTheReferenceDoes) {
 }
 
 // Agents that turn round, and stop at their target.
-Scene turningScene(const std::string& controller) {
+Scene turningScene(Controller controller) {
   Scene scene = sceneOf(16, 1.5f, 3, controller);
   scene.herds[0].spawn.kind = Spawn::Kind::grid;
   scene.herds[0].spawn.heading = 3;  // nearly away from the target
@@ -100,14 +100,14 @@ Scene turningScene(const std::string& controller) {
 }
 
 TEST_P(CpuCrowdTest, TurnsRoundAndStops) {
-  Start start(device(), smallRollingGround(), turningScene("adaptive"), 1);
+  Start start(device(), smallRollingGround(), turningScene(Controller::adaptive), 1);
   CpuCrowd opponent(start.facts(), start.state, options());
   expectAllPass(replay(opponent, start, 420));
 }
 
 TEST_P(CpuCrowdTest, StepsWithoutARhythm) {
   Scene scene = sceneOf(16);
-  scene.herds[0].stepping = "reach";
+  scene.herds[0].stepping = Stepping::reach;
   Start start(device(), rollingGround(), scene, 60);
   CpuCrowd opponent(start.facts(), start.state, options());
   const auto results = replay(opponent, start, 60);
@@ -129,6 +129,12 @@ TEST_P(CpuCrowdTest, WalksFastOnSteepGround) {
   const auto results = replay(opponent, start, 60);
   expectAllPass(results);
   expectSamples(results);
+}
+
+TEST_P(CpuCrowdTest, BrakesBeforeTheEdge) {
+  Start start(device(), smallRollingGround(), 16, 180, 1000);
+  CpuCrowd opponent(start.facts(), start.state, options());
+  expectAllPass(replay(opponent, start, 90));
 }
 
 // Beyond the wall no foothold fits, and legs hang in deadlocks that few other places have.
@@ -206,7 +212,7 @@ void expectAllButSwingPass(std::vector<validation::StageResult> results) {
 
 TEST_P(CpuCrowdTest, PlaysClipsAsTheReferenceDoes) {
   for (const uint32_t agents : {1u, 15u, 16u, 17u}) {
-    Start start(device(), rollingGround(), sceneOf(agents, 1, 1, "clip"), 1);
+    Start start(device(), rollingGround(), sceneOf(agents, 1, 1, Controller::clip), 1);
     CpuCrowd opponent(start.facts(), start.state, options(2));
     SCOPED_TRACE(agents);
     expectAllButSwingPass(replay(opponent, start, 120));
@@ -214,7 +220,7 @@ TEST_P(CpuCrowdTest, PlaysClipsAsTheReferenceDoes) {
 }
 
 TEST_P(CpuCrowdTest, ChangesClipsAsItStops) {
-  Start start(device(), smallRollingGround(), turningScene("clip"), 1);
+  Start start(device(), smallRollingGround(), turningScene(Controller::clip), 1);
   CpuCrowd opponent(start.facts(), start.state, options());
   expectAllButSwingPass(replay(opponent, start, 420));
   CpuCrowd underWay(start.facts(), start.state, options());
@@ -223,14 +229,14 @@ TEST_P(CpuCrowdTest, ChangesClipsAsItStops) {
 }
 
 TEST_P(CpuCrowdTest, AnotherPaceIsRefused) {
-  Start start(device(), rollingGround(), sceneOf(16, 1, 1, "clip"), 60);
+  Start start(device(), rollingGround(), sceneOf(16, 1, 1, Controller::clip), 60);
   validation::HerdFacts slower = start.facts();
   for (size_t speed = 3; speed < slower.clips.heads.size(); speed += 4) slower.clips.heads[speed] *= 1.01f;
   EXPECT_EQ(refusedStages(slower, start, 60), "clip swing ");
 }
 
 TEST_P(CpuCrowdTest, AnotherFrameIsRefused) {
-  Start start(device(), rollingGround(), sceneOf(16, 1, 1, "clip"), 60);
+  Start start(device(), rollingGround(), sceneOf(16, 1, 1, Controller::clip), 60);
   validation::HerdFacts bent = start.facts();
   for (size_t i = 0; i < bent.clips.rows.size(); i += 12 * size_t(bent.clips.joints))
     bent.clips.rows[i] += 1e-3f;
@@ -253,6 +259,47 @@ TEST_P(CpuCrowdTest, ThreadsChangeNoBit) {
   EXPECT_EQ(a.miss, b.miss);
   EXPECT_EQ(a.pose, b.pose);
   EXPECT_NE(a.body, start.state.body);
+}
+
+// The legs that lift in a tick, from that tick's bodies and the steps before it.
+TEST_P(CpuCrowdTest, BeginsStepsOnTheirOwnAsInATick) {
+  Start start(device(), rollingGround(), 300, 60);
+  const uint64_t n = start.crowd.tick() + 1;
+  CpuCrowd whole(start.facts(), start.state, options());
+  whole.tick(n);
+  const HerdState after = whole.state();
+  HerdState between = after;
+  between.step = start.state.step;
+  between.arc = start.state.arc;
+  CpuCrowd alone(start.facts(), between, options());
+  const size_t legs = start.facts().rig.legs.size(), count = 299 * legs + 3;
+  alone.beginSteps(n, count);
+  const HerdState begun = alone.state();
+  const auto record = [](const std::vector<float>& records, size_t leg) {
+    return std::vector<float>(records.begin() + ptrdiff_t(8 * leg), records.begin() + ptrdiff_t(8 * leg + 8));
+  };
+  size_t lifted = 0;
+  for (size_t leg = 0; leg < 300 * legs; ++leg) {
+    if (leg >= count) {
+      EXPECT_EQ(record(begun.arc, leg), record(start.state.arc, leg)) << leg;
+      continue;
+    }
+    EXPECT_EQ(begun.step[8 * leg + 3], float(n - 1)) << leg;
+    const auto lifts = uint32_t(after.gait[leg / legs * 8 + 1]);
+    if ((lifts >> leg % legs & 1) == 0) continue;
+    ++lifted;
+    EXPECT_EQ(record(begun.step, leg), record(after.step, leg)) << leg;
+    EXPECT_EQ(record(begun.arc, leg), record(after.arc, leg)) << leg;
+  }
+  EXPECT_GT(lifted, 20u);
+}
+
+TEST_P(CpuCrowdTest, RefusesToBeginStepsThatNoLegHas) {
+  Start start(device(), rollingGround(), 2, 1),
+      clips(device(), rollingGround(), sceneOf(2, 1, 1, Controller::clip), 1);
+  CpuCrowd opponent(start.facts(), start.state, options()), playing(clips.facts(), clips.state, options());
+  EXPECT_THROW(opponent.beginSteps(2, 17), Error);
+  EXPECT_THROW(playing.beginSteps(2, 1), Error);
 }
 
 TEST_P(CpuCrowdTest, ALostAgentLeavesItsBlockAlone) {
@@ -281,7 +328,7 @@ TEST_P(CpuCrowdTest, ABrokenOneIsRefused) {
   validation::HerdFacts slower = start.facts();
   slower.parameters.heightBlend *= 1.02f;
   EXPECT_EQ(refusedStages(slower, start, 20), "body ");
-  std::vector<float> records = start.crowd.impl().herds[0].rigRecords;
+  std::vector<float> records = start.crowd.impl().kindOf(0).rigRecords;
   records[0] += 1e-3f;  // a root
   const validation::HerdFacts crooked{start.facts().rig, start.terrain, start.facts().parameters, records,
                                       start.facts().ik};
@@ -295,10 +342,10 @@ TEST_P(CpuCrowdTest, RefusesWhatItCannotWalk) {
   EXPECT_THROW(CpuCrowd(start.facts(), torn, options()), Error);
   EXPECT_THROW(CpuCrowd(start.facts(), start.state, options(0)), Error);
   validation::HerdFacts looping = start.facts();
-  looping.controller = crowd::Controller::loop;
+  looping.controller = Controller::loop;
   EXPECT_THROW(CpuCrowd(looping, start.state, options()), Error);
   validation::HerdFacts compared = start.facts();
-  compared.ik = crowd::ikPlanFor("fabrik");
+  compared.ik = crowd::ikPlanFor(Solver::fabrik);
   EXPECT_THROW(CpuCrowd(compared, start.state, options()), Error);
 }
 

@@ -7,8 +7,9 @@ namespace {
 
 using DeterminismTest = GpuTest;
 
-uint64_t hashAfter(Device& device, const CrowdOptions& options, int ticks, uint64_t seed = 1) {
-  Crowd crowd(device, rollingGround(), sceneOf(200, 1, seed), options);
+uint64_t hashAfter(Device& device, const CrowdOptions& options, int ticks, uint64_t seed = 1,
+                   Controller controller = Controller::adaptive) {
+  Crowd crowd(device, rollingGround(), sceneOf(200, 1, seed, controller), options);
   simulate(device, crowd, ticks);
   return crowd.stateHash();
 }
@@ -34,6 +35,38 @@ TEST_F(DeterminismTest, StagesMadeAtOnceDoNotShow) {
     EXPECT_EQ(hashAfter(device(), {.sleep = sleep}, 90),
               hashAfter(device(), {.sleep = sleep, .fuse = false}, 90));
 }
+
+// All that a caller can ask for beside the simulation.
+const CrowdOptions kBare{.pose = false, .measure = false, .fuse = false, .pageAgents = 72};
+const CrowdOptions kAll{
+    .watchEvery = 1, .feet = true, .footfalls = UINT32_MAX, .timestamps = true, .pageAgents = 24};
+const std::pair<const char*, CrowdOptions> kBeside[] = {{"noPose", {.pose = false}},
+                                                        {"noMeasure", {.measure = false}},
+                                                        {"watchEvery", {.watchEvery = 7}},
+                                                        {"feet", {.measure = false, .feet = true}},
+                                                        {"footfalls", {.measure = false, .footfalls = 3}},
+                                                        {"apart", {.fuse = false}},
+                                                        {"bare", kBare},
+                                                        {"all", kAll}};
+
+class AskedForBesideTest : public GpuTest, public ::testing::WithParamInterface<Controller> {
+ protected:
+  uint64_t hash(CrowdOptions options, bool sleep, int ticks = 12) {
+    options.sleep = sleep;
+    return hashAfter(device(), options, ticks, 1, GetParam());
+  }
+};
+
+TEST_P(AskedForBesideTest, DoesNotShow) {
+  const uint64_t plain = hash({}, false);
+  for (const auto& [name, options] : kBeside) EXPECT_EQ(hash(options, false), plain) << name;
+  EXPECT_NE(hash({}, false, 13), plain);
+}
+
+TEST_P(AskedForBesideTest, DoesNotShowWhereAgentsMaySleep) { EXPECT_EQ(hash(kBare, true), hash(kAll, true)); }
+
+INSTANTIATE_TEST_SUITE_P(, AskedForBesideTest, ::testing::ValuesIn(allControllers),
+                         [](const auto& param) { return std::string(nameOf(param.param)); });
 
 TEST_F(DeterminismTest, RecordPathsAgreeToTheBit) {
   if (!hasTexelPath()) GTEST_SKIP() << "the device has one load path only";

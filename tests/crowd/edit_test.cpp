@@ -4,6 +4,7 @@
 
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
+#include "gpu/transfer.h"
 #include "skitter/error.h"
 #include "validation/convert.h"
 #include "validation/herd_facts.h"
@@ -111,8 +112,8 @@ TEST_P(EditTest, FeetStandAnewWhereTheGroundDropsAway) {
 TEST_P(EditTest, ReplayThroughEdits) {
   Crowd crowd(device(), rollingGround(), sceneOf(32));
   simulate(device(), crowd, 90);
-  const crowd::Herd& herd = crowd.impl().herds.at(0);
-  validation::Replay replay(validation::herdFacts(herd, crowd.terrain()));
+  const crowd::Kind& kind = crowd.impl().kindOf(0);
+  validation::Replay replay(validation::herdFacts(kind, crowd.terrain()));
   HerdState before = crowd.download(0);
   for (int tick = 0; tick < 200; ++tick) {
     if (tick % 20 == 0 && tick < 100) {
@@ -136,6 +137,22 @@ TEST_P(EditTest, ReplayThroughEdits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, EditTest, bothLoadPaths(), loadPathName);
+
+// Edits wider and larger than one update of a command buffer takes, whose rows are no part of it, over each
+// other and to the last sample.
+TEST_F(EditInputTest, TheDeviceHasTheHeightsOfTheTerrain) {
+  Crowd crowd(device(), rollingGround(), sceneOf(1));
+  const uint32_t columns = crowd.terrain().columns, rows = crowd.terrain().rows;
+  for (const Rectangle& r : {Rectangle{0, 0, columns, rows}, Rectangle{20, 10, 300, 200},
+                             Rectangle{columns - 130, rows - 127, 130, 127}}) {
+    std::vector<float> heights(size_t{r.columns} * r.rows);
+    for (size_t i = 0; i < heights.size(); ++i) heights[i] = static_cast<float>(i % 4099) * 1e-3f;
+    crowd.editHeights(r.x, r.z, r.columns, r.rows, heights);
+  }
+  simulate(device(), crowd, 1);
+  EXPECT_EQ(gpu::downloadImage<float>(context(), crowd.impl().heights, gpu::ImageState::sampled),
+            crowd.terrain().heights);
+}
 
 TEST_F(EditInputTest, TheSameEditsGiveTheSameBits) {
   const auto hash = [&] {

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "crowd/simulation.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::test {
 namespace {

@@ -4,6 +4,7 @@
 #include <complex>
 #include <glm/gtc/constants.hpp>
 #include <map>
+#include <set>
 
 #include "crowd/leg_order.h"
 #include "crowd/simulation.h"
@@ -29,6 +30,23 @@ Rig hexapod() {
   return rig;
 }
 
+// The law of docs/stages/gait.md, written out: who must stand while a leg is in the air. Around a spider's
+// body every next leg is of the other group; below eight legs it is every leg of another group.
+const std::map<std::string, std::set<std::string>> kBesideOfSpider = {
+    {"L1", {"R1", "L2"}}, {"L2", {"L1", "L3"}}, {"L3", {"L2", "L4"}}, {"L4", {"L3", "R4"}},
+    {"R1", {"L1", "R2"}}, {"R2", {"R1", "R3"}}, {"R3", {"R2", "R4"}}, {"R4", {"R3", "L4"}}};
+
+uint32_t mustStand(const Rig& rig, size_t leg) {
+  uint32_t mask = 0;
+  for (size_t other = 0; other < rig.legs.size(); ++other) {
+    const bool stands = rig.legs.size() < 8
+                            ? rig.legs[other].group != rig.legs[leg].group
+                            : kBesideOfSpider.at(rig.legs[leg].name).count(rig.legs[other].name) > 0;
+    mask |= stands ? 1u << other : 0u;
+  }
+  return mask;
+}
+
 // Signed distance of the body's centre from the edge of the planted feet's hull seen from above: the least
 // value of the hull's support function, over directions 3 degrees apart.
 double stabilityMargin(const HerdState& state, size_t agent, size_t legs) {
@@ -50,7 +68,6 @@ void expectOrderly(Device& device, const Heightfield& ground, const Scene& scene
                    int stableFrom) {
   Crowd crowd(device, ground, scene, std::vector<Rig>{rig});
   const auto legs = static_cast<size_t>(rig.legCount());
-  const std::vector<crowd::LegOrder> order = crowd::legOrder(rig);
   std::vector<int> flights(legs);
   for (int tick = 0; tick < ticks; ++tick) {
     simulate(device, crowd, 1);
@@ -62,7 +79,7 @@ void expectOrderly(Device& device, const Heightfield& ground, const Scene& scene
       for (size_t leg = 0; leg < legs; ++leg) {
         if ((air >> leg & 1u) == 0) continue;
         ++flights[leg];
-        ASSERT_EQ(air & order[leg].neighbours, 0u) << "agent " << agent << " at tick " << tick;
+        ASSERT_EQ(air & mustStand(rig, leg), 0u) << "agent " << agent << " at tick " << tick;
       }
       if (tick >= stableFrom) {
         ASSERT_GE(stabilityMargin(state, agent, legs), 0) << "agent " << agent << " at tick " << tick;
@@ -119,6 +136,45 @@ TEST_F(GaitTest, LegsOfASideLiftInTheOrder4231) {
     EXPECT_GT(lag, 0.1) << side;
     EXPECT_LT(lag, 0.2) << side;
   }
+}
+
+TEST(LegOrder, OfTheSpider) {
+  const Rig rig = spiderRig();
+  const std::vector<crowd::LegOrder> order = crowd::legOrder(rig);
+  // Where the model has the feet of the legs 1 to 4, metres forward. A group has one leg of each number.
+  const double forward[] = {0.540691665, 0.189204646, -0.205754984, -0.563896882};
+  for (size_t l = 0; l < 8; ++l) {
+    SCOPED_TRACE(rig.legs[l].name);
+    const double at = forward[rig.legs[l].name[1] - '1'];
+    EXPECT_EQ(order[l].neighbours, mustStand(rig, l));
+    EXPECT_NEAR(order[l].lag, (at - forward[3]) / (forward[0] - forward[3]), 1e-6);
+  }
+}
+
+// Four legs in a trot: the front one and the rear one of a side would be a whole lag apart, and wait for each
+// other.
+TEST(LegOrder, OfTheQuadruped) {
+  Rig rig = spiderRig();
+  rig.legs = {rig.legs[0], rig.legs[1], rig.legs[6], rig.legs[7]};  // L1 R1 L4 R4, of the groups A B B A
+  const std::vector<crowd::LegOrder> order = crowd::legOrder(rig);
+  const uint32_t neighbours[] = {0b0110, 0b1001, 0b1001, 0b0110};
+  const float lags[] = {0.75f, 0.75f, 0, 0};
+  for (size_t l = 0; l < 4; ++l) {
+    EXPECT_EQ(order[l].neighbours, neighbours[l]) << rig.legs[l].name;
+    EXPECT_NEAR(order[l].lag, lags[l], 1e-6) << rig.legs[l].name;
+  }
+}
+
+// Beside each other and of one group, they swing together.
+TEST(LegOrder, LegsOfOneGroupAreNoNeighbours) {
+  Rig rig = spiderRig();
+  ASSERT_EQ(rig.legs[2].name, "L2");
+  rig.legs[2].group = rig.legs[0].group;
+  const std::vector<crowd::LegOrder> order = crowd::legOrder(rig);
+  EXPECT_EQ(order[2].neighbours, 0u);          // L1 and L3 are of its group
+  EXPECT_EQ(order[0].neighbours, 0b10u);       // R1
+  EXPECT_EQ(order[4].neighbours, 0b1000000u);  // L4
+  EXPECT_EQ(order[7].neighbours, mustStand(rig, 7));
 }
 
 TEST_F(GaitTest, AnyNumberOfLegsHasAnOrder) {

@@ -1,9 +1,9 @@
 // Key poses as they are made of a clip, and what is refused.
 #include "crowd/key_poses.h"
 
-#include "cpu_reference/kinematics.h"
-#include "cpu_reference/play.h"
-#include "cpu_reference/swing_clip.h"
+#include "cpu_reference/ik/kinematics.h"
+#include "cpu_reference/stages/clip.h"
+#include "cpu_reference/stages/swing_clip.h"
 #include "crowd/clip_records.h"
 #include "crowd/rig_records.h"
 #include "crowd/simulation.h"
@@ -111,7 +111,7 @@ using KeyPoseHerdTest = GpuTest;
 
 // Nobody springs into place at the start.
 TEST_F(KeyPoseHerdTest, BeginsInTheStandingPose) {
-  Scene scene = sceneOf(20, 1, 1, "pose");
+  Scene scene = sceneOf(20, 1, 1, Controller::pose);
   scene.herds[0].goal.kind = Goal::Kind::none;
   Crowd crowd(device(), rollingGround(), scene);
   const HerdState before = crowd.download(0);

@@ -1,15 +1,52 @@
 // Every check is seen to fail: one small error in a shader (tests/crowd/CMakeLists.txt says which), and
-// lock-step replay must refuse its stage and no other.
+// lock-step replay must refuse its stage and no other. The same situations pass with the sound shaders.
+#include <algorithm>
+#include <tuple>
+
 #include "broken_includes.inc"
-#include "crowd/simulation.h"
+#include "crowd/situations.h"
 
 namespace skitter::test {
 namespace {
 
+using Case = std::tuple<LoadPath, size_t>;
+
+// Every situation with every controller that can be in it.
+struct Sound {
+  const Situation* situation;
+  Controller controller;
+};
+const std::vector<Sound>& sound() {
+  static const std::vector<Sound> all = [] {
+    std::vector<Sound> list;
+    for (const Situation& situation : situations())
+      for (const Controller controller : situation.controllers) list.push_back({&situation, controller});
+    return list;
+  }();
+  return all;
+}
+
+class SituationTest : public GpuTest, public ::testing::WithParamInterface<Case> {
+ protected:
+  SituationTest() : GpuTest(std::get<0>(GetParam())) {}
+};
+
+TEST_P(SituationTest, Passes) {
+  const Sound& each = sound()[std::get<1>(GetParam())];
+  expectAllPass(each.situation->replayed(device(), each.controller, {.footfalls = UINT32_MAX}));
+}
+
+INSTANTIATE_TEST_SUITE_P(, SituationTest,
+                         ::testing::Combine(bothLoadPaths(), ::testing::Range(size_t{0}, sound().size())),
+                         [](const auto& param) {
+                           const Sound& each = sound()[std::get<1>(param.param)];
+                           return std::string(each.situation->name) + "_" + nameOf(each.controller) +
+                                  (std::get<0>(param.param) == LoadPath::texel ? "_texel" : "_storage");
+                         });
+
 struct Mutant {
-  std::string name, controller;
+  std::string name, controller, situation, seenIn;
   StageShader shader;
-  bool sleeping;  // seen in a crowd that falls asleep, an agent after the other
 };
 
 const std::vector<Mutant>& mutants() {
@@ -23,21 +60,32 @@ class MutantTest : public GpuTest, public ::testing::WithParamInterface<size_t> 
 
 TEST_P(MutantTest, IsRefused) {
   const Mutant& mutant = mutants()[GetParam()];
-  const Heightfield ground = rollingGround();
-  Scene scene = sceneOf(mutant.sleeping ? 20 : 64, 1, 1, mutant.controller);
-  if (mutant.sleeping) scene.herds[0].goal.kind = Goal::Kind::none;
-  Crowd crowd(device(), ground, scene,
-              CrowdOptions{.footfalls = UINT32_MAX, .sleep = mutant.sleeping, .shaders = {mutant.shader}});
-  if (mutant.sleeping) simulate(device(), crowd, 100);
   bool found = false;
-  for (const validation::StageResult& stage : replay(device(), crowd, ground, mutant.sleeping ? 120 : 60)) {
+  for (const validation::StageResult& stage :
+       situationNamed(mutant.situation)
+           .replayed(device(), controllerNamed(mutant.controller).value(),
+                     {.footfalls = UINT32_MAX, .shaders = {mutant.shader}})) {
     // wake decides nothing and has no row: what it does wrong, the stages after it do.
     if (mutant.shader.stage != "wake") {
-      EXPECT_EQ(stage.pass, stage.name != mutant.shader.stage) << stage.name << ": " << stage.worst;
+      EXPECT_EQ(stage.pass, stage.name != mutant.seenIn) << stage.name << ": " << stage.why;
     }
     found = found || !stage.pass;
   }
   EXPECT_TRUE(found);
+}
+
+using MutantFidelityTest = GpuTest;
+
+// An ik that lets bones pass their limits: the figures say so.
+TEST_F(MutantFidelityTest, BrokenLimitsAreSeen) {
+  const auto mutant =
+      std::find_if(mutants().begin(), mutants().end(), [](const Mutant& m) { return m.name == "ik_limits"; });
+  if (mutants().empty()) GTEST_SKIP() << "Made without broken shaders.";
+  ASSERT_NE(mutant, mutants().end());
+  Crowd crowd(device(), rollingGround(), sceneOf(64), CrowdOptions{.shaders = {mutant->shader}});
+  simulate(device(), crowd, 120);
+  EXPECT_GT(crowd.fidelity().limitViolation.value(), 1e-3);
+  EXPECT_GT(crowd.fidelity().limitViolations.value(), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(, MutantTest, ::testing::Range(size_t{0}, mutants().size()),

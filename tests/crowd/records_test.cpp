@@ -1,4 +1,5 @@
 // The layouts that GLSL and C++ share, as the compiled shaders really have them.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -8,11 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "crowd/controllers/controllers.h"
 #include "crowd/herd.h"
+#include "crowd/record.h"
 #include "crowd/stage.h"
 #include "shared/bindings.h"
 #include "shared/parameters.h"
-#include "shared/records.h"
+#include "skitter/records.h"
+#include "validation/replay.h"
 
 namespace skitter::test {
 namespace {
@@ -54,30 +58,78 @@ const std::map<std::string, size_t>& parameterOffsets() {
   return offsets;
 }
 
+CrowdOptions everything(bool fuse) {
+  return {.pose = true, .measure = true, .feet = true, .footfalls = 1, .sleep = true, .fuse = fuse};
+}
+
+// Of every controller, but for wake, which has no parameters.
 std::vector<crowd::Stage> everyStage() {
-  return {crowd::navigateStage(),
-          crowd::bodyStage(),
-          crowd::gaitStage(),
-          crowd::bodyAndGaitStage(),
-          crowd::navigateBodyAndGaitStage(),
-          crowd::footholdStage(),
-          crowd::swingStage(),
-          crowd::swingAndIkStage(),
-          crowd::ikStage(),
-          crowd::poseStage(),
-          crowd::measureStage(),
-          crowd::blindBodyStage(),
-          crowd::loopGaitStage(),
-          crowd::loopSwingStage(),
-          crowd::clipStage(),
-          crowd::clipSwingStage(),
-          crowd::clipPoseStage(),
-          crowd::plantedSwingStage(),
-          crowd::plantedIkStage(),
-          crowd::plantedPoseStage(),
-          crowd::footfallStage(),
-          crowd::keyPoseGaitStage(),
-          crowd::keyPoseSwingStage()};
+  std::vector<crowd::Stage> stages;
+  for (const Controller controller : allControllers) {
+    const crowd::ControllerStages& of = crowd::controllerStages(controller);
+    for (const crowd::Stage& stage : of.all(everything(false)))
+      if (!(stage.makes == crowd::StageId::wake)) stages.push_back(stage);
+    if (of.fused != nullptr)
+      for (const crowd::Stage& stage : of.fused()) stages.push_back(stage);
+  }
+  return stages;
+}
+
+// Where agents sleep: navigate stands apart, for wake comes after it.
+std::vector<std::string> namesOf(Controller controller, bool fuse, bool sleep) {
+  CrowdOptions options = everything(fuse);
+  options.sleep = sleep;
+  std::vector<std::string> names;
+  for (const crowd::Stage& stage : crowd::stagesOf(controller, options)) names.push_back(stage.makes.name());
+  return names;
+}
+TEST(Stages, AreMadeAtOnceWhereTheyStandInARow) {
+  using testing::ElementsAre;
+  EXPECT_THAT(namesOf(Controller::adaptive, true, false),
+              ElementsAre("navigate+body+gait", "foothold", "swing+ik", "pose", "measure", "footfall"));
+  EXPECT_THAT(
+      namesOf(Controller::adaptive, true, true),
+      ElementsAre("navigate", "wake", "body+gait", "foothold", "swing+ik", "pose", "measure", "footfall"));
+  EXPECT_THAT(
+      namesOf(Controller::adaptive, false, false),
+      ElementsAre("navigate", "body", "gait", "foothold", "swing", "ik", "pose", "measure", "footfall"));
+  CrowdOptions options = everything(true);
+  options.shaders = {{.stage = "ik", .texel = {}, .storage = {}}};
+  EXPECT_THAT(crowd::stagesOf(Controller::adaptive, options),
+              testing::Contains(testing::Field(&crowd::Stage::makes, crowd::StageSet(crowd::StageId::ik))));
+}
+
+TEST(Records, ReplayHoldsAllThatAStageWrites) {
+  for (const Controller controller : allControllers) {
+    const std::vector<validation::CheckedStage> checked = validation::checkedStages(controller);
+    auto next = checked.begin();
+    for (const crowd::Stage& stage : crowd::stagesOf(controller, everything(false))) {
+      if (stage.makes == crowd::StageId::wake) continue;
+      SCOPED_TRACE(std::string(nameOf(controller)) + ", " + stage.makes.name());
+      ASSERT_NE(next, checked.end());
+      EXPECT_TRUE(stage.makes == next->stage) << nameOf(next->stage);
+      std::set<Record> written;
+      for (const gpu::BindingDecl& declared : stage.bindings)
+        if (crowd::isWritten(declared.binding)) written.insert(*crowd::recordAt(declared.binding));
+      if (stage.isOfTheAwake() || stage.over == crowd::Stage::Over::listed) {
+        EXPECT_EQ(std::set(next->writes.begin(), next->writes.end()), written);
+      }
+      ++next;
+    }
+    EXPECT_EQ(next, checked.end());
+  }
+}
+
+TEST(Records, HaveBindingsOfTheirOwn) {
+  std::set<uint32_t> taken = {
+      shared::BINDING_PARAMETERS, shared::BINDING_HEIGHTS,   shared::BINDING_RIG,
+      shared::BINDING_KEY,        shared::BINDING_CLIP,      shared::BINDING_CLIP_FRAME,
+      shared::BINDING_CLIP_ROW,   shared::BINDING_CLIP_LEG,  shared::BINDING_CLIP_JOINT,
+      shared::BINDING_LIST,       shared::BINDING_COUNTERS,  shared::BINDING_HISTOGRAM,
+      shared::BINDING_AWAKE,      shared::BINDING_AWAKE_OUT, shared::BINDING_FOOTFALL_OUT};
+  for (const Record record : allRecords)
+    for (const uint32_t binding : {crowd::infoOf(record).binding, crowd::infoOf(record).binding + 1})
+      EXPECT_TRUE(taken.insert(binding).second) << crowd::infoOf(record).name << ": " << binding;
 }
 
 TEST(Records, ParametersLieWhereBothSidesThink) {
@@ -85,11 +137,11 @@ TEST(Records, ParametersLieWhereBothSidesThink) {
   for (const crowd::Stage& stage : everyStage())
     for (const auto code : {stage.code.texel, stage.code.storage}) {
       const Layout layout = layoutOf(code);
-      ASSERT_TRUE(layout.offsets.contains("Parameters")) << stage.name;
+      ASSERT_TRUE(layout.offsets.contains("Parameters")) << stage.makes.name();
       const auto& offsets = layout.offsets.at("Parameters");
-      ASSERT_EQ(offsets.size(), parameterOffsets().size()) << stage.name;
+      ASSERT_EQ(offsets.size(), parameterOffsets().size()) << stage.makes.name();
       for (const auto& [member, offset] : parameterOffsets())
-        EXPECT_EQ(offsets.at(member), offset) << stage.name << ": " << member;
+        EXPECT_EQ(offsets.at(member), offset) << stage.makes.name() << ": " << member;
     }
 }
 
@@ -97,15 +149,16 @@ TEST(Records, PushConstantsAndStrides) {
   for (const crowd::Stage& stage : everyStage()) {
     const Layout layout = layoutOf(stage.code.storage);
     const auto& constants = layout.offsets.at("TickConstants");
-    EXPECT_EQ(constants.at("count"), offsetof(shared::TickConstants, count)) << stage.name;
-    EXPECT_EQ(constants.at("tick"), offsetof(shared::TickConstants, tick)) << stage.name;
-    EXPECT_EQ(constants.at("first"), offsetof(shared::TickConstants, first)) << stage.name;
-    EXPECT_EQ(constants.at("every"), offsetof(shared::TickConstants, every)) << stage.name;
-    EXPECT_EQ(constants.at("watched"), offsetof(shared::TickConstants, watched)) << stage.name;
-    EXPECT_EQ(constants.at("room"), offsetof(shared::TickConstants, room)) << stage.name;
-    const bool pairs = crowd::makes(stage.name, "ik");  // miss records
+    EXPECT_EQ(constants.at("count"), offsetof(shared::TickConstants, count)) << stage.makes.name();
+    EXPECT_EQ(constants.at("tick"), offsetof(shared::TickConstants, tick)) << stage.makes.name();
+    EXPECT_EQ(constants.at("first"), offsetof(shared::TickConstants, first)) << stage.makes.name();
+    EXPECT_EQ(constants.at("every"), offsetof(shared::TickConstants, every)) << stage.makes.name();
+    EXPECT_EQ(constants.at("watched"), offsetof(shared::TickConstants, watched)) << stage.makes.name();
+    EXPECT_EQ(constants.at("room"), offsetof(shared::TickConstants, room)) << stage.makes.name();
+    const bool pairs = stage.makes.has(crowd::StageId::ik);  // miss records
     for (const uint32_t stride : layout.arrayStrides)
-      EXPECT_TRUE(stride == 16 || stride == 4 || (pairs && stride == 8)) << stage.name << ": " << stride;
+      EXPECT_TRUE(stride == 16 || stride == 4 || (pairs && stride == 8))
+          << stage.makes.name() << ": " << stride;
   }
 }
 

@@ -1,4 +1,4 @@
-// The rig's records: rest frames that two numbers a bone tell (docs/stages.md, ik).
+// The rig's records: rest frames that two numbers a bone tell (docs/stages/ik.md).
 #include "crowd/rig_records.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::test {
 namespace {
@@ -57,6 +57,49 @@ void expectFrames(const Rig& rig, double tolerance) {
       EXPECT_NEAR(coordinates.z, bone.length / rig.legs[l].reach, 1e-6);
       EXPECT_NEAR(coordinates.w, std::cos(std::min(bone.coneHalfAngle, 3.0f)), 1e-6);
       before = glm::dmat3(x, glm::cross(z, x), z);
+    }
+  }
+}
+
+// The other numbers, as engine/include/skitter/records.h lists them; a leg shorter than the longest is
+// padded.
+TEST(RigRecords, HoldWhatTheRigSays) {
+  constexpr size_t stride = 3 + 4 * 8;
+  Rig rig = spiderRig();
+  rig.legs[3].bones.pop_back();
+  rig.legs[3].reach = 0.77f;
+  rig.legs[5].bones[1].coneHalfAngle = 3.1415927f;  // unlimited
+  const std::vector<float> records = crowd::rigRecords(rig);
+  ASSERT_EQ(records.size(), 8 * stride * 4);
+  const auto expect = [&](size_t place, size_t number, double expected) {
+    EXPECT_NEAR(records[4 * place + number], expected, 1e-6 * (1 + std::abs(expected)))
+        << "number " << number << " of vec4 " << place % stride;
+  };
+  const auto expectAll = [&](size_t place, const glm::dvec3& xyz, double w) {
+    for (size_t i = 0; i < 3; ++i) expect(place, i, xyz[static_cast<int>(i)]);
+    expect(place, 3, w);
+  };
+  for (size_t l = 0; l < 8; ++l) {
+    const Leg& leg = rig.legs[l];
+    SCOPED_TRACE(leg.name);
+    expectAll(l * stride, leg.bones[0].start, leg.reach);
+    expectAll(l * stride + 1, leg.home, leg.group);
+    expect(l * stride + 2, 2, 1 / leg.reach);
+    for (size_t b = 0; b < 4; ++b) {
+      const size_t bone = l * stride + 3 + 8 * b;
+      const bool padding = b == leg.bones.size();
+      // 3 radians stand for no limit: tan(pi / 2) is no number.
+      const double half = padding ? 0 : std::min<double>(leg.bones[b].coneHalfAngle, 3) / 2;
+      const double length = padding ? 0 : leg.bones[b].length / leg.reach;
+      expect(bone, 3, length);
+      expect(bone + 1, 3, std::tan(half));
+      expectAll(bone + 2, padding ? leg.home : leg.bones[b].start, b == 0 ? 0.2 : 1);
+      expectAll(bone + 3, glm::dvec3(0), 0);
+      expectAll(bone + 4, {1, 0, 0}, 0);  // a cone, without a twist
+      expect(bone + 5, 3, length);
+      expect(bone + 6, 3, std::tan(half));
+      expect(bone + 7, 2, length);
+      expect(bone + 7, 3, std::cos(2 * half));
     }
   }
 }

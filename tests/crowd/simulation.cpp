@@ -9,7 +9,7 @@
 
 namespace skitter::test {
 
-Scene sceneOf(uint32_t agents, float speed, uint64_t seed, const std::string& controller) {
+Scene sceneOf(uint32_t agents, float speed, uint64_t seed, Controller controller) {
   Scene scene;
   scene.herds = {Herd{}};
   scene.herds[0].agents = agents;
@@ -39,6 +39,24 @@ Heightfield cliffGround() {
   return cliff;
 }
 
+Rig scaledSpider(float legLength) {
+  Rig rig = spiderRig();
+  for (Leg& leg : rig.legs) {
+    leg.home *= legLength;
+    leg.reach *= legLength;
+    for (Bone& bone : leg.bones) {
+      bone.start *= legLength;
+      bone.length *= legLength;
+    }
+  }
+  rig.legLength *= legLength;
+  rig.bodyHeight *= legLength;
+  rig.bodyRadius *= legLength;
+  rig.vertices.clear();
+  rig.indices.clear();
+  return rig;
+}
+
 void simulate(Device& device, Crowd& crowd, int ticks, float dt) {
   gpu::CommandRing ring(device.context());
   for (int i = 0; i < ticks; ++i) {
@@ -48,18 +66,32 @@ void simulate(Device& device, Crowd& crowd, int ticks, float dt) {
   ring.waitAll();
 }
 
+std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const validation::HerdFacts& facts,
+                                            int ticks, float dt) {
+  validation::Replay replay(facts);
+  HerdState before = crowd.download(0);
+  for (int i = 0; i < ticks; ++i) {
+    simulate(device, crowd, 1, dt);
+    HerdState after = crowd.download(0);
+    replay.tick(crowd.tick(), before, after);
+    before = std::move(after);
+  }
+  return replay.results();
+}
+
 std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crowd& crowd,
-                                                            const Heightfield& terrain, int ticks) {
+                                                            const Heightfield& terrain, int ticks, float dt) {
   // The first tick fixes dt, and with it the tuning that the reference is given.
-  simulate(device, crowd, 1);
+  if (crowd.tick() == 0) simulate(device, crowd, 1, dt);
   std::vector<std::unique_ptr<validation::Replay>> replays;
   std::vector<HerdState> before;
-  for (const crowd::Herd& herd : crowd.impl().herds) {
-    before.push_back(crowd.download(static_cast<uint32_t>(replays.size())));
-    replays.push_back(std::make_unique<validation::Replay>(validation::herdFacts(herd, terrain)));
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    before.push_back(crowd.download(h));
+    replays.push_back(
+        std::make_unique<validation::Replay>(validation::herdFacts(crowd.impl().kindOf(h), terrain)));
   }
   for (int i = 0; i < ticks; ++i) {
-    simulate(device, crowd, 1);
+    simulate(device, crowd, 1, dt);
     for (uint32_t h = 0; h < replays.size(); ++h) {
       HerdState after = crowd.download(h);
       replays[h]->tick(crowd.tick(), before[h], after);
@@ -72,13 +104,13 @@ std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crow
 }
 
 std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
-                                            int ticks) {
-  return replayAll(device, crowd, terrain, ticks).front();
+                                            int ticks, float dt) {
+  return replayAll(device, crowd, terrain, ticks, dt).front();
 }
 
 void expectAllPass(const std::vector<validation::StageResult>& results) {
   for (const validation::StageResult& stage : results)
-    EXPECT_TRUE(stage.pass) << stage.name << ": " << stage.worst;
+    EXPECT_TRUE(stage.pass) << stage.name << ": " << stage.why;
 }
 
 glm::dvec3 positionOf(const HerdState& state, size_t agent) {

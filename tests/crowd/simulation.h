@@ -16,7 +16,7 @@ constexpr float kTick = 1.0f / 60;
 
 // A scene of one herd on generated ground.
 Scene sceneOf(uint32_t agents, float speed = 1, uint64_t seed = 1,
-              const std::string& controller = "adaptive");
+              Controller controller = Controller::adaptive);
 Heightfield rollingGround();
 // 32 m a side: soon crossed.
 Heightfield smallRollingGround();
@@ -24,17 +24,24 @@ Heightfield flatGround();
 // A plateau that ends in a wall far beyond any reach, across the lanes' way.
 Heightfield cliffGround();
 
+// The built-in spider with another leg length, in metres; without its skin.
+Rig scaledSpider(float legLength);
+
 // Submits `ticks` ticks and waits.
 void simulate(Device& device, Crowd& crowd, int ticks, float dt = kTick);
 
 // Runs `ticks` ticks in lock step with the reference, from the crowd's present state on; of the first herd.
 std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
-                                            int ticks);
+                                            int ticks, float dt = kTick);
+// The same, with `facts` of the herd in place of those that the crowd has.
+std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const validation::HerdFacts& facts,
+                                            int ticks, float dt = kTick);
 void expectAllPass(const std::vector<validation::StageResult>& results);
 
 // The same of every herd.
 std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crowd& crowd,
-                                                            const Heightfield& terrain, int ticks);
+                                                            const Heightfield& terrain, int ticks,
+                                                            float dt = kTick);
 
 // Of agent i: the world position and, per leg, whether it is planted.
 glm::dvec3 positionOf(const HerdState& state, size_t agent);

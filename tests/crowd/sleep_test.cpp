@@ -1,4 +1,4 @@
-// Who stands long enough sleeps (docs/stages.md, navigate): nothing of it changes until its goal or the
+// Who stands long enough sleeps (docs/stages/navigate.md): nothing of it changes until its goal or the
 // ground moves, and nobody else notices.
 #include <bit>
 #include <cmath>
@@ -14,18 +14,16 @@
 namespace skitter::test {
 namespace {
 
-constexpr const char* kControllers[] = {"adaptive", "loop", "clip", "planted", "pose"};
-
 CrowdOptions sleeping(uint32_t pageAgents = 0) { return {.sleep = true, .pageAgents = pageAgents}; }
 
-Scene standing(uint32_t agents, const std::string& controller = "adaptive") {
+Scene standing(uint32_t agents, Controller controller = Controller::adaptive) {
   Scene scene = sceneOf(agents, 1, 1, controller);
   scene.herds[0].goal.kind = Goal::Kind::none;
   return scene;
 }
 
 // They come from different ways off, so they fall asleep one after another.
-Scene arriving(uint32_t agents, const std::string& controller = "adaptive") {
+Scene arriving(uint32_t agents, Controller controller = Controller::adaptive) {
   Scene scene = sceneOf(agents, 1.5f, 3, controller);
   scene.herds[0].spawn.kind = Spawn::Kind::grid;
   scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 2}, .speed = 1.5f};
@@ -45,12 +43,12 @@ int restTicks(const Crowd& crowd, uint32_t herd = 0) {
   float cycle = 0;
   for (size_t agent = 0; agent < state.agents; ++agent)
     cycle = std::max(cycle, state.gait[agent * shared::GAIT_STRIDE * 4 + 5]);
-  return static_cast<int>(std::ceil((crowd.impl().herds[herd].parameters.sleepTime + cycle) / kTick)) + 2;
+  return static_cast<int>(std::ceil((crowd.impl().kindOf(herd).parameters.sleepTime + cycle) / kTick)) + 2;
 }
 
 // Of agent i of a herd of one page, as navigate reads it.
 void wish(const gpu::Context& context, Crowd& crowd, size_t agent, float kind, const glm::dvec3& target) {
-  const crowd::Page& page = crowd.impl().herds[0].pages.at(0);
+  const crowd::Page& page = crowd.impl().kindOf(0).pages.at(0);
   std::vector<float> goals = gpu::download<float>(context, page.goal);
   float* goal = goals.data() + agent * shared::GOAL_STRIDE * 4;
   goal[0] = static_cast<float>(target.x), goal[1] = static_cast<float>(target.z);
@@ -84,18 +82,18 @@ bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
   });
 }
 
-using Case = std::tuple<LoadPath, const char*>;
+using Case = std::tuple<LoadPath, Controller>;
 
 class SleepTest : public GpuTest, public ::testing::WithParamInterface<Case> {
  protected:
   SleepTest() : GpuTest(std::get<0>(GetParam())) {}
-  std::string controller() const { return std::get<1>(GetParam()); }
+  Controller controller() const { return std::get<1>(GetParam()); }
 };
 
 TEST_P(SleepTest, WhoStandsSleepsAndStaysAsItIs) {
   Crowd crowd(device(), rollingGround(), standing(20, controller()), sleeping());
   simulate(device(), crowd, 1);
-  const float sleepTime = crowd.impl().herds[0].parameters.sleepTime;
+  const float sleepTime = crowd.impl().kindOf(0).parameters.sleepTime;
   ASSERT_GT(sleepTime, 0);
   while (static_cast<float>(crowd.tick() + 2) * kTick < sleepTime) simulate(device(), crowd, 1);
   EXPECT_EQ(sleepersOf(crowd.download(0)), 0u) << "too early";
@@ -124,9 +122,9 @@ TEST_P(SleepTest, ReplayThroughFallingAsleepSleepingAndWaking) {
     options.footfalls = UINT32_MAX;
     Crowd crowd(device(), ground, standing(agents, controller()), options);
     simulate(device(), crowd, 1);
-    validation::Replay replay(validation::herdFacts(crowd.impl().herds.at(0), ground));
+    validation::Replay replay(validation::herdFacts(crowd.impl().kindOf(0), ground));
     const int rest = restTicks(crowd);
-    const auto early = static_cast<int>(crowd.impl().herds[0].parameters.sleepTime / kTick) - 5;
+    const auto early = static_cast<int>(crowd.impl().kindOf(0).parameters.sleepTime / kTick) - 5;
     simulate(device(), crowd, early);
     EXPECT_EQ(sleepersOf(crowd.download(0)), 0u);
     const auto compare = [&](int ticks) {
@@ -249,11 +247,11 @@ TEST_P(SleepTest, PagesSmallerThanABlockDoNotShow) {
 }
 
 TEST_P(SleepTest, GroundThatMovesWakesThem) {
-  const bool steps = controller() == "adaptive";  // the others' feet follow their bodies
+  const bool steps = controller() == Controller::adaptive;  // the others' feet follow their bodies
   Crowd crowd(device(), flatGround(), standing(9, controller()), sleeping());
   simulate(device(), crowd, 1);
   simulate(device(), crowd, restTicks(crowd));
-  validation::Replay replay(validation::herdFacts(crowd.impl().herds.at(0), crowd.terrain()));
+  validation::Replay replay(validation::herdFacts(crowd.impl().kindOf(0), crowd.terrain()));
   HerdState state = crowd.download(0);
   const HerdState asleep = state;
   ASSERT_EQ(sleepersOf(asleep), 9u);
@@ -290,9 +288,10 @@ TEST_P(SleepTest, GroundThatMovesWakesThem) {
   expectAllPass(replay.results());
 }
 
-INSTANTIATE_TEST_SUITE_P(, SleepTest, ::testing::Combine(bothLoadPaths(), ::testing::ValuesIn(kControllers)),
+INSTANTIATE_TEST_SUITE_P(, SleepTest,
+                         ::testing::Combine(bothLoadPaths(), ::testing::ValuesIn(allControllers)),
                          [](const auto& param) {
-                           return std::string(std::get<1>(param.param)) +
+                           return std::string(nameOf(std::get<1>(param.param))) +
                                   (std::get<0>(param.param) == LoadPath::texel ? "Texel" : "Storage");
                          });
 
@@ -317,6 +316,33 @@ TEST_F(SleepHerdsTest, OneSleepsAndTheOtherWalks) {
   const HerdState later = crowd.download(1);
   for (size_t agent = 0; agent < 13; ++agent)
     EXPECT_TRUE(sameBits(recordsOf(resting, agent), recordsOf(later, agent))) << "agent " << agent;
+}
+
+// The crowd's count is the sleepers of all herds and pages, from nobody to all that stand.
+TEST_F(SleepHerdsTest, TheyAreCounted) {
+  Scene scene = sceneOf(5);
+  scene.herds.push_back(standing(20).herds[0]);
+  scene.herds.push_back(standing(9, Controller::loop).herds[0]);
+  for (const uint32_t pageAgents : {0u, 7u}) {
+    SCOPED_TRACE(pageAgents);
+    Crowd crowd(device(), smallRollingGround(), scene, sleeping(pageAgents));
+    EXPECT_EQ(crowd.sleeping(), 0u);
+    simulate(device(), crowd, 1);
+    std::set<uint64_t> counts;
+    for (int left = std::max(restTicks(crowd, 1), restTicks(crowd, 2)); left > 0; left -= 10) {
+      simulate(device(), crowd, 10);
+      size_t sleepers = 0;
+      for (uint32_t herd = 0; herd < crowd.herdCount(); ++herd) sleepers += sleepersOf(crowd.download(herd));
+      ASSERT_EQ(crowd.sleeping(), sleepers) << "tick " << crowd.tick();
+      counts.insert(sleepers);
+    }
+    EXPECT_EQ(*counts.begin(), 0u);
+    EXPECT_EQ(*counts.rbegin(), 29u);
+    EXPECT_GT(counts.size(), 3u);
+  }
+  Crowd awake(device(), smallRollingGround(), scene);
+  simulate(device(), awake, 1);
+  EXPECT_EQ(awake.sleeping(), 0u);
 }
 
 TEST_F(SleepHerdsTest, RecordPathsAgreeToTheBit) {

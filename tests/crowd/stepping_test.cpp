@@ -12,7 +12,7 @@ using SteppingTest = GpuTest;
 
 Scene reaching(uint32_t agents, float speed = 1) {
   Scene scene = sceneOf(agents, speed);
-  scene.herds[0].stepping = "reach";
+  scene.herds[0].stepping = Stepping::reach;
   return scene;
 }
 
@@ -30,9 +30,10 @@ TEST_F(SteppingTest, WalksByReachAlone) {
   }
   EXPECT_GT(sum / 32, 0.9 * 5);
   const Fidelity f = crowd.fidelity();
-  EXPECT_LT(f.slip, 0.01);
-  EXPECT_LT(f.penetration, 1e-3);
-  EXPECT_LT(f.reachErrorP99, 5e-3);
+  EXPECT_LT(f.slip, 4e-4);
+  EXPECT_LT(f.penetration, 3e-6);
+  EXPECT_LT(f.floating, 6e-5);
+  EXPECT_LT(f.reachErrorP99, 3e-3);
 }
 
 TEST_F(SteppingTest, NeighboursStandAndEveryLegSteps) {
@@ -58,12 +59,6 @@ TEST_F(SteppingTest, NeighboursStandAndEveryLegSteps) {
 TEST_F(SteppingTest, AgreesWithTheReference) {
   Crowd crowd(device(), rollingGround(), reaching(32, 1.5f));
   expectAllPass(replay(device(), crowd, rollingGround(), 240));
-}
-
-TEST_F(SteppingTest, RefusesWhatItDoesNotKnow) {
-  Scene scene = sceneOf(1);
-  scene.herds[0].stepping = "hop";
-  EXPECT_THROW(Crowd(device(), flatGround(), scene), Error);
 }
 
 }  // namespace

@@ -1,9 +1,14 @@
-// Pipelines are specialised by some tuning values, so these must hold while a crowd lives.
+// Tuning values: what they are for a leg length and a tick, and which hold while a crowd lives because
+// pipelines are specialised by them.
 #include "crowd/tuning.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
 #include <set>
+#include <vector>
 
 #include "crowd/simulation.h"
 
@@ -12,7 +17,7 @@ namespace {
 
 TEST(KnownParameters, DoNotFollowTheTick) {
   const auto tuning = [](float dt) {
-    return crowd::tuningFor(spiderRig(), crowd::ikPlanFor("active-set"), rollingGround(), dt);
+    return crowd::tuningFor(spiderRig(), crowd::ikPlanFor(Solver::activeSet), rollingGround(), dt);
   };
   const shared::Parameters slow = tuning(1.0f / 20), quick = tuning(1.0f / 240);
   EXPECT_NE(slow.heightBlend, quick.heightBlend);
@@ -26,6 +31,144 @@ TEST(KnownParameters, HaveNumbersOfTheirOwn) {
 #define EXPECT_NEW(number, name) EXPECT_TRUE(numbers.insert(number).second) << #name;
   KNOWN_PARAMETERS(EXPECT_NEW)
 #undef EXPECT_NEW
+}
+
+struct Value {
+  const char* name;
+  float shared::Parameters::*member;
+  double expected;
+};
+
+// E = exp(dt [0, 1; -omega^2, -2 zeta omega]) as a power series.
+glm::dmat2 springOver(double dt, double omega, double zeta) {
+  const glm::dmat2 rates(0, -omega * omega, 1, -2 * zeta * omega);
+  glm::dmat2 sum(1), term(1);
+  for (int k = 1; k < 60; ++k) {
+    term = term * rates * (dt / k);
+    sum += term;
+  }
+  return sum;
+}
+
+// A spider with legs of L metres on 65 x 33 samples of 0.5 m x 0.25 m. The reference is given the same
+// values as the device, so no replay sees one that is wrong.
+std::vector<Value> spiderValues(double L, double dt) {
+  const glm::dmat2 spring = springOver(dt, 45, std::sqrt(0.5));
+#define VALUE(name, expected) \
+  { #name, &shared::Parameters::name, expected }
+  return {
+      VALUE(dt, dt),
+      VALUE(legLength, L),
+      VALUE(homeRadius, L * std::hypot(0.437588715, 0.540691665)),
+      VALUE(bodyHeight, 0.27 * L),
+      VALUE(bodyRadius, 0.34 * L),
+      VALUE(originX, -16),
+      VALUE(originZ, -4),
+      VALUE(inverseSpacingX, 2),
+      VALUE(inverseSpacingZ, 4),
+      VALUE(halfExtentX, 16),
+      VALUE(halfExtentZ, 4),
+      VALUE(edgeMargin, std::min(2 * L, 0.2 * 8)),
+      VALUE(slowRadius, L),
+      VALUE(acceleration, 2.5 * L),
+      VALUE(braking, 6 * L),
+      VALUE(turnRate, 1.5),
+      VALUE(turnAcceleration, 8),
+      VALUE(turnGain, 4),
+      VALUE(stretchSlow, 0.93),
+      VALUE(stretchStop, 1),
+      VALUE(errorStop, 0.02),
+      VALUE(followLeast, 0.1),
+      VALUE(heightBlend, 1 - std::exp(-dt / 0.10)),
+      VALUE(tiltBlend, 1 - std::exp(-dt / 0.15)),
+      VALUE(maxSlope, 2.75),
+      VALUE(bellyClearance, 0.6 * 0.27 * L),
+      VALUE(ridge, 1e-4 * L * L),
+      VALUE(leanGain, 0.06 / L),
+      VALUE(leanMost, 0.12),
+      VALUE(leanLevel, 0.08),
+      VALUE(breathHeight, 0.012 * L),
+      VALUE(halfStrideStill, 0.08 * L),
+      VALUE(halfStrideMax, 0.30 * L),
+      VALUE(dutyStill, 0.75),
+      VALUE(dutyGain, 0.05 / L),
+      VALUE(dutyLeast, 0.55),
+      VALUE(lagShare, 1.2),
+      VALUE(swingStill, 0.35),
+      VALUE(swingSpeed, 1.7 * L),
+      VALUE(cycleMax, 1.2),
+      VALUE(windowSlack, 1.1),
+      VALUE(windowOpen, 0.5),
+      VALUE(liftShare, 0.35),
+      VALUE(stretchLift, 0.95),
+      VALUE(strayShare, 1.8),
+      VALUE(errorLift, 1e-3),
+      VALUE(rootShare, 0.25),
+      VALUE(settleTime, 1),
+      VALUE(sleepTime, 2),
+      VALUE(reaimDistance, 0.15 * L),
+      VALUE(reaimLatest, 0.7),
+      VALUE(groundTolerance, 0.02 * L),
+      VALUE(reachTriggered, 0),
+      VALUE(reachMost, 0.95),
+      VALUE(reachLeast, 0.30),
+      VALUE(reachComfort, 0.85),
+      VALUE(slopeLeast, 0.35),
+      VALUE(slopeWeight, 0.05),
+      VALUE(reachWeight, 4),
+      VALUE(nearestOnly, 0),
+      VALUE(stepHeight, 0.12 * L),
+      VALUE(stepClearance, 0.03 * L),
+      VALUE(stepHeightMax, 0.5 * L),
+      VALUE(routeWidth, 0.08 * L),
+      VALUE(clipFade, dt / 0.25),
+      VALUE(clipIdle, 0.05 * L),
+      VALUE(clipHysteresis, 0.25),
+      VALUE(clipRateMost, 2.5),
+      VALUE(plantStray, 0.35 * L),
+      VALUE(plantKeep, std::exp(-dt / 0.08)),
+      VALUE(poseKeys, 0),  // of the key poses, which a herd without controller pose has not
+      VALUE(poseStride, 0),
+      VALUE(poseWalk, 0.1 * L),
+      VALUE(springFrequency, 45),
+      VALUE(springDamping, std::sqrt(0.5)),
+      VALUE(springKeep, spring[0][0]),
+      VALUE(springDrift, spring[1][0]),
+      VALUE(springPull, spring[0][1]),
+      VALUE(springCarry, spring[1][1]),
+      VALUE(approachError, 0.25),
+      VALUE(restPull, 0.05),
+      VALUE(pullError, 0.1),
+      VALUE(ikTolerance, 2e-5),
+      VALUE(missLeast, 2e-4),
+      VALUE(deadZone, 0.005 * L),
+      VALUE(skateSpeed, 0.1 * L),
+      VALUE(limitDeadZone, 1e-4),
+      VALUE(jerkTicks, std::round(0.4 / dt)),
+      VALUE(jerkPath, 0.05 * L),
+  };
+#undef VALUE
+}
+
+TEST(Tuning, FollowsLegLengthAndTick) {
+  Heightfield oblong = generateHeightfield({.columns = 65, .rows = 33});
+  oblong.spacingX = 0.5f;
+  oblong.spacingZ = 0.25f;
+  for (const float legLength : {1.0f, 0.66f})
+    for (const float dt : {1.0f / 60, 0.07f}) {
+      const Rig rig = scaledSpider(legLength);
+      const shared::Parameters tuning =
+          crowd::tuningFor(rig, crowd::ikPlanFor(Solver::activeSet), oblong, dt);
+      const std::vector<Value> values = spiderValues(legLength, dt);
+      EXPECT_EQ(values.size() * sizeof(float), sizeof tuning) << "a value is not here";
+      for (const Value& value : values)
+        EXPECT_NEAR(tuning.*value.member, value.expected, 1e-5 * std::abs(value.expected) + 1e-12)
+            << value.name << " of " << legLength << " m, " << dt << " s";
+    }
+  // Without a polish the approach goes all the way.
+  const shared::Parameters compared =
+      crowd::tuningFor(spiderRig(), crowd::ikPlanFor(Solver::fabrik), oblong, kTick);
+  EXPECT_EQ(compared.approachError, compared.ikTolerance);
 }
 
 }  // namespace

@@ -5,13 +5,31 @@
 namespace skitter::experiments {
 namespace {
 
+Conclusion conclusionOn(const Results& results, const std::string& subject) {
+  for (const Conclusion& c : conclusionsOf(results))
+    if (c.claim.find(subject) != std::string::npos) return c;
+  ADD_FAILURE() << "no conclusion on " << subject;
+  return {};
+}
+
+bench::SolveSweep sweepThatAccuracyEnds(const std::string& name, double share) {
+  bench::SolvePoint point;
+  point.stops = {share, 1 - share, 0, 0};
+  return {name, {point}, {}};
+}
+
+bench::InstancePoint batch(const char* altered, uint32_t instances, uint32_t iterations,
+                           double milliseconds) {
+  return {"fabrik", altered, instances, iterations, milliseconds, milliseconds};
+}
+
 // By figures alone: turned round, they turn the verdict.
 TEST(Conclusions, FollowTheFigures) {
   Results results;
   const auto verdict = [&](size_t i) { return conclusionsOf(results).at(i).holds; };
-  results.simulated.limits = {{"clip", false, 16.7, 20, 21, 0, 0},
-                              {"loop", false, 16.7, 9, 10, 0, 0},
-                              {"adaptive", false, 16.7, 4, 5, 0, 0}};
+  results.simulated.limits = {{Controller::clip, false, 16.7, 20, 21, 0, 0},
+                              {Controller::loop, false, 16.7, 9, 10, 0, 0},
+                              {Controller::adaptive, false, 16.7, 4, 5, 0, 0}};
   EXPECT_EQ(verdict(0), true);
   EXPECT_EQ(verdict(1), true);
   EXPECT_EQ(verdict(2), true);
@@ -24,11 +42,11 @@ TEST(Conclusions, FollowTheFigures) {
 // Other users of a software device's cores may turn what its wall clock says.
 TEST(Conclusions, AreNotSettledWhereTheClocksDisagree) {
   Results results;
-  const auto limit = [](const char* name, uint32_t agents, double byCpu) {
-    return AgentLimit{name, false, 16.7, agents, agents + 1, 0, 0, byCpu};
+  const auto limit = [](Controller controller, uint32_t agents, double byCpu) {
+    return AgentLimit{controller, false, 16.7, agents, agents + 1, 0, 0, byCpu};
   };
-  results.simulated.limits = {limit("clip", 3000, 2000), limit("loop", 2000, 3000),
-                              limit("adaptive", 1000, 1000)};
+  results.simulated.limits = {limit(Controller::clip, 3000, 2000), limit(Controller::loop, 2000, 3000),
+                              limit(Controller::adaptive, 1000, 1000)};
   const std::vector<Conclusion> conclusions = conclusionsOf(results);
   EXPECT_EQ(conclusions.at(0).holds, false);
   EXPECT_FALSE(conclusions.at(1).holds.has_value());
@@ -36,11 +54,61 @@ TEST(Conclusions, AreNotSettledWhereTheClocksDisagree) {
 }
 
 TEST(Conclusions, WhatWasNotMeasuredHasNoVerdict) {
-  for (const Conclusion& c : conclusionsOf({})) {
-    if (c.measured == "not measured") {
-      EXPECT_FALSE(c.holds.has_value()) << c.claim;
-    }
+  const std::vector<Conclusion> conclusions = conclusionsOf({});
+  EXPECT_FALSE(conclusions.empty());
+  for (const Conclusion& c : conclusions) {
+    EXPECT_EQ(verdictOf(c), "not measured") << c.claim;
+    EXPECT_FALSE(c.criterion.empty()) << c.claim;
   }
+}
+
+// Two figures decide, and one alone is no measurement.
+TEST(Conclusions, HalfOfAMeasurementHasNoVerdict) {
+  Results results;
+  results.sweeps = {sweepThatAccuracyEnds("accuracy-steps", 0.1)};
+  results.instances = {batch("instances", 100, 100, 1), batch("instances", 200, 100, 2)};
+  EXPECT_EQ(verdictOf(conclusionOn(results, "accuracy threshold")), "not measured");
+  EXPECT_EQ(verdictOf(conclusionOn(results, "More iterations")), "not measured");
+}
+
+TEST(Conclusions, AccuracyMustBeRareInBothReadings) {
+  const auto holds = [](double steps, double factors) {
+    Results results;
+    results.sweeps = {sweepThatAccuracyEnds("accuracy-steps", steps),
+                      sweepThatAccuracyEnds("accuracy-factors", factors)};
+    return conclusionOn(results, "accuracy threshold").holds;
+  };
+  EXPECT_EQ(holds(0.1, 0.1), true);
+  EXPECT_EQ(holds(0.9, 0.1), false);
+  EXPECT_EQ(holds(0.1, 0.9), false);
+}
+
+TEST(Conclusions, IterationsCostAsInstancesDoIfTheirPowersAgree) {
+  const auto holds = [](double millisecondsOfTwiceTheIterations) {
+    Results results;
+    results.instances = {batch("instances", 100, 100, 1), batch("instances", 200, 100, 2),
+                         batch("iterations", 100, 100, 1),
+                         batch("iterations", 100, 200, millisecondsOfTwiceTheIterations)};
+    return conclusionOn(results, "More iterations").holds;
+  };
+  EXPECT_EQ(holds(2), true);
+  EXPECT_EQ(holds(1.1), false);
+}
+
+TEST(Conclusions, CollectingIsNoticeableIfItIsOnDeviceAndCpu) {
+  const auto holds = [](double device, double cpu) {
+    Results results;
+    results.collection.times.emplace_back();
+    CollectionTime& time = results.collection.times.back();
+    time.rule = "nearest";
+    time.legs = 1;
+    time.deviceMilliseconds = device;
+    time.cpuMilliseconds = cpu;
+    return conclusionOn(results, "points of one leg").holds;
+  };
+  EXPECT_EQ(holds(1, 1), true);
+  EXPECT_EQ(holds(1, 0.1), false);
+  EXPECT_EQ(holds(0.1, 1), false);
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "experiments/page/png.h"
-
 namespace skitter::experiments {
 namespace {
 
@@ -33,6 +31,16 @@ TEST(Page, NothingOfTheTextIsMarkup) {
   EXPECT_EQ(html.find("<script"), std::string::npos);
 }
 
+TEST(Page, RawFilesAreLinksAndWarningsAreSeen) {
+  Page page("t", "s");
+  page.section("one", "first");
+  page.warning("too < busy");
+  page.raw("a&b.csv");
+  const std::string html = page.html();
+  EXPECT_NE(html.find("<a href=\"a&amp;b.csv\">a&amp;b.csv</a>"), std::string::npos);
+  EXPECT_NE(html.find("<p class=\"warning\">too &lt; busy</p>"), std::string::npos);
+}
+
 TEST(Page, SectionsAreClosedAndLinkedTo) {
   Page page("t", "s");
   page.section("one", "first");
@@ -46,15 +54,6 @@ TEST(Page, SectionsAreClosedAndLinkedTo) {
     return n;
   };
   EXPECT_EQ(count("<section"), count("</section>"));
-}
-
-TEST(Page, PngIsAPngOfItsSize) {
-  const std::vector<uint8_t> rgba(3 * 2 * 4, 128);
-  const std::string png = pngOf(3, 2, rgba);
-  ASSERT_GT(png.size(), 24u);
-  EXPECT_EQ(png.substr(1, 3), "PNG");
-  EXPECT_EQ(png[19], 3);
-  EXPECT_EQ(png[23], 2);
 }
 
 }  // namespace

@@ -26,6 +26,17 @@ TEST(Plot, HasALineASeriesItsNameAndItsLabels) {
   EXPECT_TRUE(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
 }
 
+TEST(Plot, SpreadsAreBarsThatTheAxisHolds) {
+  Plot plot;
+  plot.series = {{"measured", {{0, 2}, {1, 3}}}};
+  const std::string without = draw(plot);
+  plot.series[0].spreads = {{1, 40}, {2.5, std::nan("")}};
+  const std::string with = draw(plot);
+  EXPECT_EQ(without.find(">40<"), std::string::npos);
+  EXPECT_NE(with.find(">40<"), std::string::npos);
+  EXPECT_EQ(count(with, seriesColour(0)), count(without, seriesColour(0)) + 1);
+}
+
 TEST(Plot, LeavesOutWhatIsNotFinite) {
   Plot plot;
   plot.y.log = true;

@@ -1,5 +1,6 @@
-#include "gpu/loads.h"
+#include "gpu/record_access.h"
 
+#include "gpu/access_cost.h"
 #include "support/environment.h"
 #include "support/gpu_fixture.h"
 

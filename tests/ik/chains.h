@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cpu_reference/ik_chain.h"
-#include "cpu_reference/ik_seeds.h"
+#include "cpu_reference/ik/chain.h"
+#include "cpu_reference/ik/seeds.h"
 #include "skitter/ik.h"
 
 // Chains to be solved, and poses and targets for them.

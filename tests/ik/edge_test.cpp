@@ -67,6 +67,17 @@ TEST_F(TargetTest, OnTheLineOfAStraightChain) {
   }
 }
 
+// Beyond the tip of a straight chain no step gains anything, so the fourth is the last.
+TEST_F(TargetTest, IdleStepsEndASolve) {
+  const ik::Chain chain = evenChain(5, 0, wide);
+  const Solved solved =
+      solve(device(), chain, {.iterations = 12, .restarts = false}, {{0, 1.5f, 0}, {0, 3, 0}});
+  for (const ik::Report& report : solved.report) {
+    EXPECT_EQ(report.stop, ik::Stop::unreachable);
+    EXPECT_EQ(report.iterations, 4u);
+  }
+}
+
 TEST_F(TargetTest, AtTheBase) {
   for (const ik::Limit& limit : {ik::Limit(ik::Free{}), wide})
     for (const ik::Solver solver : ik::allSolvers) {
@@ -355,6 +366,10 @@ TEST_P(BatchTest, TheCallersBuffersAndCommands) {
       batch.use(
           {.targets = {target.handle(), 16}, .bases = {}, .joints = {}, .rotations = {}, .reports = {}}),
       Error);
+  // One chain short.
+  EXPECT_THROW(batch.use({.targets = {target.handle(), 1584}}), Error);
+  EXPECT_THROW(batch.use({.joints = {joint.handle(), 6384}}), Error);
+  EXPECT_THROW(batch.use({.reports = {report.handle(), 1584}}), Error);
   ik::Batch paged(device(), chain, 100, {.pageChains = 64});
   EXPECT_THROW(paged.use({}), Error);
 }
@@ -437,6 +452,17 @@ TEST_F(RefusalTest, OfOptionsAndSolvers) {
   ik::Chain twisting = cones;
   twisting.bones[0].twistMax = 1;
   refused(twisting, {.solver = ik::Solver::dissertationEdge});
+}
+
+// Memory might refuse them too, so the message tells which limit does.
+TEST_F(RefusalTest, OfMoreChainsThanTheMost) {
+  try {
+    ik::Batch(device(), evenChain(4, 0.4), ik::Batch::maxChains + 1);
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    EXPECT_STREQ(error.what(), "16777217 chains, expected at most 16777216");
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // says which), and it must refuse a single iteration.
 #include "embedded/broken_active_set_comp_storage.h"
 #include "embedded/broken_active_set_comp_texel.h"
+#include "embedded/broken_against_comp_storage.h"
+#include "embedded/broken_against_comp_texel.h"
 #include "embedded/broken_ccd_comp_storage.h"
 #include "embedded/broken_ccd_comp_texel.h"
 #include "embedded/broken_columns_comp_storage.h"
@@ -90,6 +92,38 @@ TEST_P(MutantTest, IsRefused) {
 
 INSTANTIATE_TEST_SUITE_P(, MutantTest, ::testing::ValuesIn(mutants()),
                          [](const auto& param) { return std::string(param.param.name); });
+
+// A straight chain with targets as far behind it as its tip is ahead: its bones point straight against their
+// rest directions, where one side is as good as another, whatever rounding makes of it.
+validation::IkRun foldedBack(Device& device, const ik::Limit& limit, const std::vector<ik::Shader>& shaders) {
+  constexpr float far = -0.9995f;  // nearer than 0.999 it would be bent first
+  const ik::Chain chain = evenChain(5, 0, limit);
+  const ik::Options options{
+      .solver = ik::Solver::fabrik, .iterations = 1, .restarts = false, .shaders = shaders};
+  validation::IkRun run{.name = "folded back",
+                        .chain = chain,
+                        .options = options,
+                        .targets = {{1e-4f, far, 0}, {-1e-4f, far, 0}, {0, far, 1e-4f}, {0, far, -1e-4f}}};
+  ik::Batch batch(device, chain, static_cast<uint32_t>(run.targets.size()), options);
+  batch.setTargets(run.targets);
+  batch.solve();
+  run.joints = batch.downloadJoints();
+  run.reports = batch.downloadReports();
+  return run;
+}
+
+using FoldedTest = GpuTest;
+
+TEST_F(FoldedTest, IsAsGoodToEverySide) {
+  for (const ik::Limit& limit : {ik::Limit(ik::Cone{1}), ik::Limit(ik::Ellipse{0.8f, 1.1f, 0.9f, 1})}) {
+    const validation::IkParity sound = checkIkBatch(foldedBack(device(), limit, {}));
+    EXPECT_LE(sound.worst, 1) << sound.text;
+    EXPECT_EQ(sound.ties, 0u);
+    const ik::Shader broken{"solve_limited", embedded::broken_against_comp_texel(),
+                            embedded::broken_against_comp_storage()};
+    EXPECT_GT(checkIkBatch(foldedBack(device(), limit, {broken})).worst, 1);
+  }
+}
 
 }  // namespace
 }  // namespace skitter::test

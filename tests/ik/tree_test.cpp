@@ -1,7 +1,7 @@
 #include <cmath>
 #include <random>
 
-#include "cpu_reference/tree.h"
+#include "cpu_reference/ik/tree.h"
 #include "skitter/error.h"
 #include "skitter/ik.h"
 #include "support/gpu_fixture.h"
@@ -125,6 +125,43 @@ TEST_F(TreeTest, AFloatingBodyGoesWhereItsFeetAre) {
         EXPECT_NEAR(glm::length(leg[i + 1] - leg[i]), tree.legs[l].bones[i].length, 1e-6f);
     }
   }
+}
+
+// Feet that are wanted far apart pull the body to and fro, so an iteration may end farther from the targets
+// than one before it. What counts is the best.
+TEST_F(TreeTest, TheBestPoseIsKept) {
+  constexpr uint32_t iterations = 3;
+  ik::Tree tree = spider();
+  tree.anchor = 0.5f;
+  Problem problem = problemOf(tree, 15);
+  std::mt19937 random(16);
+  std::uniform_real_distribution<float> anywhere(-1.5f, 1.5f);
+  for (vec3& target : problem.targets) target += vec3(anywhere(random), anywhere(random), anywhere(random));
+  ik::TreeBatch batch(device(), tree, kTrees, iterations);
+  batch.solve(problem.bodies, problem.targets);
+  const std::vector<ik::Report> reports = batch.downloadReports();
+  const std::vector<vec3> joints = batch.downloadJoints();
+  size_t worsened = 0;
+  for (uint32_t t = 0; t < kTrees; ++t) {
+    const std::vector<glm::dvec3> targets(problem.targets.begin() + t * kLegs,
+                                          problem.targets.begin() + (t + 1) * kLegs);
+    const reference::IkTree expected = referenceOf(tree, problem.bodies[t]);
+    reference::IkTreeState state = restOf(tree, problem.bodies[t]);
+    double least = reference::treeError(expected, targets, state), last = least;
+    for (uint32_t k = 0; k < iterations; ++k) {
+      reference::iterateTree(expected, targets, state);
+      last = reference::treeError(expected, targets, state);
+      least = std::min(least, last);
+    }
+    if (last > least + 1e-3) ++worsened;
+    double found = 0;
+    for (size_t l = 0; l < kLegs; ++l)
+      found = std::max(found,
+                       glm::length(targets[l] - glm::dvec3(joints[(t * kLegs + l) * (kBones + 1) + kBones])));
+    EXPECT_NEAR(reports[t].error, least, 1e-5) << "tree " << t;
+    EXPECT_NEAR(found / expected.longestLeg(), least, 1e-5) << "tree " << t;
+  }
+  EXPECT_GT(worsened, 5u);
 }
 
 TEST_F(TreeTest, AnAnchoredBodyStays) {

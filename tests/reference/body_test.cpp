@@ -1,4 +1,4 @@
-#include "cpu_reference/body.h"
+#include "cpu_reference/stages/body.h"
 
 #include <gtest/gtest.h>
 
@@ -58,6 +58,34 @@ TEST_F(Body, accelerationIsBounded) {
     speed = body.speed;
   }
   EXPECT_EQ(speed, 0);
+}
+
+TEST_F(Body, brakesBeforeTheEdgeAndNoEarlier) {
+  tuning.halfExtentX = tuning.halfExtentZ = 20;
+  for (const double side : {1.0, -1.0}) {
+    body = bodyAt(0.5, 0.5);
+    double fastest = 0, hardest = 0;
+    for (int i = 0; i < 900; ++i) {
+      const double before = body.speed;
+      walk({0, 1000 * side}, 1, flat);
+      fastest = std::max(fastest, body.speed);
+      hardest = std::max(hardest, before - body.speed);
+      EXPECT_LE(std::abs(body.world().y), 20);
+    }
+    EXPECT_GT(std::abs(body.world().y), 19.999);
+    EXPECT_LE(hardest, tuning.braking * tuning.dt * (1 + 1e-9));
+    // Braking takes as little of the way as it must: s^2 / (2 acceleration) + s^2 / (2 braking).
+    const double way = 20 - 0.5;
+    if (side < 0) continue;  // it turns round first
+    EXPECT_NEAR(fastest, std::sqrt(2 * way / (1 / tuning.acceleration + 1 / tuning.braking)), 0.1);
+  }
+}
+
+TEST_F(Body, stoppingSpeedLeavesATickToMove) {
+  for (const double way : {0.0, 1e-6, 0.01, 1.0, 100.0}) {
+    const double s = reference::stoppingSpeed(tuning, way);
+    EXPECT_NEAR(s * s / (2 * tuning.braking) + s * tuning.dt, way, 1e-12 * (1 + way));
+  }
 }
 
 TEST_F(Body, turnsTowardItsWayEitherSide) {

@@ -1,11 +1,11 @@
-#include "cpu_reference/clip.h"
+#include "cpu_reference/clips/keyframes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "cpu_reference/clip_skin.h"
+#include "cpu_reference/clips/skin.h"
 
 // The reference of clips against closed forms.
 namespace skitter::test {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "reference_herd.h"
-#include "shared/records.h"
+#include "skitter/records.h"
 
 namespace skitter::test {
 namespace {

@@ -1,10 +1,10 @@
-#include "cpu_reference/foothold.h"
+#include "cpu_reference/stages/foothold.h"
 
 #include <gtest/gtest.h>
 
-#include "cpu_reference/gait.h"
 #include "cpu_reference/heightfield.h"
-#include "cpu_reference/swing.h"
+#include "cpu_reference/stages/gait.h"
+#include "cpu_reference/stages/swing.h"
 #include "spider.h"
 #include "validation/convert.h"
 

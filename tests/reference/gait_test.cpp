@@ -1,4 +1,4 @@
-#include "cpu_reference/gait.h"
+#include "cpu_reference/stages/gait.h"
 
 #include <gtest/gtest.h>
 

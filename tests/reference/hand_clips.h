@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cpu_reference/clip_table.h"
+#include "cpu_reference/clips/table.h"
 #include "cpu_reference/types.h"
 
 // Clips made of numbers.

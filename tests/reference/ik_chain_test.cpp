@@ -1,10 +1,10 @@
-#include "cpu_reference/ik_chain.h"
+#include "cpu_reference/ik/chain.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "cpu_reference/ik_seeds.h"
+#include "cpu_reference/ik/seeds.h"
 #include "cpu_reference/rotation.h"
 #include "ik_chains.h"
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <random>
 
-#include "cpu_reference/ik_solve.h"
+#include "cpu_reference/ik/solve.h"
 
 namespace skitter::test {
 

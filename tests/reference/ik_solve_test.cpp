@@ -1,11 +1,11 @@
-#include "cpu_reference/ik_solve.h"
+#include "cpu_reference/ik/solve.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "cpu_reference/ik_seeds.h"
-#include "cpu_reference/pole.h"
+#include "cpu_reference/ik/pole.h"
+#include "cpu_reference/ik/seeds.h"
 #include "ik_chains.h"
 
 // A whole solve: what it starts from, when it ends, what it says.

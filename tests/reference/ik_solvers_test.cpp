@@ -4,9 +4,9 @@
 #define GLM_ENABLE_EXPERIMENTAL
 #include <glm/gtx/quaternion.hpp>
 
-#include "cpu_reference/ik_seeds.h"
-#include "cpu_reference/stretch_align.h"
-#include "cpu_reference/two_bone.h"
+#include "cpu_reference/ik/seeds.h"
+#include "cpu_reference/ik/stretch_align.h"
+#include "cpu_reference/ik/two_bone.h"
 #include "ik_chains.h"
 
 // What one iteration and a whole solve of each solver must do.

@@ -1,4 +1,4 @@
-#include "cpu_reference/ik.h"
+#include "cpu_reference/stages/ik.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "cpu_reference/kinematics.h"
+#include "cpu_reference/ik/kinematics.h"
 #include "spider.h"
 #include "validation/convert.h"
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "cpu_reference/tree.h"
+#include "cpu_reference/ik/tree.h"
 
 namespace skitter::test {
 namespace {

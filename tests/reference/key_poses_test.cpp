@@ -1,9 +1,9 @@
 // Controller pose: key poses, the curve through them, and springs that follow it.
 #include <gtest/gtest.h>
 
-#include "cpu_reference/gait_pose.h"
-#include "cpu_reference/kinematics.h"
-#include "cpu_reference/swing_pose.h"
+#include "cpu_reference/ik/kinematics.h"
+#include "cpu_reference/stages/gait_pose.h"
+#include "cpu_reference/stages/swing_pose.h"
 #include "spider.h"
 #include "validation/convert.h"
 

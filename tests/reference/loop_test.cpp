@@ -1,9 +1,9 @@
 // The loop controller: a body that lies on the ground below its homes, and feet that run round their loops.
 #include <gtest/gtest.h>
 
-#include "cpu_reference/body.h"
-#include "cpu_reference/gait_loop.h"
-#include "cpu_reference/swing_loop.h"
+#include "cpu_reference/stages/body.h"
+#include "cpu_reference/stages/gait_loop.h"
+#include "cpu_reference/stages/swing_loop.h"
 #include "spider.h"
 #include "validation/convert.h"
 

@@ -1,5 +1,5 @@
 // Motions whose figures are known in closed form.
-#include "cpu_reference/measure.h"
+#include "cpu_reference/stages/measure.h"
 
 #include <gtest/gtest.h>
 
@@ -132,9 +132,17 @@ TEST_F(Measure, keepsTheLargestErrorAndViolation) {
   x = std::tan(std::atan(edge) + 0.005);
   chains[0].reachError = 0.05;
   tick();
-  EXPECT_NEAR(metric.largestViolation, 0.01, 1e-4);
+  EXPECT_NEAR(metric.largestViolation, 0.01, 1e-12);
   EXPECT_EQ(metric.violations, 1);
   EXPECT_EQ(metric.largestError, 0.1);
+}
+
+TEST_F(Measure, violationIsAnAngle) {
+  const double edge = creature.limbs[0].bones[2].tanHalfCone;
+  chains[0].directions[2] = {0, 40};  // bent back to within 0.05 rad of straight against its rest
+  tick();
+  EXPECT_NEAR(metric.largestViolation, 2 * (std::atan(40) - std::atan(edge)), 1e-12);
+  EXPECT_LT(metric.largestViolation, 3.1415927);
 }
 
 // The third difference of t^3 is 6 dt^3, wherever it is taken.

@@ -1,4 +1,4 @@
-#include "cpu_reference/navigate.h"
+#include "cpu_reference/stages/navigate.h"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "cpu_reference/ik_planted.h"
-#include "cpu_reference/pose_clip.h"
-#include "cpu_reference/swing_planted.h"
+#include "cpu_reference/stages/ik_planted.h"
+#include "cpu_reference/stages/pose_clip.h"
+#include "cpu_reference/stages/swing_planted.h"
 #include "hand_clips.h"
 #include "spider.h"
 #include "validation/convert.h"

@@ -1,14 +1,14 @@
 // The clip controller: which clip is played and where in it, and what is made of its frames.
-#include "cpu_reference/play.h"
+#include "cpu_reference/stages/clip.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "cpu_reference/clip_blend.h"
-#include "cpu_reference/kinematics.h"
-#include "cpu_reference/pose_clip.h"
-#include "cpu_reference/swing_clip.h"
+#include "cpu_reference/clips/blend.h"
+#include "cpu_reference/ik/kinematics.h"
+#include "cpu_reference/stages/pose_clip.h"
+#include "cpu_reference/stages/swing_clip.h"
 #include "hand_clips.h"
 #include "spider.h"
 

@@ -1,10 +1,10 @@
-#include "cpu_reference/pose.h"
+#include "cpu_reference/stages/pose.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "cpu_reference/kinematics.h"
+#include "cpu_reference/ik/kinematics.h"
 #include "spider.h"
 
 namespace skitter::test {

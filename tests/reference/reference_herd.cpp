@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "cpu_reference/heightfield.h"
-#include "cpu_reference/measure.h"
-#include "shared/records.h"
+#include "cpu_reference/stages/measure.h"
+#include "skitter/records.h"
 #include "validation/convert.h"
 #include "validation/free_run.h"
 

@@ -1,9 +1,9 @@
-#include "cpu_reference/route.h"
+#include "cpu_reference/stages/route.h"
 
 #include <gtest/gtest.h>
 
 #include "cpu_reference/heightfield.h"
-#include "cpu_reference/swing.h"
+#include "cpu_reference/stages/swing.h"
 #include "spider.h"
 #include "validation/convert.h"
 

@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "reference_herd.h"
-#include "shared/records.h"
+#include "crowd/controller.h"
+#include "skitter/records.h"
 #include "validation/convert.h"
 
 namespace skitter::test {
@@ -17,7 +18,7 @@ using validation::StageResult;
 // Every record that a herd has between navigate and measure, and who writes it.
 struct Record {
   const char* name;
-  crowd::Controller controller;
+  Controller controller;
   std::vector<float> HerdState::*records;
   const char* stage;
   size_t legs;  // 1: it is of the whole agent
@@ -29,7 +30,7 @@ class SleepersRecord : public testing::TestWithParam<Record> {
   // Two agents of made-up records, unlike anything that the stages compute, but asleep.
   static constexpr size_t agents = 2, legs = 8, bones = 4;
   HerdState asleep() const {
-    const crowd::Controller controller = GetParam().controller;
+    const Controller controller = GetParam().controller;
     HerdState state;
     state.agents = agents;
     state.sleep = true;
@@ -42,19 +43,19 @@ class SleepersRecord : public testing::TestWithParam<Record> {
     fill(state.body, 1, shared::BODY_STRIDE);
     fill(state.gait, 1, shared::GAIT_STRIDE);
     fill(state.step, legs, shared::STEP_STRIDE);
-    if (crowd::aimsSteps(controller)) fill(state.arc, legs, shared::ARC_STRIDE);
+    if (crowd::traitsOf(controller).aimsSteps) fill(state.arc, legs, shared::ARC_STRIDE);
     fill(state.foot, legs, shared::FOOT_STRIDE);
     fill(state.chain, legs, shared::chainStride(bones));
     fill(state.tip, legs, shared::TIP_STRIDE);
-    if (crowd::tellsMisses(controller)) fill(state.miss, 1, shared::missStride(legs));
-    if (crowd::playsClips(controller)) fill(state.play, 1, shared::PLAY_STRIDE);
-    if (crowd::playsClips(controller)) fill(state.pose, 1, shared::MATRIX_STRIDE);
-    if (!crowd::playsClips(controller)) fill(state.pose, 1 + legs * bones, shared::POSE_STRIDE);
-    if (controller == crowd::Controller::planted) {
+    if (crowd::traitsOf(controller).tellsMisses) fill(state.miss, 1, shared::missStride(legs));
+    if (crowd::traitsOf(controller).playsClips) fill(state.play, 1, shared::PLAY_STRIDE);
+    if (crowd::traitsOf(controller).playsClips) fill(state.pose, 1, shared::MATRIX_STRIDE);
+    if (!crowd::traitsOf(controller).playsClips) fill(state.pose, 1 + legs * bones, shared::POSE_STRIDE);
+    if (controller == Controller::planted) {
       fill(state.start, legs, shared::startStride(bones));
       fill(state.fix, legs * bones, shared::FIX_STRIDE);
     }
-    if (controller == crowd::Controller::pose) fill(state.spring, legs, shared::chainStride(bones));
+    if (controller == Controller::pose) fill(state.spring, legs, shared::chainStride(bones));
     for (size_t agent = 0; agent < agents; ++agent) {
       validation::putGoal(state, agent, {});
       validation::putSteer(state, agent, {0, 0}, true);
@@ -79,7 +80,7 @@ TEST_P(SleepersRecord, staysAndIsNoSample) {
   Replay replay = judge();
   replay.tick(9, asleep(), asleep());
   for (const StageResult& result : replay.results()) {
-    EXPECT_TRUE(result.pass) << result.name << ": " << result.worst;
+    EXPECT_TRUE(result.pass) << result.name << ": " << result.why;
     EXPECT_EQ(result.samples, result.name == "navigate" ? agents : 0) << result.name;
   }
 }
@@ -106,7 +107,6 @@ TEST_P(SleepersRecord, mustBeWhatItWasToTheBit) {
   }
 }
 
-using crowd::Controller;
 INSTANTIATE_TEST_SUITE_P(
     everyRecord, SleepersRecord,
     testing::Values(Record{"adaptiveBody", Controller::adaptive, &HerdState::body, "body", 1},

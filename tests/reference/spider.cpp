@@ -3,7 +3,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "shared/records.h"
+#include "skitter/records.h"
 #include "validation/convert.h"
 
 namespace skitter::test {

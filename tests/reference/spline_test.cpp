@@ -1,4 +1,4 @@
-#include "cpu_reference/spline.h"
+#include "cpu_reference/spline/spline.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cpu_reference/swing.h"
+#include "cpu_reference/stages/swing.h"
 
 #include <gtest/gtest.h>
 

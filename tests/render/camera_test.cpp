@@ -1,5 +1,9 @@
 #include "support/gpu_fixture.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "skitter/records.h"
 #include "skitter/renderer.h"
 
 namespace skitter::test {
@@ -35,6 +39,151 @@ TEST_F(CameraTest, fixedIsWhereTheSceneSays) {
   EXPECT_EQ(view.eye, glm::vec3(1, 2, 3));
   EXPECT_EQ(view.target, glm::vec3(4, 5, 6));
   EXPECT_EQ(view.fieldOfView, 0.5f);
+}
+
+// Ground that rises by `slope` a metre towards -z.
+Heightfield incline(float extent, float slope) {
+  const float half = extent / 2;
+  return {.name = "incline",
+          .columns = 2,
+          .rows = 2,
+          .spacingX = extent,
+          .spacingZ = extent,
+          .heights = {slope * half, slope * half, -slope * half, -slope * half}};
+}
+// Cheap to make: who is followed does not depend on the controller.
+Scene herdOf(uint32_t agents, const Spawn& spawn, const Goal& goal) {
+  Scene scene;
+  scene.herds[0].controller = Controller::clip;
+  scene.herds[0].agents = agents;
+  scene.herds[0].spawn = spawn;
+  scene.herds[0].goal = goal;
+  return scene;
+}
+Crowd crowdOf(Device& device, const Heightfield& terrain, const Scene& scene) {
+  return {device, terrain, scene, {.pose = false, .measure = false}};
+}
+
+// docs/stages/pictures.md: 0.30 rad above the ground's horizon, 0.62 rad to the left of the line behind.
+TEST_F(CameraTest, followLooksFromBehindLeftAndAbove) {
+  const float heading = 2.1f;
+  Scene scene = herdOf(1, {.kind = Spawn::Kind::grid, .centre = {3, -5}, .heading = heading},
+                       {.kind = Goal::Kind::none});
+  scene.camera.fieldOfView = 0.7f;
+  const Crowd crowd = crowdOf(device(), incline(200, 0), scene);
+  for (const double distance : {12.0, 40.0}) {
+    scene.camera.distance = float(distance);
+    const View view = viewOf(scene, crowd, 7);
+    EXPECT_EQ(view.fieldOfView, 0.7f);
+    EXPECT_LT(glm::distance(view.target, glm::vec3(3, 0.35f, -5)), 1e-5f);
+    // Behind is where the heading comes from, turned by 0.62 rad to the creature's left.
+    const double from = double(heading) + 3.14159265358979 - 0.62, flat = std::cos(0.30);
+    const glm::dvec3 eye =
+        glm::dvec3(view.target) +
+        distance * glm::dvec3(flat * std::sin(from), std::sin(0.30), flat * std::cos(from));
+    EXPECT_LT(glm::distance(glm::dvec3(view.eye), eye), 1e-5 * distance);
+  }
+}
+
+// Its walker goes to the far side, turns, comes back beside its lane, and so on for ever.
+TEST_F(CameraTest, followStaysWithItsWalkerLapAfterLap) {
+  const Scene scene = herdOf(1, {.kind = Spawn::Kind::lanes}, {.kind = Goal::Kind::cross, .speed = 1.7f});
+  const Crowd crowd = crowdOf(device(), incline(120, 0), scene);
+  const HerdState state = crowd.download(0);
+  const glm::dvec2 start(shared::tileX(state.body[3]) * shared::TILE_SIZE + state.body[0],
+                         shared::tileZ(state.body[3]) * shared::TILE_SIZE + state.body[2]);
+  const glm::dvec2 there(state.goal[0], state.goal[1]), back(state.goal[2], state.goal[3]);
+  const double first = glm::distance(start, there), lap = glm::distance(there, back);
+  ASSERT_GT(std::abs(there.x - back.x), 0.1);  // the way back is another one
+  const auto at = [&](double metres) {
+    const View view = viewOf(scene, crowd, metres / 1.7);
+    return glm::dvec2(view.target.x, view.target.z);
+  };
+  EXPECT_LT(glm::distance(at(0.4 * first), glm::mix(start, there, 0.4)), 1e-3);
+  for (const double share : {0.1, 0.5, 0.9}) {
+    EXPECT_LT(glm::distance(at(first + share * lap), glm::mix(there, back, share)), 1e-3);
+    EXPECT_LT(glm::distance(at(first + (1 + share) * lap), glm::mix(back, there, share)), 1e-3);
+    EXPECT_LT(glm::distance(at(first + (6 + share) * lap), glm::mix(there, back, share)), 1e-3);
+  }
+}
+
+TEST_F(CameraTest, followEndsWhereItsWalkerStops) {
+  const Scene scene =
+      herdOf(1, {.kind = Spawn::Kind::grid}, {.kind = Goal::Kind::point, .target = {30, 40}, .speed = 2});
+  const Crowd crowd = crowdOf(device(), incline(200, 0), scene);
+  EXPECT_LT(glm::distance(viewOf(scene, crowd, 10).target, glm::vec3(12, 0.35f, 16)), 1e-3f);
+  EXPECT_LT(glm::distance(viewOf(scene, crowd, 1000).target, glm::vec3(30, 0.35f, 40)), 1e-3f);
+}
+
+// Three tenths of the herd walk behind the one that is followed, in the middle of its row; on ground that is
+// too narrow for a square of agents too.
+TEST_F(CameraTest, followIsInTheMiddleOfTheHerd) {
+  for (const float width : {700.0f, 70.0f}) {
+    const Scene scene = herdOf(2500, {.kind = Spawn::Kind::lanes}, {.kind = Goal::Kind::cross});
+    Heightfield terrain = incline(2000, 0);
+    terrain.spacingX = width;
+    const Crowd crowd = crowdOf(device(), terrain, scene);
+    const View view = viewOf(scene, crowd, 0);
+    const HerdState state = crowd.download(0);
+    size_t behind = 0, left = 0;
+    for (size_t i = 0; i < state.agents; ++i) {
+      const float* body = &state.body[i * shared::BODY_STRIDE * 4];
+      const float x = shared::tileX(body[3]) * shared::TILE_SIZE + body[0];
+      const float z = shared::tileZ(body[3]) * shared::TILE_SIZE + body[2];
+      behind += z < view.target.z;
+      left += x > view.target.x;
+    }
+    // Its own row of 50 or 24 begins 750 agents on; a lane is 50 or 105 agents.
+    EXPECT_NEAR(double(behind), 775, 25) << width;
+    EXPECT_NEAR(double(left), 1250, 105) << width;
+  }
+}
+
+// Ground that rises behind the walker more steeply than the camera looks down lifts the camera: half a metre
+// of air under the first two thirds of its line of sight, and no more.
+TEST_F(CameraTest, followLooksOverGroundThatRises) {
+  const Heightfield terrain = incline(400, 0.8f);
+  const Scene scene = herdOf(1, {.kind = Spawn::Kind::grid}, {.kind = Goal::Kind::none});
+  const Crowd crowd = crowdOf(device(), terrain, scene);
+  const View view = viewOf(scene, crowd, 0);
+  EXPECT_NEAR(view.target.y, 0.35f, 1e-4f);
+  float least = 1e9f;
+  for (float t = 0; t <= 2.0f / 3; t += 1.0f / 48) {
+    const glm::vec3 at = glm::mix(view.eye, view.target, t);
+    least = std::min(least, at.y - terrain.at(at.x, at.z));
+  }
+  EXPECT_NEAR(least, 0.5f, 1e-3f);
+}
+
+// In a valley whose sides rise by 0.5 the mean of 13 points within 3 m is 0.5 (4 sin 60 deg 3 m + 4 1.5 m)
+// / 13.
+TEST_F(CameraTest, followGlidesOverTheMeanOfTheGround) {
+  Heightfield terrain;
+  terrain.columns = 2;
+  terrain.rows = 3;
+  terrain.spacingX = 200;
+  terrain.spacingZ = 100;
+  terrain.heights = {50, 50, 0, 0, 50, 50};
+  Scene scene = herdOf(1, {.kind = Spawn::Kind::grid}, {.kind = Goal::Kind::none});
+  scene.camera.distance = 10;
+  const Crowd crowd = crowdOf(device(), terrain, scene);
+  const double mean = 0.5 * (4 * std::sqrt(0.75) * 3 + 4 * 1.5) / 13;
+  EXPECT_NEAR(double(viewOf(scene, crowd, 0).target.y), mean + 0.35, 1e-4);
+}
+
+// The mean height that the camera glides over says nothing of a cliff's edge.
+TEST_F(CameraTest, followIsNeverInTheGround) {
+  Heightfield terrain;
+  terrain.columns = terrain.rows = 129;
+  terrain.spacingX = terrain.spacingZ = 0.5f;
+  for (uint32_t z = 0; z < 129; ++z)
+    for (uint32_t x = 0; x < 129; ++x) terrain.heights.push_back(x / 5 % 2 == z / 5 % 2 ? 15.0f : -15.0f);
+  const Scene scene = herdOf(1, {.kind = Spawn::Kind::lanes}, {.kind = Goal::Kind::cross});
+  const Crowd crowd = crowdOf(device(), terrain, scene);
+  for (double seconds = 0; seconds < 100; seconds += 0.1) {
+    const View view = viewOf(scene, crowd, seconds);
+    ASSERT_GT(view.eye.y, terrain.at(view.eye.x, view.eye.z) + 0.19f) << seconds;
+  }
 }
 
 }  // namespace

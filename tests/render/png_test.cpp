@@ -6,6 +6,7 @@
 #include <fstream>
 #include <random>
 
+#include "render/png.h"
 #include "scratch_folder.h"
 #include "skitter/error.h"
 #include "skitter/image.h"
@@ -33,20 +34,28 @@ std::string faultOf(const std::filesystem::path& file, uint32_t width, uint32_t 
   return "no error";
 }
 
+void expectHolds(const std::filesystem::path& file, uint32_t width, uint32_t height,
+                 const std::vector<uint8_t>& rgba) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  ASSERT_TRUE(png_image_begin_read_from_file(&image, file.c_str())) << image.message;
+  ASSERT_EQ(image.width, width);
+  ASSERT_EQ(image.height, height);
+  image.format = PNG_FORMAT_RGBA;
+  std::vector<uint8_t> read(PNG_IMAGE_SIZE(image));
+  ASSERT_TRUE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr)) << image.message;
+  for (size_t i = 0; i < rgba.size(); ++i) ASSERT_EQ(read[i], i % 4 == 3 ? 255 : rgba[i]) << "byte " << i;
+}
+
 TEST(Png, holdsTheColoursItWasGiven) {
   const ScratchFolder folder;
   for (const auto& [width, height] : {std::pair{1u, 1u}, {7u, 3u}, {64u, 33u}}) {
     const std::vector<uint8_t> rgba = noise(width, height);
     writePng(folder / "a.png", width, height, rgba);
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    ASSERT_TRUE(png_image_begin_read_from_file(&image, (folder / "a.png").c_str())) << image.message;
-    ASSERT_EQ(image.width, width);
-    ASSERT_EQ(image.height, height);
-    image.format = PNG_FORMAT_RGBA;
-    std::vector<uint8_t> read(PNG_IMAGE_SIZE(image));
-    ASSERT_TRUE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr)) << image.message;
-    for (size_t i = 0; i < rgba.size(); ++i) ASSERT_EQ(read[i], i % 4 == 3 ? 255 : rgba[i]) << "byte " << i;
+    expectHolds(folder / "a.png", width, height, rgba);
+    const std::string small = render::pngOf(width, height, rgba, render::PngEffort::small);
+    std::ofstream(folder / "b.png", std::ios::binary) << small;
+    expectHolds(folder / "b.png", width, height, rgba);
   }
 }
 

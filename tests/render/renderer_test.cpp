@@ -2,10 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "gpu/submit.h"
-#include "shared/records.h"
+#include "render/mesh.h"
+#include "skitter/records.h"
 #include "support/gpu_fixture.h"
 
 namespace skitter::test {
@@ -50,8 +53,10 @@ struct Stage {
   gpu::Context& context;
 
   Stage(Device& device, const Scene& s, uint32_t width, uint32_t height)
+      : Stage(device, s, s.loadTerrain(), width, height) {}
+  Stage(Device& device, const Scene& s, const Heightfield& ground, uint32_t width, uint32_t height)
       : scene(s),
-        terrain(s.loadTerrain()),
+        terrain(ground),
         crowd(device, terrain, scene),
         renderer(device, crowd, width, height),
         context(device.context()) {}
@@ -144,6 +149,35 @@ TEST_P(RendererTest, aSpiderIsWhereItsBonesAre) {
   EXPECT_LT(differing(with, without), size_t(width) * height / 3);
 }
 
+// Equal herds share pages. They are drawn where herds that differ are, in other shades alone.
+TEST_P(RendererTest, equalHerdsAreWhereOthersAre) {
+  Scene scene = smallScene(3);
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 3, .centre = {-6, 0}};
+  scene.herds[0].goal.kind = Goal::Kind::none;
+  scene.herds.resize(2, scene.herds[0]);
+  scene.herds[1].agents = 4;
+  scene.herds[1].spawn.centre = {6, 0};
+  Scene differ = scene;
+  differ.herds[1].keys = 5;  // which its controller does not read
+  Stage equal(device(), scene, 320, 180), other(device(), differ, 320, 180);
+  Stage none(device(), smallScene(0), 320, 180);
+  const View view{.eye = {0, 9, -16}, .target = {0, 1, 0}};
+  equal.tick(1);
+  other.tick(1);
+  const Picture ground = none.draw(view), equals = equal.draw(view), others = other.draw(view);
+  // Pixels of the left herd, of the right one, and those that only one picture has of an agent.
+  int left = 0, right = 0, odd = 0;
+  for (int y = 0; y < 180; ++y)
+    for (int x = 0; x < 320; ++x) {
+      const bool here = equals.at(x, y) != ground.at(x, y), there = others.at(x, y) != ground.at(x, y);
+      (x < 160 ? left : right) += here && there;
+      odd += here != there;
+    }
+  EXPECT_GT(left, 300);
+  EXPECT_GT(right, 300);
+  EXPECT_LT(odd, (left + right) / 50);
+}
+
 TEST_P(RendererTest, theSamePictureTwiceAndAnotherWhenAgentsMove) {
   Stage stage(device(), smallScene(70), 200, 120);
   stage.tick(1);
@@ -154,20 +188,197 @@ TEST_P(RendererTest, theSamePictureTwiceAndAnotherWhenAgentsMove) {
   EXPECT_GT(differing(first, stage.draw(view)), 100u);
 }
 
+// Ground of half a metre a sample, its first sample where noise of as many columns and rows has it.
+Heightfield groundOf(uint32_t columns, uint32_t rows, const std::function<float(float, float)>& heightOf) {
+  Heightfield field{
+      .name = "made", .columns = columns, .rows = rows, .spacingX = 0.5f, .spacingZ = 0.5f, .heights = {}};
+  for (uint32_t z = 0; z < rows; ++z)
+    for (uint32_t x = 0; x < columns; ++x) field.heights.push_back(heightOf(float(x), float(z)));
+  return field;
+}
+
+// How much neighbouring pixels differ, to the right and downwards.
+glm::dvec2 roughness(const Picture& picture) {
+  glm::dvec2 sum(0);
+  for (int y = 0; y + 1 < int(picture.height); ++y)
+    for (int x = 0; x + 1 < int(picture.width); ++x)
+      sum += glm::dvec2(std::abs(picture.at(x + 1, y).g - picture.at(x, y).g),
+                        std::abs(picture.at(x, y + 1).g - picture.at(x, y).g));
+  return sum / double(picture.width * picture.height);
+}
+
+// A wall of 76 degrees, seen at a right angle: detail is as long along the slope as across it.
+TEST_P(RendererTest, groundIsAsDetailedOnAWallAsAcrossIt) {
+  const Heightfield wall = groundOf(65, 65, [](float x, float) { return -2.0f * x; });
+  Stage stage(device(), smallScene(0), wall, 200, 200);
+  const glm::vec3 outward = glm::normalize(glm::vec3(4, 1, 0)), middle(0, -64, 0);
+  for (const float distance : {1.5f, 4.0f}) {
+    const glm::dvec2 rough =
+        roughness(stage.draw({.eye = middle + distance * outward, .target = middle, .fieldOfView = 0.8f}));
+    EXPECT_GT(rough.x, 0.5) << distance;
+    EXPECT_NEAR(rough.y / rough.x, 1, 0.3) << distance;
+  }
+}
+
+// Beyond its edge the terrain goes on as a terrain would that is its own mirror image.
+TEST_P(RendererTest, groundGoesOnMirroredBeyondItsEdge) {
+  const auto hills = [](float x, float z) {
+    return 2.5f * std::sin(0.31f * x + 0.2f * z) + 1.5f * std::sin(0.17f * z - 0.4f * x);
+  };
+  const Heightfield half = groundOf(65, 65, hills);
+  const Heightfield whole =
+      groundOf(65, 129, [&](float x, float z) { return hills(x, z < 64 ? z : 128 - z); });
+  Stage edged(device(), smallScene(0), half, 200, 120), going(device(), smallScene(0), whole, 200, 120);
+  const glm::vec3 shift(half.originX() - whole.originX(), 0, half.originZ() - whole.originZ());
+  const View view{.eye = {2, 9, 4}, .target = {0, 1, 20}};  // the edge is at z = 16
+  const Picture mirrored = edged.draw(view),
+                expected = going.draw({.eye = view.eye - shift, .target = view.target - shift});
+  double apart = 0;
+  for (size_t i = 0; i < mirrored.rgba.size(); ++i) apart += std::abs(mirrored.rgba[i] - expected.rgba[i]);
+  // The hills' own shadows differ: a mirror image casts none.
+  EXPECT_LT(apart / double(mirrored.rgba.size()), 3);
+}
+
+// Timed, crowd, terrain and sky are drawn one rendering after the other instead of in one.
+TEST_P(RendererTest, timingAPictureDoesNotChangeIt) {
+  Stage stage(device(), smallScene(40), 200, 120);
+  stage.tick(1);
+  const View view = viewOf(stage.scene, stage.crowd, 0);
+  const Picture plain = stage.draw(view);
+  EXPECT_TRUE(stage.renderer.stageTimes().empty());
+  stage.renderer.timeStages(true);
+  EXPECT_EQ(differing(plain, stage.draw(view)), 0u);
+  if (!context().timestamps()) return;
+  std::vector<std::string> passes;
+  for (const StageTime& time : stage.renderer.stageTimes()) {
+    passes.push_back(time.stage);
+    EXPECT_GE(time.milliseconds, 0) << time.stage;
+  }
+  passes.resize(5);  // edges are smoothed by a pass only where there are no samples to resolve
+  EXPECT_THAT(passes, ::testing::ElementsAre("cull", "shadow", "crowd", "terrain", "sky"));
+}
+
+TEST_P(RendererTest, whatIsDrawnOverKeepsThePictureAroundIt) {
+  Stage stage(device(), smallScene(20), 200, 120);
+  stage.tick(1);
+  const View view = viewOf(stage.scene, stage.crowd, 0);
+  const Picture without = stage.draw(view);
+  const auto red = [](VkCommandBuffer cmd) {
+    const vk::ClearAttachment colour{.aspectMask = vk::ImageAspectFlagBits::eColor,
+                                     .clearValue = {vk::ClearColorValue(std::array{1.0f, 0.0f, 0.0f, 1.0f})}};
+    vk::CommandBuffer(cmd).clearAttachments(colour, vk::ClearRect{{{10, 20}, {30, 40}}, 0, 1});
+  };
+  gpu::submitAndWait(stage.context, [&](vk::CommandBuffer cmd) { stage.renderer.record(cmd, view, red); });
+  const Picture with{200, 120, stage.renderer.download()};
+  EXPECT_EQ(differing(without, with), 30u * 40u);
+  EXPECT_EQ(with.at(10, 20), glm::ivec3(255, 0, 0));
+  EXPECT_EQ(with.at(39, 59), glm::ivec3(255, 0, 0));
+}
+
+// Pixels that are darker than without agents, though no agent is that dark, and how dark their median is.
+struct Darkness {
+  int pixels = 0;
+  double share = 1;
+};
+Darkness darkness(const Picture& with, const Picture& without) {
+  std::vector<double> shares;
+  for (uint32_t y = 0; y < with.height; ++y)
+    for (uint32_t x = 0; x < with.width; ++x) {
+      const glm::ivec3 a = with.at(int(x), int(y)), b = without.at(int(x), int(y));
+      if (a.r < b.r - 15 && a.r > b.r / 4 && a.g < b.g && a.g > b.g / 4) shares.push_back(double(a.g) / b.g);
+    }
+  if (shares.empty()) return {};
+  std::nth_element(shares.begin(), shares.begin() + shares.size() / 2, shares.end());
+  return {int(shares.size()), shares[shares.size() / 2]};
+}
+
 // Shadows are part of what ties a foot to the ground: there must be some, darker than the ground without.
 TEST_P(RendererTest, agentsCastShadows) {
   Stage stage(device(), smallScene(1), 160, 160), empty(device(), smallScene(0), 160, 160);
   stage.tick(1);
   const glm::vec3 body = bodyOf(stage.crowd.download(0));
   const View above{.eye = body + glm::vec3(0, 7, -0.1f), .target = body, .fieldOfView = 0.9f};
-  const Picture with = stage.draw(above), without = empty.draw(above);
-  int darker = 0;
-  for (int y = 0; y < 160; ++y)
-    for (int x = 0; x < 160; ++x) {
-      const glm::ivec3 a = with.at(x, y), b = without.at(x, y);
-      darker += a.r < b.r - 15 && a.r > b.r / 4 && a.g < b.g && a.g > b.g / 4;
+  EXPECT_GT(darkness(stage.draw(above), empty.draw(above)).pixels, 100);
+}
+
+// From afar and from near, and across the light, along which the cascades end where the eye is.
+TEST_P(RendererTest, shadowsAreAsDarkFromAnyDistance) {
+  Stage stage(device(), smallScene(1), 160, 160), empty(device(), smallScene(0), 160, 160);
+  stage.tick(1);
+  const glm::vec3 body = bodyOf(stage.crowd.download(0));
+  Darkness first;
+  for (const float distance : {2.0f, 2.8f, 4.0f, 5.6f, 8.0f}) {
+    const View view{
+        .eye = body + distance * glm::vec3(-0.7f, 0.7f, 0), .target = body, .fieldOfView = 2.0f / distance};
+    const Darkness found = darkness(stage.draw(view), empty.draw(view));
+    if (first.pixels == 0) first = found;
+    EXPECT_NEAR(found.share, first.share, 0.05) << "from " << distance << " m";
+    EXPECT_NEAR(found.pixels, first.pixels, 0.15 * first.pixels) << "from " << distance << " m";
+  }
+  EXPECT_GT(first.pixels, 1000);
+}
+
+// In how many parts, of pixels that touch each other, two pictures differ.
+int partsThatDiffer(const Picture& a, const Picture& b) {
+  const auto width = int(a.width), height = int(a.height);
+  std::vector<char> open(size_t(width * height));
+  for (size_t i = 0; i < open.size(); ++i) {
+    const auto apart = [&](size_t c) { return std::abs(a.rgba[4 * i + c] - b.rgba[4 * i + c]); };
+    open[i] = apart(0) + apart(1) + apart(2) > 8;
+  }
+  int parts = 0;
+  for (int start = 0; start < width * height; ++start) {
+    if (!open[size_t(start)]) continue;
+    ++parts;
+    std::vector<int> reached{start};
+    open[size_t(start)] = false;
+    while (!reached.empty()) {
+      const int x = reached.back() % width, y = reached.back() / width;
+      reached.pop_back();
+      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
+        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u)
+          if (open[size_t(v * width + u)]) {
+            open[size_t(v * width + u)] = false;
+            reached.push_back(v * width + u);
+          }
     }
-  EXPECT_GT(darker, 100);
+  }
+  return parts;
+}
+
+// However few pixels an agent has, its legs hang on it. From so far away that shadows have faded.
+TEST_P(RendererTest, thinLegsAreDrawnInOnePiece) {
+  for (const uint32_t size : {900u, 600u, 450u, 330u, 160u}) {  // 22 to 125 mm a pixel
+    Stage stage(device(), smallScene(1), size, size), empty(device(), smallScene(0), size, size);
+    stage.tick(30);
+    const glm::vec3 body = bodyOf(stage.crowd.download(0));
+    const View view{
+        .eye = body + 2000.0f * glm::vec3(0.1f, 0.7f, 0.7f), .target = body, .fieldOfView = 0.01f};
+    EXPECT_EQ(partsThatDiffer(stage.draw(view), empty.draw(view)), 1) << size;
+  }
+}
+
+// Pixels that an agent covers at levels of detail that follow each other, either side of where they change.
+TEST_P(RendererTest, levelsOfDetailCoverAlike) {
+  constexpr uint32_t size = 240;
+  Stage stage(device(), smallScene(1), size, size), empty(device(), smallScene(0), size, size);
+  stage.tick(30);
+  const glm::vec3 body = bodyOf(stage.crowd.download(0));
+  const double radius = render::makeMesh(stage.crowd.rig(0)).radius;
+  const auto covered = [&](double pixels) {
+    // From so far away that shadows have faded.
+    const double away = 2000, fieldOfView = 2 * std::atan(0.5 * size * radius / (pixels * away));
+    const View view{.eye = body + float(away) * glm::normalize(glm::vec3(0.1f, 0.5f, 0.7f)),
+                    .target = body,
+                    .fieldOfView = float(fieldOfView)};
+    return double(differing(stage.draw(view), empty.draw(view)));
+  };
+  for (size_t level = 0; level < render::kLodPixels.size(); ++level) {
+    const double finer = covered(1.01 * render::kLodPixels[level]),
+                 coarser = covered(0.99 * render::kLodPixels[level]);
+    // The coarser one is drawn 2 % smaller, so covers 4 % less.
+    EXPECT_NEAR(coarser / finer, 0.96, 0.1) << "level " << level << " covers " << finer << " pixels";
+  }
 }
 
 TEST_P(RendererTest, anySizeIsDrawn) {

@@ -3,8 +3,12 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <thread>
 
+#include "render/child.h"
 #include "scratch_folder.h"
 #include "skitter/error.h"
 #include "skitter/video.h"
@@ -58,6 +62,20 @@ TEST(Video, holdsEveryFrameAndPadsOddSizes) {
   }
 }
 
+// Half a second, whatever the pictures: every second one is left out, each is shown four times, one in three
+// twice.
+TEST(Video, playsAtTheRateOfItsPictures) {
+  const ScratchFolder folder;
+  for (const auto& [pictures, rate] : {std::pair{30, 60.0}, {4, 7.5}, {11, 22.5}, {500, 1000.0}}) {
+    VideoWriter video(folder / "a.mp4", 64, 36, 30, rate);
+    for (int i = 0; i < pictures; ++i) video.write(frame(64, 36, uint8_t(i)));
+    video.finish();
+    const std::string frames = probed(folder / "a.mp4").substr(std::string("h264,64,36,yuv420p,").size());
+    EXPECT_NEAR(std::stod(frames), 30 * pictures / rate, 1)
+        << pictures << " pictures, " << rate << " a second";
+  }
+}
+
 TEST(Video, leavesNothingWhenItIsNotFinished) {
   const ScratchFolder folder;
   {
@@ -99,6 +117,47 @@ TEST(Video, reportsAnEncoderThatFailsWithoutSigpipe) {
   EXPECT_THAT(fault, HasSubstr("ffmpeg failed"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.mp4"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.mp4.part"));
+}
+
+// A program that goes on without end and has a child that does so too, whose process it tells.
+std::vector<std::string> hanging(const std::filesystem::path& told) {
+  return {"sh", "-c", "sleep 1000 & echo $! > \"$0\"; wait", told.string()};
+}
+
+bool runs(const std::filesystem::path& told) {
+  int process = 0;
+  std::ifstream(told) >> process;
+  EXPECT_GT(process, 0);
+  // A process that was killed stays until it is waited for.
+  std::ifstream status("/proc/" + std::to_string(process) + "/stat");
+  std::string number, name, state;
+  return bool(status >> number >> name >> state) && state != "Z";
+}
+
+TEST(Child, isKilledWithItsGroupWhenItHangs) {
+  const ScratchFolder folder;
+  const std::vector<std::byte> much(1 << 20);
+  for (const bool whileWriting : {true, false}) {
+    render::Child child(hanging(folder / "told"), folder / "output", std::chrono::milliseconds(500));
+    while (!std::filesystem::exists(folder / "told") || std::filesystem::is_empty(folder / "told"))
+      std::this_thread::yield();
+    if (whileWriting) {
+      EXPECT_FALSE(child.write(much));
+    }
+    EXPECT_FALSE(child.finish());
+    EXPECT_TRUE(child.hung());
+    while (runs(folder / "told")) std::this_thread::yield();
+    std::filesystem::remove(folder / "told");
+  }
+}
+
+TEST(Child, isNotHungWhileItsOutputGrows) {
+  const ScratchFolder folder;
+  render::Child child({"sh", "-c", "for i in 1 2 3 4 5 6 7 8; do echo $i >> \"$0\"; sleep 0.25; done",
+                       (folder / "output").string()},
+                      folder / "output", std::chrono::milliseconds(1500));
+  EXPECT_TRUE(child.finish());
+  EXPECT_FALSE(child.hung());
 }
 
 // In a process group of its own, so that the interrupt reaches what a terminal's Ctrl-C would reach.

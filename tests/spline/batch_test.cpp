@@ -2,8 +2,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <random>
 
-#include "cpu_reference/spline_tolerance.h"
+#include "cpu_reference/spline/tolerance.h"
 #include "gpu/buffer.h"
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
@@ -94,6 +95,17 @@ TEST_P(SplineBatchTest, WithoutArcLengthTheRestIsTheSame) {
 TEST_P(SplineBatchTest, TenThousandRoundsCostNoPrecision) {
   SplineRun run = randomRun({.points = 5, .closed = true}, 65, 700);
   for (SplineClock& clock : run.clocks) clock.activate(run.now - 10000.37 * float(clock.duration));
+  expectMatches(run);
+}
+
+// Where a round ends rounding decides which one it is, but not how far one has come.
+TEST_P(SplineBatchTest, RoundsAreCountedAtTheirTurn) {
+  SplineRun run = randomRun({.points = 5, .closed = true}, 1024, 750);
+  std::mt19937_64 random(751);
+  for (SplineClock& clock : run.clocks) {
+    const double rounds = double(random() % 10000 + 1), off = std::ldexp(1.0, -int(random() % 40));
+    clock.activate(run.now - clock.duration * (rounds + (random() % 2 ? off : -off)));
+  }
   expectMatches(run);
 }
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cpu_reference/spline_tolerance.h"
+#include "cpu_reference/spline/tolerance.h"
 
 namespace skitter::test {
 namespace {

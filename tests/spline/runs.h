@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cpu_reference/spline.h"
+#include "cpu_reference/spline/spline.h"
 #include "skitter/spline.h"
 
 namespace skitter::test {

@@ -45,6 +45,7 @@ struct Clip {
   std::vector<uint8_t> stance;  // [frame][leg], 1: the foot stands
 
   static constexpr size_t maxFrames = 4096;
+  static constexpr double maxSeconds = 86400;
 
   size_t frames() const { return times.size(); }
 };
@@ -64,6 +65,10 @@ struct ClipSet {
 
   // Throws Error(input) that lists the clips there are. Of a name that is shared, the first.
   const Clip& clip(const std::string& clipName) const;
+  // Those to go about with: clips that move forward, the slowest gait first, and one that stands. Names say
+  // which: walk, trot, run, gallop and the like before all others, idle before others that stand, and never
+  // an attack, a jump, a death and the like.
+  std::vector<const Clip*> locomotion() const;
 };
 
 // A stretch of a clip that becomes a clip of its own: some files hold idle, walk and death in one take.
@@ -71,6 +76,8 @@ struct ClipCut {
   std::string clip;         // of the file, the first of that name
   std::string name;         // of the new one
   double from = 0, to = 0;  // seconds, 0 <= from < to <= the clip's
+
+  bool operator==(const ClipCut&) const = default;
 };
 
 // The clips of a rig's file, a sidecar or a model, and after them the cuts. `rig` is what loadRig or

@@ -5,18 +5,26 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "skitter/device.h"
 #include "skitter/heightfield.h"
+#include "skitter/records.h"
 #include "skitter/rig.h"
 #include "skitter/scene.h"
 
 namespace skitter {
 
-// Another shader for a stage: SPIR-V of shaders/stages/<stage>.comp changed, in both load paths.
+// Another shader for a stage: a changed copy of shaders/stages/<stage>.comp, compiled once for each load
+// path, of which the device takes one, with the defines that engine/crowd/CMakeLists.txt has for it:
+//   options="-V --target-env vulkan1.3 -Ishaders -Iengine/include"
+//   glslangValidator $options -DLOAD4_TEXEL=1 changed.comp -o texel.spv
+//   glslangValidator $options -DLOAD4_TEXEL=0 changed.comp -o storage.spv
+// It keeps the bindings, push constants and specialisation constants. The bytes are read while the crowd is
+// made.
 struct StageShader {
   std::string stage;
   std::span<const uint8_t> texel, storage;
@@ -29,7 +37,7 @@ struct CrowdOptions {
                             // in a crowd of at most 256, of one in 64 in a larger one
   bool feet = false;        // keep where feet should be and are, as measure and footfalls have it, though no
                             // later tick needs it: else they may have no foot and tip records
-  uint32_t footfalls = 0;   // keep so many touchdowns of a tick, a page of the herd, at most one a
+  uint32_t footfalls = 0;   // keep so many touchdowns of a tick, a page of records, at most one a
                             // leg; 0: none
   bool sleep = false;  // who has stood still for seconds is passed over, without a breath, until its goal or
                        // the ground moves: standing crowds cost next to nothing
@@ -39,7 +47,7 @@ struct CrowdOptions {
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
 };
 
-// How well agents moved in the ticks in which they were watched (docs/stages.md, measure, defines each).
+// How well agents moved in the ticks in which they were watched (docs/stages/measure.md defines each).
 // Lengths in leg lengths. A figure without a sample is 0.
 struct Fidelity {
   uint64_t agentTicks = 0;  // ticks watched, of all agents
@@ -55,9 +63,10 @@ struct Fidelity {
   double crossing = 0;                // share of ticks in which a leg crosses its neighbour, seen from above
   double reachErrorP99 = 0;           // 99th percentile distance of a foot from its target
   double reachErrorMost = 0;
-  double limitViolation = 0;   // largest violation of a joint limit, radians
-  double limitViolations = 0;  // share of leg-ticks with more than 1e-4 rad of it
-  double footJerk = 0;         // normalised jerk over windows of 0.4 s in which the foot moves
+  // Only herds whose controller keeps the rig's limits count, adaptive and loop; none where there is none.
+  std::optional<double> limitViolation;   // largest violation of a joint limit, radians, at most pi
+  std::optional<double> limitViolations;  // share of leg-ticks with more than 1e-4 rad of it
+  double footJerk = 0;                    // normalised jerk over windows of 0.4 s in which the foot moves
   double bodyJerk = 0;
   double margin = 0;         // mean static stability margin
   double marginLeast = 0;    // negative: the centre was outside the support polygon
@@ -80,17 +89,17 @@ struct AgentSample {
   uint32_t first = 0, stride = 1;
 };
 
-// Records of a herd as the host sees them, agent after agent: the layouts are those of
-// shaders/shared/records.h. For tools, traces and validation.
-struct HerdState {
-  uint64_t tick = 0;    // the last one made
-  uint32_t agents = 0;  // that are here
-  AgentSample sample;   // which of the herd they are
-  std::vector<float> goal, steer, body, gait, step, chain;
-  std::vector<float> foot, tip, pose, metric;  // empty where CrowdOptions left them out, like watch
-  std::vector<float> arc, miss, play, start, fix, spring;  // empty where the controller has none
-  uint32_t watchEvery = 1;                                 // measure watches one agent of this many at a time
-  std::vector<float> watch;  // of the herd's agent g at place g / watchEvery, if it is being watched; whole
+// Records of a herd as the host sees them, agent after agent and of an agent leg after leg (skitter/records.h
+// has the layouts). Empty are those that CrowdOptions left out or no stage of the herd has. For tools, traces
+// and validation.
+struct HerdState : ForRecords<std::vector<float>> {
+  uint64_t tick = 0;        // the last one made
+  uint32_t agents = 0;      // that are here
+  AgentSample sample;       // which of the herd they are
+  uint32_t watchEvery = 1;  // measure watches one agent of this many at a time
+  // Equal herds take turns as one, the herd's agent g as number watchOffset + g; number n that is being
+  // watched has its records at place n / watchEvery of `watch`, which is of all agents.
+  uint32_t watchOffset = 0;
   std::vector<Footfall> footfalls;  // of the last tick and of all agents, by agent and leg
   bool footfallsKept = false;       // they are all here: CrowdOptions::footfalls left room for them
   bool watched = false;  // the last tick's gait looked at the ground, because the heights were edited lately
@@ -98,16 +107,19 @@ struct HerdState {
 };
 
 // The touchdowns of the last tick on the device, for shaders of the caller's: FOOTFALL_STRIDE vec4 each
-// (shaders/shared/records.h), min(count, room) of them in any order. Owned by the crowd, rewritten by each
-// recorded tick; both buffers can be read from as storage buffers.
+// (engine/include/skitter/records.h), min(count, room) of them in any order. Equal herds share buffers, and
+// events number agents through all of them. Owned by the crowd, rewritten by each recorded tick; both buffers
+// can be read from as storage buffers.
 struct FootfallBuffer {
   VkBuffer events = VK_NULL_HANDLE;
   VkBuffer counters = VK_NULL_HANDLE;  // holds count, a uint32
   uint32_t countOffset = 0;            // bytes
   uint32_t room = 0;
+  uint32_t firstAgent = 0, agents = 0;  // the herd's, of those that events number
 };
 
-// Device memory of one kind of records, of all of a herd's pages.
+// Device memory of one kind of records, of all of a herd's agents: its share of the pages, where equal herds
+// have them in common.
 struct MemoryUse {
   std::string name;
   uint64_t bytes = 0;
@@ -118,14 +130,15 @@ struct StageTime {
   double milliseconds = 0;  // of the last tick that has finished on the device
 };
 
-// The herds on one terrain, living on one device. Not thread-safe; one crowd may be recorded while another
-// is.
+// The herds on one terrain, living on one device. Herds that are equal but for agents, spawn and goal share
+// pipelines and dispatches, so that any number of them costs what one of as many agents does. Not
+// thread-safe; one crowd may be recorded while another is.
 class Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
-  // cannot be (an unknown rig or controller, legs of an adaptive herd above 100 m, a terrain that reaches
-  // beyond 4 km from the origin) and, before any agent is made, Error(device) when memory does not suffice
-  // (as DeviceLimits::availableBytes, but now).
+  // cannot be (an unknown rig or controller, more than 100 herds that differ, legs of an adaptive herd above
+  // 100 m, a terrain that reaches beyond 4 km from the origin) and, before any agent is made, Error(device)
+  // when memory does not suffice (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // With rigs that the caller made, one a herd, in place of those that the scene names.
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,
@@ -145,8 +158,9 @@ class Crowd {
   // [z0, z0 + rows), row-major, metres relative to the terrain's mid height as made. Takes effect in the next
   // recorded tick, which carries the samples in its command buffer; `heights` may go at once. A foot in the
   // air whose landing or way is touched is aimed anew in the same swing, a foot whose ground moved steps
-  // anew; for two seconds after an edit gait looks at the ground under every foot for that (docs/stages.md).
-  // The picture's ground follows, its baked shadows do not. Throws Error(input) as Heightfield::edit does.
+  // anew; for two seconds after an edit gait looks at the ground under every foot for that
+  // (docs/stages/gait.md). The picture's ground follows, its baked shadows do not. Throws Error(input) as
+  // Heightfield::edit does.
   void editHeights(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
   const Heightfield& terrain() const;  // as edited
 

@@ -63,12 +63,14 @@ struct DeviceLimits {
   uint32_t maxComputeWorkGroupCountX = 0;
   uint32_t maxPushConstantsSize = 0;
   uint64_t heapBytes = 0;  // the largest device-local heap, as reported (lavapipe says 2 GiB and gives more)
-  uint64_t availableBytes = 0;  // what can be allocated now: free RAM on a CPU device, the memory budget
-                                // where the driver tells it, the heap otherwise
-  double timestampPeriod = 0;   // nanoseconds a timestamp tick
-  uint32_t timestampBits = 0;   // of a timestamp that count; 0 where the queue has none
-  bool texelRgba32f = false;    // R32G32B32A32_SFLOAT uniform texel buffers
-  bool sampledR32f = false;     // R32_SFLOAT sampled images: heightfields need them
+  uint64_t availableBytes = 0;  // what can be allocated now: free RAM on a CPU device (the machine's, or less
+                                // where a control group limits it), the memory budget where the driver tells
+                                // it, the heap otherwise
+  std::string availableOf = {};  // which of these, for people: "machine", "cgroup /sys/fs/cgroup"
+  double timestampPeriod = 0;    // nanoseconds a timestamp tick
+  uint32_t timestampBits = 0;    // of a timestamp that count; 0 where the queue has none
+  bool texelRgba32f = false;     // R32G32B32A32_SFLOAT uniform texel buffers
+  bool sampledR32f = false;      // R32_SFLOAT sampled images: heightfields need them
 };
 
 // Optional features. Those present are enabled on a device that create() makes; on an adopted device all are

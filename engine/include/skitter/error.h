@@ -18,6 +18,11 @@ class Error : public std::runtime_error {
 
   Error(Kind kind, const std::string& message) : std::runtime_error(inOneLine(message)), kind_(kind) {}
   Kind kind() const { return kind_; }
+  // The message without the name of the file or object, where it begins with this one.
+  std::string detail(const std::string& name) const {
+    const std::string message = what(), start = inOneLine(name + ": ");
+    return message.starts_with(start) ? message.substr(start.size()) : message;
+  }
 
  private:
   // A name out of a file may hold anything.

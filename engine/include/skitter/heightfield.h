@@ -27,6 +27,8 @@ struct Heightfield {
   float extentZ() const { return spacingZ * static_cast<float>(rows - 1); }
   // Bilinear height at world (x, z), for spawning, cameras and tools; the simulation samples on the device.
   float at(float x, float z) const;
+  // The same, but beyond its edge the ground goes on as its mirror image, as it does in pictures.
+  float seenAt(float x, float z) const;
   // Replaces the samples of columns [x0, x0 + columns) and rows [z0, z0 + rows) by `samples`, row-major,
   // metres. Throws Error(input) where the rectangle leaves the grid, `samples` has another size or one is not
   // finite.
@@ -52,6 +54,8 @@ Heightfield loadHeightfield(const std::filesystem::path& file, const Heightfield
 
 // Rolling ground made of value noise in octaves, with ridges; the same bits for the same arguments.
 struct TerrainNoise {
+  static constexpr int maxOctaves = 16;
+
   uint32_t columns = 513, rows = 513;
   float spacing = 0.5f;      // metres a sample
   float amplitude = 8.0f;    // metres, height of the largest hills

@@ -15,41 +15,16 @@
 #include <vector>
 
 #include "skitter/device.h"
+#include "skitter/solver.h"
 
 // Inverse kinematics of many equal chains at once, on its own: N chains, N targets in, joints out. docs/ik.md
 // states the equations and their sources; angles are radians, lengths are in the caller's units.
 namespace skitter::ik {
 
-enum class Solver {
-  automatic,  // stretchAlign for free chains, activeSet for limited ones: what measures best
-  fabrik,
-  dissertationKeep,  // FABRIK as the dissertation has it: a joint outside its cone keeps its position,
-  dissertationEdge,  // or moves to the cone's closest edge
-  ccd,
-  transpose,
-  pseudoinverse,
-  dampedLeastSquares,
-  targetAttached,
-  twoBone,       // free chains of two bones
-  stretchAlign,  // free chains
-  activeSet,
-};
-inline constexpr std::array allSolvers = {Solver::automatic,
-                                          Solver::fabrik,
-                                          Solver::dissertationKeep,
-                                          Solver::dissertationEdge,
-                                          Solver::ccd,
-                                          Solver::transpose,
-                                          Solver::pseudoinverse,
-                                          Solver::dampedLeastSquares,
-                                          Solver::targetAttached,
-                                          Solver::twoBone,
-                                          Solver::stretchAlign,
-                                          Solver::activeSet};
-// "auto", "fabrik", "dissertation-keep", "dissertation-edge", "ccd", "transpose", "pseudoinverse", "dls",
-// "target-attached", "two-bone", "stretch-align", "active-set".
-const char* nameOf(Solver);
-std::optional<Solver> solverNamed(std::string_view);
+using skitter::allSolvers;
+using skitter::nameOf;
+using skitter::Solver;
+using skitter::solverNamed;
 
 // How far a bone may turn from its rest direction, in the frame that the bones before it carry along.
 struct Free {};
@@ -79,7 +54,9 @@ struct Bone {
 
 // The kind of chain that a batch solves: its base at 0, its axes the base's.
 struct Chain {
-  std::vector<Bone> bones;        // 1 to 15: 2 to 16 joints
+  static constexpr size_t maxBones = 15;
+
+  std::vector<Bone> bones;        // 1 to maxBones; joints are one more
   std::optional<glm::vec3> pole;  // to which side it should fold, where it may fold two ways
 
   bool isFree() const;                  // no bone is limited, nor may any twist
@@ -147,10 +124,12 @@ struct Span {
 };
 
 // N chains of one kind. Not thread-safe. Throws Error(input) for a chain or options that cannot be,
-// Error(device) when memory does not suffice. Chains are split over pages, so that any count fits the
-// device's bindings.
+// Error(device) when memory does not suffice. Chains are split over pages, so that any count up to maxChains
+// fits the device's bindings.
 class Batch {
  public:
+  static constexpr uint32_t maxChains = 1 << 24;
+
   Batch(Device&, const Chain&, uint32_t chains, const Options& = {});
   ~Batch();
   Batch(Batch&&) noexcept;
@@ -197,7 +176,7 @@ class Batch {
   // Start::previous and reports of the caller's, reset() before the first solve: reports carry a solver's
   // memory.
   struct Buffers {
-    Span targets, bases, joints, rotations, reports;
+    Span targets = {}, bases = {}, joints = {}, rotations = {}, reports = {};
   };
   void use(const Buffers&);
 

@@ -3,6 +3,7 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <vector>
@@ -37,10 +38,19 @@ class Renderer {
 
   // Records shadow map, terrain, crowd and sky after the crowd's tick in the same or an earlier submission.
   // The picture ends in image(), RGBA8 sRGB, ready to be copied from (TRANSFER_SRC).
-  void record(VkCommandBuffer commandBuffer, const View& view);
+  // `over`, if any, draws on top of it: it is called within dynamic rendering into one colour attachment of
+  // colourFormat and the picture's size, without depth, one sample a pixel.
+  void record(VkCommandBuffer commandBuffer, const View& view,
+              const std::function<void(VkCommandBuffer)>& over = {});
+  static constexpr VkFormat colourFormat = VK_FORMAT_R8G8B8A8_SRGB;
   VkImage image() const;
   uint32_t width() const;
   uint32_t height() const;
+
+  // Whether pictures recorded from now on are timed pass by pass, where the device has timestamps: at first
+  // they are not. Not free on software devices: each timestamp waits for what was drawn before it.
+  void timeStages(bool on);
+  std::vector<StageTime> stageTimes() const;  // of the last picture; waits for the device
 
   // Waits for the device; tightly packed RGBA8 rows, top row first.
   std::vector<uint8_t> download() const;

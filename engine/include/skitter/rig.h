@@ -19,17 +19,22 @@ struct Bone {
   glm::vec3 direction{0, 0, 1};       // r_i, unit, the rest direction
   float length = 0;                   // metres, > 0
   float coneHalfAngle = 3.14159265f;  // radians about r_i carried by R_(i-1); pi: unlimited
+
+  bool operator==(const Bone&) const = default;
 };
 
 // One limb: the chain of bones from its root to its foot (the end effector).
 struct Leg {
+  static constexpr size_t maxBones = 15;
+
   std::string name;         // e.g. "L1"
   int group = 0;            // legs of one group swing together; two groups never do
-  std::vector<Bone> bones;  // 1 to 15, root first
+  std::vector<Bone> bones;  // 1 to maxBones, root first
   glm::vec3 home{0};        // where the foot stands at rest
   float reach = 0;          // sum of the bone lengths
 
   const glm::vec3& root() const { return bones.front().start; }
+  bool operator==(const Leg&) const = default;
 };
 
 struct SkinVertex {
@@ -38,12 +43,16 @@ struct SkinVertex {
   glm::vec3 colour{1};               // linear RGB
   uint16_t bones[4] = {0, 0, 0, 0};  // into the pose palette: 0 the body, 1 + leg * maxBones + bone
   float weights[4] = {1, 0, 0, 0};   // sum to 1
+
+  bool operator==(const SkinVertex&) const = default;
 };
 
 // A skeleton, its skin, its legs and their limits; immutable once loaded.
 struct Rig {
+  static constexpr size_t maxLegs = 24;
+
   std::string name;
-  std::vector<Leg> legs;            // 1 to 24
+  std::vector<Leg> legs;            // 1 to maxLegs
   std::vector<std::string> groups;  // group names, in the order in which they step
   float legLength = 1;              // the longest reach: the unit of every gait length
   float bodyHeight = 0;             // metres, centre of the body above the ground at rest
@@ -55,6 +64,7 @@ struct Rig {
   int groupCount() const { return static_cast<int>(groups.size()); }
   int maxBones() const;  // the longest chain; shorter ones are padded in the palette
   int paletteSize() const { return 1 + legCount() * maxBones(); }
+  bool operator==(const Rig&) const = default;
 };
 
 // A sidecar (NAME.rig.json); or a model (.glb, .gltf) with its sidecar beside it or, failing that, with legs

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "skitter/clip.h"
+#include "skitter/controller.h"
 #include "skitter/heightfield.h"
+#include "skitter/solver.h"
 
 namespace skitter {
 
@@ -38,16 +40,18 @@ struct Goal {
 };
 
 struct Herd {
+  static constexpr uint32_t minKeys = 2, maxKeys = 8;
+
   std::string rig =
       "spider";  // "spider", a model (.glb, .gltf) or a sidecar (.rig.json), relative to the scene
-  std::string controller = "adaptive";
+  Controller controller = Controller::adaptive;
   // That clip and planted play and pose samples (docs/clip.md); empty: the cuts or, without any, all that
   // suit.
   std::vector<std::string> clips;
   std::vector<ClipCut> cuts;          // clips cut out of those of the file
-  uint32_t keys = 4;                  // key poses of controller pose, 2 to 8
-  std::string solver = "active-set";  // of the legs: docs/scene.md
-  std::string stepping = "gait";      // or "reach": legs step when out of reach, without a rhythm
+  uint32_t keys = 4;                  // key poses of controller pose, minKeys to maxKeys
+  Solver solver = Solver::activeSet;  // one of herdSolvers
+  Stepping stepping = Stepping::gait;
   uint32_t agents = 1000;
   Spawn spawn;
   Goal goal;
@@ -62,6 +66,10 @@ struct Camera {
 };
 
 struct Scene {
+  static constexpr size_t maxHerds = 1024;
+  static constexpr uint32_t maxAgents = 1 << 24;  // of all herds: records hold an agent's index as a float
+  static constexpr float maxCoordinate = 4096;  // metres from the origin: feet beyond are placed too coarsely
+
   std::string name = "built-in";
   std::variant<TerrainNoise, TerrainFile> terrain;
   std::vector<Herd> herds{Herd{}};

@@ -8,13 +8,16 @@
 namespace skitter {
 
 // An H.264 video (.mp4), encoded by the `ffmpeg` program. It is written as NAME.part and gets its name in
-// finish(); a writer that is destroyed before leaves nothing. ffmpeg does not hear a Ctrl-C at the terminal,
-// so that finish() still makes a playable file of the frames so far.
+// finish(); a writer that is destroyed before leaves nothing, and where ffmpeg fails, hangs or writes no
+// video, an earlier file of the name stays. ffmpeg does not hear a Ctrl-C at the terminal, so that finish()
+// still makes a playable file of the frames so far.
 class VideoWriter {
  public:
-  // Throws Error(input) when the file cannot be written or there is no ffmpeg. Odd sizes are padded to even
-  // ones.
-  VideoWriter(const std::filesystem::path& file, uint32_t width, uint32_t height, uint32_t framesPerSecond);
+  // `picturesPerSecond` of those given to write() last a second of the video; 0: as many as it has frames.
+  // Of more some are left out, of fewer some are repeated. Both rates at most 1000. Odd sizes are padded to
+  // even ones. Throws Error(input) when the file cannot be written or there is no ffmpeg.
+  VideoWriter(const std::filesystem::path& file, uint32_t width, uint32_t height, double framesPerSecond,
+              double picturesPerSecond = 0);
   ~VideoWriter();
   VideoWriter(VideoWriter&&) noexcept;
   VideoWriter& operator=(VideoWriter&&) noexcept;

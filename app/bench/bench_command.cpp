@@ -1,0 +1,220 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "app/bench/match_report.h"
+#include "app/commands.h"
+#include "app/common/files.h"
+#include "app/common/manifest.h"
+#include "app/common/progress.h"
+#include "app/common/scene_options.h"
+#include "app/common/signals.h"
+#include "app/common/values.h"
+#include "bench/crowd/contest.h"
+#include "bench/crowd/peaks.h"
+#include "bench/ik/machine.h"
+#include "crowd/controller.h"
+#include "crowd/stage.h"
+#include "skitter/error.h"
+
+namespace skitter::app {
+namespace {
+
+using nlohmann::ordered_json;
+using namespace bench;
+
+constexpr uint64_t mostRounds = 1000;
+constexpr uint32_t quickRounds = 3, quickWarmUp = 20;
+constexpr double quickTurn = 0.05;
+
+struct BenchOptions {
+  SceneOptions scene;
+  std::vector<double> agents = {1000, 10000, 100000};
+  std::vector<Controller> controllers = {Controller::adaptive, Controller::clip};
+  std::optional<uint64_t> rounds;
+  std::string json;
+  bool poses = false, quick = false, quiet = false;
+};
+
+// Figures of a slow build, or of a driver that is watched, are figures of nothing.
+void refuseSlowness() {
+#if defined(SKITTER_DEBUG_BUILD)
+  throw inputError("bench: this is a debug build, or one with sanitizers; configure with --preset release");
+#endif
+  for (const char* name : {"VK_INSTANCE_LAYERS", "VK_LOADER_LAYERS_ENABLE"}) {
+    const char* layers = std::getenv(name);
+    if (layers != nullptr && std::string(layers).find("validation") != std::string::npos)
+      throw inputError(fmt::format("bench: {} turns the validation layer on; unset it", name));
+  }
+}
+
+std::vector<std::string> devicesOf(const BenchOptions& options) {
+  if (options.scene.device != "all") return {options.scene.device.value_or("")};
+  std::vector<std::string> names;
+  for (const DeviceReport& report : listDevices())
+    if (report.suitable) names.push_back(fmt::format("{}", report.index));
+  return names;
+}
+
+ContestOptions contestOf(const BenchOptions& options, Controller controller) {
+  ContestOptions contest;
+  contest.crowd.measure = false;  // to judge is no part of animating
+  contest.crowd.timestamps = true;
+  contest.crowd.pose = options.poses || crowd::traitsOf(controller).playsClips;
+  contest.dt = options.scene.dt;
+  if (options.quick) {
+    contest.warmUp = quickWarmUp;
+    contest.rounds = quickRounds;
+    contest.turnSeconds = quickTurn;
+  }
+  if (options.rounds) contest.rounds = static_cast<uint32_t>(*options.rounds);
+  return contest;
+}
+
+// The measurements so far.
+struct Record {
+  Manifest manifest;
+  ordered_json devices = ordered_json::array();
+  uint64_t matches = 0, wanted = 0;
+};
+
+void write(const BenchOptions& options, const Record& record) {
+  if (options.json.empty()) return;
+  const ordered_json json = {{"devices", record.devices},
+                             {"matches", record.matches},
+                             {"matchesWanted", record.wanted},
+                             {"interrupted", record.matches < record.wanted}};
+  writeJson(options.json, json, record.manifest);
+}
+
+void benchDevice(const BenchOptions& options, const Heightfield& terrain, const std::string& name,
+                 Record& record) {
+  const auto leave = [&] {
+    write(options, record);
+    return interruptedAfter(record.matches, record.wanted, "matches");
+  };
+  std::optional<StopDeadline> opening(leave);
+  DeviceRequest request;
+  if (!name.empty()) request.device = name;
+  Device device = Device::create(request);
+  const bool cpu = isCpu(device.report());
+  const Peaks peaks = measurePeaks(device.context());
+  opening.reset();
+  record.manifest.add(device.report());
+  fmt::print(
+      "{}copy          {:.1f} GB/s read and written\narithmetic    {:.1f} billion operations a second\n",
+      machineLines(device.report(), opponentBuild()), 1e-9 * peaks.bytesPerSecond,
+      1e-9 * peaks.operationsPerSecond);
+  ordered_json& made = record.devices.emplace_back(describeMachine(device.report()));
+  made["cpuOpponentBuild"] = opponentBuild();
+  made["copyBytesPerSecond"] = peaks.bytesPerSecond;
+  made["operationsPerSecond"] = peaks.operationsPerSecond;
+  made["matches"] = ordered_json::array();
+  for (const Controller controller : options.controllers)
+    for (const double agents : options.agents) {
+      SceneOptions chosen = options.scene;
+      chosen.controller = controller;
+      chosen.agents = static_cast<uint64_t>(agents);
+      const Scene scene = chosen.load();
+      ContestOptions contestOptions = contestOf(options, controller);
+      contestOptions.seed = scene.seed;
+      Match match;
+      {
+        Progress progress(fmt::format("{}, {} agents", nameOf(controller), chosen.agents.value()),
+                          options.quiet);
+        const StopDeadline deadline(leave);
+        match = contest(
+            device, terrain, scene, contestOptions, [&](double share) { progress.updateShare(share); },
+            [] { return stopRequested(); });
+      }
+      if (stopRequested()) throw Interrupted(leave());
+      fmt::print("\n{}, {} agents{}, {} rounds of {} ticks, {:.0f} MiB of records; speed by {}\n",
+                 nameOf(controller), match.agents, contestOptions.crowd.pose ? " with poses" : "",
+                 contestOptions.rounds, match.ticks, static_cast<double>(match.memoryBytes) / (1 << 20),
+                 cpu ? "CPU time" : "the wall clock");
+      printResults(match, cpu);
+      printStages(match, peaks, cpu);
+      if (const std::string faults = faultsOf(match); !faults.empty())
+        throw Error(Error::Kind::check, fmt::format("{}, {} agents: results are wrong: {}",
+                                                    nameOf(controller), match.agents, faults));
+      made["matches"].push_back(jsonOf(controller, match));
+      ++record.matches;
+    }
+}
+
+int bench(const BenchOptions& options) {
+  refuseSlowness();
+  Files files;
+  const Scene scene = options.scene.load();
+  options.scene.declare(files, scene);
+  files.writes("--json", options.json);
+  files.check();
+  const Heightfield terrain = scene.loadTerrain();
+  const std::vector<std::string> names = devicesOf(options);
+  Record record{.manifest = {.scene = &scene, .terrain = &terrain, .dt = options.scene.dt}};
+  record.wanted = names.size() * options.controllers.size() * options.agents.size();
+  for (const std::string& name : names) benchDevice(options, terrain, name, record);
+  write(options, record);
+  return 0;
+}
+
+}  // namespace
+
+void addBench(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = app.add_subcommand(
+      "bench", "Time a scene's tick on the device and on the CPU, turn by turn in one run, and check both");
+  options->scene.addTo(*command, nullptr);
+  command
+      ->add_option_function<std::string>(
+          "--agents",
+          [options](const std::string& text) {
+            options->agents = parseNumbers("--agents", text, 1, Scene::maxAgents);
+            for (const double count : options->agents)
+              if (count != std::floor(count))
+                throw inputError(fmt::format("--agents is {}, expected whole numbers N,N,..", text));
+          },
+          "how many agents, one match each [1000,10000,100000]")
+      ->type_name("N,N,..");
+  command
+      ->add_option_function<std::string>(
+          "--controllers",
+          [options](const std::string& text) {
+            options->controllers = parseNames("--controllers", text, allControllers);
+          },
+          "of every herd, one match each [adaptive,clip]")
+      ->type_name("NAME,NAME,..");
+  command
+      ->add_option_function<std::string>(
+          "--rounds",
+          [options](const std::string& text) {
+            options->rounds = parseWhole("--rounds", text, 1, mostRounds);
+          },
+          "turns of each contestant [7]")
+      ->type_name("N");
+  command->add_flag("--poses", options->poses, "bone poses for everybody; those of clips are always made");
+  command->add_flag("--quick", options->quick, "3 short rounds");
+  command->add_option("--json", options->json, "write all figures to a file, for scripts/plots")
+      ->type_name("FILE");
+  command->add_flag("--quiet", options->quiet, "no progress on stderr");
+  command->footer(
+      "--device all times every suitable device. Each match checks a timed tick of every contestant against "
+      "the "
+      "reference;\n"
+      "figures of wrong results, of debug builds and under the validation layer are refused. "
+      "docs/performance.md tells what is\n"
+      "measured and how.\n"
+      "\n"
+      "Examples:\n"
+      "  skitter bench --quick\n"
+      "  skitter bench --agents 1000,10000,100000,1000000 --controllers adaptive --json bench.json");
+  command->callback([options, &chosen] { chosen = [options] { return bench(*options); }; });
+}
+
+}  // namespace skitter::app

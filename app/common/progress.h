@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace skitter::app {
+
+// How far a run is, on stderr: a bar that redraws itself on a terminal, else a line every few seconds.
+class Progress {
+ public:
+  // Of `total` things that are named by `what`; or, without them, of all of `what`.
+  Progress(std::string what, uint64_t total, bool quiet);
+  Progress(std::string what, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void update(uint64_t done);
+  void updateShare(double done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool isDue();
+  void show(double share, const std::string& done);
+
+  std::string what_;
+  uint64_t total_;
+  bool quiet_, terminal_ = false, drawn_ = false;
+  Clock::time_point start_, last_;
+};
+
+}  // namespace skitter::app

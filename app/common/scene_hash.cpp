@@ -1,0 +1,104 @@
+#include "app/common/scene_hash.h"
+
+#include <bit>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string_view>
+
+#include "skitter/rig_setup.h"
+
+namespace skitter::app {
+namespace {
+
+// FNV-1a (Fowler, Noll & Vo) of values in place of bytes, the upper half folded into the lower one.
+class Hash {
+ public:
+  void add(uint64_t value) {
+    value_ = (value_ ^ value) * 0x100000001b3ull;
+    value_ ^= value_ >> 32;
+  }
+  void add(float value) { add(uint64_t{std::bit_cast<uint32_t>(value)}); }
+  void add(double value) { add(std::bit_cast<uint64_t>(value)); }
+  void add(const glm::vec2& value) {
+    add(value.x);
+    add(value.y);
+  }
+  void add(std::string_view text) {
+    add(uint64_t{text.size()});
+    for (const char c : text) add(uint64_t{static_cast<uint8_t>(c)});
+  }
+  uint64_t value() const { return value_; }
+
+ private:
+  uint64_t value_ = 0xcbf29ce484222325ull;
+};
+
+// The hashes of files. Many herds may name one file, which is read once.
+class Files {
+ public:
+  // That of an empty file where there is none.
+  uint64_t hashOf(const std::filesystem::path& file) {
+    const auto [known, isNew] = hashes_.try_emplace(file);
+    if (isNew) {
+      std::ifstream in(file, std::ios::binary);
+      const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+      Hash hash;
+      hash.add(std::string_view(bytes));
+      known->second = hash.value();
+    }
+    return known->second;
+  }
+
+ private:
+  std::map<std::filesystem::path, uint64_t> hashes_;
+};
+
+// Bindings to all members: a new one does not compile until it is looked at here.
+void add(Hash& hash, Files& files, const Herd& herd) {
+  const auto& [rig, controller, clips, cuts, keys, solver, stepping, agents, spawn, goal] = herd;
+  hash.add(rig);
+  for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
+  if (rig != "spider") {
+    hash.add(files.hashOf(rig));
+    hash.add(files.hashOf(sidecarOf(rig)));
+  }
+  hash.add(uint64_t{clips.size()});
+  for (const std::string& clip : clips) hash.add(clip);
+  hash.add(uint64_t{cuts.size()});
+  for (const auto& [clip, name, from, to] : cuts) {
+    hash.add(clip);
+    hash.add(name);
+    hash.add(from);
+    hash.add(to);
+  }
+  hash.add(uint64_t{keys});
+  hash.add(uint64_t{agents});
+  const auto& [spawnKind, spacing, centre, heading] = spawn;
+  hash.add(static_cast<uint64_t>(spawnKind));
+  hash.add(spacing);
+  hash.add(centre);
+  hash.add(heading);
+  const auto& [goalKind, target, speed] = goal;
+  hash.add(static_cast<uint64_t>(goalKind));
+  hash.add(target);
+  hash.add(speed);
+}
+
+}  // namespace
+
+uint64_t sceneHash(const Scene& scene, const Heightfield& terrain) {
+  Hash hash;
+  Files files;
+  const auto& [name, source, herds, camera, seed] = scene;
+  hash.add(seed);
+  hash.add(uint64_t{herds.size()});
+  for (const Herd& herd : herds) add(hash, files, herd);
+  hash.add(uint64_t{terrain.columns});
+  hash.add(terrain.spacingX);
+  hash.add(terrain.spacingZ);
+  for (const float height : terrain.heights) hash.add(height);
+  return hash.value();
+}
+
+}  // namespace skitter::app

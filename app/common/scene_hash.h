@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+#include "skitter/heightfield.h"
+#include "skitter/scene.h"
+
+namespace skitter::app {
+
+// Of what is simulated, as flags have left it: the scene's values, the terrain's samples, and the bytes of
+// the files of rigs and of their sidecars. The camera and the scene's name are no part of it.
+uint64_t sceneHash(const Scene& scene, const Heightfield& terrain);
+
+}  // namespace skitter::app

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/common/files.h"
+#include "app/common/values.h"
+#include "skitter/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace skitter::app {
+
+// What is simulated and where: a scene file, and the flags that change it.
+struct SceneOptions {
+  std::string scene;  // empty: the built-in scene
+  std::optional<uint64_t> agents, seed;
+  std::string rig;               // empty: the scene's own
+  std::optional<Solver> solver;  // of every herd, like the next two; none: the scene's own
+  std::optional<Controller> controller;
+  std::optional<Stepping> stepping;
+  std::string terrain;  // empty: the scene's own
+  std::optional<Size> terrainSize;
+  std::optional<std::pair<double, double>> spacing, heights;
+  std::optional<double> scale, exaggeration, voidValue;
+  double dt = 1.0 / 60;
+  std::optional<std::string> device;
+
+  // `agentsHelp` says what happens without --agents; null: neither --agents nor --controller, of which the
+  // command has lists.
+  void addTo(CLI::App& command, const char* agentsHelp);
+  // The scene as the flags leave it. Throws Error(input).
+  Scene load() const;
+  // What the scene that was loaded is read from.
+  void declare(Files& files, const Scene& loaded) const;
+
+ private:
+  void addCountTo(CLI::App& command, const char* agentsHelp);
+  void addTerrainTo(CLI::App& command);
+  void applyTerrain(Scene& scene) const;
+};
+
+}  // namespace skitter::app

@@ -1,0 +1,189 @@
+#include "app/run/run_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+#include "app/run/trace.h"
+#include "app/viewer/window.h"
+#include "skitter/error.h"
+
+namespace skitter::app {
+namespace {
+
+constexpr uint64_t maxFrames = 100000000, maxTicksPerFrame = 1000, maxWatchEvery = 1000000;
+constexpr double mostFps = 240, leastSlow = 0.01, mostSlow = 100;
+
+// Throws Error(input) where there is no video to play as asked for, or none with a frame.
+void checkVideo(const RunOptions& options, const OutTarget& target) {
+  if (!target.isEveryFrame()) {
+    for (const auto& [name, given] : {std::pair{"--fps", options.fps}, {"--slow", options.slow}})
+      if (given) throw inputError(fmt::format("{} is a video's, expected --out DIR or --out FILE.mp4", name));
+    return;
+  }
+  if (options.frames == 0u)
+    throw inputError(fmt::format("--out {}: a video needs at least one frame, --frames is 0", options.out));
+  const double seconds =
+      static_cast<double>(options.framesWithoutWindow()) * options.secondsAFrame() * options.slow.value_or(1);
+  const double fps = options.videoFps();
+  if (seconds * fps < 0.999)
+    throw inputError(
+        fmt::format("--out {}: a video of {:.3g} s has no frame at {:g} frames a second; "
+                    "expected a longer run or --slow",
+                    options.out, seconds, fps));
+}
+
+Camera cameraOf(const RunOptions& options, Camera camera) {
+  if (options.view.empty()) return camera;
+  camera.kind = Camera::Kind::follow;
+  camera.distance = options.view == "close" ? 3.5f : (options.view == "crowd" ? 9.0f : 30.0f);
+  return camera;
+}
+
+void addNumbers(CLI::App& command, RunOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--frames",
+          [&options](const std::string& text) {
+            options.frames = parseWhole("--frames", text, 0, maxFrames);
+          },
+          fmt::format("frames to run [{}; a window runs until it is closed]", RunOptions::defaultFrames))
+      ->type_name("N");
+  command
+      .add_option_function<std::string>(
+          "--ticks-per-frame",
+          [&options](const std::string& text) {
+            options.ticksPerFrame = parseWhole("--ticks-per-frame", text, 1, maxTicksPerFrame);
+          },
+          "simulation steps from one frame to the next [1]")
+      ->type_name("N");
+  command
+      .add_option_function<std::string>(
+          "--watch-every",
+          [&options](const std::string& text) {
+            options.watchEvery = static_cast<uint32_t>(parseWhole("--watch-every", text, 1, maxWatchEvery));
+          },
+          "measure one agent of every N at a time [1 up to 256 agents, else 64]")
+      ->type_name("N");
+  command
+      .add_option_function<std::string>(
+          "--fps",
+          [&options](const std::string& text) { options.fps = parseNumber("--fps", text, 1, mostFps); },
+          fmt::format("frames a second of a video, which plays in real time whatever --dt is [{}]",
+                      RunOptions::defaultFps))
+      ->type_name("N");
+  command
+      .add_option_function<std::string>(
+          "--slow",
+          [&options](const std::string& text) {
+            options.slow = parseNumber("--slow", text, leastSlow, mostSlow);
+          },
+          "a video plays so many times slower than real time; a --dt as many times shorter keeps it smooth "
+          "[1]")
+      ->type_name("X");
+  command
+      .add_option_function<std::string>(
+          "--size", [&options](const std::string& text) { options.size = parseSize("--size", text); },
+          "of the window or the pictures, in pixels [1280x720]")
+      ->type_name("WxH");
+}
+
+}  // namespace
+
+bool RunOptions::windowed(const OutTarget& target) const {
+  return !headless && target.kind == OutTarget::Kind::none && hasDisplay();
+}
+
+void RunOptions::check(const OutTarget& target, bool inWindow) const {
+  checkVideo(*this, target);
+  if (inWindow && !trace.empty() && !frames)
+    throw inputError("--trace needs --frames where a window runs until it is closed");
+}
+
+Scene RunOptions::load() const {
+  Scene loaded = scene.load();
+  loaded.camera = cameraOf(*this, loaded.camera);
+  return loaded;
+}
+
+Files RunOptions::files(const OutTarget& target, const Scene& of) const {
+  Files all;
+  scene.declare(all, of);
+  if (target.kind == OutTarget::Kind::folder)
+    all.fills("--out", target.path, isPicture, force);
+  else
+    all.writes("--out", target.path);
+  all.fills("--trace", trace, Trace::claims, force);
+  all.writes("--footfalls", footfalls);
+  all.writes("--json", json);
+  return all;
+}
+
+DeviceRequest RunOptions::deviceRequest() const {
+  DeviceRequest request;
+  request.device = scene.device;
+  request.validation = validation;
+  return request;
+}
+
+CrowdOptions RunOptions::crowdOptions(const OutTarget& target, bool inWindow) const {
+  CrowdOptions crowd;
+  crowd.timestamps = timings || inWindow;
+  crowd.measure = !unmeasured;
+  crowd.watchEvery = watchEvery;
+  crowd.sleep = sleep;
+  crowd.feet = !trace.empty() || inWindow;
+  if (!footfalls.empty()) crowd.footfalls = UINT32_MAX;  // all that can be
+  crowd.pose = poses || inWindow || target.kind != OutTarget::Kind::none || !trace.empty();
+  return crowd;
+}
+
+void RunOptions::addTo(CLI::App& command) {
+  scene.addTo(command, "the scene's");
+  addNumbers(command, *this);
+  command.add_option("--view", view, "follow the crowd from here instead of the scene's camera")
+      ->check(CLI::IsMember({"close", "crowd", "far"}));
+  command.add_flag("--headless", headless, "no window; without --out nothing is drawn at all");
+  command
+      .add_option(
+          "--out", out,
+          "DIR: a PNG a frame and skitter.mp4, in place of an earlier run's; FILE.mp4: a video; FILE.png: "
+          "the last frame")
+      ->type_name("DIR|FILE.mp4|FILE.png");
+  command.add_option("--json", json, "write the summary to a file")->type_name("FILE");
+  command
+      .add_option("--trace", trace,
+                  "write joints, rotations, stances and bodies of every tick, in place of an earlier trace "
+                  "(docs/trace.md)")
+      ->type_name("DIR");
+  command
+      .add_option("--footfalls", footfalls,
+                  "write every touchdown: herd, agent, leg, tick, seconds, place, speed of the foot")
+      ->type_name("FILE.csv");
+  command.add_flag("--obstacle", obstacle,
+                   "a mound wanders across the crowd's way: the terrain is edited in every tick");
+  command.add_flag(
+      "--force", force,
+      "with a DIR that is not empty and no earlier run's: write into it, over files of the same names");
+  command.add_flag("--large", large, "allow a trace of more than 4 GiB");
+  command.add_flag(
+      "--sleep", sleep,
+      "pass over agents that have stood still for seconds, until their goal or the ground moves");
+  command.add_flag("--paused", paused, "a window waits for its first key (Space)");
+  command.add_flag("--timings", timings, "time every stage on the device's clock (software devices may lie)");
+  command.add_flag("--poses", poses, "pose every agent though nobody draws it, for what that costs");
+  command.add_flag("--no-measure", unmeasured, "leave the fidelity figures out, for what they cost");
+  command.add_flag("--validation", validation, "run under Vulkan's validation layer; a complaint fails");
+  command.add_flag("--quiet", quiet, "no progress on stderr");
+  command.footer(
+      "The first Ctrl-C ends the run within a second, and completes its files; a second one kills it.\n"
+      "\n"
+      "Examples:\n"
+      "  skitter run\n"
+      "  skitter run --headless --agents 10000 --frames 600 --json figures.json\n"
+      "  skitter run --terrain everest.png --spacing 0.5 --heights 0,40 --out walk.mp4\n"
+      "  skitter run scene.json --frames 120 --out frames --trace trace");
+}
+
+}  // namespace skitter::app

@@ -1,0 +1,155 @@
+#include "app/run/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace skitter::app {
+namespace {
+
+struct Spread {
+  double min, median, max;
+};
+
+std::optional<Spread> spreadOf(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const size_t n = values.size();
+  return Spread{values.front(), 0.5 * (values[(n - 1) / 2] + values[n / 2]), values.back()};
+}
+
+std::optional<double> cpuMicroseconds(const Summary& summary) {
+  if (!summary.cpuTold || summary.agents == 0 || summary.ticks == 0) return {};
+  return 1e6 * summary.times.cpuSeconds /
+         (static_cast<double>(summary.agents) * static_cast<double>(summary.ticks));
+}
+
+void printRow(const char* name, const std::string& value) { fmt::print("{:<12}{}\n", name, value); }
+
+void printStages(const std::vector<StageTime>& sums, uint64_t count, const char* each) {
+  for (const StageTime& stage : sums) {
+    printRow("", fmt::format("{:<10}{:9.4f} ms a {}", stage.stage,
+                             stage.milliseconds / static_cast<double>(std::max<uint64_t>(count, 1)), each));
+  }
+}
+
+void printFidelity(const Fidelity& f, uint32_t watchEvery) {
+  printRow("watched", fmt::format("1 agent of {} at a time: {} agent-ticks, {} stances", watchEvery,
+                                  f.agentTicks, f.stances));
+  printRow("feet", fmt::format("slip {:.3f} % of leg length a stance, penetration {:.3f} %, float {:.3f} %, "
+                               "skating {:.3f} % of the time",
+                               100 * f.slip, 100 * f.penetration, 100 * f.floating, 100 * f.skating));
+  printRow(
+      "legs",
+      fmt::format("{:.3f} % of leg length below the ground, at most {:.3f} %; {:.3f} % of neighbours cross",
+                  100 * f.segmentPenetration, 100 * f.segmentPenetrationMost, 100 * f.crossing));
+  printRow("reach error", fmt::format("{:.4f} % of leg length (99th percentile), at most {:.4f} %",
+                                      100 * f.reachErrorP99, 100 * f.reachErrorMost));
+  printRow("limits", f.limitViolation ? fmt::format("exceeded by at most {:.6f} rad, {:.3f} % of the time",
+                                                    *f.limitViolation, 100 * f.limitViolations.value_or(0))
+                                      : "not judged: legs move as their clips do");
+  printRow("jerk", fmt::format("feet {:.0f}, body {:.0f} (normalised, 0.4 s)", f.footJerk, f.bodyJerk));
+  printRow("stability",
+           fmt::format("margin {:.2f} % of leg length, least {:.2f} %; unstable {:.3f} % of the time",
+                       100 * f.margin, 100 * f.marginLeast, 100 * f.unstable));
+}
+
+void printMemory(const std::vector<MemoryUse>& memory, uint64_t agents) {
+  const double each = 1 / static_cast<double>(std::max<uint64_t>(agents, 1));
+  uint64_t all = 0;
+  std::string parts;
+  for (const MemoryUse& use : memory) {
+    all += use.bytes;
+    const double bytes = each * static_cast<double>(use.bytes);
+    if (bytes < 0.05) continue;  // what there is once a page
+    parts += fmt::format("{}{} {:.{}f}", parts.empty() ? "" : ", ", use.name, bytes, bytes < 10 ? 1 : 0);
+  }
+  printRow("memory",
+           fmt::format("{:.1f} MiB, {:.0f} bytes an agent: {}", static_cast<double>(all) / (1 << 20),
+                       each * static_cast<double>(all), parts));
+}
+
+nlohmann::ordered_json jsonOf(const Fidelity& f) {
+  return {{"agentTicks", f.agentTicks},
+          {"stances", f.stances},
+          {"slip", f.slip},
+          {"skating", f.skating},
+          {"penetration", f.penetration},
+          {"penetrationBeyond", f.penetrationBeyond},
+          {"float", f.floating},
+          {"floatBeyond", f.floatingBeyond},
+          {"segmentPenetration", f.segmentPenetration},
+          {"segmentPenetrationMost", f.segmentPenetrationMost},
+          {"crossing", f.crossing},
+          {"reachErrorP99", f.reachErrorP99},
+          {"reachErrorMost", f.reachErrorMost},
+          {"limitViolation", orNull(f.limitViolation)},
+          {"limitViolations", orNull(f.limitViolations)},
+          {"footJerk", f.footJerk},
+          {"bodyJerk", f.bodyJerk},
+          {"margin", f.margin},
+          {"marginLeast", f.marginLeast},
+          {"unstable", f.unstable},
+          {"lastResorts", f.lastResorts},
+          {"notFinite", f.notFinite}};
+}
+
+}  // namespace
+
+void Summary::print() const {
+  printRow("device", device);
+  printRow("terrain", filledVoids > 0 ? fmt::format("{}, voids filled: {}", terrain, filledVoids) : terrain);
+  printRow("agents", fmt::format("{}", agents));
+  printRow("ticks",
+           fmt::format("{}{}{}", ticks, interrupted && wantedTicks ? fmt::format(" of {}", *wantedTicks) : "",
+                       interrupted ? ", interrupted" : ""));
+  if (sleeping) printRow("asleep", fmt::format("{} agents at the end", *sleeping));
+  if (frames > 0) printRow("frames", fmt::format("{}", frames));
+  if (const auto tick = spreadOf(times.milliseconds)) {
+    printRow("a tick",
+             fmt::format("{:.3f} ms median, {:.3f} to {:.3f} ms", tick->median, tick->min, tick->max));
+  }
+  if (const auto cpu = cpuMicroseconds(*this))
+    printRow("CPU", fmt::format("{:.3f} us an agent and tick", *cpu));
+  printStages(times.stages, ticks, "tick");
+  printStages(drawing, frames, "frame");
+  if (!times.stages.empty()) {
+    printRow("start", fmt::format("{:.3f} s, {:.3f} s of CPU", startSeconds, startCpuSeconds));
+    printMemory(memory, agents);
+  }
+  printFidelity(fidelity, watchEvery);
+  for (size_t h = 0; h < herds.size() && herds.size() > 1; ++h) {
+    fmt::print("herd {}: {}, {} agents\n", h, herds[h].rig, herds[h].agents);
+    printFidelity(herds[h].fidelity, watchEvery);
+  }
+  if (fidelity.lastResorts > 0)
+    printRow("no foothold", fmt::format("{} steps, a last resort", fidelity.lastResorts));
+  if (fidelity.notFinite > 0) printRow("not finite", fmt::format("{} foot targets", fidelity.notFinite));
+  printRow("state hash", fmt::format("{:016x}", stateHash));
+  for (const std::string& file : files) printRow("written", file);
+}
+
+nlohmann::ordered_json Summary::json() const {
+  const auto tick = spreadOf(times.milliseconds);
+  nlohmann::ordered_json milliseconds = {{"min", nullptr}, {"median", nullptr}, {"max", nullptr}};
+  if (tick) milliseconds = {{"min", tick->min}, {"median", tick->median}, {"max", tick->max}};
+  nlohmann::ordered_json perHerd = nlohmann::ordered_json::array();
+  for (const HerdFigures& herd : herds)
+    perHerd.push_back({{"rig", herd.rig}, {"agents", herd.agents}, {"fidelity", jsonOf(herd.fidelity)}});
+  return {{"device", device},
+          {"agents", agents},
+          {"sleeping", orNull(sleeping)},
+          {"ticks", ticks},
+          {"ticksWanted", orNull(wantedTicks)},
+          {"interrupted", interrupted},
+          {"seed", seed},
+          {"tickMilliseconds", milliseconds},
+          {"cpuMicrosecondsPerAgentTick", orNull(cpuMicroseconds(*this))},
+          {"watchEvery", watchEvery},
+          {"fidelity", jsonOf(fidelity)},
+          {"herds", perHerd},
+          {"stateHash", fmt::format("{:016x}", stateHash)}};
+}
+
+}  // namespace skitter::app

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/common/simulate.h"
+#include "skitter/crowd.h"
+#include "skitter/device.h"
+
+namespace skitter::app {
+
+template <class T>
+nlohmann::ordered_json orNull(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nullptr;
+}
+
+struct HerdFigures {
+  std::string rig;
+  uint32_t agents = 0;
+  Fidelity fidelity;
+};
+
+// What a run came to: printed for people and written for programs.
+struct Summary {
+  std::string device;
+  std::string terrain;  // name, samples and metres
+  uint64_t filledVoids = 0;
+  uint64_t agents = 0, ticks = 0, frames = 0, seed = 0;
+  std::optional<uint64_t> wantedTicks;  // none where a window runs until it is closed
+  bool interrupted = false;
+  TickTimes times;
+  std::vector<StageTime> drawing;  // sums over all frames; empty unless asked for
+  bool cpuTold = true;             // the CPU time is the simulation's alone
+  uint32_t watchEvery = 1;         // the figures are of one agent of this many at a time
+  Fidelity fidelity;               // of all herds
+  std::vector<HerdFigures> herds;
+  std::optional<uint64_t> sleeping;  // agents at the end; none where they may not
+  uint64_t stateHash = 0;
+  std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times
+  double startSeconds = 0, startCpuSeconds = 0;  // before the first tick; told likewise
+  std::vector<std::string> files;
+
+  void print() const;
+  nlohmann::ordered_json json() const;
+};
+
+}  // namespace skitter::app

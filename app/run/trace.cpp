@@ -1,0 +1,206 @@
+#include "app/run/trace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "crowd/controller.h"
+#include "crowd/herd.h"
+#include "skitter/error.h"
+#include "skitter/records.h"
+
+namespace skitter::app {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace skitter::shared;
+
+constexpr const char* perHerd[] = {"joints.npy", "rotations.npy", "stance.npy", "body.npy"};
+
+struct EntrySizes {  // values an agent and tick
+  uint64_t joints, rotations, stance, body;
+
+  explicit EntrySizes(const Rig& rig) {
+    const auto legs = static_cast<uint64_t>(rig.legCount()), bones = static_cast<uint64_t>(rig.maxBones());
+    joints = legs * (bones + 1) * 3;
+    rotations = legs * bones * 4;
+    stance = legs;
+    body = 7;
+  }
+  uint64_t bytes() const { return 4 * (joints + rotations + body) + stance; }
+};
+
+// The record at vec4 index `at`.
+const float* vec4(const std::vector<float>& records, size_t at) { return records.data() + 4 * at; }
+
+// What the files hold of one agent and tick, appended.
+struct Values {
+  std::vector<float> joints, rotations, body;
+  std::vector<uint8_t> stance;
+};
+
+// Where a bone starts, relative to the body, and its rotation.
+struct Placed {
+  float start[3], rotation[4];
+};
+
+Placed placedByPose(const float* pose) {
+  return {{pose[4], pose[5], pose[6]}, {pose[0], pose[1], pose[2], pose[3]}};
+}
+
+// Of a matrix whose columns may be scaled.
+Placed placedByMatrix(const float* rows, const glm::vec3& start) {
+  glm::mat3 turn;
+  Placed placed{};
+  for (int r = 0; r < 3; ++r) {
+    const float* row = rows + 4 * r;
+    placed.start[r] = row[0] * start.x + row[1] * start.y + row[2] * start.z + row[3];
+    for (int c = 0; c < 3; ++c) turn[c][r] = row[c];
+  }
+  for (int c = 0; c < 3; ++c) turn[c] = glm::normalize(turn[c]);
+  const glm::quat q = glm::normalize(glm::quat_cast(turn));
+  const float xyzw[4] = {q.x, q.y, q.z, q.w};
+  std::copy(xyzw, xyzw + 4, placed.rotation);
+  return placed;
+}
+
+void appendAgent(const HerdState& state, const crowd::Kind& kind, size_t agent, Values& values) {
+  const Rig& rig = kind.rig;
+  const auto placedOf = [&](size_t leg, size_t bone) {
+    if (!crowd::traitsOf(kind.controller).playsClips) {
+      const size_t entry = 1 + leg * static_cast<size_t>(kind.bones) + bone;
+      return placedByPose(
+          vec4(state.pose, (agent * static_cast<size_t>(rig.paletteSize()) + entry) * POSE_STRIDE));
+    }
+    const ClipLeg& chain = kind.clipSet.legs[leg];
+    const size_t entry = agent * static_cast<size_t>(kind.clips.joints) + chain.joints[bone];
+    return placedByMatrix(vec4(state.pose, entry * MATRIX_STRIDE), chain.starts[bone]);
+  };
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto legs = static_cast<size_t>(rig.legCount()), bones = static_cast<size_t>(rig.maxBones());
+
+  const float* body = vec4(state.body, agent * BODY_STRIDE);
+  const double position[3] = {double{tileX(body[3])} * TILE_SIZE + body[0], body[1],
+                              double{tileZ(body[3])} * TILE_SIZE + body[2]};
+  for (double coordinate : position) values.body.push_back(static_cast<float>(coordinate));
+  values.body.insert(values.body.end(), body + 8, body + 12);
+
+  const auto pushJoint = [&](const float* relative) {
+    for (size_t k = 0; k < 3; ++k)
+      values.joints.push_back(static_cast<float>(position[k] + double{relative[k]}));
+  };
+  for (size_t l = 0; l < legs; ++l) {
+    const size_t leg = agent * legs + l, own = rig.legs[l].bones.size();
+    for (size_t b = 0; b < own; ++b) {
+      const Placed placed = placedOf(l, b);
+      values.rotations.insert(values.rotations.end(), placed.rotation, placed.rotation + 4);
+      pushJoint(placed.start);
+    }
+    pushJoint(vec4(state.tip, leg * TIP_STRIDE));
+    values.rotations.insert(values.rotations.end(), 4 * (bones - own), nan);
+    values.joints.insert(values.joints.end(), 3 * (bones - own), nan);
+    values.stance.push_back(vec4(state.foot, leg * FOOT_STRIDE)[3] >= 1 ? 1 : 0);
+  }
+}
+
+nlohmann::ordered_json describe(const Rig& rig, uint32_t agents) {
+  nlohmann::ordered_json legNames = nlohmann::ordered_json::array(), groups = legNames,
+                         boneLengths = legNames, restDirections = legNames, limits = legNames;
+  for (const Leg& leg : rig.legs) {
+    legNames.push_back(leg.name);
+    groups.push_back(leg.group);
+    nlohmann::ordered_json lengths = nlohmann::ordered_json::array(), directions = lengths, angles = lengths;
+    for (const Bone& bone : leg.bones) {
+      lengths.push_back(bone.length);
+      directions.push_back({bone.direction.x, bone.direction.y, bone.direction.z});
+      angles.push_back(bone.coneHalfAngle);
+    }
+    boneLengths.push_back(lengths);
+    restDirections.push_back(directions);
+    limits.push_back(angles);
+  }
+  return {{"rig", rig.name},
+          {"agents", agents},
+          {"legLength", rig.legLength},
+          {"legNames", legNames},
+          {"groupNames", rig.groups},
+          {"groups", groups},
+          {"boneLengths", boneLengths},
+          {"restDirections", restDirections},
+          {"limits", limits}};
+}
+
+}  // namespace
+
+Trace::Trace(const fs::path& folder, const Crowd& crowd, const Scene& scene, double dt)
+    : folder_(folder), dt_(dt) {
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    const auto file = [&](const char* name) { return folder_.add(fmt::format("herd{}/{}", h, name)); };
+    const Rig& rig = crowd.rig(h);
+    const uint32_t agents = scene.herds[h].agents;
+    const uint64_t legs = static_cast<uint64_t>(rig.legCount()),
+                   bones = static_cast<uint64_t>(rig.maxBones());
+    herds_.push_back({agents, NpyWriter(file("joints.npy"), "<f4", {agents, legs, bones + 1, 3}),
+                      NpyWriter(file("rotations.npy"), "<f4", {agents, legs, bones, 4}),
+                      NpyWriter(file("stance.npy"), "|u1", {agents, legs}),
+                      NpyWriter(file("body.npy"), "<f4", {agents, 7})});
+  }
+}
+
+double Trace::bytes(const Crowd& crowd, const Scene& scene, const Heightfield& terrain, uint64_t ticks) {
+  uint64_t aTick = 0;
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h)
+    aTick += scene.herds[h].agents * EntrySizes(crowd.rig(h)).bytes();
+  return static_cast<double>(aTick) * static_cast<double>(ticks) +
+         static_cast<double>(terrain.heights.size() * sizeof(float));
+}
+
+bool Trace::claims(const fs::path& name) {
+  if (name == "trace.json" || name == "heights.npy") return true;
+  const std::string herd = name.begin()->string(), file = name.filename().string();
+  if (!herd.starts_with("herd") || herd.find_first_not_of("0123456789", 4) != std::string::npos) return false;
+  return name == herd || std::find(std::begin(perHerd), std::end(perHerd), file) != std::end(perHerd);
+}
+
+void Trace::append(const Crowd& crowd) {
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    const HerdState state = crowd.download(h);
+    Values values;
+    for (size_t agent = 0; agent < state.agents; ++agent)
+      appendAgent(state, crowd.impl().kindOf(h), agent, values);
+    herds_[h].joints.append(std::span<const float>(values.joints));
+    herds_[h].rotations.append(std::span<const float>(values.rotations));
+    herds_[h].stance.append(std::span<const uint8_t>(values.stance));
+    herds_[h].body.append(std::span<const float>(values.body));
+  }
+  ++entries_;
+}
+
+size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manifest& manifest) {
+  NpyWriter heights(folder_.add("heights.npy"), "<f4", {terrain.columns});
+  heights.append(std::span<const float>(terrain.heights));
+  heights.finish(terrain.rows);
+  nlohmann::ordered_json herds = nlohmann::ordered_json::array();
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    herds_[h].joints.finish(entries_);
+    herds_[h].rotations.finish(entries_);
+    herds_[h].stance.finish(entries_);
+    herds_[h].body.finish(entries_);
+    herds.push_back(describe(crowd.rig(h), herds_[h].agents));
+  }
+  const nlohmann::ordered_json json = {{"dt", dt_},
+                                       {"ticks", entries_},
+                                       {"herds", herds},
+                                       {"terrain",
+                                        {{"originX", terrain.originX()},
+                                         {"originZ", terrain.originZ()},
+                                         {"spacingX", terrain.spacingX},
+                                         {"spacingZ", terrain.spacingZ}}}};
+  writeJson(folder_.add("trace.json"), json, manifest);
+  return folder_.commit();
+}
+
+}  // namespace skitter::app

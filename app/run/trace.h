@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "app/common/manifest.h"
+#include "app/common/staged_folder.h"
+#include "app/run/npy.h"
+#include "skitter/crowd.h"
+
+namespace skitter::app {
+
+// Writes what every agent did, tick by tick, as NumPy files for plots and outside checks (docs/trace.md).
+class Trace {
+ public:
+  // Throws Error(input).
+  Trace(const std::filesystem::path& folder, const Crowd& crowd, const Scene& scene, double dt);
+  // What the files of so many ticks take.
+  static double bytes(const Crowd& crowd, const Scene& scene, const Heightfield& terrain, uint64_t ticks);
+  // Whether a trace may write a file or folder of this name.
+  static bool claims(const std::filesystem::path& name);
+
+  // The crowd's present state as the next entry.
+  void append(const Crowd& crowd);
+  // The files take the place of an earlier trace's, of which it returns the number; without it none remains.
+  size_t finish(const Crowd& crowd, const Heightfield& terrain, const Manifest& manifest);
+
+ private:
+  struct HerdFiles {
+    uint32_t agents;
+    NpyWriter joints, rotations, stance, body;
+  };
+  StagedFolder folder_;
+  double dt_;
+  uint64_t entries_ = 0;
+  std::vector<HerdFiles> herds_;
+};
+
+}  // namespace skitter::app

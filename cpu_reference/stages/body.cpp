@@ -1,0 +1,224 @@
+#include "cpu_reference/stages/body.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "cpu_reference/heightfield.h"
+
+namespace skitter::reference {
+namespace {
+
+LegFollow followOf(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Step& step,
+                   const glm::dvec2& desired, double miss, double tick) {
+  LegFollow follow;
+  follow.planted = step.progress(tick - 1) >= 1;
+  if (!follow.planted) return follow;
+  const glm::dvec3 root = body.orientation * limb.root;
+  const glm::dvec3 foot = step.relative(step.landing, body);
+  const double stretch = glm::length(foot - root) / limb.reach;
+  follow.behind = glm::dot(normalized(root - foot), normalized(glm::dvec3(desired.x, 0, desired.y)));
+  follow.factor =
+      std::clamp((tuning.stretchStop - stretch) / (tuning.stretchStop - tuning.stretchSlow), 0.0, 1.0);
+  follow.errorFactor = std::clamp(1 - miss / tuning.errorStop, 0.0, 1.0);
+  return follow;
+}
+
+void turn(const Tuning& tuning, const glm::dvec2& desired, const BodyChoices& choices, BodyResult& result) {
+  AgentBody& body = result.body;
+  const glm::dvec2 h = body.heading;
+  double e = 0;
+  result.turnMargin = std::numeric_limits<double>::infinity();
+  if (glm::length(desired) > 1e-4 * tuning.legLength) {
+    const glm::dvec2 w = glm::normalize(desired);
+    const double c = w.x * h.y - w.y * h.x, d = glm::dot(w, h);
+    if (d > 0) {
+      e = c;
+    } else {
+      result.turnMargin = std::abs(c);
+      e = choices.turnSign != 0 ? choices.turnSign : (c >= 0 ? 1.0 : -1.0);
+    }
+  }
+  const double kappaTurn = glm::mix(0.25, 1.0, body.kappa);
+  const double wanted = std::clamp(tuning.turnGain * e, -tuning.turnRate, tuning.turnRate) * kappaTurn;
+  const double most = tuning.turnAcceleration * tuning.dt;
+  body.turnRate += std::clamp(wanted - body.turnRate, -most, most);
+  const glm::dvec3 turned = Turn(body.turnRate * tuning.dt)(glm::dvec3(h.x, 0, h.y));
+  body.heading = normalized(glm::dvec2(turned.x, turned.z));
+}
+
+glm::dvec2 waysToEdges(const Tuning& tuning, const AgentBody& body) {
+  const glm::dvec2 halfExtent{tuning.halfExtentX, tuning.halfExtentZ}, place = body.world();
+  glm::dvec2 ways;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double h = body.heading[axis];
+    const double left = h < 0 ? halfExtent[axis] + place[axis] : halfExtent[axis] - place[axis];
+    ways[axis] = std::max(0.0, left) / std::max(std::abs(h), 1e-6);
+  }
+  return ways;
+}
+
+void walk(const Tuning& tuning, const glm::dvec2& desired, BodyResult& result) {
+  AgentBody& body = result.body;
+  result.wantedSpeed = glm::length(desired);
+  const glm::dvec2 w = result.wantedSpeed > 1e-4 * tuning.legLength ? glm::normalize(desired) : body.heading;
+  const double wanted = body.kappa * result.wantedSpeed * std::max(0.0, glm::dot(w, body.heading));
+  body.speed += std::clamp(wanted - body.speed, -tuning.braking * tuning.dt, tuning.acceleration * tuning.dt);
+  result.ways = waysToEdges(tuning, body);
+  body.speed = std::min(body.speed, stoppingSpeed(tuning, std::min(result.ways.x, result.ways.y)));
+  body.localX += body.speed * body.heading.x * tuning.dt;
+  body.localZ += body.speed * body.heading.y * tuning.dt;
+  const double overX = std::floor(body.localX / tileSize), overZ = std::floor(body.localZ / tileSize);
+  body.tileX += overX;
+  body.tileZ += overZ;
+  body.localX -= overX * tileSize;
+  body.localZ -= overZ * tileSize;
+}
+
+// Where the ground points are, relative to the previous body.
+std::vector<glm::dvec3> groundPoints(const AgentBody& previous, std::span<const Step> steps, double tick) {
+  std::vector<glm::dvec3> points;
+  for (const Step& step : steps) {
+    const double u = step.progress(tick - 1);
+    const glm::dvec3 point = u >= 1 ? step.landing : glm::mix(step.liftOff, step.landing, u);
+    points.push_back(step.relative(point, previous));
+  }
+  return points;
+}
+
+std::vector<glm::dvec3> groundBelowHomes(const Heights& heights, const Creature& creature,
+                                         const AgentBody& previous) {
+  std::vector<glm::dvec3> points;
+  const glm::dvec2 position = previous.world();
+  for (const Limb& limb : creature.limbs) {
+    const glm::dvec3 home = previous.orientation * limb.home;
+    const double ground = heightAt(heights, position.x + home.x, position.y + home.z);
+    points.emplace_back(home.x, ground - previous.y, home.z);
+  }
+  return points;
+}
+
+// Least squares of y over (x, z) through the ground points, its normal matrix regularised by ridge k.
+// Heights are relative to the body's y.
+SupportPlane supportPlane(const Tuning& tuning, const std::vector<glm::dvec3>& points) {
+  glm::dvec3 mean{0};
+  for (const glm::dvec3& point : points) mean += point;
+  const double k = static_cast<double>(points.size());
+  mean /= k;
+  double sxx = tuning.ridge * k, szz = tuning.ridge * k, sxz = 0, sxy = 0, szy = 0;
+  SupportPlane plane;
+  for (const glm::dvec3& point : points) {
+    const glm::dvec3 r = point - mean;
+    sxx += r.x * r.x;
+    szz += r.z * r.z;
+    sxz += r.x * r.z;
+    sxy += r.x * r.y;
+    szy += r.z * r.y;
+    plane.spread += r.x * r.x + r.z * r.z;
+    plane.heightSpread += r.y * r.y;
+  }
+  plane.mean = mean;
+  plane.spread = std::sqrt(plane.spread);
+  plane.heightSpread = std::sqrt(plane.heightSpread);
+  const double half = (sxx + szz) / 2, root = std::hypot((sxx - szz) / 2, sxz);
+  plane.leastEigenvalue = half - root;
+  plane.largestEigenvalue = half + root;
+  const double determinant = sxx * szz - sxz * sxz;
+  plane.b = (sxy * szz - szy * sxz) / determinant;
+  plane.c = (szy * sxx - sxy * sxz) / determinant;
+  plane.unclampedSlope = std::hypot(plane.b, plane.c);
+  if (plane.unclampedSlope > tuning.maxSlope) {
+    plane.b *= tuning.maxSlope / plane.unclampedSlope;
+    plane.c *= tuning.maxSlope / plane.unclampedSlope;
+  }
+  plane.height = mean.y - plane.b * mean.x - plane.c * mean.z;
+  return plane;
+}
+
+// Square to the plane but for a share of its slope, and leaning to where a turn's middle is.
+glm::dvec3 leaningNormal(const Tuning& tuning, const SupportPlane& plane, const AgentBody& body) {
+  const double lean =
+      std::clamp(tuning.leanGain * body.speed * body.turnRate, -tuning.leanMost, tuning.leanMost);
+  const glm::dvec3 left{body.heading.y, 0, -body.heading.x};
+  const double kept = 1 - tuning.leanLevel;
+  return normalized(glm::dvec3(-plane.b * kept, 1, -plane.c * kept) + lean * left);
+}
+
+// From the follow factor on. `points` are relative to the previous body.
+void move(const Tuning& tuning, const Heights& heights, const AgentBody& previous, const glm::dvec2& desired,
+          std::vector<glm::dvec3> points, double phase, const BodyChoices& choices, BodyResult& result) {
+  AgentBody& next = result.body;
+  turn(tuning, desired, choices, result);
+  walk(tuning, desired, result);
+  const glm::dvec3 way((next.tileX - previous.tileX) * tileSize + next.localX - previous.localX, 0,
+                       (next.tileZ - previous.tileZ) * tileSize + next.localZ - previous.localZ);
+  for (glm::dvec3& point : points) point -= way;
+  result.plane = supportPlane(tuning, points);
+  const SupportPlane& plane = result.plane;
+
+  const glm::dvec3 upBefore = previous.orientation * glm::dvec3(0, 1, 0);
+  const glm::dvec3 up = normalized(glm::mix(upBefore, leaningNormal(tuning, plane, next), tuning.tiltBlend));
+  const glm::dvec2 h = next.heading;
+  const glm::dvec3 forward = normalized(glm::dvec3(h.x, -(up.x * h.x + up.z * h.y) / up.y, h.y));
+  next.orientation = glm::quat_cast(glm::dmat3(glm::cross(up, forward), up, forward));
+  if (glm::dot(next.orientation, previous.orientation) < 0) next.orientation = -next.orientation;
+
+  const double predicted = previous.y + (plane.b * h.x + plane.c * h.y) * next.speed * tuning.dt;
+  const double breath =
+      std::pow(4 * phase * (1 - phase), 2) * std::min(1.0, previous.still / tuning.settleTime);
+  double wanted = previous.y + plane.height + tuning.breathHeight * breath;
+  const glm::dvec2 position = next.world();
+  for (int k = -1; k <= 1; ++k) {
+    const glm::dvec3 q = tuning.bodyHeight * up + k * tuning.bodyRadius * forward;
+    const double ground = heightAt(heights, position.x + q.x, position.y + q.z);
+    wanted = std::max(wanted, ground + tuning.bellyClearance - q.y);
+  }
+  next.y = glm::mix(predicted, wanted, tuning.heightBlend);
+
+  next.v3 = next.speed / std::hypot(forward.x, forward.z);
+  const double pace = 1e-2 * tuning.legLength;
+  const double busiest =
+      std::max({result.wantedSpeed / pace, next.speed / pace, std::abs(next.turnRate) / 1e-2});
+  result.isStill = busiest < 1;
+  result.stillMargin = std::abs(busiest - 1);
+  next.still = result.isStill ? previous.still + tuning.dt : 0;
+}
+
+}  // namespace
+
+double stoppingSpeed(const Tuning& tuning, double way) {
+  // s^2 / (2 braking) + s dt = way.
+  const double braked = tuning.braking * tuning.dt;
+  return std::sqrt(braked * braked + 2 * tuning.braking * way) - braked;
+}
+
+BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
+                const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
+                std::span<const double> misses, double tick, double phase, const BodyChoices& choices) {
+  BodyResult result;
+  result.body = previous;
+  double kappa = 1;
+  for (size_t l = 0; l < creature.limbs.size(); ++l) {
+    const LegFollow follow =
+        followOf(tuning, creature.limbs[l], previous, steps[l], desired, misses[l], tick);
+    if (follow.planted && follow.behind > 0) kappa = std::min(kappa, follow.factor);
+    kappa = std::min(kappa, follow.errorFactor);
+    result.follow.push_back(follow);
+  }
+  result.body.kappa = std::max(choices.kappa.value_or(kappa), tuning.followLeast);
+  move(tuning, heights, previous, desired, groundPoints(previous, steps, tick), phase, choices, result);
+  return result;
+}
+
+BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creature& creature,
+                     const AgentBody& previous, const glm::dvec2& desired, const BodyChoices& choices) {
+  BodyResult result;
+  result.body = previous;
+  result.body.kappa = 1;
+  Tuning upright = tuning;
+  upright.leanGain = upright.leanLevel = upright.breathHeight = 0;
+  move(upright, heights, previous, desired, groundBelowHomes(heights, creature, previous), 0, choices,
+       result);
+  return result;
+}
+
+}  // namespace skitter::reference

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "cpu_reference/types.h"
+
+namespace skitter::reference {
+
+// How one leg bears on the follow factor.
+struct LegFollow {
+  bool planted = false;
+  double behind = 0;  // cosine between the desired velocity and (rho_l - f_l); the leg counts if positive
+  double errorFactor = 1;  // clamp(1 - e_l / (errorStop reach_l), 0, 1), of every planted leg
+  double factor = 1;       // clamp((stretchStop - stretch) / (stretchStop - stretchSlow), 0, 1)
+};
+
+// y = height + b x + c z relative to the new position, with what its conditioning depends on.
+struct SupportPlane {
+  double b = 0, c = 0, height = 0;
+  double leastEigenvalue = 0, largestEigenvalue = 0;  // of the regularised normal matrix
+  glm::dvec3 mean{0};                                 // of the ground points, relative
+  double spread = 0;        // root of the sum of squared horizontal distances from it
+  double heightSpread = 0;  // of squared heights above it
+  double unclampedSlope = 0;
+};
+
+struct BodyResult {
+  AgentBody body;
+  std::vector<LegFollow> follow;
+  double turnMargin = 0;  // |c| where its sign chose the way round (d <= 0), infinite elsewhere
+  SupportPlane plane;
+  double wantedSpeed = 0;  // |v|
+  glm::dvec2 ways{0};      // m left along the new heading to the terrain's edges in x and z
+  bool isStill = false;
+  double stillMargin = 0;  // nearest of the three thresholds of standing still, as a share of it
+};
+
+// Decisions that the caller takes instead of the rule, to recompute the other side of a tie.
+struct BodyChoices {
+  std::optional<double> kappa;
+  int turnSign = 0;  // +1, -1: forced
+};
+
+// The largest speed from which a body still stops within `way`: it moves on by s dt in this tick, and brakes
+// from the next one on.
+double stoppingSpeed(const Tuning& tuning, double way);
+
+// `misses`: Chain::miss of each leg after the last tick. `tick` is n, the tick being computed; `phase` the
+// gait's after the last one.
+BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
+                const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
+                std::span<const double> misses, double tick, double phase = 0,
+                const BodyChoices& choices = {});
+
+// A body that does not feel its feet: nothing holds it back, and the ground below the homes takes the place
+// of the ground points. Of `choices` the turn's sign counts.
+BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creature& creature,
+                     const AgentBody& previous, const glm::dvec2& desired, const BodyChoices& choices = {});
+
+}  // namespace skitter::reference

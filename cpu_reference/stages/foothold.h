@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+
+#include "cpu_reference/stages/route.h"
+#include "cpu_reference/types.h"
+
+namespace skitter::reference {
+
+struct Candidate {
+  glm::dvec3 point{0};  // on the ground, relative
+  double distance = 0;  // from the root at touchdown, metres
+  double facing = 0;    // m, cosine between the ground's normal and the body's up
+  bool fits = false;
+  double score = 0;
+  double misfit = 0;  // metres by which the distance is out of range
+  // How far each condition of fitting is from its threshold, positive inside: metres, metres, cosine.
+  double leastMargin = 0, mostMargin = 0, facingMargin = 0;
+};
+
+struct FootholdResult {
+  Step step;
+  int chosen = 0;
+  bool lastResort = false;
+  std::vector<Candidate> candidates;
+  glm::dvec3 target{0}, root{0};  // tau and r', model space
+  double side = 0;                // |o|: below it the ladder's direction is badly conditioned
+  double stretch = 0;             // rho
+  Route route;
+};
+
+// Decisions that the caller takes instead of the rule, to recompute the other side of a tie.
+struct FootholdChoices {
+  std::optional<int> candidate;
+  bool lastResort = false;  // of the forced candidate
+  std::optional<int> way;   // of Route::ways
+};
+
+// `body` is the new one, `step` the leg's last, `gait` this tick's with its durations, `tick` is n.
+// `lifts`: the leg lifts now; otherwise it is aimed anew.
+FootholdResult foothold(const Tuning& tuning, const Heights& heights, const Limb& limb, const AgentBody& body,
+                        const Gait& gait, const Step& step, bool lifts, double tick,
+                        const FootholdChoices& choices = {});
+
+}  // namespace skitter::reference

@@ -1,0 +1,71 @@
+#include "cpu_reference/stages/navigate.h"
+
+#include <limits>
+#include <utility>
+
+namespace skitter::reference {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// `choice`, 0 or 1, instead of the rule.
+bool decided(bool rule, int choice) { return choice >= 0 ? choice == 1 : rule; }
+
+void steer(const Tuning& tuning, const AgentBody& body, const Goal& goal, const NavigateChoices& choices,
+           NavigateResult& result) {
+  if (goal.kind == GoalKind::none) return;
+
+  const glm::dvec2 position = body.world();
+  glm::dvec2 delta = goal.target - position;
+  result.arrivalMargin = std::abs(glm::length(delta) - goal.arrivalRadius);
+  const bool arrived = decided(glm::length(delta) < goal.arrivalRadius, choices.arrived);
+  if (goal.kind == GoalKind::cross && arrived) {
+    std::swap(result.goal.target, result.goal.otherEnd);
+    delta = result.goal.target - position;
+  }
+  if (goal.kind == GoalKind::point) {
+    if (arrived) return;
+    result.desired = goal.speed * std::min(1.0, glm::length(delta) / tuning.slowRadius) * normalized(delta);
+  } else {
+    result.desired = goal.speed * normalized(delta);
+  }
+
+  const glm::dvec2 halfExtent{tuning.halfExtentX, tuning.halfExtentZ};
+  for (int axis = 0; axis < 2; ++axis) {
+    const double beyond = std::abs(position[axis]) - (halfExtent[axis] - tuning.edgeMargin);
+    result.edgeMargin[axis] = std::abs(beyond);
+    const bool outward = result.desired[axis] * position[axis] > 0;
+    if (decided(beyond > 0 && outward, choices.turnedBack[axis]))
+      result.desired[axis] = -result.desired[axis];
+  }
+}
+
+void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const NavigateChoices& choices,
+           NavigateResult& result) {
+  if (!rest.allowed || rest.edited) return;
+  const double speed = glm::length(result.desired), standing = 1e-2 * tuning.legLength;
+  result.standMargin = std::abs(speed - standing);
+  const bool stands = decided(speed < standing, choices.stands);
+
+  const Gait& gait = rest.gait;
+  bool breathedOut = true;
+  if (rest.breathes) {
+    const double firstTick = tuning.dt / gait.cycle;
+    result.breathMargin = std::abs(gait.phase - firstTick);
+    breathedOut = decided(gait.phase < firstTick, choices.breathedOut);
+  }
+  const bool feetStand = (gait.lift | gait.reaim | gait.air) == 0;
+  result.asleep = stands && body.still >= tuning.sleepTime && feetStand && breathedOut;
+}
+
+}  // namespace
+
+NavigateResult navigate(const Tuning& tuning, const AgentBody& body, const Goal& goal, const Rest& rest,
+                        const NavigateChoices& choices) {
+  NavigateResult result{goal, glm::dvec2(0), false, never, glm::dvec2(never), never, never};
+  steer(tuning, body, goal, choices, result);
+  sleep(tuning, body, rest, choices, result);
+  return result;
+}
+
+}  // namespace skitter::reference

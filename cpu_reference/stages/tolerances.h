@@ -1,0 +1,278 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "cpu_reference/arithmetic.h"
+#include "cpu_reference/heightfield.h"
+#include "cpu_reference/roundoff.h"
+#include "cpu_reference/stages/body.h"
+#include "cpu_reference/stages/foothold.h"
+#include "cpu_reference/stages/gait.h"
+#include "cpu_reference/types.h"
+
+// How far a float32 implementation of docs/stages.md may be from the reference, stage by stage, when both
+// start from the same float32 records. First-order bounds: each operation errs by `roundoff` of its result;
+// Vulkan allows 2.5 ulp for division, 2 for inversesqrt and 3 for sqrt, so a normalisation is counted as 6.
+namespace skitter::reference::tolerance {
+
+// Rounding of a tile-local coordinate, below 16 m.
+inline constexpr double local = tileSize * roundoff;
+// Difference of two tile-local points: the tile difference times 16 is exact, its sum with one coordinate is
+// below 32 m (2 local), the difference with the other rounds once more (2 local at most).
+inline constexpr double relative = 4 * local;
+// A cubic Hermite spline in tile-local coordinates: four products and three sums of terms below 16 m, the
+// basis functions err by 4 roundoff each; half of these roundings cancel at worst.
+inline constexpr double spline = 12 * local;
+
+// heightAt at a point known to within `horizontal`, on a terrain that reaches `extent` from the origin:
+// forming the world coordinate errs by 1 roundoff of it, subtracting the origin and scaling by 2 each of
+// twice it (6 in all); the three lerps add 8 roundoff of the height.
+inline double height(const Relief& relief, double extent, double horizontal) {
+  return (horizontal + 6 * roundoff * extent) * (relief.slopeX + relief.slopeZ) +
+         8 * roundoff * relief.height;
+}
+
+// Difference of a target and a body in world coordinates: as in `height`, without the scaling.
+inline double goalDistance(double extent) { return 4 * roundoff * extent; }
+// Desired velocity as a share of the goal's speed: the angle under which the error of the difference is seen,
+// and one normalisation.
+inline double desiredVelocity(double extent, double distance, double slowRadius) {
+  return goalDistance(extent) * (1 / std::max(distance, 1e-9) + 1 / slowRadius) + 8 * roundoff;
+}
+// Its length, whatever its direction: the distance over the slow radius, a normalisation and a length.
+// Against `standing`, a product of two.
+inline double stands(double extent, double speed, double slowRadius, double standing) {
+  return speed * (goalDistance(extent) / slowRadius + 12 * roundoff) + 2 * roundoff * standing;
+}
+// dt / C, a quotient of records, or phi C in its place.
+inline double breathedOut(const Tuning& t, const Gait& gait) { return 6 * roundoff * t.dt / gait.cycle; }
+
+// A rotation by a unit quaternion: 12 operations on lengths up to |v|, and the quaternion's own norm.
+inline double rotated(double length) { return 16 * roundoff * length; }
+// A foot's target, in its step or planted. A spline errs in the coordinates that it is evaluated in; heights
+// are world ones.
+inline double footAside(bool planted) { return planted ? relative : spline + relative; }
+// The largest of the heights that a point of a step is made of.
+inline double stepHeight(const Step& step, const AgentBody& body) {
+  return std::max({std::abs(step.landing.y), std::abs(step.liftOff.y), std::abs(body.y), 1.0});
+}
+inline double footHeight(const Step& step, const AgentBody& body, bool planted) {
+  return (planted ? 4 : 16) * roundoff * stepHeight(step, body);
+}
+inline double foot(const Step& step, const AgentBody& body, bool planted) {
+  return std::hypot(footAside(planted), footHeight(step, body, planted));
+}
+// Distance of a foot from its root or home.
+inline double footDistance(double length) { return relative + rotated(length); }
+
+// What the body's bounds begin with: of kappa, and of the points that its plane goes through.
+struct BodyInputs {
+  double kappa = 0, horizontal = 0, vertical = 0;
+};
+// The legs' ground points, which are records, and kappa of them: a stretch divided by the narrow band between
+// slowing and stopping.
+inline BodyInputs feltGround(const Tuning& t, const Creature& creature, const AgentBody& previous) {
+  double shortest = t.legLength;
+  for (const Limb& limb : creature.limbs) shortest = std::min(shortest, limb.reach);
+  return {footDistance(2 * t.legLength) / shortest / (t.stretchStop - t.stretchSlow) + 4 * roundoff, relative,
+          4 * roundoff * std::abs(previous.y)};
+}
+// The ground below the homes: a home is rotated once, then the ground looked up there.
+inline BodyInputs blindGround(const Heights& heights, double extent, const Creature& creature,
+                              const AgentBody& previous) {
+  BodyInputs inputs;
+  const glm::dvec2 position = previous.world();
+  for (const Limb& limb : creature.limbs) {
+    const glm::dvec3 home = previous.orientation * limb.home;
+    const double horizontal = rotated(glm::length(limb.home));
+    const Relief relief = reliefNear(heights, position.x + home.x, position.y + home.z);
+    inputs.horizontal = std::max(inputs.horizontal, horizontal);
+    inputs.vertical = std::max(inputs.vertical, height(relief, extent, horizontal));
+  }
+  inputs.vertical += 4 * roundoff * std::abs(previous.y);
+  return inputs;
+}
+
+struct BodyBounds {
+  double kappa, turnRate, heading, speed, position, slope, orientation, height, v3;
+};
+// Follows the steps of the stage in order; each bound feeds the next.
+inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, const Creature& creature,
+                       const BodyInputs& inputs, const BodyResult& result) {
+  BodyBounds bound{};
+  const AgentBody& next = result.body;
+  const SupportPlane& plane = result.plane;
+
+  bound.kappa = inputs.kappa;
+  // omega: turnGain e with e from two normalised vectors, scaled by kappa_turn = 1/4 + 3/4 kappa.
+  bound.turnRate =
+      t.turnGain * 10 * roundoff + 0.75 * t.turnRate * bound.kappa + 8 * roundoff * (t.turnRate + 1);
+  bound.heading = bound.turnRate * t.dt + 10 * roundoff;
+  // The speed before was at most what braking adds.
+  bound.speed = result.wantedSpeed * (bound.kappa + bound.heading + 12 * roundoff) +
+                4 * roundoff * (next.speed + t.braking * t.dt);
+  // Not beyond the edge: places are records, their distance is taken within a tile of it, and divided by the
+  // heading's share. The speed rises with the way, so it lies between those of the least and the longest.
+  glm::dvec2 least, most;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double share = std::max(std::abs(next.heading[axis]), 1e-6), left = result.ways[axis] * share;
+    const double error = 2 * local + 8 * roundoff * left;
+    least[axis] = std::max(0.0, left - error) / (share + bound.heading);
+    most[axis] = (left + error) / std::max(share - bound.heading, 1e-6);
+  }
+  const double slowest = stoppingSpeed(t, std::min(least.x, least.y));
+  const double fastest = stoppingSpeed(t, std::min(most.x, most.y));
+  if (slowest <= next.speed + bound.speed)
+    bound.speed = std::max(bound.speed, fastest - slowest + 12 * roundoff * fastest);
+  bound.position = 3 * local + t.dt * (bound.speed + next.speed * bound.heading);
+
+  // (b, c) = M^-1 (Sxy, Szy): errors of the points through M^-1 (at most 1 / least eigenvalue), roundings of
+  // the sums, and of the determinant in Cramer's rule (the condition number of M).
+  const double legs = static_cast<double>(creature.limbs.size());
+  const double slope = plane.unclampedSlope;
+  const double point = inputs.horizontal + bound.position;
+  const double vertical = inputs.vertical + 4 * roundoff * plane.heightSpread;
+  const double condition = plane.largestEigenvalue / plane.leastEigenvalue;
+  bound.slope =
+      (2 * std::sqrt(legs) * (plane.spread * (vertical + slope * point) + plane.heightSpread * point) +
+       (8 + legs) * roundoff * plane.spread * plane.heightSpread) /
+          plane.leastEigenvalue +
+      8 * roundoff * condition * (1 + slope);
+  // The lean into a turn: s omega times its gain.
+  const double lean = t.leanGain * (next.speed * bound.turnRate + std::abs(next.turnRate) * bound.speed) +
+                      8 * roundoff * t.leanMost + t.leanMost * bound.heading;
+  const double up = t.tiltBlend * (bound.slope + lean) + 16 * roundoff;
+  // F = (h.x, -(N . h) / N.y, h.z): a steep body amplifies by 1 / N.y.
+  const double upY = (next.orientation * glm::dvec3(0, 1, 0)).y;
+  const double forward = 2 * (up + bound.heading) / upY + 8 * roundoff;
+  bound.orientation = up + forward + 16 * roundoff;
+  const glm::dvec3 f = next.orientation * glm::dvec3(0, 0, 1);
+  const double level = std::hypot(f.x, f.z);
+  bound.v3 = (bound.speed + next.speed * forward / level) / level + 8 * roundoff;
+
+  const double planeHeight = vertical + std::hypot(plane.mean.x, plane.mean.z) * bound.slope + slope * point +
+                             8 * roundoff * slope * t.legLength;
+  const double arm = t.bodyHeight + t.bodyRadius;
+  double belly = 0;
+  const glm::dvec2 position = next.world();
+  for (int k = -1; k <= 1; ++k) {
+    const glm::dvec3 q = next.orientation * glm::dvec3(0, t.bodyHeight, k * t.bodyRadius);
+    const Relief relief = reliefNear(heights, position.x + q.x, position.y + q.z);
+    const double q_error = arm * (up + forward);
+    belly = std::max(belly, height(relief, extent, bound.position + q_error) + q_error);
+  }
+  bound.height = t.heightBlend * (std::max(planeHeight, belly) + 24 * roundoff * t.breathHeight) +
+                 t.dt * (next.speed * bound.slope + slope * bound.speed) + 6 * roundoff * std::abs(next.y) +
+                 4 * roundoff;
+  return bound;
+}
+
+struct GaitBounds {
+  double phase, halfStride, cycle, duration, length, window;
+  double ground =
+      1e-30;  // of the ground above a foot's way, where it is watched; the caller knows the relief
+};
+inline GaitBounds gait(const Tuning& t, const Gait& gait, int groups, double longestForecast) {
+  GaitBounds bound{};
+  // One addition below 2, and dt / C with C good to 16 roundoff.
+  bound.phase = 6 * roundoff;
+  // v_e (C - T) / 2, clamped.
+  bound.halfStride = 32 * roundoff * t.halfStrideMax;
+  // T / (1 - duty): duty errs by 4 roundoff, and 1 - duty is more than a fifth.
+  bound.cycle = 32 * roundoff * gait.cycle;
+  bound.duration = 12 * roundoff * (t.swingStill / t.dt + 1);
+  // Where a foot stands in the model, and where it is predicted to (a Cayley turn and v3 times a time).
+  bound.length = footDistance(2 * t.legLength) + 16 * roundoff * longestForecast;
+  // A leg's own beginning: a quotient, the spread (a share below 2 of 1 / groups - T / C) times its lag.
+  bound.window = groups * (bound.phase + 24 * roundoff);
+  return bound;
+}
+
+// A foot on its loop. Its phase theta errs by 8 roundoff (a quotient, a sum below 2), so its time in the
+// cycle by 9 of the cycle, and by 3 more against the end of stance; a share of the swing by those over the
+// swing, and that quotient. What it does there is seen at its speed.
+struct LoopBounds {
+  double flown, place;
+};
+inline LoopBounds loopSwing(const Tuning& t, const Limb& limb, const AgentBody& body, const Gait& gait) {
+  LoopBounds bound{};
+  const double swingTime = gait.duration * t.dt;
+  const double time = 12 * roundoff * gait.cycle;
+  bound.flown = time / swingTime + 6 * roundoff;
+  const double speed = body.v3 + std::abs(body.turnRate) * glm::length(limb.home);
+  const double stride = speed * gait.cycle, farthest = glm::length(limb.home) + stride + t.stepHeight;
+  // A stance point is a Cayley turn and a product, the spline twelve of what it is made of; between its ends
+  // it moves at most four times as far, and as high, in a swing.
+  bound.place =
+      28 * roundoff * farthest + rotated(farthest) + speed * time + 4 * (stride + t.stepHeight) * bound.flown;
+  return bound;
+}
+
+struct FootholdBounds {
+  double candidate;  // horizontally, before the ground is looked up
+};
+inline FootholdBounds foothold(const Tuning& t, const FootholdResult& result) {
+  // tau and r': a Cayley turn of home and v3 (t + S/2), with S = C - T.
+  const double target = 16 * roundoff * (glm::length(result.target) + t.legLength);
+  // The ladder's direction o / |o| turns by the error of o over |o|; rungs reach 4/3 and 2/3 of rho from r'.
+  const double ladder = target * (1 + 4 * result.stretch / std::max(result.side, 1e-6));
+  return {ladder + rotated(glm::length(result.target) + 2 * result.stretch)};
+}
+// A candidate's height above the body.
+inline double candidateHeight(const Relief& relief, double extent, double candidate, double bodyY) {
+  return height(relief, extent, candidate) + 4 * roundoff * std::abs(bodyY);
+}
+inline double candidateDistance(const Limb& limb, double candidate, double vertical) {
+  return candidate + vertical + rotated(2 * limb.reach);
+}
+
+// Share of the unit quaternion's components after `bones` products of 12 operations.
+inline double boneRotation(int bones) { return (12.0 * bones + 8) * roundoff; }
+// Joint positions down a chain as a share of the reach: each bone adds the error of its rotation times its
+// length, and the root is rotated once.
+inline double bonePosition(int bones) { return (16.0 * bones + 16) * roundoff; }
+
+// A direction just clamped: its sine is a product of a normalised pair (5 roundoff) and a quotient (4), its
+// stereographic form divides once more (3 + 3 of the denominator): 15 roundoff of t = tan(angle / 2), and
+// dtheta = 2 dt / (1 + t^2) is at most that.
+inline constexpr double limit = 16 * roundoff;
+// The angle by which a direction is beyond its limit, from the tangent of its half. The length of (X, Y) errs
+// by 7 roundoff (a sum of two squares under a root), the quotient of tangents by 8 more; dtheta as above.
+inline constexpr double violation = 15 * roundoff;
+// Forward kinematics of `bones` bones in float32, as a share of the reach; 24 operations a bone. A bone's
+// rotation divides by 1 + d.z, which at the edge of a cone with t = tan(half-angle / 2) is 2 / (1 + t^2).
+inline double forwardKinematics(int bones, double t) {
+  return (24.0 * bones + 32) * roundoff * std::max(1.0, (1 + t * t) / 2);
+}
+
+// The distance that is left to a target beyond the reach errs by this more than forward kinematics counts for
+// one reach: the target's rotation errs by 16 roundoff, the division by the reach by 3, the difference by 1
+// and the length by 4. `distance` is the target's from the root; one that is not finite is
+// not aimed at.
+inline double farTarget(double distance) {
+  return std::isfinite(distance) ? 24 * roundoff * std::max(0.0, distance - 1) : 0;
+}
+
+// The same of roundings that have either sign and so add up as the root of their number, for those who draw
+// such errors or count them in standard deviations.
+inline double placing(size_t bones, double t) {
+  return std::sqrt(24.0 * static_cast<double>(bones) + 32) * roundoff * std::max(1.0, (1 + t * t) / 2);
+}
+// How far apart the joints of two poses may be that are the same but for that, as a share of the reach: four
+// standard deviations, each of which is `placing` over the root of 3 if errors up to it are uniformly
+// distributed. `placing` counts every operation as one on a number of 1, which few are.
+inline double samePose(size_t bones, double t) { return 4 * placing(bones, t) / std::sqrt(3.0); }
+// As many are allowed of what is measured from solves with such errors: one of 5e8 normally distributed
+// numbers is beyond six, and a run compares up to 1e8 legs.
+inline constexpr double deviations = 6;
+
+// The errors of a solve's arithmetic. Where they lead depends on the leg: near full stretch a damped step
+// amplifies an error by up to 1 / (2 sqrt(mu)) = 158, and comparisons turn. So this is measured, leg by leg,
+// from the reference's own solves with such errors (validation/check_ik.cpp).
+inline Arithmetic::Roundings solving(const Limb& limb, const Foot& foot, double swing, double targetError) {
+  return {roundoff, placing(limb.bones.size(), swing),
+          rotated(glm::length(foot.target)) / limb.reach + targetError};
+}
+
+}  // namespace skitter::reference::tolerance

@@ -1,0 +1,54 @@
+#include "skitter/heightfield.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "skitter/error.h"
+
+namespace skitter {
+
+float Heightfield::at(float x, float z) const {
+  // !(u > 0) also sends a NaN to the edge.
+  const auto locate = [](float u, uint32_t samples, size_t& index) {
+    const float last = static_cast<float>(samples - 1);
+    if (!(u > 0)) u = 0;
+    u = std::min(u, last);
+    index = std::min<size_t>(static_cast<size_t>(u), samples - 2);
+    return u - static_cast<float>(index);
+  };
+  const auto mix = [](float a, float b, float t) { return a + t * (b - a); };
+  size_t i = 0, j = 0;
+  const float a = locate((x - originX()) / spacingX, columns, i);
+  const float b = locate((z - originZ()) / spacingZ, rows, j);
+  const float* north = heights.data() + j * columns + i;
+  const float* south = north + columns;
+  return mix(mix(north[0], north[1], a), mix(south[0], south[1], a), b);
+}
+
+float Heightfield::seenAt(float x, float z) const {
+  const auto folded = [](float along, float extent) {
+    const float turned = std::fmod(std::abs(along), 2 * extent);
+    return extent - std::abs(turned - extent);
+  };
+  return at(originX() + folded(x - originX(), extentX()), originZ() + folded(z - originZ(), extentZ()));
+}
+
+void Heightfield::edit(uint32_t x0, uint32_t z0, uint32_t editColumns, uint32_t editRows,
+                       std::span<const float> samples) {
+  const auto text = [](auto value) { return std::to_string(value); };
+  if (uint64_t{x0} + editColumns > columns || uint64_t{z0} + editRows > rows)
+    throw inputError(name + ": an edit of " + text(editColumns) + " x " + text(editRows) + " samples at " +
+                     text(x0) + ", " + text(z0) + " leaves the " + text(columns) + " x " + text(rows) +
+                     " of the terrain");
+  if (samples.size() != uint64_t{editColumns} * editRows)
+    throw inputError(name + ": an edit of " + text(editColumns) + " x " + text(editRows) + " has " +
+                     text(samples.size()) + " samples");
+  if (!std::all_of(samples.begin(), samples.end(), [](float h) { return std::isfinite(h); }))
+    throw inputError(name + ": an edit has a sample that is not finite");
+  for (uint32_t z = 0; z < editRows; ++z)
+    std::copy_n(samples.begin() + std::ptrdiff_t{z} * editColumns, editColumns,
+                heights.begin() + std::ptrdiff_t{z0 + z} * columns + x0);
+}
+
+}  // namespace skitter

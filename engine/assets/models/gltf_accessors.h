@@ -1,0 +1,27 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "assets/models/gltf_source.h"
+
+namespace skitter::gltf {
+
+struct Values {
+  std::vector<double> numbers;
+  size_t components = 1, count = 0;
+  size_t zeroed = 0;  // numbers that were not finite
+};
+enum class NotFinite { refused, zero };
+
+// All numbers of an accessor whose type has one of the given component counts; sparse and normalized ones as
+// well. `use` is what the file has it for.
+Values readAccessor(Source& source, int index, std::initializer_list<int> types, bool integers,
+                    const std::string& use, NotFinite notFinite = NotFinite::refused);
+
+// The first three components of each.
+std::vector<glm::dvec3> toVectors(const Values& values);
+
+}  // namespace skitter::gltf

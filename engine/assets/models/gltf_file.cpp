@@ -1,0 +1,225 @@
+#include "assets/models/gltf_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include "assets/files/file.h"
+#include "assets/files/json.h"
+#include "skitter/error.h"
+
+namespace skitter::gltf {
+namespace {
+
+constexpr size_t maxBuffers = 1024;
+constexpr uint64_t maxBufferBytes = uint64_t{1} << 31;  // of all buffers
+
+uint32_t readWord(std::span<const uint8_t> bytes, size_t offset) {
+  return static_cast<uint32_t>(bytes[offset]) | static_cast<uint32_t>(bytes[offset + 1]) << 8 |
+         static_cast<uint32_t>(bytes[offset + 2]) << 16 | static_cast<uint32_t>(bytes[offset + 3]) << 24;
+}
+
+// The chunks of a binary file (glTF 2.0 specification, section 4.4).
+struct Chunks {
+  std::string_view json;
+  std::span<const uint8_t> binary;
+};
+
+Chunks splitChunks(std::span<const uint8_t> glb, const std::string& name) {
+  constexpr uint32_t jsonType = 0x4e4f534a, binaryType = 0x004e4942;
+  if (glb.size() >= 8 && readWord(glb, 4) != 2) {
+    throw inputError(fmt::format("{}: is glTF binary version {}, expected 2", name, readWord(glb, 4)));
+  }
+  if (glb.size() < 20) {
+    throw inputError(fmt::format("{}: ends after {} bytes, within the header of {}", name, glb.size(),
+                                 glb.size() < 12 ? "the file" : "its first chunk"));
+  }
+  const size_t length = readWord(glb, 8);
+  if (length < 20 || length > glb.size()) {
+    throw inputError(fmt::format("{}: its header says {} bytes, the file has {}", name, length, glb.size()));
+  }
+  Chunks chunks;
+  for (size_t offset = 12; offset < length;) {
+    if (length - offset < 8) throw inputError(fmt::format("{}: ends within a chunk header", name));
+    const size_t size = readWord(glb, offset);
+    const uint32_t type = readWord(glb, offset + 4);
+    const bool first = offset == 12;
+    offset += 8;
+    if (size > length - offset) {
+      throw inputError(fmt::format("{}: a chunk of {} bytes has only {} left", name, size, length - offset));
+    }
+    if (first != (type == jsonType)) {
+      throw inputError(fmt::format("{}: its first chunk, and only that, must be JSON", name));
+    }
+    if (first) chunks.json = {reinterpret_cast<const char*>(glb.data()) + offset, size};
+    if (type == binaryType && chunks.binary.empty()) chunks.binary = glb.subspan(offset, size);
+    offset += size;
+  }
+  return chunks;
+}
+
+int hexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+// RFC 4648; false where the text is something else.
+bool decodeBase64(std::string_view text, std::vector<uint8_t>& bytes) {
+  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  bytes.reserve(text.size() / 4 * 3 + 2);
+  uint32_t bits = 0;
+  int held = 0;
+  for (const char c : text) {
+    int value = -1;
+    if (c >= 'A' && c <= 'Z') value = c - 'A';
+    if (c >= 'a' && c <= 'z') value = c - 'a' + 26;
+    if (c >= '0' && c <= '9') value = c - '0' + 52;
+    if (c == '+' || c == '-') value = 62;
+    if (c == '/' || c == '_') value = 63;
+    if (value < 0) return false;
+    bits = bits << 6 | static_cast<uint32_t>(value);
+    held += 6;
+    if (held >= 8) bytes.push_back(static_cast<uint8_t>(bits >> (held -= 8)));
+  }
+  return held != 6;
+}
+
+// Where the bytes of one buffer come from.
+class BufferReader {
+ public:
+  BufferReader(std::span<const uint8_t> binary, const std::string& name, const std::filesystem::path& folder)
+      : binary_(binary), name_(name), folder_(folder) {}
+
+  std::vector<uint8_t> read(const nlohmann::json& buffer, size_t index) const {
+    const std::string what = fmt::format("{}: buffers[{}]", name_, index);
+    if (!buffer.is_object())
+      throw inputError(fmt::format("{} is {}, expected an object", what, describeJson(buffer)));
+    const auto length = buffer.find("byteLength");
+    if (length == buffer.end() || !length->is_number_unsigned() || length->get<uint64_t>() < 1) {
+      throw inputError(fmt::format("{}.byteLength is {}, expected a whole number over 0", what,
+                                   length == buffer.end() ? "missing" : describeJson(*length)));
+    }
+    const auto wanted = length->get<uint64_t>();
+    const auto uri = buffer.find("uri");
+    if (uri == buffer.end()) {
+      // A placeholder, which matters only to what is read of it.
+      if (index > 0 || binary_.empty()) return {};
+      expectThere(wanted, binary_.size(), what);
+      return {binary_.begin(), binary_.begin() + static_cast<std::ptrdiff_t>(wanted)};
+    }
+    if (!uri->is_string()) {
+      throw inputError(fmt::format("{}.uri is {}, expected a string", what, describeJson(*uri)));
+    }
+    const std::string& address = uri->get_ref<const std::string&>();
+    if (address.rfind("data:", 0) != 0) return readBeside(address, wanted, what);
+    std::vector<uint8_t> bytes;
+    const size_t comma = address.find(',');
+    if (comma == std::string::npos || comma < 12 || address.compare(comma - 7, 7, ";base64") != 0 ||
+        !decodeBase64(std::string_view(address).substr(comma + 1), bytes)) {
+      throw inputError(fmt::format("{}: its data: URI is not base64", what));
+    }
+    expectThere(wanted, bytes.size(), what);
+    bytes.resize(wanted);
+    return bytes;
+  }
+
+ private:
+  static void expectThere(uint64_t wanted, uint64_t there, const std::string& what) {
+    if (wanted <= there) return;
+    throw inputError(fmt::format("{} has {} bytes, its byteLength says {}", what, there, wanted));
+  }
+
+  // A model must not read what its user did not hand over with it, by ".." or by a symbolic link either.
+  bool leavesFolder(const std::filesystem::path& file) const {
+    std::error_code unresolved;  // FileStream says better what is wrong with such a file
+    const auto folder = std::filesystem::weakly_canonical(folder_, unresolved);
+    const auto inside =
+        std::filesystem::weakly_canonical(folder_ / file, unresolved).lexically_relative(folder);
+    return !unresolved && (inside.empty() || *inside.begin() == "..");
+  }
+
+  std::vector<uint8_t> readBeside(const std::string& uri, uint64_t wanted, const std::string& what) const {
+    const std::string refersTo = fmt::format("{} refers to {}", what, describeJson(uri));
+    const std::filesystem::path file = decodeUri(uri);
+    if (folder_.empty()) throw inputError(refersTo + ", expected everything in one file");
+    if (uri.find(':') != std::string::npos || file.is_absolute() ||
+        file.native().find('\0') != std::string::npos || leavesFolder(file)) {
+      throw inputError(refersTo + ", expected a file in its folder");
+    }
+    std::optional<FileStream> stream;
+    try {
+      stream.emplace(folder_ / file);
+    } catch (const Error& error) {
+      throw inputError(fmt::format("{}: {}", refersTo, error.what()));
+    }
+    expectThere(wanted, stream->size(), what);
+    std::vector<uint8_t> bytes(wanted);
+    stream->read(bytes.data(), bytes.size());
+    return bytes;
+  }
+
+  std::span<const uint8_t> binary_;
+  const std::string& name_;
+  const std::filesystem::path& folder_;
+};
+
+// One file may serve every buffer, so that little on disk asks for much memory.
+void checkTotal(const nlohmann::json& buffers, const std::string& name) {
+  uint64_t total = 0;
+  for (const nlohmann::json& buffer : buffers) {
+    const auto length = buffer.is_object() ? buffer.find("byteLength") : buffer.end();
+    if (!buffer.is_object() || length == buffer.end() || !length->is_number_unsigned()) continue;
+    total += std::min(length->get<uint64_t>(), maxBufferBytes + 1);
+  }
+  if (total > maxBufferBytes) {
+    throw inputError(fmt::format("{}: its buffers' byteLengths are over {} in all", name, maxBufferBytes));
+  }
+}
+
+}  // namespace
+
+std::string decodeUri(const std::string& uri) {
+  std::string text;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    const bool escape =
+        uri[i] == '%' && i + 2 < uri.size() && hexDigit(uri[i + 1]) >= 0 && hexDigit(uri[i + 2]) >= 0;
+    text.push_back(escape ? static_cast<char>(hexDigit(uri[i + 1]) * 16 + hexDigit(uri[i + 2])) : uri[i]);
+    if (escape) i += 2;
+  }
+  return text;
+}
+
+File openFile(std::span<const uint8_t> bytes, const std::string& name, const std::filesystem::path& folder) {
+  Chunks chunks;
+  if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
+    chunks = splitChunks(bytes, name);
+  } else {
+    // A text file begins with the brace of its one object, after a byte order mark or blanks at most.
+    chunks.json = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    if (chunks.json.rfind("\xef\xbb\xbf", 0) == 0) chunks.json.remove_prefix(3);
+    const size_t start = chunks.json.find_first_not_of(" \t\r\n");
+    if (start == std::string_view::npos || chunks.json[start] != '{') {
+      throw inputError(fmt::format(
+          "{}: is not glTF: begins neither with a binary file's signature nor with a brace", name));
+    }
+  }
+  File file;
+  file.json = parseJson(chunks.json, name);
+  if (!file.json.is_object()) throw inputError(fmt::format("{}: its JSON is not an object", name));
+  const auto buffers = file.json.find("buffers");
+  if (buffers == file.json.end()) return file;
+  if (!buffers->is_array() || buffers->size() > maxBuffers) {
+    throw inputError(fmt::format("{}: buffers is {}, expected an array of up to {}", name,
+                                 describeJson(*buffers), maxBuffers));
+  }
+  checkTotal(*buffers, name);
+  const BufferReader reader(chunks.binary, name, folder);
+  for (size_t i = 0; i < buffers->size(); ++i) file.buffers.push_back(reader.read((*buffers)[i], i));
+  return file;
+}
+
+}  // namespace skitter::gltf

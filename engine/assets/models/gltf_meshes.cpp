@@ -1,0 +1,152 @@
+#include "assets/models/gltf_meshes.h"
+
+#include <algorithm>
+
+#include "assets/models/gltf_accessors.h"
+
+namespace skitter::gltf {
+namespace {
+
+glm::dvec3 baseColour(const Source& source, int material, const std::string& what) {
+  if (material == -1) return glm::dvec3(1);
+  source.checkIndex(material, source.model.materials.size(), what + ".material");
+  const auto& factor =
+      source.model.materials[static_cast<size_t>(material)].pbrMetallicRoughness.baseColorFactor;
+  source.checkFinite(factor, 4, fmt::format("materials[{}].baseColorFactor", material));
+  return factor.empty() ? glm::dvec3(1) : glm::dvec3(factor[0], factor[1], factor[2]);
+}
+
+std::vector<uint32_t> triangles(Source& source, const tinygltf::Primitive& from, size_t vertexCount,
+                                const std::string& what) {
+  std::vector<uint32_t> indices;
+  if (from.indices == -1) {
+    indices.resize(vertexCount);
+    for (size_t i = 0; i < vertexCount; ++i) indices[i] = static_cast<uint32_t>(i);
+  } else {
+    const Values values = readAccessor(source, from.indices, {TINYGLTF_TYPE_SCALAR}, true, what + ".indices");
+    for (double number : values.numbers) {
+      if (number >= static_cast<double>(vertexCount)) {
+        source.fail("{}.indices holds {}, but there are {} vertices", what, number, vertexCount);
+      }
+      indices.push_back(static_cast<uint32_t>(number));
+    }
+  }
+  const int mode = from.mode == -1 ? TINYGLTF_MODE_TRIANGLES : from.mode;
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    if (indices.size() % 3 != 0) source.fail("{} has {} indices, no multiple of 3", what, indices.size());
+    return indices;
+  }
+  std::vector<uint32_t> list;
+  for (size_t i = 0; i + 2 < indices.size(); ++i) {
+    if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
+      list.insert(list.end(), {indices[0], indices[i + 1], indices[i + 2]});
+    } else {
+      list.insert(list.end(), {indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
+    }
+  }
+  return list;
+}
+
+Primitive primitive(Source& source, const tinygltf::Primitive& from, const std::string& what) {
+  Primitive primitive;
+  const auto attribute = [&](const std::string& key, std::initializer_list<int> types, bool integers,
+                             NotFinite notFinite = NotFinite::refused) {
+    Values values;
+    if (const auto found = from.attributes.find(key); found != from.attributes.end()) {
+      values = readAccessor(source, found->second, types, integers, what + "." + key, notFinite);
+      if (key != "POSITION" && values.count != primitive.positions.size()) {
+        source.fail("{}.{} has {} vertices, POSITION {}", what, key, values.count,
+                    primitive.positions.size());
+      }
+    }
+    return values;
+  };
+  primitive.positions = toVectors(attribute("POSITION", {TINYGLTF_TYPE_VEC3}, false));
+  const size_t count = primitive.positions.size();
+  if (count == 0) source.fail("{} has no POSITION", what);
+  primitive.normals = toVectors(attribute("NORMAL", {TINYGLTF_TYPE_VEC3}, false));
+  primitive.colours = toVectors(attribute("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, false));
+  primitive.colours.resize(count, glm::dvec3(1));
+  const glm::dvec3 base = baseColour(source, from.material, what);
+  // Both are within 0 to 1 (glTF 2.0 specification, sections 3.7.2.1 and 3.9.2).
+  for (glm::dvec3& colour : primitive.colours) colour = glm::clamp(colour * base, 0.0, 1.0);
+
+  std::vector<Values> joints, weights;
+  for (int set = 0;; ++set) {
+    joints.push_back(attribute(fmt::format("JOINTS_{}", set), {TINYGLTF_TYPE_VEC4}, true));
+    // Exporters divide the weights of a vertex by their sum, even where that is 0.
+    weights.push_back(
+        attribute(fmt::format("WEIGHTS_{}", set), {TINYGLTF_TYPE_VEC4}, false, NotFinite::zero));
+    if (const size_t zeroed = weights.back().zeroed; zeroed > 0) {
+      source.notes.push_back(fmt::format("{}.WEIGHTS_{} has {} weights that are not finite: they count as 0",
+                                         what, set, zeroed));
+    }
+    if (joints.back().count != weights.back().count)
+      source.fail("{} has JOINTS_{} or WEIGHTS_{} alone", what, set, set);
+    if (joints.back().count == 0) break;
+    primitive.influencesPerVertex += 4;
+  }
+  for (size_t vertex = 0; vertex < count; ++vertex) {
+    double sum = 0;
+    for (size_t k = 0; k < primitive.influencesPerVertex; ++k) {
+      const size_t at = 4 * vertex + k % 4;
+      const double weight = weights[k / 4].numbers[at];
+      if (weight < 0) source.fail("{} has weight {} at vertex {}", what, weight, vertex);
+      primitive.influences.push_back({static_cast<uint32_t>(joints[k / 4].numbers[at]), weight});
+      sum += weight;
+    }
+    if (primitive.influencesPerVertex == 0 || sum > 0) continue;
+    primitive.influences[vertex * primitive.influencesPerVertex].weight = 1;
+    ++primitive.weightless;
+  }
+  primitive.indices = triangles(source, from, count, what);
+  return primitive;
+}
+
+}  // namespace
+
+Mesh readMesh(Source& source, size_t index) {
+  Mesh mesh;
+  for (size_t k = 0; k < source.model.meshes[index].primitives.size(); ++k) {
+    const tinygltf::Primitive& from = source.model.meshes[index].primitives[k];
+    const std::string what = fmt::format("meshes[{}].primitives[{}]", index, k);
+    const int mode = from.mode == -1 ? TINYGLTF_MODE_TRIANGLES : from.mode;
+    if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+      source.fail("{} has mode {}, expected 0 to 6", what, mode);
+    }
+    if (mode < TINYGLTF_MODE_TRIANGLES) {
+      source.notes.push_back(fmt::format("{} is points or lines (mode {}): left out", what, mode));
+      continue;
+    }
+    if (!from.targets.empty()) source.notes.push_back(what + " has morph targets: not applied");
+    mesh.primitives.push_back(primitive(source, from, what));
+    for (const Influence& influence : mesh.primitives.back().influences) {
+      mesh.highestJoint = std::max(mesh.highestJoint, influence.joint);
+    }
+  }
+  return mesh;
+}
+
+Skin readSkin(Source& source, size_t index) {
+  const tinygltf::Skin& from = source.model.skins[index];
+  const std::string what = fmt::format("skins[{}]", index);
+  if (from.joints.empty()) source.fail("{} has no joints", what);
+  Skin skin;
+  skin.joints = from.joints;
+  for (int joint : skin.joints) source.checkIndex(joint, source.model.nodes.size(), "a joint of " + what);
+  skin.nodeFromBind.resize(skin.joints.size(), glm::dmat4(1));
+  if (from.inverseBindMatrices == -1) return skin;
+  const Values values = readAccessor(source, from.inverseBindMatrices, {TINYGLTF_TYPE_MAT4}, false,
+                                     what + ".inverseBindMatrices");
+  if (values.count < skin.joints.size()) {
+    source.fail("{} has {} inverse bind matrices for {} joints", what, values.count, skin.joints.size());
+  }
+  for (size_t k = 0; k < skin.joints.size(); ++k) {
+    for (size_t e = 0; e < 16; ++e) {
+      skin.nodeFromBind[k][static_cast<int>(e / 4)][static_cast<int>(e % 4)] = values.numbers[16 * k + e];
+    }
+  }
+  return skin;
+}
+
+}  // namespace skitter::gltf

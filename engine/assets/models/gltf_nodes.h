@@ -1,0 +1,11 @@
+#pragma once
+
+#include "assets/models/gltf.h"
+#include "assets/models/gltf_source.h"
+
+namespace skitter::gltf {
+
+// Fills nodes and parentsFirst.
+void readNodes(const Source& source, Document& document);
+
+}  // namespace skitter::gltf

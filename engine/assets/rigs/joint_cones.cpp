@@ -1,0 +1,61 @@
+#include "assets/rigs/joint_cones.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+namespace skitter {
+namespace {
+
+constexpr double leastCone = 45, mostCone = 120, rootCone = 60, rootMargin = 40;  // degrees
+constexpr double foldShare =
+    0.25;  // of the reach, root to foot: gait lets feet come as near (crowd/tuning.cpp)
+constexpr double degrees = 180 / std::numbers::pi;
+
+double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
+  const double lengths = glm::length(a) * glm::length(b);
+  return lengths > 0 ? std::acos(std::clamp(glm::dot(a, b) / lengths, -1.0, 1.0)) * degrees : 0;
+}
+
+// The least distance from root to foot, a share of the reach, as every joint bends on the way it bends at
+// rest.
+double foldedSpan(const Leg& leg, const std::vector<double>& cones) {
+  constexpr int steps = 12;
+  double least = 1;
+  for (int step = 1; step <= steps; ++step) {
+    glm::dquat turn(1, 0, 0, 0);
+    glm::dvec3 tip(0);
+    for (size_t i = 0; i < leg.bones.size(); ++i) {
+      const glm::dvec3 bone(leg.bones[i].direction);
+      if (i > 0) {
+        const glm::dvec3 axis = glm::cross(glm::dvec3(leg.bones[i - 1].direction), bone);
+        const double angle = cones[i] / degrees * step / steps;
+        if (glm::length(axis) > 1e-6) turn = turn * glm::angleAxis(angle, glm::normalize(axis));
+      }
+      tip += turn * bone * double{leg.bones[i].length};
+    }
+    least = std::min(least, glm::length(tip) / double{leg.reach});
+  }
+  return least;
+}
+
+}  // namespace
+
+std::vector<double> conesOf(const Leg& leg) {
+  std::vector<double> cones;
+  for (size_t i = 0; i < leg.bones.size(); ++i) {
+    const glm::dvec3 bone(leg.bones[i].direction);
+    const double cone =
+        i == 0 ? std::max(rootCone, angleBetween(bone, glm::dvec3(leg.home - leg.root())) + rootMargin)
+               : std::max(leastCone, angleBetween(glm::dvec3(leg.bones[i - 1].direction), bone));
+    cones.push_back(std::round(std::min(cone, mostCone)));
+  }
+  for (double widest = leastCone; widest < mostCone && foldedSpan(leg, cones) > foldShare; widest += 5) {
+    for (size_t i = 1; i < cones.size(); ++i) cones[i] = std::max(cones[i], widest + 5);
+  }
+  return cones;
+}
+
+}  // namespace skitter

@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "assets/rigs/body_axes.h"
+#include "assets/rigs/foot_homes.h"
+#include "assets/rigs/joint_cones.h"
+#include "assets/rigs/limb_pairs.h"
+#include "assets/rigs/rig_setup.h"
+#include "skitter/error.h"
+
+namespace skitter {
+namespace {
+
+constexpr double straightShare = 0.93;  // of the reach, root to tip: a rest pose beyond it shows no knee
+constexpr double bendDegrees = 40;      // given to legs that rest straight
+
+// A leg that rests straight shows no knee: the way its joints leave the line from root to tip, however
+// little, else forward for legs below the body and upward for legs beside it.
+glm::dvec3 bendOf(const BodyPlan& plan, const std::vector<glm::dvec3>& points, double reach) {
+  const glm::dvec3 chord = glm::normalize(points.back() - points.front());
+  glm::dvec3 most(0);
+  for (const glm::dvec3& p : points) {
+    const glm::dvec3 off = (p - points.front()) - chord * glm::dot(p - points.front(), chord);
+    if (glm::length(off) > glm::length(most)) most = off;
+  }
+  if (glm::length(most) > 0.005 * reach) return glm::normalize(most);
+  return std::fabs(glm::dot(chord, plan.up)) > 0.7 ? plan.forward : plan.up;
+}
+
+// Half the body's length: to the outermost root at least, to the end of what no leg moves at most.
+double bodyRadius(const BodyPlan& plan, const glm::dvec3& ground, double longest) {
+  std::vector<bool> inLeg(plan.model.nodes.size(), false);
+  const double origin = glm::dot(ground, plan.forward);
+  double roots = 0, body = 0;
+  for (const Limb& limb : plan.limbs) {
+    inLeg[static_cast<size_t>(limb.root())] = true;
+    roots = std::max(roots, std::fabs(glm::dot(plan.at(limb.root()), plan.forward) - origin));
+  }
+  for (int i : plan.model.parentsFirst) {
+    const int parent = plan.model.nodes[static_cast<size_t>(i)].parent;
+    if (parent != -1 && inLeg[static_cast<size_t>(parent)]) inLeg[static_cast<size_t>(i)] = true;
+  }
+  for (const Model::Vertex& vertex : plan.model.vertices) {
+    if (inLeg[plan.model.influences[vertex.firstInfluence].node]) continue;
+    body = std::max(body, std::fabs(glm::dot(vertex.position, plan.forward) - origin));
+  }
+  return std::max({roots, std::min(body, 0.5 * longest), 0.1 * longest});
+}
+
+void noteChains(BodyPlan& plan, const RigSetup& setup) {
+  size_t inBody = 0, offsets = 0, bent = 0;
+  for (size_t i = 0; i < plan.limbs.size(); ++i) {
+    inBody += plan.limbs[i].inBody > 0;
+    offsets += !plan.limbs[i].footJoint;
+    bent += setup.legs[i].bend.has_value();
+  }
+  if (inBody > 0) {
+    plan.note(fmt::format("the first joints of {} chains share one place: they stay with the body", inBody));
+  }
+  if (offsets > 0)
+    plan.note(fmt::format("{} feet have no joint: tipOffset is where their skin ends", offsets));
+  if (bent > 0) plan.note(fmt::format("{} legs rest straight: bend says which way their knees go", bent));
+}
+
+// Limits about the rest pose as it will be, bends included.
+void limitJoints(BodyPlan& plan, RigSetup& setup) {
+  try {
+    const Rig rig = buildRig(plan.model, setup, plan.model.name);
+    for (size_t i = 0; i < setup.legs.size(); ++i) setup.legs[i].coneHalfAngleDegrees = conesOf(rig.legs[i]);
+  } catch (const Error& error) {
+    plan.note(error.detail(plan.model.name));
+    setup.legs.clear();
+  }
+}
+
+void describeLegs(BodyPlan& plan, const std::vector<LimbName>& names, RigSetup& setup) {
+  const FootHomes feet = placeFeet(plan);
+  setup.origin = feet.origin;
+  double height = 0, longest = 0;
+  for (size_t i = 0; i < plan.limbs.size(); ++i) {
+    const Limb& limb = plan.limbs[i];
+    const std::vector<glm::dvec3> points = plan.pointsOf(limb);
+    RigSetup::Leg leg;
+    leg.name = names[i].name;
+    leg.group = names[i].group;
+    if (std::find(setup.groups.begin(), setup.groups.end(), leg.group) == setup.groups.end()) {
+      setup.groups.push_back(leg.group);
+    }
+    for (size_t j = limb.inBody; j < limb.joints.size(); ++j) {
+      leg.joints.push_back(plan.model.reference(limb.joints[j]));
+    }
+    if (!limb.footJoint) leg.tipOffset = limb.tip - plan.at(limb.joints.back());
+    leg.home = feet.homes[i];
+    const bool straight = glm::length(points.back() - points.front()) > straightShare * limb.reach;
+    if (straight && points.size() > 2) {
+      leg.bend = bendOf(plan, points, limb.reach);
+      leg.bendDegrees = bendDegrees;
+    }
+    setup.legs.push_back(std::move(leg));
+    height +=
+        (plan.height(points.front()) - plan.height(feet.origin)) / static_cast<double>(plan.limbs.size());
+    longest = std::max(longest, limb.reach);
+  }
+  std::sort(setup.groups.begin(), setup.groups.end());
+  setup.bodyHeight = std::max(height, 0.1 * longest);
+  setup.bodyRadius = bodyRadius(plan, feet.origin, longest);
+  noteChains(plan, setup);
+  limitJoints(plan, setup);
+}
+
+// A model whose colours are in its pictures is white here, which no light suits.
+void chooseColour(BodyPlan& plan, RigSetup& setup) {
+  for (const Model::Vertex& vertex : plan.model.vertices) {
+    if (glm::length(vertex.colour - glm::vec3(1)) > 0.1f) return;
+  }
+  if (plan.model.vertices.empty()) return;
+  setup.colour = {0.1, 0.085, 0.07};
+  plan.note("the model has no colours of its own (pictures are not read): colour makes it grey");
+}
+
+// Fills what it can; the notes say where it stops.
+void propose(BodyPlan& plan, RigProposal& result) {
+  RigSetup& setup = result.setup;
+  setup.model = std::filesystem::path(plan.model.name).filename().string();
+  chooseUp(plan);
+  setup.up = plan.up;
+  if (plan.limbs.empty()) {
+    plan.note("no chain of joints ends near the ground: there is nothing to walk on");
+    return;
+  }
+  chooseForward(plan);
+  setup.forward = plan.forward;
+  pairLimbs(plan);
+  const std::vector<LimbName> names = nameLimbs(plan);
+  for (size_t i = 0; i < names.size(); ++i) {
+    const Limb& limb = plan.limbs[i];
+    result.found.push_back(
+        {.name = names[i].name, .joints = limb.chain, .root = limb.root(), .footJoint = limb.footJoint});
+  }
+  if (!canWalk(plan)) return;
+  setup.legLength = 1;
+  describeLegs(plan, names, setup);
+  chooseColour(plan, setup);
+}
+
+}  // namespace
+
+RigProposal proposeRig(const Model& model) {
+  RigProposal result;
+  BodyPlan plan{.model = model};
+  propose(plan, result);
+  result.notes = std::move(plan.notes);
+  return result;
+}
+
+}  // namespace skitter

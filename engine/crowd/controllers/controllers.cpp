@@ -1,0 +1,40 @@
+#include "crowd/controllers/controllers.h"
+
+#include "gpu/transfer.h"
+
+namespace skitter::crowd {
+
+const ControllerStages& controllerStages(Controller controller) {
+  switch (controller) {
+    case Controller::loop:
+      return loopController;
+    case Controller::clip:
+      return clipController;
+    case Controller::planted:
+      return plantedController;
+    case Controller::pose:
+      return keyPoseController;
+    case Controller::adaptive:
+      break;
+  }
+  return adaptiveController;
+}
+
+ClipSet clipSetOf(const skitter::Herd& from, const Rig& rig) {
+  return from.rig == "spider" ? spiderClips() : skitter::loadClips(from.rig, rig, from.cuts);
+}
+
+std::vector<std::string> clipNames(const skitter::Herd& from) {
+  std::vector<std::string> names = from.clips;
+  if (names.empty())
+    for (const ClipCut& cut : from.cuts) names.push_back(cut.name);
+  return names;
+}
+
+gpu::Buffer constantBuffer(const gpu::Context& context, const std::vector<float>& records, const char* name) {
+  gpu::Buffer buffer(context, records.size() * sizeof(float), name);
+  gpu::upload(context, buffer, records);
+  return buffer;
+}
+
+}  // namespace skitter::crowd

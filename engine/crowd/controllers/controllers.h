@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "crowd/herd.h"
+#include "crowd/stage.h"
+#include "skitter/scene.h"
+
+// Each controller in a file of its own name.
+namespace skitter::crowd {
+
+struct ControllerStages {
+  // In order; those that make what nobody asked for are left out by others.
+  std::vector<Stage> (*all)(const CrowdOptions& options);
+  // Each makes some of them at once, and is quicker; none: nullptr, as with what follows.
+  std::vector<Stage> (*fused)() = nullptr;
+  // Adds what the shaders of all its stages are specialised by.
+  void (*specialise)(const Kind& kind, gpu::KernelInfo& info) = nullptr;
+  // Of a kind with a rig: refuses what cannot be, by Error(input), and loads what the controller needs.
+  void (*prepare)(const gpu::Context& context, const skitter::Herd& from, Kind& kind) = nullptr;
+  // Refuses ticks of that length by Error(input).
+  void (*checkTick)(const Kind& kind, float dt) = nullptr;
+};
+
+const ControllerStages& controllerStages(Controller controller);
+
+extern const ControllerStages adaptiveController;
+extern const ControllerStages loopController;
+extern const ControllerStages clipController;
+extern const ControllerStages plantedController;
+extern const ControllerStages keyPoseController;
+
+// What those that need clips have in common.
+ClipSet clipSetOf(const skitter::Herd& from, const Rig& rig);
+std::vector<std::string> clipNames(const skitter::Herd& from);
+gpu::Buffer constantBuffer(const gpu::Context& context, const std::vector<float>& records, const char* name);
+// And those that play them.
+void loadClips(const gpu::Context& context, const skitter::Herd& from, Kind& kind);
+void addClips(const Kind& kind, gpu::KernelInfo& info);
+
+}  // namespace skitter::crowd

@@ -1,0 +1,23 @@
+#include "crowd/controllers/controllers.h"
+
+namespace skitter::crowd {
+namespace {
+
+void prepare(const gpu::Context& context, const skitter::Herd& from, Kind& kind) {
+  kind.keyPoses = keyPoses(clipSetOf(from, kind.rig), clipNames(from), from.keys, kind.rig, kind.rigRecords);
+  kind.keyBuffer = constantBuffer(context, kind.keyPoses.records, "key poses");
+}
+
+}  // namespace
+
+// Joins a few key poses of an animation.
+const ControllerStages keyPoseController = {
+    .all =
+        [](const CrowdOptions&) {
+          return std::vector{navigateStage(),     wakeStage(), blindBodyStage(), keyPoseGaitStage(),
+                             keyPoseSwingStage(), poseStage(), measureStage(),   footfallStage()};
+        },
+    .prepare = prepare,
+};
+
+}  // namespace skitter::crowd

@@ -1,0 +1,125 @@
+#include "crowd/frame.h"
+
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "crowd/page.h"
+#include "crowd/watch.h"
+#include "gpu/barrier.h"
+
+namespace skitter::crowd {
+namespace {
+
+uint32_t invocations(const Kind& kind, const Page& page, Stage::Over over) {
+  const uint32_t agents = wholeBlocks(page.agents);
+  switch (over) {
+    case Stage::Over::joints:
+      return page.agents * static_cast<uint32_t>(kind.clips.joints);
+    case Stage::Over::legs:
+    case Stage::Over::everyLeg:
+      return agents * static_cast<uint32_t>(kind.legs);
+    case Stage::Over::blocks:
+      return agents / shared::BLOCK;
+    case Stage::Over::everyone:
+    case Stage::Over::agents:
+    case Stage::Over::listed:
+    case Stage::Over::watched:
+      break;
+  }
+  return page.agents;
+}
+
+// Where the counters have the dispatch over those who are awake.
+uint64_t awakeArguments(Stage::Over over) {
+  return sizeof(uint32_t) * (over == Stage::Over::agents ? shared::COUNTER_AWAKE_AGENTS_X
+                             : over == Stage::Over::legs ? shared::COUNTER_AWAKE_LEGS_X
+                                                         : shared::COUNTER_AWAKE_JOINTS_X);
+}
+
+// In the ticks after an edit of the heights gait looks at the ground under every foot, and nobody sleeps.
+bool watchesGround(const Crowd::Impl& crowd) {
+  return crowd.watchUntil > 0 && crowd.tick <= crowd.watchUntil;
+}
+
+shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page,
+                                  Stage::Over over, uint64_t tick) {
+  if (over == Stage::Over::watched) {
+    const Watch watch = watchAt(tick, crowd.watchEvery, page);
+    return {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0, 0};
+  }
+  return {page.agents,
+          static_cast<float>(tick),
+          page.firstAgent,
+          1,
+          0,
+          page.footfallRoom,
+          watchesGround(crowd) ? std::numeric_limits<float>::infinity() : kind.parameters.sleepTime};
+}
+
+}  // namespace
+
+void clearLists(const Crowd::Impl& crowd, vk::CommandBuffer cmd) {
+  constexpr std::array<uint32_t, shared::COUNTER_AWAKE_AGENTS_X> none = {0, 1, 1, 0, 0, 0, 1, 1, 0};
+  for (const Kind& kind : crowd.kinds)
+    for (const Page& page : kind.pages) cmd.updateBuffer(page.counters.handle(), 0, sizeof none, none.data());
+}
+
+void clearAwake(const Crowd::Impl& crowd, vk::CommandBuffer cmd) {
+  if (!crowd.options.sleep) return;
+  constexpr std::array<uint32_t, shared::COUNTER_ROWS - shared::COUNTER_AWAKE_AGENTS_X> none = {
+      0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 0};
+  for (const Kind& kind : crowd.kinds)
+    for (const Page& page : kind.pages) {
+      cmd.updateBuffer(page.counters.handle(), shared::COUNTER_AWAKE_AGENTS_X * sizeof(uint32_t), sizeof none,
+                       none.data());
+      cmd.fillBuffer(page.awake.handle(), 0, VK_WHOLE_SIZE, 0);
+    }
+}
+
+const char* Frame::nameOf(StageSet made) const {
+  for (const Kind& kind : crowd_.kinds)
+    for (const ReadyStage& stage : kind.stages)
+      if (stage.makes == made) return stage.first.name().c_str();
+  return nullptr;
+}
+
+void Frame::record(StageSet made) const {
+  const auto eachPage = [&](const auto& record) {
+    for (const Kind& kind : crowd_.kinds)
+      for (size_t i = 0; i < kind.stages.size(); ++i)
+        if (kind.stages[i].makes == made)
+          for (const Page& page : kind.pages) record(kind, page, i);
+  };
+  eachPage([&](const Kind& kind, const Page& page, size_t i) { dispatch(kind, page, i); });
+  // What the first dispatches left out.
+  bool listed = false;
+  eachPage([&](const Kind& kind, const Page& page, size_t i) {
+    if (!kind.stages[i].rest) return;
+    if (!std::exchange(listed, true)) gpu::computeToIndirectAndCompute(cmd_);
+    dispatchRest(kind, page, i);
+  });
+}
+
+void Frame::dispatch(const Kind& kind, const Page& page, size_t index) const {
+  const ReadyStage& stage = kind.stages[index];
+  const gpu::Kernel& kernel = stage.afterEdit && watchesGround(crowd_) ? stage.afterEdit : stage.first;
+  const shared::TickConstants constants = constantsOf(crowd_, kind, page, stage.over, tick_);
+  const auto push = gpu::bytesOf(constants);
+  if (stage.over == Stage::Over::listed)
+    kernel.dispatchIndirect(cmd_, page.bindings[index], push, page.counters);
+  else if (crowd_.options.sleep && stage.isOfTheAwake())
+    kernel.dispatchIndirect(cmd_, page.bindings[index], push, page.counters, awakeArguments(stage.over));
+  else
+    kernel.dispatch(cmd_, page.bindings[index], push,
+                    gpu::groupsFor(invocations(kind, page, stage.over), shared::WORK_GROUP));
+}
+
+void Frame::dispatchRest(const Kind& kind, const Page& page, size_t index) const {
+  const ReadyStage& stage = kind.stages[index];
+  const shared::TickConstants constants = constantsOf(crowd_, kind, page, stage.over, tick_);
+  stage.rest.dispatchIndirect(cmd_, page.bindings[index], gpu::bytesOf(constants), page.counters,
+                              static_cast<uint64_t>(stage.restArguments) * sizeof(uint32_t));
+}
+
+}  // namespace skitter::crowd

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "crowd/herd.h"
+#include "skitter/rig.h"
+#include "skitter/scene.h"
+
+namespace skitter::crowd {
+
+// The kinds of a scene's herds, in the order of each one's first herd.
+struct Kinds {
+  std::vector<uint32_t> ofHerds;     // the kind of each herd
+  std::vector<uint32_t> firstHerds;  // the first herd of each kind
+  std::vector<Rig> rigs;             // of each kind
+};
+
+// Herds are of one kind where they are equal but for agents, spawn and goal. Throws Error(input) where there
+// are more than a device can serve.
+Kinds kindsOf(const Scene& scene);
+// With rigs that the caller made, one a herd, in place of those that the scene names.
+Kinds kindsOf(const Scene& scene, std::vector<Rig> rigs);
+
+}  // namespace skitter::crowd

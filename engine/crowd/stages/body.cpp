@@ -1,0 +1,47 @@
+#include "crowd/herd.h"
+#include "crowd/stage.h"
+#include "embedded/body_blind_comp_storage.h"
+#include "embedded/body_blind_comp_texel.h"
+#include "embedded/body_comp_storage.h"
+#include "embedded/body_comp_texel.h"
+#include "shared/bindings.h"
+
+namespace skitter::crowd {
+namespace {
+
+void specialise(const StageNeeds& needs, StageKernels& kernels) { addRigLegs(needs.kind, kernels.first); }
+
+}  // namespace
+
+Stage bodyStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {StageId::body,
+          {embedded::body_comp_texel(), embedded::body_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_HEIGHTS, heights},
+           {BINDING_STEER, load4},
+           {BINDING_GAIT, load4},
+           {BINDING_STEP, load4},
+           {BINDING_MISS, load4},
+           {BINDING_BODY, load4},
+           {BINDING_BODY_OUT, store}},
+          Stage::Over::agents,
+          specialise};
+}
+
+Stage blindBodyStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {StageId::body,
+          {embedded::body_blind_comp_texel(), embedded::body_blind_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_HEIGHTS, heights},
+           {BINDING_STEER, load4},
+           {BINDING_BODY, load4},
+           {BINDING_BODY_OUT, store}},
+          Stage::Over::agents,
+          specialise};
+}
+
+}  // namespace skitter::crowd

@@ -1,0 +1,22 @@
+#include "crowd/stage.h"
+#include "embedded/navigate_comp_storage.h"
+#include "embedded/navigate_comp_texel.h"
+#include "shared/bindings.h"
+
+namespace skitter::crowd {
+
+Stage navigateStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {StageId::navigate,
+          {embedded::navigate_comp_texel(), embedded::navigate_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_GOAL, load4},
+           {BINDING_GOAL_OUT, store},
+           {BINDING_STEER_OUT, store},
+           {BINDING_BODY, load4},
+           {BINDING_GAIT, load4}},
+          Stage::Over::everyone};
+}
+
+}  // namespace skitter::crowd

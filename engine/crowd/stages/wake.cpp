@@ -1,0 +1,17 @@
+#include "crowd/stage.h"
+#include "embedded/wake_comp_storage.h"
+#include "embedded/wake_comp_texel.h"
+#include "shared/bindings.h"
+
+namespace skitter::crowd {
+
+Stage wakeStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {StageId::wake,
+          {embedded::wake_comp_texel(), embedded::wake_comp_storage()},
+          {{BINDING_STEER, load4}, {BINDING_AWAKE_OUT, store}, {BINDING_COUNTERS, store}},
+          Stage::Over::blocks};
+}
+
+}  // namespace skitter::crowd

@@ -1,0 +1,344 @@
+// The records that the stages exchange, as GLSL and C++ both see them. Every buffer is an array of vec4; a
+// record is `stride` consecutive vec4. Small integers travel as exact floats. docs/stages.md has the meaning
+// of each symbol. One stage writes each record; `written by` names it. The table at the end says all else.
+#ifndef SKITTER_RECORDS_H
+#define SKITTER_RECORDS_H
+
+#ifdef __cplusplus
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace skitter::shared {
+using uint = unsigned;
+using std::abs, std::floor;
+#define SKITTER_CONST inline constexpr
+#define SKITTER_FUNCTION inline constexpr
+#define SKITTER_INLINE inline
+#else
+#define SKITTER_CONST const
+#define SKITTER_FUNCTION
+#define SKITTER_INLINE
+#endif
+
+// Legs that a creature may have.
+SKITTER_CONST int MOST_LEGS = 24;
+
+// Invocations a work group in every stage: a software device takes a while to begin one, and makes all of
+// them, with work to do or none.
+SKITTER_CONST int WORK_GROUP = 128;
+
+// Leg records are laid out in blocks of BLOCK agents: within a block those of the first legs, one an agent,
+// then those of the second legs, and so on. So a stage over agents walks through memory from end to end,
+// where agents leg by leg would be many cache lines apart. The last block of a page is whole, whatever its
+// agents; what is beyond them is never read. Numbers are not negative, and divided as such: it takes fewer
+// instructions.
+SKITTER_CONST int BLOCK = 8;
+SKITTER_FUNCTION int legRecord(int agent, int leg, int legs) {
+  return int((uint(agent) / uint(BLOCK) * uint(legs) + uint(leg)) * uint(BLOCK) + uint(agent) % uint(BLOCK));
+}
+SKITTER_FUNCTION int agentOfRecord(int record, int legs) {
+  return int(uint(record) / uint(BLOCK * legs) * uint(BLOCK) + uint(record) % uint(BLOCK));
+}
+SKITTER_FUNCTION int legOfRecord(int record, int legs) {
+  return int(uint(record) / uint(BLOCK) % uint(legs));
+}
+// Metres; body positions are tile * TILE_SIZE + local, 0 <= local < TILE_SIZE.
+SKITTER_CONST float TILE_SIZE = 16.0;
+// A tile (x, z) as one number, TILES x + z: an exact float while both are at least -TILES / 2 and less than
+// TILES / 2, which is 32 km, eight times as far as terrains go.
+SKITTER_CONST float TILES = 4096.0;
+SKITTER_FUNCTION float packedTile(float x, float z) { return TILES * x + z; }
+SKITTER_INLINE float tileX(float tile) { return floor(tile / TILES + 0.5f); }
+SKITTER_INLINE float tileZ(float tile) { return tile - TILES * tileX(tile); }
+
+// goal, per agent, written by navigate.
+//   [0] target x, target z, other end x, other end z    world metres
+//   [1] speed (m/s), arrival radius (m), kind (0 none, 1 point, 2 cross), unused
+SKITTER_CONST int GOAL_STRIDE = 2;
+SKITTER_CONST float GOAL_NONE = 0.0;
+SKITTER_CONST float GOAL_POINT = 1.0;
+SKITTER_CONST float GOAL_CROSS = 2.0;
+
+// steer, per agent, written by navigate.
+//   [0] desired velocity x, z (m/s), 1 if the agent sleeps, unused
+SKITTER_CONST int STEER_STRIDE = 1;
+
+// Who may sleep: nobody, anybody, or who has breathed out.
+SKITTER_CONST int SLEEP_NEVER = 0;
+SKITTER_CONST int SLEEP_STILL = 1;
+SKITTER_CONST int SLEEP_BREATHED_OUT = 2;
+
+// awake, per block of agents of whom somebody is awake, in any order, zeros after the last; written by wake.
+//   [0] block, mask of its agents that are awake, unused, unused
+SKITTER_CONST int AWAKE_STRIDE = 1;
+
+// body, per agent, written by body.
+//   [0] local x, y (world), local z, tile
+//   [1] heading x, heading z, speed s (m/s, horizontal, along the heading), unused
+//   [2] R_0, quaternion xyzw, worldFromModel
+//   [3] turn rate omega (rad/s), still time (s), follow factor kappa, surface speed v3 (m/s)
+SKITTER_CONST int BODY_STRIDE = 4;
+
+// gait, per agent, written by gait.
+//   [0] phase phi in [0,1), lift mask, re-aim mask, step duration (ticks)
+//   [1] half stride a (m), cycle C (s), mask of legs in the air before lifting, unused
+SKITTER_CONST int GAIT_STRIDE = 2;
+
+// step, per leg, written by foothold when a step begins or is aimed anew.
+//   [0] landing x, y, z, first tick            positions are local to the step's tile in x and z, world in y
+//   [1] lift-off x, y, z, duration and tile    (packedTicks)
+SKITTER_CONST int STEP_STRIDE = 2;
+// A step's tile is the body's when it begins, so it is known modulo STEP_TILES in x and z: no body goes half
+// as many tiles, 256 m, while a foot stands. With the duration in ticks (negative: the landing is a last
+// resort) it is one number, an exact float below MOST_STEP_TICKS.
+SKITTER_CONST float STEP_TILES = 32.0;
+SKITTER_CONST float STEP_TICK = 1024.0;  // STEP_TILES^2
+SKITTER_CONST float MOST_STEP_TICKS = 16384.0;
+SKITTER_INLINE float stepTile(float x, float z) {
+  float tile = STEP_TILES * x + z;
+  return tile - STEP_TICK * floor(tile / STEP_TICK);
+}
+SKITTER_INLINE float packedTicks(float ticks, float tile) {
+  float packed = STEP_TICK * abs(ticks) + tile;
+  return ticks < 0.0f ? -packed : packed;
+}
+SKITTER_INLINE float ticksOf(float packed) {  // without their sign
+  return floor(abs(packed) / STEP_TICK);
+}
+SKITTER_INLINE float tileOfTicks(float packed) { return abs(packed) - STEP_TICK * ticksOf(packed); }
+// From a body's tile to a step's, as one number and in x and z.
+SKITTER_INLINE float tilesApart(float step, float body) {
+  return step - body - STEP_TICK * floor((step - body) / STEP_TICK + 0.5f);
+}
+SKITTER_INLINE float apartX(float apart) { return floor(apart / STEP_TILES + 0.5f); }
+SKITTER_INLINE float apartZ(float apart) { return apart - STEP_TILES * apartX(apart); }
+
+// arc, per leg, written by foothold with the step: the way of its foot through the air.
+//   [0] lift vector b x, y, z, unused
+//   [1] start tangent m0 x, y, z, unused
+SKITTER_CONST int ARC_STRIDE = 2;
+
+// foot, per leg, written by swing.
+//   [0] foot target relative to the body's position, world axes, x, y, z; progress u in [0,1], 1 = stance
+SKITTER_CONST int FOOT_STRIDE = 1;
+
+// chain, per leg, written by ik.
+//   [0 .. ceil(bones/2)-1] stereographic directions X, Y of two bones each
+SKITTER_FUNCTION int chainStride(int bones) { return (bones + 1) / 2; }
+
+// miss, per agent, written by ik of the few legs that its second dispatch solves: of each leg a pair, two a
+// vec4, for body and gait read all of an agent's.
+//   reach error of a planted foot (share of the reach; 0 up to missLeast), the tick in which it was told:
+//   what was told earlier is over
+SKITTER_FUNCTION int missStride(int legs) { return (legs + 1) / 2; }
+SKITTER_FUNCTION int missPair(int agent, int leg, int legs) { return agent * 2 * missStride(legs) + leg; }
+
+// tip, per leg, written by ik where somebody looks at it (CrowdOptions::tips): it follows from the chain.
+//   [0] tip relative to the body's position, world axes, x, y, z; reach error (m)
+SKITTER_CONST int TIP_STRIDE = 1;
+
+// pose, per agent, written by pose: 1 + legs * bones entries of
+//   [0] R, quaternion xyzw, world from rest
+//   [1] joint position relative to the body's position, world axes, x, y, z; unused
+// A vertex v of that bone is at  body + [1] + R (v - rest start).
+SKITTER_CONST int POSE_STRIDE = 2;
+
+// play, per agent, written by clip.
+//   [0] clip, its time (s), clip faded from, its time
+//   [1] weight of the first, its rate, the other's, unused
+//   [2] of both: frame, fraction to the next one          frames count through all clips of the herd
+SKITTER_CONST int PLAY_STRIDE = 3;
+
+// start, per leg, written by swing of planted: a chain record, and
+//   [n] the clip's root x, y, z (model), unused
+SKITTER_FUNCTION int startStride(int bones) { return chainStride(bones) + 1; }
+// fix, per leg, written by ik of planted: a bone
+//   [0] q, quaternion xyzw, model
+//   [1] move x, y, z (model), unused
+SKITTER_CONST int FIX_STRIDE = 2;
+// spring, per leg, of controller pose, written by swing, which writes its chain too.
+//   as a chain record, rates of the directions X, Y (1/s)
+// step, of planted, written by swing.
+//   [0] lock x, y, z, tile   [1] offset o x, y, z, 1 if locked
+// pose, per agent, of clip and planted, written by pose: an entry a joint of
+//   [0..2] rows of the matrix from the clips' skin to world axes about the body's position
+SKITTER_CONST int MATRIX_STRIDE = 3;
+SKITTER_FUNCTION int poseStride(int legs, int bones, int joints) {
+  return joints > 0 ? joints * MATRIX_STRIDE : (1 + legs * bones) * POSE_STRIDE;
+}
+
+// The clips of a herd, constant.
+//   clip, each  [0] first frame, frames, seconds, speed (m/s; 0: standing)
+//   frame, each [0] time (s), 1 / time to the next (0 at the last), mask of legs that stand, unused
+//   row, a frame and joint: three rows of its matrix, model space, less the clip's ground; a frame more
+//   leg, a leg and joint 0 .. bones: place before skinning x, y, z, palette entry
+//   joint, each [0] place of its bone among an agent's (leg * bones + bone), or -1, unused
+
+// key, per leg, of controller pose, constant.
+//   [0] phase at which the foot begins to stand, share of the cycle for which it does, unused x 2
+//   then directions as in a chain record: of the standing pose, and of each key pose followed by its tangents
+SKITTER_FUNCTION int keyStride(int bones, int keys) { return 1 + (1 + 2 * keys) * chainStride(bones); }
+
+// Ticks in a row for which an agent is watched.
+SKITTER_CONST int WATCH_TICKS = 128;
+
+// watch, per watched agent, written by measure: the trail of its body and then of each tip,
+// WATCH_TRAIL_STRIDE vec4 each. It is of the agent that is watched at the time.
+//   [0] position, tile-local x, y, z; of a tip: slip of the stance so far (m), WATCH_AIR or WATCH_UNSEEN
+//   [1] difference from the position a tick before x, y, z; path in the open window P (m)
+//   [2] difference of that from the one a tick before x, y, z; sum Q of squared third differences (m^2)
+SKITTER_CONST int WATCH_TRAIL_STRIDE = 3;
+SKITTER_CONST float WATCH_AIR = -1.0;     // not planted
+SKITTER_CONST float WATCH_UNSEEN = -2.0;  // planted since before the watch began
+SKITTER_FUNCTION int watchStride(int legs) { return WATCH_TRAIL_STRIDE * (1 + legs); }
+
+// metric, per agent, written by measure: sums over the ticks in which it was watched.
+//   [0] ticks; leg-ticks planted; of these planted a tick before too; of those skating
+//   [1] slip over finished stances (m), finished stances, largest reach error (m),
+//       tan(largest limit violation / 2)
+//   [2] penetration, the same beyond the dead zone, float, the same beyond the dead zone (m)
+//   [3] segment penetration (m), its largest (m), leg-ticks beyond a limit, unused
+//   [4] pair-ticks of neighbours, of these crossing, ticks with a support, unstable ticks
+//   [5] stability margin (m), its least (m), unused, unused
+//   [6] W^5 Q over windows of the tips, their P^2, the same of the body (m^2)
+SKITTER_CONST int METRIC_STRIDE = 7;
+
+// rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE a bone (zero-length bones pad short
+// legs).
+//   leg  [0] root x, y, z (model), reach (m)
+//        [1] home x, y, z (model), group
+//        [2] lag in its group (0 first, 1 last), mask of the legs that must stand while it is in the air,
+//        1 / reach, unused
+//   bone [0] x axis of the bone frame B_i (model), length / reach
+//        [1] z axis of B_i, the rest direction r_i (model), tan(half-angle / 2)
+//        [2] rest start p_i x, y, z (model), stiffness
+//        [3] ellipse: half-angles toward +x, +y, -x, -y; hinge: tan(lo/2), tan(hi/2), c_i, sqrt(1 - c_i^2)
+//        [4] kind of limit (LIMIT_), twist: tan(lo/2), tan(hi/2), unused
+//        [5] x axis of B_(i-1)^T B_i (of the first bone: B_0), length / reach
+//        [6] z axis of the same, tan(half-angle / 2)
+//        [7] of a crowd, whose frames are carried along the leg at rest: stereographic X, Y of r_i in B_(i-1)
+//        (of the first bone: in the model), length / reach, cos(half-angle)
+SKITTER_CONST int RIG_LEG_STRIDE = 3;
+// Stiffness of a leg's first bone, which turns all of it and so yields to the target more readily; others
+// have 1.
+SKITTER_CONST float FIRST_STIFFNESS = 0.2;
+SKITTER_CONST int RIG_BONE_STRIDE = 8;
+// Kinds of limit. A kernel is specialised by those that may occur at each bone: four bits a bone, eight bones
+// a word, LIMIT_TWIST beside the others.
+SKITTER_CONST int LIMIT_CONE = 1;
+SKITTER_CONST int LIMIT_ELLIPSE = 2;
+SKITTER_CONST int LIMIT_HINGE = 4;
+SKITTER_CONST int LIMIT_TWIST = 8;
+SKITTER_CONST int LIMIT_WORDS = 2;
+SKITTER_CONST int LIMIT_BONES_A_WORD = 8;
+SKITTER_FUNCTION int rigStride(int bones) { return RIG_LEG_STRIDE + RIG_BONE_STRIDE * bones; }
+
+// flight, per leg, written by footfall.
+//   [0] tip, tile-local x, y, z; 1 in the air, 0 planted
+SKITTER_CONST int FLIGHT_STRIDE = 1;
+
+// footfall, one a touchdown of the last tick, in any order, written by footfall: counters[COUNTER_FOOTFALLS]
+// of them, or as many as there is room for.
+//   [0] place x, y, z (world metres), speed of the foot over the tick that ended there (m/s)
+//   [1] agent of the kind, leg, tick, unused
+SKITTER_CONST int FOOTFALL_STRIDE = 2;
+
+// counters, per page, unsigned integers: [0..2] indirect dispatch of foothold, [3] legs listed for it (where
+// clips are played: of pose, and the agents that fade), [4] footfalls of the tick, [5..7] indirect dispatch
+// of ik, [8] legs listed for it; where agents may sleep: [9..17] indirect dispatches over the agents, the
+// legs and the joints of blocks with somebody awake, [18] those blocks, [19] agents that are awake. Then a
+// row a herd of the page, counts since the start: last resorts, targets that were not finite, footfalls
+// without room. Rows are as many as in any page of the kind, and a power of two. Then the first agent of each
+// herd, in the page; UINT_MAX where the page has no such herd.
+SKITTER_CONST int COUNTER_DISPATCH_X = 0;
+SKITTER_CONST int COUNTER_LISTED = 3;
+SKITTER_CONST int COUNTER_FOOTFALLS = 4;
+SKITTER_CONST int COUNTER_IK_DISPATCH_X = 5;
+SKITTER_CONST int COUNTER_IK_LISTED = 8;
+SKITTER_CONST int COUNTER_AWAKE_AGENTS_X = 9;
+SKITTER_CONST int COUNTER_AWAKE_LEGS_X = 12;
+SKITTER_CONST int COUNTER_AWAKE_JOINTS_X = 15;
+SKITTER_CONST int COUNTER_AWAKE_BLOCKS = 18;
+SKITTER_CONST int COUNTER_AWAKE = 19;
+SKITTER_CONST int COUNTER_ROWS = 20;
+SKITTER_CONST int ROW_LAST_RESORTS = 0;
+SKITTER_CONST int ROW_NOT_FINITE = 1;
+SKITTER_CONST int ROW_FOOTFALLS_DROPPED = 2;
+SKITTER_CONST int ROW_COUNTERS = 3;
+SKITTER_FUNCTION int counterRow(int row) { return COUNTER_ROWS + ROW_COUNTERS * row; }
+SKITTER_FUNCTION int counterHerd(int row, int rows) { return counterRow(rows) + row; }  // its first agent
+// reach errors, a row of buckets a herd of the page: counts per bucket of a leg length; bucket k holds errors
+// of 2^(k/4 - 20) and more.
+SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
+
+// Every kind of records, once: RECORD(NAME, name, binding, per, stride, kept, spawned, hashed). Binding
+// numbers (shaders/shared/bindings.h), a page's buffers and their sizes, what the host downloads, samples and
+// hashes, and the sizes that a replay expects follow.
+//   binding  a stage reads it at that number and writes it at the next
+//   per      agent; leg, in blocks; watched: agents that measure looks at
+//   stride   vec4 of each, where the longest of `legs` legs has so many `bones`, and clips played have so
+//            many `joints` (0: none are)
+//   kept     always; bound: where a stage of the herd binds it; exchanged: where one stage writes it and
+//            another reads it, or the host asks for it (CrowdOptions::feet): else there is room for one, for
+//            shaders bind it all the same
+//   spawned  whether agents begin with it (Spawner); others begin as zeros
+//   hashed   where the next tick depends on it (Crowd::stateHash), by the herd's `controller`
+// clang-format off
+#define SKITTER_RECORDS(RECORD) \
+  RECORD(GOAL,   goal,   10, agent,   GOAL_STRIDE,                     always,     true,  true) \
+  RECORD(STEER,  steer,  12, agent,   STEER_STRIDE,                    always,     false, false) \
+  RECORD(BODY,   body,   14, agent,   BODY_STRIDE,                     always,     true,  true) \
+  RECORD(GAIT,   gait,   16, agent,   GAIT_STRIDE,                     always,     true,  true) \
+  RECORD(STEP,   step,   18, leg,     STEP_STRIDE,                     always,     true,  true) \
+  RECORD(ARC,    arc,    20, leg,     ARC_STRIDE,                      bound,      false, true) \
+  RECORD(FOOT,   foot,   22, leg,     FOOT_STRIDE,                     exchanged,  true,  false) \
+  /* Nothing goes on from the directions of clip. */ \
+  RECORD(CHAIN,  chain,  24, leg,     chainStride(bones),              always,     true,  controller != Controller::clip) \
+  RECORD(MISS,   miss,   26, agent,   missStride(legs),                bound,      false, true) \
+  RECORD(TIP,    tip,    28, leg,     TIP_STRIDE,                      exchanged,  true,  false) \
+  RECORD(POSE,   pose,   30, agent,   poseStride(legs, bones, joints),bound,     false, false) \
+  RECORD(PLAY,   play,   32, agent,   PLAY_STRIDE,                     bound,      true,  true) \
+  RECORD(START,  start,  34, leg,     startStride(bones),              bound,      false, false) \
+  RECORD(FIX,    fix,    36, leg,     bones * FIX_STRIDE,              bound,      false, false) \
+  RECORD(SPRING, spring, 38, leg,     chainStride(bones),              bound,      false, true) \
+  RECORD(METRIC, metric, 40, agent,   METRIC_STRIDE,                   bound,      false, false) \
+  RECORD(WATCH,  watch,  42, watched, watchStride(legs),               bound,      false, false) \
+  RECORD(FLIGHT, flight, 44, leg,     FLIGHT_STRIDE,                   bound,      false, false)
+// clang-format on
+
+#ifdef __cplusplus
+}  // namespace skitter::shared
+
+namespace skitter {
+
+enum class Record : uint8_t {
+#define SKITTER_RECORD(NAME, name, binding, per, stride, kept, spawned, hashed) name,
+  SKITTER_RECORDS(SKITTER_RECORD)
+#undef SKITTER_RECORD
+};
+inline constexpr std::array allRecords = {
+#define SKITTER_RECORD(NAME, name, binding, per, stride, kept, spawned, hashed) Record::name,
+    SKITTER_RECORDS(SKITTER_RECORD)
+#undef SKITTER_RECORD
+};
+
+// A T for each kind of records, by its name: goal, steer, body and so on.
+template <typename T>
+struct ForRecords {
+#define SKITTER_RECORD(NAME, name, binding, per, stride, kept, spawned, hashed) T name;
+  SKITTER_RECORDS(SKITTER_RECORD)
+#undef SKITTER_RECORD
+
+  T& of(Record record) {
+#define SKITTER_RECORD(NAME, name, binding, per, stride, kept, spawned, hashed) &name,
+    return *std::array{SKITTER_RECORDS(SKITTER_RECORD)}[static_cast<size_t>(record)];
+#undef SKITTER_RECORD
+  }
+  const T& of(Record record) const { return const_cast<ForRecords&>(*this).of(record); }
+};
+
+}  // namespace skitter
+#endif
+#endif

@@ -1,0 +1,98 @@
+#include <fstream>
+#include <regex>
+
+#include "process.h"
+
+namespace skitter::test {
+namespace {
+
+struct ManifestTest : AppTest {
+  // Of what a command writes into `name`.
+  nlohmann::json manifestOf(const std::vector<std::string>& command, const std::string& name = "a.json") {
+    const Result result = skitter(command);
+    EXPECT_EQ(result.code, 0) << result.err;
+    if (result.code != 0) return {};
+    nlohmann::json manifest = json(name).at("manifest");
+    EXPECT_EQ(manifest.size(), 11u);
+    EXPECT_EQ(manifest.at("version"), "0.1.0");
+    EXPECT_TRUE(std::regex_match(manifest.at("commit").get<std::string>(),
+                                 std::regex("unknown|[0-9a-f]{40}(-dirty)?")))
+        << manifest.at("commit");
+    EXPECT_GT(manifest.at("build").get<std::string>().size(), 5u);
+    return manifest;
+  }
+  std::string hashOf(std::vector<std::string> more) {
+    std::vector<std::string> command = {"run", "--headless", "--json", file("a.json")};
+    for (const auto& [option, value] : {std::pair{"--frames", "1"}, {"--agents", "2"}})
+      if (more.empty() || more.front() != option) command.insert(command.end(), {option, value});
+    command.insert(command.end(), more.begin(), more.end());
+    const nlohmann::json manifest = manifestOf(command);
+    return manifest.is_null() ? "" : manifest.at("sceneHash").get<std::string>();
+  }
+};
+
+// Which of scene, terrain, seed, dt and device there are.
+std::string known(const nlohmann::json& manifest) {
+  std::string names;
+  for (const char* name : {"scene", "sceneHash", "terrain", "seed", "dt", "device", "driver"})
+    if (!manifest.at(name).is_null()) names += std::string(names.empty() ? "" : " ") + name;
+  return names;
+}
+
+TEST_F(ManifestTest, EveryFileOfFiguresHasIt) {
+  const std::string all = "scene sceneHash terrain seed dt device driver";
+  const auto with = [&](std::vector<std::string> command) {
+    command.insert(command.end(), {"--json", file("a.json")});
+    return known(manifestOf(command));
+  };
+  EXPECT_EQ(with({"run", "--headless", "--agents", "2", "--frames", "2", "--trace", file("trace")}), all);
+  EXPECT_EQ(json("trace/trace.json").at("manifest"), json("a.json").at("manifest"));
+  EXPECT_EQ(with({"validate", "--agents", "2", "--frames", "2"}), all);
+  EXPECT_EQ(with({"ik", "--joints", "3", "--chains", "4"}), "seed device driver");
+  EXPECT_EQ(with({"ik", "--joints", "3", "--chains", "4", "--device", "cpu"}), "seed device");
+  EXPECT_EQ(with({"info"}), "device driver");
+  EXPECT_EQ(with({"inspect", SKITTER_ROOT "/assets/quadruped.glb"}), "");
+}
+
+// Names with a space, quotes and a dollar, and with a byte that is no UTF-8.
+TEST_F(ManifestTest, ItsCommandMakesTheFileAgain) {
+  const std::string name = "a 'b' $HOME.json";
+  const nlohmann::json manifest = manifestOf(
+      {"run", "--headless", "--agents", "3", "--frames", "4", "--seed", "9", "--json", file(name)}, name);
+  const std::string hash = json(name).at("stateHash");
+  std::filesystem::remove(file(name));
+  const Result again = runProgram({"sh", "-c", manifest.at("command")});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(json(name).at("stateHash"), hash);
+  EXPECT_EQ(
+      manifestOf({"inspect", SKITTER_ROOT "/assets/quadruped.glb", "--json", file("\xff.json")}, "\xff.json")
+          .at("scene"),
+      nullptr);
+}
+
+TEST_F(ManifestTest, TheHashIsOfWhatIsSimulated) {
+  const std::string hash = hashOf({});
+  EXPECT_EQ(hash.size(), 16u);
+  for (const std::vector<std::string>& same : std::vector<std::vector<std::string>>{
+           {"--frames", "2"}, {"--dt", "0.02"}, {"--view", "far"}, {"--poses"}})
+    EXPECT_EQ(hashOf(same), hash) << same.front();
+  for (const std::vector<std::string>& other :
+       std::vector<std::vector<std::string>>{{"--seed", "2"},
+                                             {"--agents", "3"},
+                                             {"--controller", "loop"},
+                                             {"--solver", "ccd"},
+                                             {"--stepping", "reach"},
+                                             {"--terrain", "noise:seed=2"}})
+    EXPECT_NE(hashOf(other), hash) << other.front();
+}
+
+TEST_F(ManifestTest, TheHashIsOfTheFilesOfRigs) {
+  for (const char* name : {"quadruped.glb", "quadruped.rig.json"})
+    std::filesystem::copy_file(std::string(SKITTER_ROOT "/assets/") + name, file(name));
+  const std::string hash = hashOf({"--rig", file("quadruped.glb")});
+  std::ofstream(file("quadruped.rig.json"), std::ios::app) << "\n";
+  EXPECT_NE(hashOf({"--rig", file("quadruped.glb")}), hash);
+}
+
+}  // namespace
+}  // namespace skitter::test

@@ -1,0 +1,231 @@
+#include "crowd/situations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "crowd/herd.h"
+#include "gpu/transfer.h"
+#include "validation/herd_facts.h"
+
+namespace skitter::test {
+namespace {
+
+using Results = std::vector<validation::StageResult>;
+
+// Calls `change` with the number and the floats of every record of a buffer.
+void forEachRecord(const Device& device, const gpu::Buffer& buffer, int stride,
+                   const std::function<void(size_t, float*)>& change) {
+  const gpu::Context& context = device.context();
+  std::vector<float> floats = gpu::download<float>(context, buffer);
+  const auto each = static_cast<size_t>(stride) * 4;
+  for (size_t record = 0; record * each < floats.size(); ++record) change(record, &floats[record * each]);
+  gpu::upload(context, buffer, floats);
+}
+
+crowd::Kind& kindOf(Crowd& crowd) { return crowd.impl().kindOf(0); }
+const crowd::Page& pageOf(Crowd& crowd) { return kindOf(crowd).pages.at(0); }
+
+void setGoals(const Device& device, Crowd& crowd, const std::function<void(size_t, float*)>& change) {
+  forEachRecord(device, pageOf(crowd).goal, shared::GOAL_STRIDE, change);
+}
+
+void raiseAll(Crowd& crowd, float by) {
+  std::vector<float> heights = crowd.terrain().heights;
+  for (float& height : heights) height += by;
+  crowd.editHeights(0, 0, crowd.terrain().columns, crowd.terrain().rows, heights);
+}
+
+Results walking(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device, ground, sceneOf(64, 1, 1, controller), options);
+  return replay(device, crowd, ground, 60);
+}
+
+// One agent after the other.
+Results fallingAsleep(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = rollingGround();
+  Scene scene = sceneOf(20, 1, 1, controller);
+  scene.herds[0].goal.kind = Goal::Kind::none;
+  CrowdOptions sleeping = options;
+  sleeping.sleep = true;
+  Crowd crowd(device, ground, scene, sleeping);
+  simulate(device, crowd, 100);
+  return replay(device, crowd, ground, 120);
+}
+
+// Goals far beyond every side of a terrain that is longer than wide hold the agents at its margin. Then half
+// of them are called back: whoever goes inward is not turned round.
+Results atTheEdge(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground =
+      generateHeightfield({.columns = 29, .rows = 21, .amplitude = 0.5f, .wavelength = 8});
+  Scene scene = sceneOf(16, 3, 1, controller);
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.5f};
+  Crowd crowd(device, ground, scene, options);
+  const auto send = [&](float turn) {
+    setGoals(device, crowd, [&](size_t agent, float* goal) {
+      const float angle = 0.3f + 0.785398f * static_cast<float>(agent);
+      const float way = agent % 2 == 0 ? turn : 1.0f;
+      goal[0] = 100 * way * std::sin(angle), goal[1] = 100 * way * std::cos(angle);
+      goal[6] = shared::GOAL_POINT;
+    });
+  };
+  send(1);
+  simulate(device, crowd, 150);
+  send(-1);
+  return replay(device, crowd, ground, 60);
+}
+
+// On a small map agents run faster than they can turn back in time: they brake before its edge.
+Results tooFastForTheMap(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Crowd crowd(device, ground, sceneOf(64, 1000, 1, controller), options);
+  simulate(device, crowd, 150);
+  return replay(device, crowd, ground, 120);
+}
+
+// Reach-triggered stepping over ground so rough that the nearest foothold that fits is often not the best.
+// The replay is told what such stepping is, and not what the host made of it.
+Results reachingOverRocks(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground =
+      generateHeightfield({.columns = 257, .rows = 257, .amplitude = 2, .wavelength = 4});
+  Scene scene = sceneOf(32, 2.5f, 1, controller);
+  scene.herds[0].stepping = Stepping::reach;
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 60);
+  validation::HerdFacts facts = validation::herdFacts(kindOf(crowd), ground);
+  facts.parameters.reachTriggered = facts.parameters.nearestOnly = 1;
+  return replay(device, crowd, facts, 60);
+}
+
+// The ground drops below agents that stand. Each lifts one leg in the same tick, together one more than a
+// work group has invocations.
+Results liftingAtOnce(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(shared::WORK_GROUP + 1, 1, 1, controller);
+  scene.herds[0].goal.kind = Goal::Kind::none;
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 90);
+  raiseAll(crowd, -0.1f);
+  return replay(device, crowd, crowd.terrain(), 2);
+}
+
+// All feet stand at home, on landings that were last resorts. They have no other reason to step: the ground
+// drops, but a last resort was never on it.
+Results onLastResorts(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = rollingGround();
+  Scene scene = sceneOf(16, 1, 1, controller);
+  scene.herds[0].goal.kind = Goal::Kind::none;
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 1);
+  forEachRecord(device, pageOf(crowd).step, shared::STEP_STRIDE,
+                [](size_t, float* step) { step[7] = -std::abs(step[7]); });
+  raiseAll(crowd, -0.05f);
+  return replay(device, crowd, crowd.terrain(), 30);
+}
+
+// Ticks so long that a step lasts the least number of them, and that its windows set the length of a cycle.
+Results inLongTicks(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), options);
+  return replay(device, crowd, ground, 40, 0.2f);
+}
+
+// From none to all agents fade from one clip to another, one more in each tick, so that the last of their
+// joints is anywhere in its work group.
+Results fading(Device& device, Controller controller, const CrowdOptions& options) {
+  constexpr size_t agents = 32;
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device, ground, sceneOf(agents, 1, 1, controller), options);
+  simulate(device, crowd, 60);
+  validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
+  for (size_t many = 0; many <= agents; ++many) {
+    forEachRecord(device, pageOf(crowd).play, shared::PLAY_STRIDE,
+                  [&](size_t agent, float* play) { play[4] = agent < many ? 0.25f : 1; });
+    const HerdState before = crowd.download(0);
+    simulate(device, crowd, 1);
+    replay.tick(crowd.tick(), before, crowd.download(0));
+  }
+  return replay.results();
+}
+
+// The spider has one gait; its walk played twice as fast serves as a run. Agents of all speeds from below a
+// walk to above the run start, change their gait and stop.
+Results changingGaits(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = rollingGround();
+  Scene scene = sceneOf(16, 1, 1, controller);
+  scene.herds[0].clips = {"idle", "walk", "walk"};
+  Crowd crowd(device, ground, scene, options);
+  crowd::ClipRecords& clips = kindOf(crowd).clips;
+  float* run = &clips.heads[8];
+  const auto first = static_cast<size_t>(run[0]), end = first + static_cast<size_t>(run[1]);
+  run[2] /= 2, run[3] *= 2;
+  for (size_t frame = first; frame < end; ++frame)
+    clips.times[4 * frame] /= 2, clips.times[4 * frame + 1] *= 2;
+  gpu::upload(device.context(), kindOf(crowd).clipHeads, clips.heads);
+  gpu::upload(device.context(), kindOf(crowd).clipTimes, clips.times);
+  setGoals(device, crowd, [&](size_t agent, float* goal) {
+    goal[4] = 0.04f * std::pow(1.36f, static_cast<float>(agent));
+    goal[6] = shared::GOAL_POINT;
+    const HerdState state = crowd.download(0, {static_cast<uint32_t>(agent), 16});
+    const glm::dvec3 place = positionOf(state, 0);
+    goal[0] = static_cast<float>(place.x), goal[1] = static_cast<float>(place.z) + 2.5f;
+  });
+  return replay(device, crowd, ground, 150);
+}
+
+// The third bone of each leg points straight back, against its rest direction, where stereographic
+// coordinates end: its far joint moves with the second bone.
+Results foldingBack(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), options);
+  crowd::Kind& kind = kindOf(crowd);
+  for (size_t l = 0; l < kind.rig.legs.size(); ++l) {
+    const Bone& bone = kind.rig.legs[l].bones.at(2);
+    float* joints = &kind.clips.legs[l * static_cast<size_t>(kind.bones + 1) * 4];
+    const glm::vec3 end = bone.start - bone.length * bone.direction;
+    const float secondBone = joints[4 + 3];
+    joints[12] = end.x, joints[13] = end.y, joints[14] = end.z, joints[15] = secondBone;
+  }
+  gpu::upload(device.context(), kind.clipLegs, kind.clips.legs);
+  return replay(device, crowd, ground, 60);
+}
+
+// The clip bends every bone further than its rig allows, so that planted widens every limit.
+Results beyondTheLimits(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = rollingGround();
+  Rig rig = spiderRig();
+  for (Leg& leg : rig.legs)
+    for (Bone& bone : leg.bones) bone.coneHalfAngle = 0.05f;
+  Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), std::vector<Rig>{rig}, options);
+  return replay(device, crowd, ground, 60);
+}
+
+}  // namespace
+
+const std::vector<Situation>& situations() {
+  static const std::vector<Situation> all = {
+      {"walking", {Controller::adaptive}, walking},
+      {"fallingAsleep", {Controller::adaptive}, fallingAsleep},
+      {"atTheEdge", {Controller::adaptive}, atTheEdge},
+      {"tooFastForTheMap", {Controller::adaptive, Controller::loop}, tooFastForTheMap},
+      {"reachingOverRocks", {Controller::adaptive}, reachingOverRocks},
+      {"liftingAtOnce", {Controller::adaptive}, liftingAtOnce},
+      {"onLastResorts", {Controller::adaptive}, onLastResorts},
+      {"inLongTicks", {Controller::adaptive, Controller::loop}, inLongTicks},
+      {"fading", {Controller::clip, Controller::planted}, fading},
+      {"changingGaits", {Controller::clip, Controller::planted}, changingGaits},
+      {"foldingBack", {Controller::clip}, foldingBack},
+      {"beyondTheLimits", {Controller::planted}, beyondTheLimits},
+  };
+  return all;
+}
+
+const Situation& situationNamed(const std::string& name) {
+  const auto found = std::find_if(situations().begin(), situations().end(),
+                                  [&](const Situation& situation) { return situation.name == name; });
+  if (found == situations().end()) throw std::out_of_range("no situation '" + name + "'");
+  return *found;
+}
+
+}  // namespace skitter::test

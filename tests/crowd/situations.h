@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "crowd/simulation.h"
+
+namespace skitter::test {
+
+// A crowd of one herd in which something happens that is rare in a walk, replayed in lock step. The sound
+// shaders pass in every situation. A fault that a walk does not show is refused in one of them.
+struct Situation {
+  const char* name;
+  std::vector<Controller> controllers;  // those that are replayed in it with sound shaders
+  std::vector<validation::StageResult> (*replayed)(Device&, Controller controller, const CrowdOptions&);
+};
+
+const std::vector<Situation>& situations();
+const Situation& situationNamed(const std::string& name);
+
+}  // namespace skitter::test

@@ -1,0 +1,197 @@
+// Who is drawn at which level and who casts shadows, held against docs/stages/pictures.md.
+#include "render/cull.h"
+
+#include <algorithm>
+#include <random>
+
+#include "gpu/submit.h"
+#include "gpu/transfer.h"
+#include "render/composition.h"
+#include "render/sight.h"
+#include "skitter/records.h"
+#include "support/gpu_fixture.h"
+
+namespace skitter::render {
+namespace {
+
+using test::Sight;
+using Lists = std::vector<int>;  // ascending: 0 to 3 the camera's levels, 4 and 5 the cascades
+
+constexpr uint32_t kWidth = 640, kHeight = 360;
+constexpr float kRadius = 0.8f;
+
+class CullTest : public test::GpuLoadTest {
+ protected:
+  // The lists that each agent is on.
+  std::vector<Lists> cull(const shared::Picture& picture, const std::vector<glm::dvec3>& places) {
+    std::vector<float> bodies(places.size() * shared::BODY_STRIDE * 4);
+    for (size_t i = 0; i < places.size(); ++i) {
+      const glm::dvec3 tile = glm::floor(places[i] / double(shared::TILE_SIZE));
+      float* body = &bodies[i * shared::BODY_STRIDE * 4];
+      body[0] = float(places[i].x - tile.x * double(shared::TILE_SIZE));
+      body[1] = float(places[i].y);
+      body[2] = float(places[i].z - tile.z * double(shared::TILE_SIZE));
+      body[3] = shared::packedTile(float(tile.x), float(tile.z));
+    }
+    const auto agents = uint32_t(places.size());
+    const gpu::Buffer block(context(), sizeof picture, "picture", gpu::BufferUse::uniform);
+    const gpu::Buffer records(context(), bodies.size() * sizeof(float), "bodies");
+    gpu::upload(context(), block, std::span(&picture, 1));
+    gpu::upload(context(), records, bodies);
+    const Cull cull(context());
+    const CulledPage page = cull.makePage(context(), block, records, agents);
+    gpu::clear(context(), page.commands);
+    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius); });
+
+    const auto draws = gpu::download<VkDrawIndexedIndirectCommand>(context(), page.commands);
+    const auto instances = gpu::download<uint32_t>(context(), page.instances);
+    std::vector<Lists> found(agents);
+    for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
+      for (uint32_t i = 0; i < draws.at(size_t(list)).instanceCount; ++i)
+        found.at(instances.at(size_t(list) * agents + i)).push_back(list);
+    return found;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Loads, CullTest, test::bothLoadPaths(), test::loadPathName);
+
+// Far from the world's origin, in no axis' direction; 20 m to its target, so drawing ends after 210 m.
+const View kView{.eye = {-203, 12, 517}, .target = {-191, 4.0f, 530.8564f}, .fieldOfView = 0.9f};
+constexpr double kEnd = 210;
+
+shared::Picture picture() {
+  const Heightfield field{
+      .name = "flat", .columns = 2, .rows = 2, .spacingX = 9, .spacingZ = 9, .heights = {0, 0, 0, 0}};
+  return compose(kView, field, 0, 0, kWidth, kHeight, 1024).block;
+}
+
+// A sphere that touches the pyramid is drawn; up to four radii outside it casts.
+TEST_P(CullTest, thePyramidsSidesDecide) {
+  const Sight s(kView, kWidth, kHeight);
+  std::vector<glm::dvec3> places;
+  std::vector<std::pair<bool, bool>> expected;  // drawn, casts
+  const auto expect = [&](const glm::dvec3& bound, const glm::dvec3& outward) {
+    for (const double radii : {0.99, 1.01, 3.99, 4.01}) {
+      places.push_back(bound + radii * double(kRadius) * glm::normalize(outward));
+      expected.push_back({radii < 1, radii < 4});
+    }
+  };
+  for (const glm::dvec2 side : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}})
+    expect(s.at(20, side.x, side.y),
+           side.x * s.right + side.y * s.up - (side.x == 0 ? s.tanY : s.tanX) * s.forward);
+  expect(s.at(kEnd, 0, 0), s.forward);
+  places.push_back(s.at(-10, 0, 0));
+  expected.push_back({false, false});
+
+  const std::vector<Lists> found = cull(picture(), places);
+  for (size_t i = 0; i < places.size(); ++i) {
+    EXPECT_EQ(!found[i].empty() && found[i].front() < 4, expected[i].first) << "agent " << i;
+    EXPECT_EQ(!found[i].empty() && found[i].back() >= 4, expected[i].second) << "agent " << i;
+  }
+}
+
+// The radius in pixels as seen from the eye chooses the level, in the middle and at the picture's edge.
+TEST_P(CullTest, theRadiusInPixelsChoosesTheLevel) {
+  const Sight s(kView, kWidth, kHeight);
+  const double onePixel = double(kRadius) * kHeight / (2 * s.tanY);  // metres away
+  const std::array thresholds{75.0, 40.0, 14.0};
+  std::vector<glm::dvec3> places;
+  std::vector<int> expected;
+  for (int level = 0; level < 3; ++level)
+    for (const double share : {1.005, 0.995})
+      for (const double x : {0.0, 0.9}) {
+        const double away = onePixel / (thresholds[size_t(level)] * share);
+        places.push_back(s.eye + away * glm::normalize(s.at(1, x, -x) - s.eye));
+        expected.push_back(share > 1 ? level : level + 1);
+      }
+  const std::vector<Lists> found = cull(picture(), places);
+  for (size_t i = 0; i < places.size(); ++i) {
+    ASSERT_FALSE(found[i].empty()) << "agent " << i;
+    EXPECT_EQ(found[i].front(), expected[i]) << "agent " << i;
+    EXPECT_TRUE(found[i].size() == 1 || found[i][1] > 3) << "agent " << i;
+  }
+}
+
+// Squares of 20 m and 90 m seen from straight above: who touches a square is on its list.
+TEST_P(CullTest, cascadesListWhoTouchesThem) {
+  shared::Picture p{};
+  for (glm::vec4& plane : p.planes) plane = {0, 0, 0, 1e6f};
+  p.tile = {0, 0, 1e6f, 0};
+  p.eye = {0, 0, 0, 1};
+  p.shadow = {20.0f / 1024, 90.0f / 1024, 0, 1024};
+  const glm::dvec2 centres[2] = {{3, -4}, {-12, 8}};
+  const double halves[2] = {10, 45};
+  for (int i = 0; i < 2; ++i) {
+    const glm::vec2 c = centres[i], h(float(halves[i]));
+    p.clipFromPicture[1 + i] = glm::mat4(0);
+    p.clipFromPicture[1 + i][0][0] = 1 / h.x;
+    p.clipFromPicture[1 + i][2][1] = 1 / h.y;
+    p.clipFromPicture[1 + i][3] = {-c.x / h.x, -c.y / h.y, 0.5f, 1};
+  }
+  std::vector<glm::dvec3> places;
+  std::vector<Lists> expected;
+  const auto touches = [&](int cascade, const glm::dvec3& at) {
+    const glm::dvec2 d = glm::abs(glm::dvec2(at.x, at.z) - centres[cascade]);
+    return std::max(d.x, d.y) < halves[cascade] + double(kRadius);
+  };
+  for (int cascade = 0; cascade < 2; ++cascade)
+    for (const double past : {0.99, 1.01})
+      for (const glm::dvec2 side : {glm::dvec2(1, 0), {-1, 0.3}, {0.4, 1}, {0, -1}, {1, -1}}) {
+        const glm::dvec2 at = centres[cascade] + side * (halves[cascade] + past * double(kRadius));
+        places.push_back({at.x, 1, at.y});
+        Lists lists{3};
+        for (int i = 0; i < 2; ++i)
+          if (touches(i, places.back())) lists.push_back(4 + i);
+        expected.push_back(lists);
+      }
+  const std::vector<Lists> found = cull(p, places);
+  for (size_t i = 0; i < places.size(); ++i)
+    EXPECT_EQ(
+        Lists(std::find_if(found[i].begin(), found[i].end(), [](int l) { return l > 3; }), found[i].end()),
+        Lists(expected[i].begin() + 1, expected[i].end()))
+        << "agent " << i;
+}
+
+// More agents than a work group, and no multiple of one: each is drawn once at the level of its distance, or
+// not at all. Those within 2 cm of a bound are left out, where float32 may fall on either side.
+TEST_P(CullTest, everyAgentInSightIsDrawnOnce) {
+  const Sight s(kView, kWidth, kHeight);
+  const double onePixel = double(kRadius) * kHeight / (2 * s.tanY);
+  const auto depthInside = [&](const glm::dvec3& place) {
+    const glm::dvec3 to = place - s.eye;
+    const double ahead = glm::dot(to, s.forward);
+    const double x = (s.tanX * ahead - std::abs(glm::dot(to, s.right))) / std::hypot(1, s.tanX);
+    const double y = (s.tanY * ahead - std::abs(glm::dot(to, s.up))) / std::hypot(1, s.tanY);
+    return std::min({x, y, kEnd - glm::length(to)});
+  };
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> across(-1.6, 1.6), away(0.5, 240);
+  std::vector<glm::dvec3> places;
+  std::vector<int> expected;
+  while (places.size() < 1001) {
+    const double depth = away(random) * (places.size() % 3 == 0 ? 0.1 : 1);
+    const glm::dvec3 place = s.at(depth, across(random), across(random));
+    const double inside = depthInside(place) + double(kRadius), distance = glm::distance(place, s.eye);
+    const std::array bounds{onePixel / 75, onePixel / 40, onePixel / 14};
+    if (std::abs(inside) < 0.02 ||
+        std::any_of(bounds.begin(), bounds.end(), [&](double b) { return std::abs(distance - b) < 0.02; }))
+      continue;
+    places.push_back(place);
+    expected.push_back(inside < 0 ? -1 : int(std::count_if(bounds.begin(), bounds.end(), [&](double b) {
+      return distance > b;
+    })));
+  }
+  const std::vector<Lists> found = cull(picture(), places);
+  std::array<int, 5> counts{};
+  for (size_t i = 0; i < places.size(); ++i) {
+    const auto drawn = std::count_if(found[i].begin(), found[i].end(), [](int list) { return list < 4; });
+    ASSERT_EQ(drawn, expected[i] < 0 ? 0 : 1) << "agent " << i;
+    if (drawn > 0) {
+      ASSERT_EQ(found[i].front(), expected[i]) << "agent " << i;
+    }
+    ++counts[size_t(expected[i] + 1)];
+  }
+  for (const int count : counts) EXPECT_GT(count, 20);
+}
+
+}  // namespace
+}  // namespace skitter::render

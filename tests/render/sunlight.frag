@@ -1,0 +1,11 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The sunlight at points of a line.
+#include "render/picture.glsl"
+#include "render/shadow.glsl"
+
+layout(push_constant) uniform LineBlock { vec4 from, to, normal; };  // normal.w: texels off the surface
+layout(location = 0) in float along;
+layout(location = 0) out vec4 outColour;
+
+void main() { outColour = vec4(sunlight(mix(from.xyz, to.xyz, along), normal.xyz, normal.w)); }
