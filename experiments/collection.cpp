@@ -29,7 +29,7 @@ size_t footholdIndex(const crowd::Kind& kind) {
 class Stage {
  public:
   Stage(Walk& walk, const gpu::Context& context, uint32_t legs, bool nearestOnly)
-      : walk_(walk), kind_(walk.crowd().impl().kindOf(0)), index_(footholdIndex(kind_)) {
+      : walk_(walk), kind_(implOf(walk.crowd()).kindOf(0)), index_(footholdIndex(kind_)) {
     kind_.parameters.nearestOnly = nearestOnly ? 1 : 0;
     std::memcpy(kind_.parameterBlock.bytes().data(), &kind_.parameters, sizeof kind_.parameters);
     uint32_t left = legs;

@@ -90,7 +90,7 @@ Ladder measureLadder(Device& device, const Heightfield& ground, const Settings& 
   Walk walk(device, ground, crossing(Controller::adaptive, settings.gaitAgents, 1, settings.seed),
             settings.dt);
   walk.ticks(settings.settleTicks);
-  const crowd::Kind& kind = walk.crowd().impl().kindOf(0);
+  const crowd::Kind& kind = implOf(walk.crowd()).kindOf(0);
   const Setting setting{validation::tuningOf(kind.parameters), validation::heightsOf(ground, kind.parameters),
                         validation::creatureOf(kind.rigRecords, kind.legs, kind.bones, kind.groups)};
   Ladder best;

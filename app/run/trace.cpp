@@ -170,7 +170,7 @@ void Trace::append(const Crowd& crowd) {
     const HerdState state = crowd.download(h);
     Values values;
     for (size_t agent = 0; agent < state.agents; ++agent)
-      appendAgent(state, crowd.impl().kindOf(h), agent, values);
+      appendAgent(state, implOf(crowd).kindOf(h), agent, values);
     herds_[h].joints.append(std::span<const float>(values.joints));
     herds_[h].rotations.append(std::span<const float>(values.rotations));
     herds_[h].stance.append(std::span<const uint8_t>(values.stance));

@@ -51,7 +51,7 @@ class FreeRuns {
   FreeRuns(const Crowd& crowd, const std::vector<HerdState>& first) {
     for (uint32_t h = 0; h < first.size(); ++h)
       runs_.push_back(std::make_unique<validation::FreeRun>(
-          validation::herdFacts(crowd.impl().kindOf(h), crowd.impl().terrain), first[h]));
+          validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), first[h]));
   }
   void tick(const std::vector<HerdState>& device) {
     for (size_t h = 0; h < runs_.size(); ++h) runs_[h]->tick(device[h].watched);
@@ -73,7 +73,7 @@ std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd) {
   std::vector<std::unique_ptr<Replay>> replays;
   for (uint32_t h = 0; h < crowd.herdCount(); ++h)
     replays.push_back(
-        std::make_unique<Replay>(validation::herdFacts(crowd.impl().kindOf(h), crowd.impl().terrain)));
+        std::make_unique<Replay>(validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain)));
   return replays;
 }
 

@@ -19,17 +19,17 @@ namespace {
 constexpr int splineParts = 24;
 
 HerdState stateOf(const Crowd& crowd, AgentId id) {
-  return crowd.download(id.herd, {id.agent, crowd.impl().herds.at(id.herd).agents});
+  return crowd.download(id.herd, {id.agent, implOf(crowd).herds.at(id.herd).agents});
 }
 
 // Bodies alone: a click into a large crowd must not fetch everything else.
 std::vector<glm::vec3> placesOf(const Crowd& crowd, uint32_t herd) {
   std::vector<glm::vec3> places;
-  for (const crowd::Part& part : crowd::partsOf(crowd.impl(), herd)) {
+  for (const crowd::Part& part : crowd::partsOf(implOf(crowd), herd)) {
     constexpr size_t floats = 4 * shared::BODY_STRIDE;
     HerdState state;
     state.body.resize(part.agents * floats);
-    gpu::downloadBytes(*crowd.impl().context, part.page->body, std::as_writable_bytes(std::span(state.body)),
+    gpu::downloadBytes(*implOf(crowd).context, part.page->body, std::as_writable_bytes(std::span(state.body)),
                        part.first * floats * sizeof(float));
     for (size_t agent = 0; agent < part.agents; ++agent) {
       const reference::AgentBody body = validation::bodyOf(state, agent);
@@ -79,7 +79,7 @@ std::optional<AgentId> agentAt(const Crowd& crowd, const Lens& lens, const glm::
 }
 
 AgentId neighbourOf(const Crowd& crowd, AgentId id, bool after) {
-  const std::vector<crowd::Herd>& all = crowd.impl().herds;
+  const std::vector<crowd::Herd>& all = implOf(crowd).herds;
   const uint32_t herds = crowd.herdCount();
   if (after ? id.agent + 1 < all[id.herd].agents : id.agent > 0) {
     id.agent += after ? 1u : UINT32_MAX;
@@ -93,7 +93,7 @@ AgentId neighbourOf(const Crowd& crowd, AgentId id, bool after) {
 
 Followed::Followed(const Crowd& crowd, AgentId id)
     : id_(id),
-      creature_(creatureOf(crowd.impl().kindOf(id.herd))),
+      creature_(creatureOf(implOf(crowd).kindOf(id.herd))),
       legLength_(crowd.rig(id.herd).legLength),
       bodyHeight_(crowd.rig(id.herd).bodyHeight) {
   legs_.resize(crowd.rig(id.herd).legs.size());
@@ -107,7 +107,7 @@ void Followed::look(const Crowd& crowd) {
 }
 
 void Followed::lookAtLeg(const Crowd& crowd, size_t leg) {
-  const crowd::Kind& kind = crowd.impl().kindOf(id_.herd);
+  const crowd::Kind& kind = implOf(crowd).kindOf(id_.herd);
   const reference::Limb& limb = creature_.limbs[leg];
   const reference::AgentBody body = validation::bodyOf(now_, 0);
   const glm::dvec3 origin = originOf(body);

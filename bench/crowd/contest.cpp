@@ -43,7 +43,7 @@ struct Corner {
 std::vector<HerdState> statesOf(const Crowd& crowd, const Contestant& contestant, uint64_t tick,
                                 uint64_t seed) {
   std::vector<HerdState> states;
-  for (const crowd::Herd& herd : crowd.impl().herds)
+  for (const crowd::Herd& herd : implOf(crowd).herds)
     states.push_back(contestant.state(static_cast<uint32_t>(states.size()),
                                       validation::sampleAt(seed, tick, herd.agents, kAgentsChecked)));
   return states;
@@ -53,7 +53,7 @@ std::vector<validation::StageResult> judge(const Crowd& crowd, const Witness& wi
                                            const std::vector<StageDemand>& timed) {
   std::vector<validation::StageResult> results;
   for (uint32_t h = 0; h < witness.before.size(); ++h) {
-    validation::Replay replay(validation::herdFacts(crowd.impl().kindOf(h), crowd.impl().terrain));
+    validation::Replay replay(validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain));
     replay.tick(witness.after[h].tick, witness.before[h], witness.after[h]);
     for (const validation::StageResult& result : replay.results())
       if (std::any_of(timed.begin(), timed.end(),

@@ -51,7 +51,7 @@ class CpuContestant : public Contestant {
       : options_(options), tick_(crowd.tick()) {
     for (uint32_t h = 0; h < crowd.herdCount(); ++h)
       herds_.push_back(std::make_unique<cpu_crowd::CpuCrowd>(
-          validation::herdFacts(crowd.impl().kindOf(h), crowd.impl().terrain), crowd.download(h), options));
+          validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), crowd.download(h), options));
   }
 
   std::string name() const override {
@@ -109,7 +109,7 @@ std::unique_ptr<Contestant> cpuContestant(const Crowd& crowd, bool scalar, int t
 std::string opponentBuild() { return cpu_crowd::buildDescription(); }
 
 bool hasCpuContestant(const Crowd& crowd) {
-  return std::all_of(crowd.impl().kinds.begin(), crowd.impl().kinds.end(), [](const crowd::Kind& kind) {
+  return std::all_of(implOf(crowd).kinds.begin(), implOf(crowd).kinds.end(), [](const crowd::Kind& kind) {
     return kind.controller == Controller::clip ||
            (kind.controller == Controller::adaptive && kind.ik.solver == shared::SOLVER_FABRIK &&
             kind.ik.polish > 0 && !kind.reachTriggered);

@@ -49,7 +49,7 @@ double invocationsOf(const crowd::Kind& kind, const crowd::Page& page, crowd::St
 }  // namespace
 
 std::vector<StageDemand> demandOf(const Crowd& crowd, const CrowdOptions& options) {
-  const Crowd::Impl& impl = crowd.impl();
+  const Crowd::Impl& impl = implOf(crowd);
   const gpu::Context& context = *impl.context;
   std::vector<StageDemand> demands;
   for (const crowd::Kind& kind : impl.kinds)

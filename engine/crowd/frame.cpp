@@ -1,6 +1,6 @@
 #include "crowd/frame.h"
 
-#include <array>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -57,22 +57,46 @@ shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, co
           watchesGround(crowd) ? std::numeric_limits<float>::infinity() : kind.parameters.sleepTime};
 }
 
+// The counters of a page in front of its herds' rows, as a tick begins: nobody is listed.
+constexpr vk::DispatchIndirectCommand nobody{0, 1, 1};
+struct Lists {
+  vk::DispatchIndirectCommand foothold = nobody;
+  uint32_t listed = 0, footfalls = 0;
+  vk::DispatchIndirectCommand ik = nobody;
+  uint32_t ikListed = 0;
+};
+struct Awake {
+  vk::DispatchIndirectCommand agents = nobody, legs = nobody, joints = nobody;
+  uint32_t blockCount = 0, agentCount = 0;
+};
+
+constexpr bool isCounter(size_t offset, int counter) { return offset == counter * sizeof(uint32_t); }
+static_assert(isCounter(offsetof(Lists, foothold), shared::COUNTER_DISPATCH_X));
+static_assert(isCounter(offsetof(Lists, listed), shared::COUNTER_LISTED));
+static_assert(isCounter(offsetof(Lists, footfalls), shared::COUNTER_FOOTFALLS));
+static_assert(isCounter(offsetof(Lists, ik), shared::COUNTER_IK_DISPATCH_X));
+static_assert(isCounter(offsetof(Lists, ikListed), shared::COUNTER_IK_LISTED));
+static_assert(isCounter(sizeof(Lists) + offsetof(Awake, agents), shared::COUNTER_AWAKE_AGENTS_X));
+static_assert(isCounter(sizeof(Lists) + offsetof(Awake, legs), shared::COUNTER_AWAKE_LEGS_X));
+static_assert(isCounter(sizeof(Lists) + offsetof(Awake, joints), shared::COUNTER_AWAKE_JOINTS_X));
+static_assert(isCounter(sizeof(Lists) + offsetof(Awake, blockCount), shared::COUNTER_AWAKE_BLOCKS));
+static_assert(isCounter(sizeof(Lists) + offsetof(Awake, agentCount), shared::COUNTER_AWAKE));
+static_assert(isCounter(sizeof(Lists) + sizeof(Awake), shared::COUNTER_ROWS));
+
 }  // namespace
 
 void clearLists(const Crowd::Impl& crowd, vk::CommandBuffer cmd) {
-  constexpr std::array<uint32_t, shared::COUNTER_AWAKE_AGENTS_X> none = {0, 1, 1, 0, 0, 0, 1, 1, 0};
+  const Lists none;
   for (const Kind& kind : crowd.kinds)
-    for (const Page& page : kind.pages) cmd.updateBuffer(page.counters.handle(), 0, sizeof none, none.data());
+    for (const Page& page : kind.pages) cmd.updateBuffer(page.counters.handle(), 0, sizeof none, &none);
 }
 
 void clearAwake(const Crowd::Impl& crowd, vk::CommandBuffer cmd) {
   if (!crowd.options.sleep) return;
-  constexpr std::array<uint32_t, shared::COUNTER_ROWS - shared::COUNTER_AWAKE_AGENTS_X> none = {
-      0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 0};
+  const Awake none;
   for (const Kind& kind : crowd.kinds)
     for (const Page& page : kind.pages) {
-      cmd.updateBuffer(page.counters.handle(), shared::COUNTER_AWAKE_AGENTS_X * sizeof(uint32_t), sizeof none,
-                       none.data());
+      cmd.updateBuffer(page.counters.handle(), sizeof(Lists), sizeof none, &none);
       cmd.fillBuffer(page.awake.handle(), 0, VK_WHOLE_SIZE, 0);
     }
 }

@@ -91,4 +91,7 @@ struct Crowd::Impl {
   const crowd::Kind& kindOf(uint32_t herd) const { return kinds[herds.at(herd).kind]; }
 };
 
+inline Crowd::Impl& implOf(Crowd& crowd) { return *crowd.impl_; }
+inline const Crowd::Impl& implOf(const Crowd& crowd) { return *crowd.impl_; }
+
 }  // namespace skitter

@@ -78,7 +78,7 @@ View viewOf(const Scene& scene, const Crowd& crowd, double seconds) {
   const Camera& camera = scene.camera;
   if (camera.kind == Camera::Kind::fixed)
     return {.eye = camera.position, .target = camera.target, .fieldOfView = camera.fieldOfView};
-  const Crowd::Impl& live = crowd.impl();
+  const Crowd::Impl& live = implOf(crowd);
   Walk walk{{0, 0}, {0, 1}};
   for (uint32_t i = 0; i < scene.herds.size() && i < live.herds.size(); ++i) {
     if (scene.herds[i].agents == 0) continue;

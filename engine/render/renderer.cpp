@@ -190,7 +190,7 @@ void Renderer::Impl::smoothEdges(vk::CommandBuffer cmd) {
 }
 
 Renderer::Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height)
-    : impl_(std::make_unique<Impl>(device.context(), crowd.impl(), width, height)) {}
+    : impl_(std::make_unique<Impl>(device.context(), implOf(crowd), width, height)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 

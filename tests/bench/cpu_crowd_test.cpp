@@ -31,7 +31,7 @@ struct Start {
     simulate(device, crowd, ticks);
     state = crowd.download(0);
   }
-  validation::HerdFacts facts() { return validation::herdFacts(crowd.impl().kindOf(0), terrain); }
+  validation::HerdFacts facts() { return validation::herdFacts(implOf(crowd).kindOf(0), terrain); }
 
   Heightfield terrain;
   Crowd crowd;
@@ -328,7 +328,7 @@ TEST_P(CpuCrowdTest, ABrokenOneIsRefused) {
   validation::HerdFacts slower = start.facts();
   slower.parameters.heightBlend *= 1.02f;
   EXPECT_EQ(refusedStages(slower, start, 20), "body ");
-  std::vector<float> records = start.crowd.impl().kindOf(0).rigRecords;
+  std::vector<float> records = implOf(start.crowd).kindOf(0).rigRecords;
   records[0] += 1e-3f;  // a root
   const validation::HerdFacts crooked{start.facts().rig, start.terrain, start.facts().parameters, records,
                                       start.facts().ik};

@@ -164,7 +164,7 @@ using ClipHerdTest = GpuTest;
 TEST_F(ClipHerdTest, BeginsWithTheFramesOfItsTime) {
   for (const Controller controller : {Controller::clip, Controller::planted}) {
     Crowd crowd(device(), rollingGround(), sceneOf(20, 1, 1, controller));
-    const crowd::Kind& kind = crowd.impl().kindOf(0);
+    const crowd::Kind& kind = implOf(crowd).kindOf(0);
     const reference::ClipTable table = validation::clipTableOf(kind.clips, kind.legs, kind.bones);
     const HerdState state = crowd.download(0);
     for (size_t agent = 0; agent < 20; ++agent) {
@@ -190,7 +190,7 @@ TEST_F(ClipHerdTest, BeginsInTheStandingClip) {
     scene.herds[0].goal.kind = Goal::Kind::none;
     scene.herds[0].clips = names;
     Crowd crowd(device(), smallRollingGround(), scene);
-    const std::vector<const Clip*> clips = crowd::chosenClips(crowd.impl().kindOf(0).clipSet, names);
+    const std::vector<const Clip*> clips = crowd::chosenClips(implOf(crowd).kindOf(0).clipSet, names);
     for (int tick = 0; tick < 3; ++tick) {
       const HerdState state = crowd.download(0);
       for (size_t agent = 0; agent < 9; ++agent) {

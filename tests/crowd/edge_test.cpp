@@ -112,7 +112,7 @@ TEST_P(EdgeTest, FeetThatCannotBeFollowedKeepThePose) {
   Crowd crowd(device(), ground, sceneOf(3));
   simulate(device(), crowd, 2);
   // A landing that is not a number, as a broken caller might write it.
-  const crowd::Page& page = crowd.impl().kindOf(0).pages[0];
+  const crowd::Page& page = implOf(crowd).kindOf(0).pages[0];
   std::vector<float> steps = gpu::download<float>(context(), page.step);
   steps[0] = std::numeric_limits<float>::quiet_NaN();
   gpu::upload(context(), page.step, steps);
@@ -180,7 +180,7 @@ TEST_F(InputTest, MemoryIsWhatWasForetold) {
                                         CrowdOptions{.watchEvery = 3, .footfalls = 11, .pageAgents = 7}}) {
       SCOPED_TRACE(nameOf(controller));
       const Crowd crowd(device(), flatGround(), sceneOf(23, 1, 1, controller), options);
-      EXPECT_EQ(crowd.memoryBytes(), crowd::bytesOf(crowd.impl(), crowd.impl().kindOf(0)));
+      EXPECT_EQ(crowd.memoryBytes(), crowd::bytesOf(implOf(crowd), implOf(crowd).kindOf(0)));
       const uint64_t pages = options.pageAgents > 0 ? 4 : 1;
       EXPECT_EQ(bytesOf(crowd, "body"), 23 * 64u);
       EXPECT_EQ(bytesOf(crowd, "pose") > 0, options.pose);
@@ -199,7 +199,7 @@ TEST_F(InputTest, AgentsComeBackBesideTheirLane) {
   scene.herds[0].spawn.centre = {26, 0};
   Crowd crowd(device(), ground, scene);
   const HerdState state = crowd.download(0);
-  const shared::Parameters& tuning = crowd.impl().kindOf(0).parameters;
+  const shared::Parameters& tuning = implOf(crowd).kindOf(0).parameters;
   const double limitX = tuning.halfExtentX - 1.5 * tuning.edgeMargin,
                limitZ = tuning.halfExtentZ - 1.5 * tuning.edgeMargin;
   size_t held = 0;
@@ -226,7 +226,7 @@ TEST_F(InputTest, SpawningIsTheSameOnAnyNumberOfThreads) {
   const Scene scene = sceneOf(agents);
   const Heightfield ground = rollingGround();
   const Crowd crowd(device(), ground, sceneOf(1));
-  const crowd::Spawner spawner(scene.herds[0], crowd.impl().kindOf(0), ground, scene.seed);
+  const crowd::Spawner spawner(scene.herds[0], implOf(crowd).kindOf(0), ground, scene.seed);
   const auto records = [](std::vector<float>& floats) {
     const auto part = [&](size_t at, size_t each) {
       return std::span(floats).subspan(agents * at, agents * each);
@@ -274,7 +274,7 @@ TEST_F(InputTest, ASampleIsValidated) {
   const Heightfield ground = rollingGround();
   Crowd crowd(device(), ground, sceneOf(23), CrowdOptions{.watchEvery = 3, .pageAgents = 7});
   simulate(device(), crowd, 30);
-  validation::Replay replay(validation::herdFacts(crowd.impl().kindOf(0), ground));
+  validation::Replay replay(validation::herdFacts(implOf(crowd).kindOf(0), ground));
   for (uint32_t first = 0; first < 5; ++first) {
     const HerdState before = crowd.download(0, {first, 5});
     simulate(device(), crowd, 1);

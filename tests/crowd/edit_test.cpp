@@ -112,7 +112,7 @@ TEST_P(EditTest, FeetStandAnewWhereTheGroundDropsAway) {
 TEST_P(EditTest, ReplayThroughEdits) {
   Crowd crowd(device(), rollingGround(), sceneOf(32));
   simulate(device(), crowd, 90);
-  const crowd::Kind& kind = crowd.impl().kindOf(0);
+  const crowd::Kind& kind = implOf(crowd).kindOf(0);
   validation::Replay replay(validation::herdFacts(kind, crowd.terrain()));
   HerdState before = crowd.download(0);
   for (int tick = 0; tick < 200; ++tick) {
@@ -150,7 +150,7 @@ TEST_F(EditInputTest, TheDeviceHasTheHeightsOfTheTerrain) {
     crowd.editHeights(r.x, r.z, r.columns, r.rows, heights);
   }
   simulate(device(), crowd, 1);
-  EXPECT_EQ(gpu::downloadImage<float>(context(), crowd.impl().heights, gpu::ImageState::sampled),
+  EXPECT_EQ(gpu::downloadImage<float>(context(), implOf(crowd).heights, gpu::ImageState::sampled),
             crowd.terrain().heights);
 }
 

@@ -182,7 +182,7 @@ TEST_F(FidelityTest, FiguresAreWhatTheRunGave) {
     simulate(device(), crowd, 1);
     for (uint32_t h = 0; h < 3; ++h) {
       // Tuning is complete once the first tick has told dt.
-      if (i == 0) records.emplace_back(crowd.impl().kindOf(h), ground, agents);
+      if (i == 0) records.emplace_back(implOf(crowd).kindOf(h), ground, agents);
       records[h].add(crowd.download(h));
     }
   }
@@ -257,7 +257,7 @@ TEST_F(FidelityTest, LimitsAreThoseOfJudgedHerds) {
   const auto asleep = [&] { return crowd.sleeping() == 3 * agents; };
   while (crowd.tick() < 300 && !asleep()) simulate(device(), crowd, 10);
   ASSERT_TRUE(asleep());
-  for (const uint32_t h : {1u, 2u}) turnOut(device().context(), crowd.impl().kindOf(h));
+  for (const uint32_t h : {1u, 2u}) turnOut(device().context(), implOf(crowd).kindOf(h));
 
   constexpr uint64_t broken = 7;
   const uint64_t kept = crowd.tick();

@@ -74,8 +74,8 @@ TEST_P(SharedPagesTest, DoNotShow) {
             .watchEvery = 1, .feet = true, .footfalls = UINT32_MAX, .sleep = true, .pageAgents = 24}}) {
     SCOPED_TRACE(options.pageAgents);
     Crowd together(device(), ground, scene, options), apart(device(), ground, scene, ownRigs(scene), options);
-    ASSERT_EQ(together.impl().kinds.size(), 2u);
-    ASSERT_EQ(apart.impl().kinds.size(), scene.herds.size());
+    ASSERT_EQ(implOf(together).kinds.size(), 2u);
+    ASSERT_EQ(implOf(apart).kinds.size(), scene.herds.size());
     for (const int ticks : {1, 30, 30}) {
       simulate(device(), together, ticks);
       simulate(device(), apart, ticks);
@@ -139,7 +139,7 @@ TEST_F(KindsTest, LostTargetsAreOfTheHerd) {
   Crowd crowd(device(), flatGround(), scene);
   simulate(device(), crowd, 2);
   // A landing of the fourth agent, which is the second herd's.
-  const crowd::Page& page = crowd.impl().kindOf(1).pages[0];
+  const crowd::Page& page = implOf(crowd).kindOf(1).pages[0];
   std::vector<float> steps = gpu::download<float>(context(), page.step);
   steps[3 * 4 * shared::STEP_STRIDE] = std::numeric_limits<float>::quiet_NaN();
   gpu::upload(context(), page.step, steps);
@@ -188,8 +188,8 @@ TEST_F(KindsTest, AThousandCostWhatOneDoes) {
   Scene scene = sceneOf(10);
   scene.herds.resize(1024, scene.herds[0]);
   Crowd crowd(device(), flatGround(), scene), one(device(), flatGround(), sceneOf(10240));
-  ASSERT_EQ(crowd.impl().kinds.size(), 1u);
-  EXPECT_EQ(crowd.impl().kinds[0].pages.size(), one.impl().kinds[0].pages.size());
+  ASSERT_EQ(implOf(crowd).kinds.size(), 1u);
+  EXPECT_EQ(implOf(crowd).kinds[0].pages.size(), implOf(one).kinds[0].pages.size());
   EXPECT_EQ(crowd.agentCount(), 10240u);
   simulate(device(), crowd, 2);
   EXPECT_EQ(crowd.download(1023).agents, 10u);
@@ -201,7 +201,7 @@ TEST_F(KindsTest, SharesOfMemoryAreTheWhole) {
   const Scene scene = severalHerds();
   const Crowd crowd(device(), rollingGround(), scene, CrowdOptions{.pageAgents = 24});
   uint64_t bytes = 0;
-  for (const crowd::Kind& kind : crowd.impl().kinds) bytes += crowd::bytesOf(crowd.impl(), kind);
+  for (const crowd::Kind& kind : implOf(crowd).kinds) bytes += crowd::bytesOf(implOf(crowd), kind);
   EXPECT_EQ(crowd.memoryBytes(), bytes);
   EXPECT_EQ(crowd.memoryUse(2).front().bytes, 129 * 32u);
   EXPECT_EQ(crowd.memoryUse(0).front().bytes, 0u);

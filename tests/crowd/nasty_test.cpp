@@ -56,7 +56,7 @@ void scramble(const gpu::Context& context, Crowd& crowd, uint64_t seed, float fa
   const auto uniform = [&](float low, float high) {
     return low + (high - low) * static_cast<float>(random() >> 40) * 0x1p-24f;
   };
-  crowd::Kind& kind = crowd.impl().kindOf(0);
+  crowd::Kind& kind = implOf(crowd).kindOf(0);
   const crowd::Page& page = kind.pages.at(0);
   auto body = gpu::download<float>(context, page.body), gait = gpu::download<float>(context, page.gait);
   auto step = gpu::download<float>(context, page.step), arc = gpu::download<float>(context, page.arc);
@@ -111,7 +111,7 @@ void expectEveryStage(Device& device, const Rig& rig, uint64_t seeds, float fart
     SCOPED_TRACE("seed " + std::to_string(seed));
     Crowd crowd(device, ground, sceneOf(65), std::vector<Rig>{rig});
     scramble(device.context(), crowd, seed, farthest);
-    expectAllPass(replay(device, crowd, validation::herdFacts(crowd.impl().kindOf(0), ground), 4));
+    expectAllPass(replay(device, crowd, validation::herdFacts(implOf(crowd).kindOf(0), ground), 4));
   }
 }
 
@@ -142,7 +142,7 @@ void solveListed(const gpu::Context& context, const crowd::Kind& kind, uint64_t 
 
 // Of each leg, in the crowd's last tick.
 std::vector<double> missesOf(const Crowd& crowd) {
-  const crowd::Kind& kind = crowd.impl().kindOf(0);
+  const crowd::Kind& kind = implOf(crowd).kindOf(0);
   const HerdState state = crowd.download(0);
   std::vector<double> misses;
   for (size_t agent = 0; agent < state.agents; ++agent)
@@ -157,7 +157,7 @@ TEST_P(NastyTest, ListedLegsAndOthersAreSolvedAlike) {
   for (const Rig& rig : {spiderRig(), straightLegs({2, 5, 3, 1, 4, 5}, 60), straightLegs({15, 15}, 30)}) {
     SCOPED_TRACE(rig.name + " with " + std::to_string(rig.maxBones()) + " bones");
     Crowd crowd(device(), rollingGround(), sceneOf(65), std::vector<Rig>{rig});
-    const crowd::Kind& kind = crowd.impl().kindOf(0);
+    const crowd::Kind& kind = implOf(crowd).kindOf(0);
     const crowd::Page& page = kind.pages.at(0);
     scramble(context, crowd, 1, 1.1f);
     uint32_t atOnce = 0;
@@ -190,7 +190,7 @@ TEST_P(NastyTest, MissesAreThoseOfTheTips) {
   for (const Rig& rig : {spiderRig(), straightLegs({2, 5, 3, 1, 4, 5}, 60)}) {
     SCOPED_TRACE(rig.name);
     Crowd crowd(device(), rollingGround(), sceneOf(65), std::vector<Rig>{rig});
-    const crowd::Kind& kind = crowd.impl().kindOf(0);
+    const crowd::Kind& kind = implOf(crowd).kindOf(0);
     scramble(device().context(), crowd, 1, 1.1f);
     for (int tick = 0; tick < 3; ++tick) {
       simulate(device(), crowd, 1);

@@ -88,7 +88,7 @@ std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crow
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
     before.push_back(crowd.download(h));
     replays.push_back(
-        std::make_unique<validation::Replay>(validation::herdFacts(crowd.impl().kindOf(h), terrain)));
+        std::make_unique<validation::Replay>(validation::herdFacts(implOf(crowd).kindOf(h), terrain)));
   }
   for (int i = 0; i < ticks; ++i) {
     simulate(device, crowd, 1, dt);

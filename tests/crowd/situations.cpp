@@ -23,7 +23,7 @@ void forEachRecord(const Device& device, const gpu::Buffer& buffer, int stride,
   gpu::upload(context, buffer, floats);
 }
 
-crowd::Kind& kindOf(Crowd& crowd) { return crowd.impl().kindOf(0); }
+crowd::Kind& kindOf(Crowd& crowd) { return implOf(crowd).kindOf(0); }
 const crowd::Page& pageOf(Crowd& crowd) { return kindOf(crowd).pages.at(0); }
 
 void setGoals(const Device& device, Crowd& crowd, const std::function<void(size_t, float*)>& change) {

@@ -43,12 +43,12 @@ int restTicks(const Crowd& crowd, uint32_t herd = 0) {
   float cycle = 0;
   for (size_t agent = 0; agent < state.agents; ++agent)
     cycle = std::max(cycle, state.gait[agent * shared::GAIT_STRIDE * 4 + 5]);
-  return static_cast<int>(std::ceil((crowd.impl().kindOf(herd).parameters.sleepTime + cycle) / kTick)) + 2;
+  return static_cast<int>(std::ceil((implOf(crowd).kindOf(herd).parameters.sleepTime + cycle) / kTick)) + 2;
 }
 
 // Of agent i of a herd of one page, as navigate reads it.
 void wish(const gpu::Context& context, Crowd& crowd, size_t agent, float kind, const glm::dvec3& target) {
-  const crowd::Page& page = crowd.impl().kindOf(0).pages.at(0);
+  const crowd::Page& page = implOf(crowd).kindOf(0).pages.at(0);
   std::vector<float> goals = gpu::download<float>(context, page.goal);
   float* goal = goals.data() + agent * shared::GOAL_STRIDE * 4;
   goal[0] = static_cast<float>(target.x), goal[1] = static_cast<float>(target.z);
@@ -93,7 +93,7 @@ class SleepTest : public GpuTest, public ::testing::WithParamInterface<Case> {
 TEST_P(SleepTest, WhoStandsSleepsAndStaysAsItIs) {
   Crowd crowd(device(), rollingGround(), standing(20, controller()), sleeping());
   simulate(device(), crowd, 1);
-  const float sleepTime = crowd.impl().kindOf(0).parameters.sleepTime;
+  const float sleepTime = implOf(crowd).kindOf(0).parameters.sleepTime;
   ASSERT_GT(sleepTime, 0);
   while (static_cast<float>(crowd.tick() + 2) * kTick < sleepTime) simulate(device(), crowd, 1);
   EXPECT_EQ(sleepersOf(crowd.download(0)), 0u) << "too early";
@@ -122,9 +122,9 @@ TEST_P(SleepTest, ReplayThroughFallingAsleepSleepingAndWaking) {
     options.footfalls = UINT32_MAX;
     Crowd crowd(device(), ground, standing(agents, controller()), options);
     simulate(device(), crowd, 1);
-    validation::Replay replay(validation::herdFacts(crowd.impl().kindOf(0), ground));
+    validation::Replay replay(validation::herdFacts(implOf(crowd).kindOf(0), ground));
     const int rest = restTicks(crowd);
-    const auto early = static_cast<int>(crowd.impl().kindOf(0).parameters.sleepTime / kTick) - 5;
+    const auto early = static_cast<int>(implOf(crowd).kindOf(0).parameters.sleepTime / kTick) - 5;
     simulate(device(), crowd, early);
     EXPECT_EQ(sleepersOf(crowd.download(0)), 0u);
     const auto compare = [&](int ticks) {
@@ -251,7 +251,7 @@ TEST_P(SleepTest, GroundThatMovesWakesThem) {
   Crowd crowd(device(), flatGround(), standing(9, controller()), sleeping());
   simulate(device(), crowd, 1);
   simulate(device(), crowd, restTicks(crowd));
-  validation::Replay replay(validation::herdFacts(crowd.impl().kindOf(0), crowd.terrain()));
+  validation::Replay replay(validation::herdFacts(implOf(crowd).kindOf(0), crowd.terrain()));
   HerdState state = crowd.download(0);
   const HerdState asleep = state;
   ASSERT_EQ(sleepersOf(asleep), 9u);

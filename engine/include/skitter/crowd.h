@@ -181,8 +181,8 @@ class Crowd {
   // Of the last tick recorded, by agent and leg; empty without CrowdOptions::footfalls.
   std::vector<Footfall> footfalls(uint32_t herd) const;
   uint64_t droppedFootfalls(uint32_t herd) const;  // for want of room, since the start
-  uint64_t sleeping()
-      const;  // agents of all herds that slept in the last tick; 0 without CrowdOptions::sleep
+  // Agents of all herds that slept in the last tick; 0 without CrowdOptions::sleep.
+  uint64_t sleeping() const;
   uint64_t stateHash() const;                 // of every record that the next tick depends on
   std::vector<StageTime> stageTimes() const;  // empty without CrowdOptions::timestamps
   // Whether ticks recorded from now on are timed stage by stage, with CrowdOptions::timestamps: at first they
@@ -193,10 +193,12 @@ class Crowd {
   std::vector<FootfallBuffer> footfallBuffers(uint32_t herd) const;
 
   struct Impl;
-  Impl& impl() { return *impl_; }
-  const Impl& impl() const { return *impl_; }
 
  private:
+  // For the engine's own rooms and tools (crowd/herd.h).
+  friend Impl& implOf(Crowd& crowd);
+  friend const Impl& implOf(const Crowd& crowd);
+
   std::unique_ptr<Impl> impl_;
 };
 
