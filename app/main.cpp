@@ -11,6 +11,7 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/common/manifest.h"
@@ -35,12 +36,6 @@ constexpr const char* footer =
     "  skitter ik --joints 5 --limits cone:60\n"
     "  skitter validate --device llvmpipe\n"
     "  skitter reproduce --quick --out figures";
-
-#if defined(SKITTER_BENCH)
-constexpr const char* subcommands = "bench, ik, info, inspect, reproduce, rig, run or validate";
-#else
-constexpr const char* subcommands = "ik, info, inspect, rig, run or validate";
-#endif
 
 int fail(int code, std::string message) {
   skitter::app::awaitKill();
@@ -92,20 +87,14 @@ int runCommand(int argc, char** argv) {
   app.footer(std::string(exitCodes) + footer);
   app.require_subcommand(0, 1);
   skitter::app::Command command;
-#if defined(SKITTER_BENCH)
-  skitter::app::addBench(app, command);
-#endif
-  skitter::app::addIk(app, command);
-  skitter::app::addInfo(app, command);
-  skitter::app::addInspect(app, command);
-#if defined(SKITTER_BENCH)
-  skitter::app::addReproduce(app, command);
-#endif
-  skitter::app::addRig(app, command);
-  skitter::app::addRun(app, command);
-  skitter::app::addValidate(app, command);
-  for (CLI::App* each : app.get_subcommands([](const CLI::App*) { return true; }))
+#define ADD(Name) skitter::app::add##Name(app, command);
+  SKITTER_COMMANDS(ADD)
+#undef ADD
+  std::vector<std::string> names;
+  for (CLI::App* each : app.get_subcommands([](const CLI::App*) { return true; })) {
     each->footer(exitCodes + each->get_footer());
+    names.push_back(each->get_name());
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {
@@ -114,7 +103,8 @@ int runCommand(int argc, char** argv) {
     return fail(2, fmt::format("{} (skitter --help lists what there is)", error.what()));
   }
   for (const CLI::App* chosen : app.get_subcommands()) refuseEmptyValues(*chosen);
-  if (!command) return fail(2, fmt::format("no subcommand, expected {} (skitter --help)", subcommands));
+  if (!command)
+    return fail(2, fmt::format("no subcommand, expected one of {} (skitter --help)", fmt::join(names, ", ")));
   return command();
 }
 
