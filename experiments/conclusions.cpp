@@ -190,7 +190,7 @@ Conclusion collectionFour(const Results& results) {
 
 std::string percent(double value) { return value < 0.001 ? "under 0.001 %" : fmt::format("{:.2g} %", value); }
 
-// Of penetration and float together, on uneven ground.
+// Compares penetration and float together, on uneven ground.
 Conclusion fidelity(const Results& results) {
   bool better = true, any = false;
   std::string measured;

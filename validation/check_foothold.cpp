@@ -180,7 +180,7 @@ Sample compare(const Case& c, const reference::FootholdResult& result) {
   return sample;
 }
 
-// Of ways whose costs are the same within their bounds any may be taken.
+// Where the costs of ways are the same within their bounds, any way may be taken.
 bool passesAnyWay(const Case& c, const reference::FootholdChoices& choices, Sample& passed) {
   const reference::FootholdResult result = c.run(choices);
   passed = compare(c, result);

@@ -38,7 +38,8 @@ double reaimTie(const reference::GaitResult& result, const tolerance::GaitBounds
                    leg.movedMargin / bound.ground});
 }
 
-// Of the ground above a foot or its way: the steepest cells near any landing, seen from a point of a spline.
+// The bound of the ground above a foot or its way: the steepest cells near any landing, seen from a point of
+// a spline.
 double groundBound(const Setting& setting, const Moment& moment, const reference::AgentBody& body) {
   double bound = 0;
   const glm::dvec2 position = body.world();

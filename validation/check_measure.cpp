@@ -69,7 +69,7 @@ TrailBounds compareTrail(const reference::Trail& expected, const reference::Trai
   sample.compare("path / leg length", std::abs(expected.path - got.path) / unit,
                  (bound.first + 8 * tolerance::roundoff * expected.path) / unit, {expected.path, 0, 0, 0},
                  {got.path, 0, 0, 0});
-  // Of the tick's |e3|^2, which is at most all of Q.
+  // Bounds the tick's |e3|, whose square is at most all of Q.
   const double third = std::sqrt(expected.jerk);
   sample.compare("sum of squared third differences", std::abs(expected.jerk - got.jerk),
                  (2 * third + bound.third) * bound.third + 8 * tolerance::roundoff * expected.jerk,
@@ -77,7 +77,7 @@ TrailBounds compareTrail(const reference::Trail& expected, const reference::Trai
   return bound;
 }
 
-// Of W^5 Q and of P^2, from what Q and P err by in the tick that closes the window.
+// The bound of W^5 Q and P^2, from the errors of Q and P in the tick that closes the window.
 double jerkBound(const reference::Trail& trail, const TrailBounds& bound, double ticks) {
   const double sum = (2 * std::sqrt(trail.jerk) + bound.third) * bound.third;
   return std::pow(ticks, 5) * (sum + 16 * tolerance::roundoff * trail.jerk);

@@ -12,7 +12,7 @@ namespace {
 uint32_t mask(double value) { return value >= 0 && value < 0x1p32 ? static_cast<uint32_t>(value) : 0; }
 
 glm::dquat quaternion(const glm::dvec4& v) { return {v.w, v.x, v.y, v.z}; }
-// Of pairs of bones, from that vec4 on.
+// The directions of pairs of bones, from that vec4 on.
 std::vector<glm::dvec2> pairsOf(const std::vector<float>& records, size_t base, int bones) {
   std::vector<glm::dvec2> pairs;
   for (int b = 0; b < bones; ++b) {

@@ -21,7 +21,7 @@ struct FixRecord {
   glm::dvec3 move{0};
 };
 FixRecord fixOf(const HerdState& state, size_t leg, int bones, int bone);
-// Of the clips' palette; `entry` is agent * joints + joint.
+// An entry of the clips' palette; `entry` is agent * joints + joint.
 reference::Affine matrixOf(const HerdState& state, size_t entry);
 
 // Rounded to float into records that are already of full size.

@@ -21,7 +21,7 @@ class FreeRun {
 
   // `watched`: the terrain was edited lately, as HerdState has it.
   void tick(bool watched);
-  // Of the agents, those whose body and feet all are at most `tolerance` leg lengths from where `device` has
+  // The share of agents whose body and feet are all at most `tolerance` leg lengths from where `device` has
   // them.
   double shareWithin(const HerdState& device, double tolerance) const;
 

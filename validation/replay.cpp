@@ -87,7 +87,7 @@ void expectSize(const char* what, size_t found, size_t expected) {
                    std::to_string(expected));
 }
 
-// Of records that may be left out, all or none.
+// Records that may be left out are all here or none is.
 void expectSizes(const Setting& setting, const HerdState& state) {
   const size_t agents = state.agents;
   for (const Record record : allRecords) {

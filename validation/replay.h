@@ -48,11 +48,11 @@ struct Setting {
 // the rig.
 Setting settingOf(const HerdFacts& herd, const Heightfield& terrain);
 
-// Of a herd of so many agents, those that tick `n` compares: all up to `most`, else one of so many, by the
-// seed another one in each tick.
+// The agents of a herd that tick `n` compares: all agents up to `most`, else one of every few, drawn by the
+// seed anew in each tick.
 AgentSample sampleAt(uint64_t seed, uint64_t n, uint32_t agents, uint32_t most);
 
-// Of a whole herd's state without metrics, the records of those agents.
+// The records of those agents, from a whole herd's state without metrics.
 HerdState sampled(const HerdState& whole, const AgentSample& sample);
 
 // Lock-step replay: of two consecutive states of a herd, every stage of the reference starts from exactly

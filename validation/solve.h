@@ -13,7 +13,7 @@ struct SolveVerdict {
 SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l, const reference::Limb& limb,
                           const reference::Chain& previous);
 
-// Of forward kinematics along the limb, share of the reach.
+// The error of forward kinematics along the limb, a share of the reach.
 double kinematicsError(const Setting& setting, const reference::Limb& limb);
 
 }  // namespace skitter::validation

@@ -22,7 +22,7 @@ inline void storePairs(std::vector<float>& records, size_t index, const std::vec
     store(records, index + i / 2, {pairs[i], i + 1 < pairs.size() ? pairs[i + 1] : glm::dvec2(0)});
 }
 
-// Of the vec4 that a record begins with.
+// The index of the vec4 with which a record begins.
 inline size_t at(size_t record, int stride) { return record * static_cast<size_t>(stride); }
 
 }  // namespace skitter::validation

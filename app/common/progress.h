@@ -9,7 +9,7 @@ namespace skitter::app {
 // How far a run is, on stderr: a bar that redraws itself on a terminal, else a line every few seconds.
 class Progress {
  public:
-  // Of `total` things that are named by `what`; or, without them, of all of `what`.
+  // Counts `total` things that `what` names. Without `total`, `what` is one piece of work, told by its share.
   Progress(std::string what, uint64_t total, bool quiet);
   Progress(std::string what, bool quiet);
   ~Progress();

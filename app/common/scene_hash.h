@@ -7,8 +7,9 @@
 
 namespace skitter::app {
 
-// Of what is simulated, as flags have left it: the scene's values, the terrain's samples, and the bytes of
-// the files of rigs and of their sidecars. The camera and the scene's name are no part of it.
+// Hash of everything that is simulated, after flags have changed the scene: its values, the terrain's
+// samples, and the bytes of the files of rigs and of their sidecars. The camera and the scene's name are no
+// part of it.
 uint64_t sceneHash(const Scene& scene, const Heightfield& terrain);
 
 }  // namespace skitter::app

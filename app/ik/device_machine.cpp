@@ -7,7 +7,8 @@
 namespace skitter::app {
 namespace {
 
-// Of records and of their copies on the way to and from the host: 1.16 KB a chain of 15 bones were measured.
+// Bytes of the records and of their copies on the way to and from the host. 1.16 KB were measured for a chain
+// of 15 bones.
 uint64_t bytesFor(const ik::Chain& chain, uint32_t chains) {
   return uint64_t{chains} * 16 * (5 * chain.bones.size() + 8);
 }

@@ -42,7 +42,7 @@ class IkFigures {
   validation::IkJudge::Verdict worst_;
 };
 
-// Of the chain's length: what counts as solved.
+// A chain counts as solved below this error, a share of the chain's length.
 inline constexpr double ikSolvedError = 1e-3;
 
 }  // namespace skitter::app

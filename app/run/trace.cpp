@@ -51,7 +51,7 @@ Placed placedByPose(const float* pose) {
   return {{pose[4], pose[5], pose[6]}, {pose[0], pose[1], pose[2], pose[3]}};
 }
 
-// Of a matrix whose columns may be scaled.
+// The matrix's columns may be scaled.
 Placed placedByMatrix(const float* rows, const glm::vec3& start) {
   glm::mat3 turn;
   Placed placed{};

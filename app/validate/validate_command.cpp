@@ -42,7 +42,7 @@ struct ValidateOptions {
   uint32_t pageAgents = 0;  // 0: as many as the device allows
 };
 
-// Of a leg length: where an agent stands, after so long, is the same place to whoever looks.
+// A share of a leg length. Nobody sees a difference of so little in where an agent stands.
 constexpr double freeRunTolerance = 0.01;
 
 // Beside the device's crowd: the same herds walked by the reference alone, from the same first state.

@@ -68,7 +68,7 @@ std::optional<AgentId> agentAt(const Crowd& crowd, const Lens& lens, const glm::
       if (!at) continue;
       const float radius = 0.7f * rig.legLength * lens.pixelsAMetre(lens.depth(middle));
       const float beside = std::max(0.0f, glm::distance(*at, pixel) - radius);
-      // Of several below the pixel the nearest one hides the others.
+      // Where several agents cover the pixel, the nearest one hides the others.
       const float score = beside > 0 ? 1e6f + beside : lens.depth(middle);
       if (beside > most || score >= least || isHidden(crowd.terrain(), lens.eye(), middle)) continue;
       least = score;

@@ -51,7 +51,7 @@ struct KeyRow {
 };
 std::span<const KeyRow> keyRows();
 
-// Of a key of GLFW's; held keys have none.
+// The action of a GLFW key. Keys that act while they are held have none.
 std::optional<Action> actionOf(int key);
 // The controller that an action chooses.
 std::optional<Controller> controllerOf(Action action);

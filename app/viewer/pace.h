@@ -18,7 +18,7 @@ class Pace {
 
   bool paused() const { return paused_; }
   double speed() const;  // 1/16, 1/8, .. 16
-  // Of the next frame.
+  // Ticks of the next frame.
   uint64_t ticks();
 
  private:

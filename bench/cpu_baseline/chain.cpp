@@ -120,7 +120,7 @@ void pickSeeds(const Chain& chain, Model& model) {
   std::mt19937 random(1);
   std::vector<Pose> poses;
   std::vector<std::vector<DVec>> joints;
-  // Of shapes the length alone matters.
+  // For shapes, only the length matters.
   const auto compared = [&](const DVec& p) { return model.aimed ? DVec{std::sqrt(dot(p, p)), 0, 0} : p; };
   for (int i = 0; i < kPoses; ++i) {
     poses.push_back(randomPose(chain, random, 0.7));

@@ -76,8 +76,9 @@ struct Model {
   // The first bone turns freely: it is at rest in the seeds, which are shapes to be turned to their target,
   // and seedRows have |p_1| .. |p_n| after the rest.
   bool aimed = false;
-  // Of the cells of the cube from -1 to 1, x first, kCells each way: the seed whose tip is nearest to the
-  // cell's middle, or -1 where the tip at rest is nearer. Of shapes: as many shells of |target| from 0 to 1.
+  // The cube from -1 to 1 is cut into kCells cells each way, x first. Each cell has the seed whose tip is
+  // nearest to its middle, or -1 where the tip at rest is nearer. For shapes, |target| from 0 to 1 is cut
+  // into as many shells.
   static constexpr int kCells = 16;
   std::vector<int8_t> seedCells;
 

@@ -9,7 +9,7 @@ struct SineCosine {
   F sine, cosine;
 };
 
-// Of an angle within 0 .. 3.1, by Taylor's series about pi / 2: off by 6e-8 at most.
+// For an angle within 0 .. 3.1, by Taylor's series about pi / 2: off by 6e-8 at most.
 template <class F>
 SineCosine<F> sineCosine(const F& angle) {
   const F y = angle - F(1.57079633f), yy = y * y;

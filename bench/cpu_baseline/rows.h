@@ -23,7 +23,7 @@ class Rows {
   float& at(int row, size_t chain) { return values_[index(row, chain)]; }
   float at(int row, size_t chain) const { return values_[index(row, chain)]; }
 
-  // Of the chains from `chain`, a multiple of V's width.
+  // `chain` is the first chain, a multiple of V's width.
   template <class V>
   void load(V& values, int row, size_t chain) const {
     forEachPart(values, [&](auto& part, size_t offset) {

@@ -73,7 +73,7 @@ Footing<F> footingOf(const World& world, float tick, const Agent<F>& a, const Le
   return footing;
 }
 
-// Of a body that follows whatever its legs do: the ground below their homes.
+// For a body that follows whatever its legs do, the ground below the homes.
 template <class F>
 Footing<F> blindFootingOf(const World& world, const Agent<F>& a) {
   const Mat3<F> r = matrixOf(a.orientation);

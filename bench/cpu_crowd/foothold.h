@@ -118,8 +118,8 @@ class Foothold {
     return lowest < F(3e38f);
   }
 
-  // Of candidates that do not fit the one nearest to the range of the leg, moved into that along its line
-  // from the root.
+  // The candidate that is nearest to the leg's range, where none fits. It is moved into the range along its
+  // line from the root.
   Vec3<F> lastResort(const Ladder& ladder) const {
     const F least = b_.reach * q_.reachLeast, most = b_.reach * q_.reachMost;
     F misfit(3e38f), far(1);

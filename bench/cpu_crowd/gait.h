@@ -8,7 +8,7 @@
 
 namespace skitter::cpu_crowd {
 
-// Of the half stride: out of comfort for legs that step without a rhythm.
+// A share of the half stride. A leg that steps without a rhythm is out of comfort beyond it.
 inline constexpr float kReachShare = 0.6f;
 
 // Lanes whose leg lifts, or is aimed anew; a set a leg.

@@ -8,7 +8,7 @@
 
 namespace skitter::cpu_crowd {
 
-// Of each of a herd's stages, in its order.
+// One for each of a herd's stages, in the herd's order.
 using Seconds = std::array<double, 8>;
 
 // Clocks the stages of a part of a herd as they follow each other, or nothing. Laps are of the wall, whose

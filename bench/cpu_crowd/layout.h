@@ -50,7 +50,7 @@ struct Chain {
   F error;       // of the tip to its target, likewise
 };
 
-// Of a block, the same leg of all its agents.
+// The same leg of all agents of a block.
 template <class F, int N>
 struct Leg {
   Step<F> step;

@@ -62,7 +62,7 @@ struct World {
   ClipTable clips;  // empty where none are played
 };
 
-// Of a controller that plays clips the parameters are those of a blind body (docs/stages/body.md). Throws
+// For a controller that plays clips, the parameters are those of a blind body (docs/stages/body.md). Throws
 // Error(input) where the rig records' size does not fit the rig.
 World worldOf(const validation::HerdFacts& facts);
 

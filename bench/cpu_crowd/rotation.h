@@ -47,7 +47,7 @@ Vec3<F> rotated(const Quaternion<F>& q, const Vec3<float>& v) {
   return w + t * q.w + cross(u, t);
 }
 
-// Of a rotation: of the quaternion's four forms, the best conditioned one.
+// The rotation's quaternion, by the best conditioned of its four forms.
 template <class F>
 Quaternion<F> quaternionOf(const Mat3<F>& m) {
   const F sx = F(1) + m.x.x - m.y.y - m.z.z, sy = F(1) - m.x.x + m.y.y - m.z.z;

@@ -39,7 +39,7 @@ struct Corner {
   Witness witness = {};  // of a counted tick
 };
 
-// Of large herds the agents that `seed` draws for the tick `tick`.
+// For large herds, only the agents that `seed` draws for the tick `tick`.
 std::vector<HerdState> statesOf(const Crowd& crowd, const Contestant& contestant, uint64_t tick,
                                 uint64_t seed) {
   std::vector<HerdState> states;

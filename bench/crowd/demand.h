@@ -16,7 +16,7 @@ struct StageDemand {
       0;  // single-precision (operations.h), of the first dispatch or, of foothold, of the legs listed
 };
 
-// Of the stages that a tick without measure and footfalls records. Waits for the device.
+// The demand of the stages that a tick without measure and footfalls records. Waits for the device.
 std::vector<StageDemand> demandOf(const Crowd& crowd, const CrowdOptions& options);
 
 }  // namespace skitter::bench

@@ -20,7 +20,7 @@ namespace {
 constexpr int kRepetitions = 5;
 constexpr uint64_t kCopyBytes = 256ull << 20;  // far beyond any cache
 constexpr uint32_t kGroup = 64;
-// Of arithmetic.comp: turns, chains, components, a product and a sum.
+// arithmetic.comp has turns, chains, components, a product and a sum.
 constexpr double kOperationsARound = 64 * 3 * 4 * 2;
 constexpr int kRounds = 64;
 constexpr uint32_t kFewestGroups = 64, kMostGroups = 65535;

@@ -10,8 +10,8 @@ namespace skitter::bench {
 // One batch on the device under options of one's own, judged, then timed.
 struct MeasuredBatch {
   Quality quality;
-  // Of a whole batch, median, least and most of the repetitions: CPU time of all threads on a software
-  // device, else the wall's.
+  // Median, least and most of the repetitions of a whole batch: CPU time of all threads on a software device,
+  // else wall time.
   double seconds = 0, leastSeconds = 0, mostSeconds = 0;
   double wallSeconds = 0;  // median
 };

@@ -15,7 +15,7 @@ struct Results {
   std::vector<ik::Report> reports;
 };
 
-// Of one or more batches, judged in double from their joints.
+// The quality of one or more batches, judged in double from their joints.
 class Quality {
  public:
   static constexpr double kSolved = 1e-3;  // share of the reach

@@ -28,7 +28,7 @@ struct ClipNode {
   std::optional<glm::dmat4> matrix = {};  // in place of the three, and of any channel
 };
 
-// Of a time: what holds from it on, or the limit from the left, which differs at STEP keys.
+// The value from a time on, or the limit from the left. They differ at STEP keys.
 enum class ClipSide { at, before };
 
 glm::dvec4 sampleChannel(const ClipChannel&, double t, ClipSide = ClipSide::at);

@@ -100,8 +100,8 @@ class SplineBounds {
     return glm::distance(from.point, to.point) +
            step(i) * (glm::length(from.leaving) + glm::length(to.arriving));
   }
-  // Of dP/ds: 2 c errs by 30 of the size, 3 e by 30, their sum and product by 100, the length by 8 of 25; a
-  // basis function's slope is at most 1.
+  // The bound of dP/ds: 2 c errs by 30 of the size, 3 e by 30, their sum and product by 100, the length by 8
+  // of 25; a basis function's slope is at most 1.
   double derivative(size_t i) const { return 360 * roundoff * sizeOf(i) + 2 * step(i) * tangent_; }
 
   const HermiteSpline& spline_;

@@ -4,7 +4,7 @@
 
 namespace skitter::reference {
 
-// Of the agents whose number modulo `every` is `turn`, at tick n; they have been watched for `watched` ticks
+// The agents whose number modulo `every` is `turn` at tick n. They have been watched for `watched` ticks
 // before.
 struct WatchTurn {
   uint64_t turn = 0, watched = 0;

@@ -18,7 +18,7 @@ struct ClipRecords {
 // Error(input) that names the file where there is none, or none of that name.
 std::vector<const Clip*> chosenClips(const ClipSet& set, const std::vector<std::string>& names);
 
-// Of those.
+// The records of the clips that are named.
 ClipRecords clipRecords(const ClipSet& set, const std::vector<std::string>& names, int maxBones);
 
 }  // namespace skitter::crowd

@@ -110,7 +110,7 @@ void eachAgent(const Crowd::Impl& crowd, const crowd::Part& part, const Each& ea
     each(std::span<const float, kFloats>(m.data() + at, kFloats));
 }
 
-// Of herds from `first` to before `end`.
+// The figures of the herds from `first` to before `end`.
 Fidelity figuresOf(const Crowd::Impl& crowd, uint32_t first, uint32_t end) {
   crowd.context->waitIdle();
   bool limitsAreKept = false;

@@ -21,7 +21,7 @@ class Frame {
       : crowd_(crowd), tick_(tick), cmd_(cmd) {}
   // The name of the stage where a kind has it, else nullptr. The crowd's own.
   const char* nameOf(StageSet stage) const;
-  // Of every kind that has it; without a barrier after it.
+  // Records the stage of every kind that has it, without a barrier after it.
   void record(StageSet stage) const;
 
  private:

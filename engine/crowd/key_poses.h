@@ -14,8 +14,8 @@ struct KeyPoses {
   std::vector<float> records;  // engine/include/skitter/records.h, key
 };
 
-// Of the clips that are named or, without names, of all. Throws Error(input) that names the file where none
-// of them moves forward, or there is none of a name, or `keys` is out of range.
+// The key poses of the clips that are named or, without names, of all clips. Throws Error(input) that names
+// the file where none of them moves forward, or there is none of a name, or `keys` is out of range.
 KeyPoses keyPoses(const ClipSet& set, const std::vector<std::string>& names, uint32_t keys, const Rig& rig,
                   const std::vector<float>& rigRecords);
 

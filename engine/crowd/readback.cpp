@@ -20,8 +20,8 @@ using crowd::Part;
 
 constexpr AgentSample kAll{};
 
-// Of a part's records those of the sample, agent after agent and of an agent leg after leg; legs = 0: one an
-// agent.
+// Appends the sample's records of the part, agent after agent and, of an agent, leg after leg. legs = 0:
+// there is one per agent.
 void appendRecords(const gpu::Context& context, const Part& part, const gpu::Buffer& buffer, int legs,
                    const AgentSample& sample, std::vector<float>& records) {
   if (!buffer) return;

@@ -69,7 +69,7 @@ Spawner::Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield&
   rowSpacing_ = std::min(1.2f * spacing, 0.9f * roomZ / static_cast<float>(std::max(1u, rows_ - 1)));
 }
 
-// Of a leg at rest, or as the standing pose has it.
+// The directions of a leg at rest, or as the standing pose has it.
 void Spawner::pushDirections(size_t leg, Writer& chain) const {
   const int bones = rig_.maxBones();
   if (keyPoses_.keys == 0) {

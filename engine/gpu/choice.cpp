@@ -121,7 +121,7 @@ void inspectQueue(const vk::raii::PhysicalDevice& physical, std::optional<uint32
   }
 }
 
-// Of an adopted device the features are not known.
+// The features of an adopted device are not known.
 void listLacks(bool adopted, DeviceReport& report) {
   const DeviceLimits& limits = report.limits;
   const DeviceFeatures& features = report.features;

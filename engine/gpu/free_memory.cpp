@@ -23,7 +23,7 @@ std::optional<uint64_t> numberIn(const fs::path& file) {
   return number;
 }
 
-// Of lines "KEY NUMBER ...".
+// Lines are "KEY NUMBER ...".
 std::optional<uint64_t> numberOf(const std::string& wanted, const fs::path& file) {
   std::ifstream stream(file);
   std::string key;

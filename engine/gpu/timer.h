@@ -33,7 +33,7 @@ class StageTimer {
   // one costs as much as a small dispatch.
   void next(vk::CommandBuffer, const char* stage);
 
-  // Of the last reset(), in the order of begin(), once the submission is complete.
+  // The times since the last reset(), in the order of begin(), once the submission is complete.
   std::vector<StageTime> milliseconds() const;
   bool measures() const { return measuring_ && !!*pool_; }
 

@@ -19,7 +19,7 @@ int kindOf(const Limit& limit) {
   return shared::LIMIT_CONE;  // a free ball is a cone as wide as can be
 }
 
-// Of aimed seeds lengths alone matter.
+// For aimed seeds, only lengths matter.
 glm::dvec3 compared(const glm::dvec3& joint, bool aimed) {
   return aimed ? glm::dvec3(glm::length(joint), 0, 0) : joint;
 }

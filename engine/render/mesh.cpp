@@ -86,7 +86,7 @@ Welded weld(const Skin& skin) {
   return welded;
 }
 
-// Of triangles of the skin.
+// Simplifies triangles of the skin.
 std::vector<uint32_t> simplified(const Welded& welded, std::vector<uint32_t> triangles, float share) {
   if (triangles.empty()) return {};
   for (uint32_t& index : triangles) index = welded.remap[index];

@@ -23,7 +23,7 @@ struct Ribbons {
   std::vector<Ribbon> ribbons;
   std::vector<uint32_t> others;  // indices of the triangles that no ribbon stands for
 };
-// Of the bones of legs whose radius is at most `radius` metres.
+// Ribbons for the leg bones whose radius is at most `radius` metres.
 Ribbons ribbonsOf(const Rig&, float radius);
 
 }  // namespace skitter::render

@@ -21,7 +21,7 @@ struct Tick {
 // A scale from the data to [0, 1], with its ticks.
 class Axis {
  public:
-  // Of `values` those that are finite, and above 0 on a logarithmic axis, count; there may be none.
+  // Only values count that are finite and, on a logarithmic axis, above 0. There may be none.
   Axis(const AxisInfo& info, const std::vector<double>& values);
 
   double place(double value) const;  // 0 at the least end, 1 at the most; beyond them outside [0, 1]

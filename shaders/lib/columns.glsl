@@ -50,7 +50,7 @@ vec2 turned(Limb limb, int i, vec2 s, vec2 x) {
   return clampSwing(limb, i, to.xy, to.z, to.w);
 }
 
-// Of the next solve, as Levenberg and Marquardt have it.
+// The damping of the next solve, after Levenberg and Marquardt.
 float dampingAfter(bool kept, float damping) {
   return kept ? max(0.1 * damping, 1.0) : min(16.0 * damping, 4096.0);
 }

@@ -1,7 +1,8 @@
 #ifndef GAIT_GLSL
 #define GAIT_GLSL
 
-// Of the half stride: out of comfort without a rhythm. A leg may have to wait for a neighbour, so not all of it.
+// A share of the half stride: without a rhythm, a foot is out of comfort beyond it. It is less than 1,
+// because a leg may have to wait for a neighbour.
 const float REACH_SHARE = 0.6;
 // Places of a watched way, from where the foot is on.
 const int AHEAD = 3;

@@ -7,7 +7,7 @@ struct Swing {
   vec3 p0, p1, lift, m0;
 };
 
-// Of a step, relative to a body's position.
+// The swing of a step, relative to a body's position.
 Swing swingOf(Step s, Arc arc, vec3 bodyLocal, vec2 bodyTile) {
   return Swing(fromStep(s.liftOff, s, bodyLocal, bodyTile), fromStep(s.landing, s, bodyLocal, bodyTile), arc.lift,
                arc.startTangent);

@@ -5,7 +5,7 @@
 
 // `at`: the first bone's record. Stiffness is left to those that pull bones to rest.
 #ifdef ONLY_CONES
-// Of the record's last vec4.
+// `a` is the record's last vec4.
 void setBone(inout Limb limb, int i, vec4 a) {
   limb.carry[i] = swungFrame(noTurn(), a.xy, 2.0 / (1.0 + dot(a.xy, a.xy)));
   limb.bone[i] = a.z;

@@ -17,7 +17,7 @@ Body unpackBody(vec4 a, vec4 b, vec4 c, vec4 d) {
   return Body(a.xyz, tileOf(a.w), b.xy, b.z, c, d.x, d.y, d.z, d.w);
 }
 
-// Of the buffer `bodies`; a macro, as GLSL cannot pass one to a function.
+// Reads the buffer `bodies`. It is a macro because GLSL cannot pass a buffer to a function.
 #define LOAD_BODY(agent)                                                                     \
   unpackBody(LOAD4(bodies, (agent) * BODY_STRIDE), LOAD4(bodies, (agent) * BODY_STRIDE + 1), \
              LOAD4(bodies, (agent) * BODY_STRIDE + 2), LOAD4(bodies, (agent) * BODY_STRIDE + 3))
@@ -33,7 +33,7 @@ Step unpackStep(vec4 a, vec4 b) {
   return Step(a.xyz, b.xyz, tileOfTicks(b.w), a.w, ticksOf(b.w), b.w < 0.0);
 }
 
-// Of the buffer `steps`.
+// Reads the buffer `steps`.
 #define LOAD_STEP(leg) unpackStep(LOAD4(steps, (leg) * STEP_STRIDE), LOAD4(steps, (leg) * STEP_STRIDE + 1))
 
 float stepProgress(Step s, float tick) { return clamp((tick - s.firstTick) / s.ticks, 0.0, 1.0); }
@@ -52,7 +52,7 @@ struct Arc {
   vec3 lift, startTangent;
 };
 
-// Of the buffer `arcs`.
+// Reads the buffer `arcs`.
 #define LOAD_ARC(leg) Arc(LOAD4(arcs, (leg) * ARC_STRIDE).xyz, LOAD4(arcs, (leg) * ARC_STRIDE + 1).xyz)
 
 // A leg's miss in the tick before, of a pair of legs' record.
@@ -60,7 +60,7 @@ float missTold(vec4 pairs, int leg, float tick) {
   vec2 told = leg % 2 == 0 ? pairs.xy : pairs.zw;
   return told.y == tick - 1.0 ? told.x : 0.0;
 }
-// Of the buffer `misses`.
+// Reads the buffer `misses`.
 #define LOAD_MISS(agent, leg) missTold(LOAD4(misses, (agent) * missStride(LEGS) + (leg) / 2), leg, thisTick)
 
 vec2 worldOf(vec3 local, vec2 tile) { return tile * TILE_SIZE + local.xz; }

@@ -13,7 +13,7 @@ namespace skitter::shared {
 
 BINDING BINDING_PARAMETERS = 0;  // uniform block Parameters
 BINDING BINDING_HEIGHTS = 1;     // R32F image, sampled by textureGather
-// Of a kind of herds, constant.
+// Constant for a kind of herds.
 BINDING BINDING_RIG = 2;
 BINDING BINDING_KEY = 3;
 BINDING BINDING_CLIP = 4;
@@ -27,9 +27,10 @@ BINDING BINDING_CLIP_JOINT = 8;
   BINDING BINDING_##NAME##_OUT = binding + 1;
 SKITTER_RECORDS(BIND)
 #undef BIND
-// Of a page, for its stages alone.
-// Legs that begin a step: uint, leg record * 2 + (1 if aimed anew); later in the tick, legs that ik's first
-// dispatch leaves: uint, leg record. Of clip: agents that fade, uint.
+// A page's own, for its stages only.
+//
+// Legs that begin a step: uint, leg record * 2 + (1 if aimed anew). Later in the tick, legs that ik's first
+// dispatch leaves: uint, leg record. For controllers that play clips, agents that fade: uint.
 BINDING BINDING_LIST = 60;
 BINDING BINDING_COUNTERS = 61;
 BINDING BINDING_HISTOGRAM = 62;
@@ -73,13 +74,13 @@ struct TickConstants {
 #ifdef __cplusplus
   uint32_t count;  // agents of the page; of measure those that are watched
   float tick;      // n, the tick being computed
-  // Of measure: invocation i looks at agent first + i * every of the page, watched for so many ticks. Of
-  // footfall: the page's first agent in its kind, and the events that there is room for.
+  // measure: invocation i looks at agent first + i * every of the page, which has been watched for `watched`
+  // ticks. footfall: `first` is the page's first agent in its kind, `room` the most events that fit.
   uint32_t first;
   uint32_t every;
   uint32_t watched;
   uint32_t room;
-  // Of navigate: seconds of standing after which an agent may sleep in this tick.
+  // navigate: seconds of standing after which an agent may sleep in this tick.
   float sleepTime;
 #else
   uint count;

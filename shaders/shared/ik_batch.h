@@ -99,7 +99,7 @@ struct BatchConstants {
   float poleX, poleY, poleZ;  // 0: none
 };
 
-// Of a tree: a body with its legs.
+// A tree is a body with its legs.
 struct TreeConstants {
 #ifdef __cplusplus
   uint32_t count, iterations;

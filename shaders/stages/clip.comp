@@ -15,7 +15,7 @@ LOAD4_BUFFER(BINDING_CLIP_FRAME, frames);
 layout(set = 0, binding = BINDING_LIST, std430) writeonly buffer ListBlock { uint list[]; };
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
 
-// Of a clip at a time: frame and fraction to the next one.
+// The frame of a clip at a time, and the fraction to the next frame.
 vec2 frameAt(vec4 clip, float time) {
   int first = int(clip.x), f = 0;
   for (int k = SEARCH_STEPS - 1; k >= 0; --k) {

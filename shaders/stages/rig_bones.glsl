@@ -1,5 +1,5 @@
-// Of the rig's records of bones what ik's first dispatch reads, as specialization constants of rigs with few legs: those
-// of a leg are chosen from all legs', which takes less than loading them.
+// The rig's bone records that ik's first dispatch reads, as specialization constants of rigs with few legs. A
+// leg's constants are chosen from those of all legs, which takes less than loading them.
 #ifndef RIG_BONES_GLSL
 #define RIG_BONES_GLSL
 #include "stages/rig_legs.glsl"

@@ -1,5 +1,6 @@
-// Of the rig's record of a leg what is the same for every invocation, as specialization constants: for stages over
-// agents, which go through all legs. A uniform is seven instructions a number on lavapipe, a constant none.
+// The part of the rig's leg records that is the same for every invocation, as specialization constants for
+// stages over agents, which go through all legs. A uniform is seven instructions a number on lavapipe, a
+// constant none.
 #ifndef RIG_LEGS_GLSL
 #define RIG_LEGS_GLSL
 

@@ -7,7 +7,7 @@ namespace skitter::test {
 namespace {
 
 struct ManifestTest : AppTest {
-  // Of what a command writes into `name`.
+  // The manifest of the file `name` that the command writes.
   nlohmann::json manifestOf(const std::vector<std::string>& command, const std::string& name = "a.json") {
     const Result result = skitter(command);
     EXPECT_EQ(result.code, 0) << result.err;

@@ -48,7 +48,7 @@ void expectTable(const std::string& csv, const std::string& name) {
   EXPECT_EQ(csv.find("inf"), std::string::npos) << name;
 }
 
-// Of each picture and drawing only its beginning: what lies in base64 may spell anything.
+// Keeps only the beginning of each picture and drawing: base64 may spell anything.
 std::string withoutPictures(std::string html) {
   for (size_t at = html.find("base64,"); at != std::string::npos; at = html.find("base64,", at + 1))
     html.erase(at + 7, html.find('"', at) - at - 7);
@@ -67,7 +67,7 @@ TEST_F(Reproduce, WritesOnePageAndItsRawFigures) {
                               "point-collection", "figures-9-11", "figures-12-14", "fidelity", "spiders"}) {
     EXPECT_EQ(count(html, std::string("<section id=\"") + section + "\">"), 1u) << section;
   }
-  // Of itself: nothing is fetched, nothing runs.
+  // The page is self-contained: it fetches nothing and runs nothing.
   for (const char* foreign : {"<script", "<link", "src=\"http", "href=\"http", "@import", "url("})
     EXPECT_EQ(html.find(foreign), std::string::npos) << foreign;
   for (const char* wrong : {">nan", "\"nan", ",nan", "nan,", ">inf", ",inf", "-nan"})

@@ -69,7 +69,7 @@ TEST(ClipSampler, RotationsTurnEvenlyAlongTheShorterArc) {
 }
 
 TEST(ClipSampler, CubicSplinesRepeatACubic) {
-  // Of p(t) = t^3 - 2 t^2 + 3 any two keys with their slopes give all of it, whatever lies between them.
+  // Any two keys of p(t) = t^3 - 2 t^2 + 3, with their slopes, give all of it.
   const auto p = [](double t) { return t * t * t - 2 * t * t + 3; };
   const auto slope = [](double t) { return 3 * t * t - 4 * t; };
   std::vector<double> values;

@@ -31,7 +31,7 @@ TEST(HgtHeights, SpacingComesFromTheLatitudeInTheName) {
   EXPECT_NEAR(north.extentZ(), degree * a * (1 - e2) / std::pow(w, 1.5), 5);
   EXPECT_NEAR(north.extentX(), degree * a * std::cos(phi) / std::sqrt(w), 5);
 
-  // Of the same latitude south of the equator; the corner is the southern one there too.
+  // The same latitude south of the equator, where the corner is the southern one, too.
   EXPECT_FLOAT_EQ(load("S28W071.hgt").spacingX, north.spacingX);
   EXPECT_FLOAT_EQ(load("n27_e086_3arc_v2.HGT").spacingX, north.spacingX);
   EXPECT_LT(load("N60E010.hgt").spacingX, 0.6f * north.spacingX);

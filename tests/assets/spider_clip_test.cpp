@@ -21,7 +21,7 @@ glm::vec3 footAt(const Clip& clip, size_t leg, float time) {
   return glm::mix(clip.feet[f * 8 + leg], clip.feet[(f + 1) * 8 + leg], u);
 }
 
-// Of the walk: the phase at which a foot leaves the ground, by its height.
+// The phase of the walk at which a foot leaves the ground, by its height.
 double liftPhase(const Clip& clip, size_t leg) {
   constexpr int steps = 600;
   for (int k = 0; k < steps; ++k) {

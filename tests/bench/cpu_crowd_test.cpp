@@ -69,7 +69,7 @@ class CpuCrowdTest : public GpuTest, public ::testing::WithParamInterface<Width>
  protected:
   Options options(int threads = 1) const { return {.threads = threads, .width = GetParam(), .poses = true}; }
 
-  // Of an opponent that is told something else than the reference.
+  // The stages that replay refuses for an opponent that is told something else than the reference.
   std::string refusedStages(const validation::HerdFacts& broken, Start& start, int ticks) const {
     CpuCrowd opponent(broken, start.state, options());
     std::string names;

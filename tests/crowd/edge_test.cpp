@@ -242,7 +242,7 @@ TEST_F(InputTest, SpawningIsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(whole, runs);
 }
 
-// Of `whole`, agent by agent, what a download of the sample must be.
+// The records that a download of the sample must hold, taken from `whole` agent by agent.
 std::vector<float> sampled(const std::vector<float>& whole, const HerdState& state,
                            const AgentSample& sample) {
   const size_t each = whole.size() / state.agents;

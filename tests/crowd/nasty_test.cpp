@@ -140,7 +140,7 @@ void solveListed(const gpu::Context& context, const crowd::Kind& kind, uint64_t 
   });
 }
 
-// Of each leg, in the crowd's last tick.
+// The miss of each leg in the crowd's last tick.
 std::vector<double> missesOf(const Crowd& crowd) {
   const crowd::Kind& kind = implOf(crowd).kindOf(0);
   const HerdState state = crowd.download(0);

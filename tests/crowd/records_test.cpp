@@ -62,7 +62,7 @@ CrowdOptions everything(bool fuse) {
   return {.pose = true, .measure = true, .feet = true, .footfalls = 1, .sleep = true, .fuse = fuse};
 }
 
-// Of every controller, but for wake, which has no parameters.
+// The stages of every controller, except wake, which has no parameters.
 std::vector<crowd::Stage> everyStage() {
   std::vector<crowd::Stage> stages;
   for (const Controller controller : allControllers) {

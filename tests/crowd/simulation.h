@@ -43,7 +43,7 @@ std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crow
                                                             const Heightfield& terrain, int ticks,
                                                             float dt = kTick);
 
-// Of agent i: the world position and, per leg, whether it is planted.
+// Agent i's world position and, for each leg, whether it is planted.
 glm::dvec3 positionOf(const HerdState& state, size_t agent);
 bool plantedOf(const HerdState& state, size_t leg);
 

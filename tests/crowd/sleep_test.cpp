@@ -46,7 +46,7 @@ int restTicks(const Crowd& crowd, uint32_t herd = 0) {
   return static_cast<int>(std::ceil((implOf(crowd).kindOf(herd).parameters.sleepTime + cycle) / kTick)) + 2;
 }
 
-// Of agent i of a herd of one page, as navigate reads it.
+// Writes the goal of an agent of a herd of one page, as navigate reads it.
 void wish(const gpu::Context& context, Crowd& crowd, size_t agent, float kind, const glm::dvec3& target) {
   const crowd::Page& page = implOf(crowd).kindOf(0).pages.at(0);
   std::vector<float> goals = gpu::download<float>(context, page.goal);
@@ -63,7 +63,7 @@ void raise(Crowd& crowd, float by) {
   crowd.editHeights(0, 0, crowd.terrain().columns, crowd.terrain().rows, heights);
 }
 
-// Of one agent, what the stages from body to pose write.
+// The records of one agent that the stages from body to pose write.
 std::vector<float> recordsOf(const HerdState& state, size_t agent) {
   std::vector<float> records;
   for (const auto kind :

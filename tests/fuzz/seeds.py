@@ -133,7 +133,7 @@ def texts():
             with open(file) as opened:
                 text = opened.read()
             save_text(reader, os.path.basename(file), text)
-    # Of assets/quadruped.glb.
+    # The legs of assets/quadruped.glb.
     legs = [{"name": side, "group": "A", "joints": [f"{side}_shoulder", joint], "tipOffset": [0, -0.4, 0],
              "home": [x, 0, 0.2], "bend": [0, 0, 1], "bendDegrees": 20, "coneHalfAngleDegrees": [90, 180]}
             for side, joint, x in (("left", "#7", 0.1), ("right", "right_elbow", -0.1))]

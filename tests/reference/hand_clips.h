@@ -10,8 +10,8 @@ namespace skitter::test {
 // frames at the ends, of walk also at 0.25 s and twice at 0.5 s, where it jumps.
 reference::ClipTable threeGaits();
 
-// Of the creature, one clip of one frame in which every joint is at rest: entry leg * (bones + 1) + i of the
-// palette is joint i of the leg.
+// One clip of the creature with one frame, in which every joint is at rest: entry leg * (bones + 1) + i of
+// the palette is joint i of the leg.
 reference::ClipTable restClip(const reference::Creature& creature);
 
 }  // namespace skitter::test

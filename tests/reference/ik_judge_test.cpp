@@ -129,7 +129,7 @@ TEST(IkJudge, EllipseHasAnAngleAQuadrant) {
   EXPECT_NEAR(violation(bones, {leaning(Z, diagonal, between + 0.01)}), rad(0.01), tiny);
 }
 
-// Of a bone along Y, x is X and y is -Z; of one along -Z, x is X and y is -Y.
+// For a bone along Y, x is X and y is -Z; for one along -Z, x is X and y is -Y.
 TEST(IkJudge, EllipseLiesInTheFrameAtRest) {
   const IkJudge::Ellipse ellipse{rad(40), rad(70), rad(30), rad(20)};
   EXPECT_NEAR(violation({bone(Y, ellipse)}, {leaning(Y, -Z, 71)}), rad(1), tiny);

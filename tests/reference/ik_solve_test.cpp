@@ -250,7 +250,7 @@ TEST(IkSeeds, areLegalFarApartAndTheSameAgain) {
       EXPECT_EQ(seeds[s].swing, again[s].swing);
       const IkState state = stateAt(chain, seeds[s]);
       EXPECT_LE(judge(spec, state.joints, rotationsOf(chain, state)).beyond, 1e-9);
-      // Of those that are aimed the distance from the base is told apart.
+      // Seeds that are aimed differ only by the distance of their tip from the base.
       const bool shapes = aimsSeeds(chain);
       const glm::dvec3 own = state.joints.back();
       const glm::dvec3 compared = shapes ? glm::dvec3(glm::length(own), 0, 0) : own;
@@ -282,7 +282,7 @@ TEST(IkSeeds, thatAreAimedPointAtTheTarget) {
   EXPECT_GE(exact, 980) << "a free ball turns up to 3.1 rad";
 }
 
-// Of 1000 tips of legal poses.
+// Shares of 1000 tips of legal poses.
 struct Share {
   int solved = 0, iterations = 0;
 };

@@ -36,7 +36,7 @@ class GroundMapTest : public test::GpuTest {
 
 constexpr size_t at(int x, int z) { return size_t(z * kColumns + x); }
 
-// Of a paraboloid the difference over two samples is its gradient.
+// On a paraboloid, the difference over two samples is its gradient.
 TEST_F(GroundMapTest, GradientsAreTheGrounds) {
   for (int z = 0; z < kRows; ++z)
     for (int x = 0; x < kColumns; ++x) {

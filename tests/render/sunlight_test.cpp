@@ -95,7 +95,7 @@ class SunlightTest : public test::GpuTest {
     return glm::mix(glm::mix(lit(first.x, first.y), lit(first.x + 1, first.y), f.x),
                     glm::mix(lit(first.x, first.y + 1), lit(first.x + 1, first.y + 1), f.x), f.y);
   }
-  // Of four squares in zigzag along the way over the map from one pixel to the next, in texels.
+  // The mean of four squares in zigzag along the way over the map from one pixel to the next, in texels.
   double smooth(const glm::dvec2& at, const glm::dvec2& way) const {
     const double length = glm::length(way);
     const glm::dvec2 side = way / length, across(-side.y, side.x);

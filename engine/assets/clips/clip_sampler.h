@@ -13,7 +13,7 @@ namespace skitter {
 // A value of the clip's, or its limit from the left, which differs at a STEP key.
 enum class Side { at, before };
 
-// Of a sampler of translation or scale, and of one of rotation.
+// The first samples translation or scale, the second rotation.
 glm::dvec3 sampleVector(const gltf::Sampler& sampler, double time, Side side = Side::at);
 glm::dquat sampleRotation(const gltf::Sampler& sampler, double time, Side side = Side::at);
 

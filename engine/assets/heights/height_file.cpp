@@ -80,7 +80,7 @@ void checkSize(const std::filesystem::path& file, const HeightSamples& samples, 
   }
 }
 
-// Of the samples that are no voids.
+// The range of the samples that are no voids.
 std::pair<float, float> rangeOf(const std::string& name, const HeightSamples& samples) {
   float low = HUGE_VALF, high = -HUGE_VALF;
   for (size_t k = 0; k < samples.values.size(); ++k) {

@@ -11,8 +11,8 @@
 namespace skitter {
 namespace {
 
-// Of the middle of the one-degree tile whose south-west corner the name tells: 27.5 of "N27E086.hgt" and of
-// "n27_e086_1arc_v3.hgt".
+// The latitude of the middle of the one-degree tile. The name gives the south-west corner: "N27E086.hgt" and
+// "n27_e086_1arc_v3.hgt" are both 27.5.
 std::optional<double> latitudeOf(const std::string& stem) {
   size_t at = 0;
   const auto letter = [&](char positive, char negative) -> std::optional<int> {

@@ -136,7 +136,8 @@ class LimbFinder {
     return count;
   }
 
-  // Of leaves that part near the ground, under a limb longer than they are, the longest stands for the foot.
+  // Where leaves part near the ground, under a limb longer than they are, the longest leaf stands for the
+  // foot.
   std::vector<Limb> mergeToes(std::vector<Limb> leaves) const {
     for (bool merged = true; merged;) {
       merged = false;

@@ -29,7 +29,7 @@ const ControllerStages clipController = {
     .all =
         [](const CrowdOptions& options) {
           std::vector stages{navigateStage(), wakeStage(), blindBodyStage(), clipStage()};
-          // Of a clip as it is, feet are looked at by others alone.
+          // For controller clip, only measure, footfalls and the host read feet.
           if (keepsFeet(options)) stages.push_back(clipSwingStage());
           for (const Stage& stage : {clipPoseStage(), measureStage(), footfallStage()})
             stages.push_back(stage);

@@ -17,7 +17,7 @@ struct ControllerStages {
   std::vector<Stage> (*fused)() = nullptr;
   // Adds what the shaders of all its stages are specialised by.
   void (*specialise)(const Kind& kind, gpu::KernelInfo& info) = nullptr;
-  // Of a kind with a rig: refuses what cannot be, by Error(input), and loads what the controller needs.
+  // Loads what the controller needs for a kind that has its rig. Refuses what cannot be by Error(input).
   void (*prepare)(const gpu::Context& context, const skitter::Herd& from, Kind& kind) = nullptr;
   // Refuses ticks of that length by Error(input).
   void (*checkTick)(const Kind& kind, float dt) = nullptr;

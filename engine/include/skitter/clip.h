@@ -85,7 +85,7 @@ struct ClipCut {
 // clip that is faulty or takes over maxFrames is left out and named in `notes`. Throws Error(input) that
 // names the file and the fault.
 ClipSet loadClips(const std::filesystem::path& file, const Rig& rig, std::span<const ClipCut> cuts = {});
-// Of the built-in spider: "walk" and "idle".
+// The clips of the built-in spider: "walk" and "idle".
 ClipSet spiderClips();
 
 // loadRig or, where a model has neither sidecar nor legs in its extras, the rig of its proposal

@@ -178,7 +178,7 @@ class Crowd {
   Fidelity fidelity(uint32_t herd) const;
   // Agent by agent. reachErrorP99, lastResorts and notFinite are only counted by herd and 0 here.
   std::vector<Fidelity> agentFidelity(uint32_t herd) const;
-  // Of the last tick recorded, by agent and leg; empty without CrowdOptions::footfalls.
+  // The footfalls of the last tick recorded, by agent and leg. Empty without CrowdOptions::footfalls.
   std::vector<Footfall> footfalls(uint32_t herd) const;
   uint64_t droppedFootfalls(uint32_t herd) const;  // for want of room, since the start
   // Agents of all herds that slept in the last tick; 0 without CrowdOptions::sleep.

@@ -40,7 +40,7 @@ struct SplineChain {
   std::vector<float> knots = {};
   bool closed = false;
   SplineTangents tangents = {};
-  // Of SplineRule::given: velocities dP/dt, one a point, within +-1e12. Empty `leaving`: leaves as it
+  // For SplineRule::given: velocities dP/dt, one a point, within +-1e12. Empty `leaving`: leaves as it
   // arrives.
   std::vector<glm::vec3> arriving = {}, leaving = {};
 };

@@ -14,8 +14,9 @@ namespace skitter {
 class VideoWriter {
  public:
   // `picturesPerSecond` of those given to write() last a second of the video; 0: as many as it has frames.
-  // Of more some are left out, of fewer some are repeated. Both rates at most 1000. Odd sizes are padded to
-  // even ones. Throws Error(input) when the file cannot be written or there is no ffmpeg.
+  // If there are more frames than the video shows, some are left out; if there are fewer, some are repeated.
+  // Both rates at most 1000. Odd sizes are padded to even ones. Throws Error(input) when the file cannot be
+  // written or there is no ffmpeg.
   VideoWriter(const std::filesystem::path& file, uint32_t width, uint32_t height, double framesPerSecond,
               double picturesPerSecond = 0);
   ~VideoWriter();
