@@ -45,7 +45,7 @@ class Leg:
     def in_plane(p, outward): return (dot(p, outward), p[1])
 
     def rotations(self, foot):
-        """Of coxa, femur, tibia and tarsus, each relative to the joint before, for a foot given in the body's frame."""
+        """Coxa, femur, tibia and tarsus, each relative to the joint before, for a foot given in the body's frame."""
         to = sub(foot, self.root)
         turn = wrap(math.atan2(to[0], to[2]) - self.azimuth)
         femur, knee, tip = self.flat[1], self.flat[2], self.flat[4]
@@ -66,8 +66,8 @@ class Leg:
 
 
 def foot_at(home, key, first):
-    """Of a walking leg that lifts at key `first`: straight back in stance; in swing a cubic that leaves and meets the ground's
-    speed, and an arc."""
+    """The foot of a walking leg that lifts at key `first`: straight back in stance; in swing a cubic that leaves and
+    meets the ground's speed, and an arc."""
     swing_keys = KEYS - STANCE_KEYS
     half = SPEED * STANCE_KEYS * KEY_SECONDS / 2
     k = (key - first) % KEYS
