@@ -2,31 +2,13 @@
 
 #include <algorithm>
 
+#include "validation/convert_ik.h"
+
 namespace skitter::app {
-namespace {
-
 using validation::IkJudge;
-using JudgedLimit = decltype(IkJudge::Bone::limit);
 
-struct ToJudged {
-  JudgedLimit operator()(const ik::Free&) const { return IkJudge::Free{}; }
-  JudgedLimit operator()(const ik::Cone& cone) const { return IkJudge::Cone{cone.halfAngle}; }
-  JudgedLimit operator()(const ik::Ellipse& e) const { return IkJudge::Ellipse{e.px, e.py, e.nx, e.ny}; }
-  JudgedLimit operator()(const ik::Hinge& h) const { return IkJudge::Hinge{h.axis, h.min, h.max}; }
-};
-
-std::vector<IkJudge::Bone> judged(const ik::Chain& chain) {
-  std::vector<IkJudge::Bone> bones;
-  for (const ik::Bone& bone : chain.bones) {
-    bones.push_back(
-        {bone.length, bone.direction, std::visit(ToJudged{}, bone.limit), bone.twistMin, bone.twistMax});
-  }
-  return bones;
-}
-
-}  // namespace
-
-IkFigures::IkFigures(const ik::Chain& chain) : joints_(chain.bones.size() + 1), judge_(judged(chain)) {}
+IkFigures::IkFigures(const ik::Chain& chain)
+    : joints_(chain.bones.size() + 1), judge_(validation::judgeOf(chain)) {}
 
 void IkFigures::add(std::span<const glm::vec3> targets, const IkLot& lot) {
   std::vector<glm::dvec3> pose(joints_);

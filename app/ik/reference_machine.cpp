@@ -4,35 +4,13 @@
 #include "app/ik/machine.h"
 #include "cpu_reference/ik/seeds.h"
 #include "cpu_reference/ik/solve.h"
+#include "validation/convert_ik.h"
 
 namespace skitter::app {
 namespace {
 
 reference::IkSolver solverOf(ik::Solver solver) {
-  switch (solver) {
-    case ik::Solver::fabrik:
-      return reference::IkSolver::fabrik;
-    case ik::Solver::dissertationKeep:
-      return reference::IkSolver::dissertationKeep;
-    case ik::Solver::dissertationEdge:
-      return reference::IkSolver::dissertationEdge;
-    case ik::Solver::ccd:
-      return reference::IkSolver::ccd;
-    case ik::Solver::transpose:
-      return reference::IkSolver::transpose;
-    case ik::Solver::pseudoinverse:
-      return reference::IkSolver::pseudoinverse;
-    case ik::Solver::dampedLeastSquares:
-      return reference::IkSolver::dls;
-    case ik::Solver::targetAttached:
-      return reference::IkSolver::targetAttached;
-    case ik::Solver::twoBone:
-      return reference::IkSolver::twoBone;
-    case ik::Solver::stretchAlign:
-      return reference::IkSolver::stretchAlign;
-    default:
-      return reference::IkSolver::activeSet;
-  }
+  return solver == ik::Solver::automatic ? reference::IkSolver::activeSet : validation::referenceOf(solver);
 }
 
 ik::Stop stopOf(reference::IkStop stop) {
@@ -50,31 +28,8 @@ ik::Stop stopOf(reference::IkStop stop) {
   }
 }
 
-struct SetLimit {
-  reference::IkBone& bone;
-
-  void operator()(const ik::Free&) const { bone.limit = reference::freeLimit(); }
-  void operator()(const ik::Cone& cone) const { bone.limit = reference::coneLimit(cone.halfAngle); }
-  void operator()(const ik::Ellipse& e) const {
-    bone.limit = reference::ellipseLimit(e.px, e.py, e.nx, e.ny);
-  }
-  void operator()(const ik::Hinge& hinge) const {
-    bone.limit = reference::hingeLimit(hinge.min, hinge.max);
-    bone.hingeAxis = hinge.axis;
-  }
-};
-
 reference::IkChain chainOf(const ik::Chain& chain, bool seeded) {
-  std::vector<reference::IkBone> bones;
-  for (const ik::Bone& bone : chain.bones) {
-    reference::IkBone& to = bones.emplace_back();
-    to.length = bone.length;
-    to.direction = bone.direction;
-    to.stiffness = bone.stiffness;
-    std::visit(SetLimit{to}, bone.limit);
-  }
-  const auto pole = chain.pole ? std::optional<glm::dvec3>(*chain.pole) : std::nullopt;
-  reference::IkChain result = reference::makeIkChain(bones, pole);
+  reference::IkChain result = validation::referenceOf(chain);
   if (seeded) result.seeds = reference::makeSeeds(result, 1);
   return result;
 }

@@ -171,7 +171,7 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
 struct GaitBounds {
   double phase, halfStride, cycle, duration, length, window;
   double ground =
-      1e-30;  // of the ground above a foot's way, where it is watched; the caller knows the relief
+      1e-30;  // of the ground above a foot's way, where gait looks at it; the caller knows the relief
 };
 inline GaitBounds gait(const Tuning& t, const Gait& gait, int groups, double longestForecast) {
   GaitBounds bound{};

@@ -66,30 +66,23 @@ void addRest(StageKernels& kernels);
 // The numbers with which the rig's records of legs begin.
 void addRigLegs(const Kind& kind, gpu::KernelInfo& info);
 
-// Each in a file of its own name.
-Stage navigateStage();
-Stage wakeStage();
-Stage bodyStage();
+// navigateStage() and so on, each in the file of its name in stages/.
+#define SKITTER_STAGE(name) Stage name##Stage();
+SKITTER_STAGES(SKITTER_STAGE)
+#undef SKITTER_STAGE
+// Forms for single controllers, and fused stages, in the file of their last stage.
 Stage blindBodyStage();
-Stage clipStage();
-Stage gaitStage();
 Stage bodyAndGaitStage();
 Stage navigateBodyAndGaitStage();
 Stage loopGaitStage();
 Stage keyPoseGaitStage();
-Stage footholdStage();
-Stage swingStage();
 Stage loopSwingStage();
 Stage clipSwingStage();
 Stage plantedSwingStage();
 Stage keyPoseSwingStage();
-Stage ikStage();
 Stage swingAndIkStage();
 Stage plantedIkStage();
-Stage poseStage();
 Stage clipPoseStage();
 Stage plantedPoseStage();
-Stage measureStage();
-Stage footfallStage();
 
 }  // namespace skitter::crowd

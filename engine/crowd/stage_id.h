@@ -9,27 +9,27 @@
 // The stages of a tick (docs/stages.md), as plain data.
 namespace skitter::crowd {
 
-// In the order in which they run.
+// Every stage, in the order in which they run.
+// clang-format off
+#define SKITTER_STAGES(STAGE) \
+  STAGE(navigate) STAGE(wake) STAGE(body) STAGE(clip) STAGE(gait) STAGE(foothold) STAGE(swing) STAGE(ik) \
+  STAGE(pose) STAGE(measure) STAGE(footfall)
+// clang-format on
+
 enum class StageId : uint8_t {
-  navigate,
-  wake,
-  body,
-  clip,
-  gait,
-  foothold,
-  swing,
-  ik,
-  pose,
-  measure,
-  footfall,
+#define SKITTER_STAGE(name) name,
+  SKITTER_STAGES(SKITTER_STAGE)
+#undef SKITTER_STAGE
 };
 inline constexpr std::array allStages = {
-    StageId::navigate, StageId::wake, StageId::body, StageId::clip,    StageId::gait,    StageId::foothold,
-    StageId::swing,    StageId::ik,   StageId::pose, StageId::measure, StageId::footfall};
+#define SKITTER_STAGE(name) StageId::name,
+    SKITTER_STAGES(SKITTER_STAGE)
+#undef SKITTER_STAGE
+};
 constexpr const char* nameOf(StageId stage) {
-  constexpr std::array names = {"navigate", "wake", "body", "clip",    "gait",    "foothold",
-                                "swing",    "ik",   "pose", "measure", "footfall"};
-  static_assert(names.size() == allStages.size());
+#define SKITTER_STAGE(name) #name,
+  constexpr std::array names = {SKITTER_STAGES(SKITTER_STAGE)};
+#undef SKITTER_STAGE
   return names[static_cast<size_t>(stage)];
 }
 
