@@ -24,6 +24,15 @@ std::vector<glm::dvec2> pairsOf(const std::vector<float>& records, size_t base, 
 
 glm::dvec4 components(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
 
+void set(double& to, float from) { to = from; }
+void set(bool& to, float from) { to = from != 0; }
+
+// A parameter that the reference lacks does not compile in tuningOf, and one that the engine lacks does not
+// compile here. A bool between doubles takes the room of a double.
+#define COUNT(name) +1
+static_assert(sizeof(reference::Tuning) == (0 REFERENCE_PARAMETERS(COUNT)) * sizeof(double));
+#undef COUNT
+
 // The packed tile of the body that a leg belongs to.
 float bodyTileOf(const HerdState& state, size_t leg) {
   const size_t legs = state.step.size() / (4 * shared::STEP_STRIDE) / state.agents;
@@ -34,85 +43,9 @@ float bodyTileOf(const HerdState& state, size_t leg) {
 
 reference::Tuning tuningOf(const shared::Parameters& p) {
   reference::Tuning t;
-  t.dt = p.dt;
-  t.legLength = p.legLength;
-  t.homeRadius = p.homeRadius;
-  t.bodyHeight = p.bodyHeight;
-  t.bodyRadius = p.bodyRadius;
-  t.halfExtentX = p.halfExtentX;
-  t.halfExtentZ = p.halfExtentZ;
-  t.edgeMargin = p.edgeMargin;
-  t.slowRadius = p.slowRadius;
-  t.acceleration = p.acceleration;
-  t.braking = p.braking;
-  t.turnRate = p.turnRate;
-  t.turnAcceleration = p.turnAcceleration;
-  t.turnGain = p.turnGain;
-  t.stretchSlow = p.stretchSlow;
-  t.stretchStop = p.stretchStop;
-  t.errorStop = p.errorStop;
-  t.followLeast = p.followLeast;
-  t.heightBlend = p.heightBlend;
-  t.tiltBlend = p.tiltBlend;
-  t.maxSlope = p.maxSlope;
-  t.bellyClearance = p.bellyClearance;
-  t.ridge = p.ridge;
-  t.leanGain = p.leanGain;
-  t.leanMost = p.leanMost;
-  t.leanLevel = p.leanLevel;
-  t.breathHeight = p.breathHeight;
-  t.halfStrideStill = p.halfStrideStill;
-  t.halfStrideMax = p.halfStrideMax;
-  t.dutyStill = p.dutyStill;
-  t.dutyGain = p.dutyGain;
-  t.dutyLeast = p.dutyLeast;
-  t.lagShare = p.lagShare;
-  t.swingStill = p.swingStill;
-  t.swingSpeed = p.swingSpeed;
-  t.cycleMax = p.cycleMax;
-  t.windowSlack = p.windowSlack;
-  t.windowOpen = p.windowOpen;
-  t.liftShare = p.liftShare;
-  t.stretchLift = p.stretchLift;
-  t.strayShare = p.strayShare;
-  t.errorLift = p.errorLift;
-  t.missLeast = p.missLeast;
-  t.rootShare = p.rootShare;
-  t.settleTime = p.settleTime;
-  t.sleepTime = p.sleepTime;
-  t.reaimDistance = p.reaimDistance;
-  t.reaimLatest = p.reaimLatest;
-  t.groundTolerance = p.groundTolerance;
-  t.reachTriggered = p.reachTriggered != 0;
-  t.reachMost = p.reachMost;
-  t.reachLeast = p.reachLeast;
-  t.reachComfort = p.reachComfort;
-  t.slopeLeast = p.slopeLeast;
-  t.slopeWeight = p.slopeWeight;
-  t.reachWeight = p.reachWeight;
-  t.nearestOnly = p.nearestOnly != 0;
-  t.stepHeight = p.stepHeight;
-  t.stepClearance = p.stepClearance;
-  t.stepHeightMax = p.stepHeightMax;
-  t.routeWidth = p.routeWidth;
-  t.clipFade = p.clipFade;
-  t.clipIdle = p.clipIdle;
-  t.clipHysteresis = p.clipHysteresis;
-  t.clipRateMost = p.clipRateMost;
-  t.plantStray = p.plantStray;
-  t.plantKeep = p.plantKeep;
-  t.poseWalk = p.poseWalk;
-  t.springFrequency = p.springFrequency;
-  t.springDamping = p.springDamping;
-  t.approachError = p.approachError;
-  t.restPull = p.restPull;
-  t.pullError = p.pullError;
-  t.ikTolerance = p.ikTolerance;
-  t.deadZone = p.deadZone;
-  t.skateSpeed = p.skateSpeed;
-  t.limitDeadZone = p.limitDeadZone;
-  t.jerkTicks = p.jerkTicks;
-  t.jerkPath = p.jerkPath;
+#define SET(name) set(t.name, p.name);
+  REFERENCE_PARAMETERS(SET)
+#undef SET
   return t;
 }
 

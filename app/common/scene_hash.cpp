@@ -56,7 +56,7 @@ class Files {
 
 // Bindings to all members: a new one does not compile until it is looked at here.
 void add(Hash& hash, Files& files, const Herd& herd) {
-  const auto& [rig, controller, clips, cuts, keys, solver, stepping, agents, spawn, goal] = herd;
+  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
   hash.add(rig);
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   if (rig != "spider") {
@@ -73,6 +73,12 @@ void add(Hash& hash, Files& files, const Herd& herd) {
     hash.add(to);
   }
   hash.add(uint64_t{keys});
+  // A parameter that is new to the engine must not change the hash of a scene that does not set it.
+  for (const TuningInfo& info : allTunings)
+    if (tuning.*info.member != info.usual) {
+      hash.add(info.name);
+      hash.add(tuning.*info.member);
+    }
   hash.add(uint64_t{agents});
   const auto& [spawnKind, spacing, centre, heading] = spawn;
   hash.add(static_cast<uint64_t>(spawnKind));

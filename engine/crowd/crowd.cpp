@@ -83,7 +83,7 @@ void settle(Impl& crowd) {
 }
 
 shared::Parameters parametersOf(const Impl& crowd, const crowd::Kind& kind, float dt) {
-  shared::Parameters parameters = crowd::tuningFor(kind.rig, kind.ik, crowd.terrain, dt);
+  shared::Parameters parameters = crowd::tuningFor(kind.tuning, kind.rig, kind.ik, crowd.terrain, dt);
   parameters.poseKeys = static_cast<float>(kind.keyPoses.keys);
   parameters.poseStride = kind.keyPoses.stride;
   parameters.reachTriggered = parameters.nearestOnly = kind.reachTriggered ? 1.0f : 0.0f;
@@ -123,6 +123,7 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, Rig rig) {
     throw inputError(kind.rig.name + ": " + std::to_string(kind.legs) + " legs, expected at most " +
                      std::to_string(Rig::maxLegs));
   kind.ik = crowd::ikPlanFor(from.solver);
+  kind.tuning = from.tuning;
   kind.rigRecords = crowd::rigRecords(kind.rig);
   kind.rigBuffer = gpu::Buffer(context, kind.rigRecords.size() * sizeof(float), "rig");
   gpu::upload(context, kind.rigBuffer, kind.rigRecords);

@@ -45,6 +45,7 @@ struct Kind {
   Controller controller = Controller::adaptive;
   int legs = 0, bones = 0, groups = 0;  // bones of the longest chain
   IkPlan ik{};
+  Tuning tuning;
   ClipSet clipSet;  // without its frames: what a picture and a tool need
   ClipRecords clips;
   gpu::Buffer clipHeads, clipTimes, clipRows, clipLegs, clipBones;

@@ -1,5 +1,7 @@
 #include "crowd/kinds.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <string>
@@ -18,13 +20,15 @@ constexpr size_t kMostKinds = 100;
 
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
-  const auto& [rig, controller, clips, cuts, keys, solver, stepping, agents, spawn, goal] = herd;
-  return std::tie(rig, controller, clips, cuts, keys, solver, stepping);
+  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
+  return std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning);
 }
 
 // `areEqual` compares what the rigs of two herds, by number, are.
 template <class Equal>
 Kinds grouped(const Scene& scene, const Equal& areEqual) {
+  for (size_t h = 0; h < scene.herds.size(); ++h)
+    checkTuning(scene.herds[h].tuning, fmt::format("{}: herds[{}].tuning", scene.name, h));
   Kinds kinds;
   for (uint32_t h = 0; h < scene.herds.size(); ++h) {
     const auto isOfIt = [&](uint32_t first) {
@@ -37,7 +41,7 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
   if (kinds.firstHerds.size() > kMostKinds)
     throw inputError(
         scene.name + ": " + std::to_string(kinds.firstHerds.size()) +
-        " herds differ in rig, controller, clips, cuts, keys, solver or stepping, expected at most " +
+        " herds differ in rig, controller, clips, cuts, keys, solver, stepping or tuning, expected at most " +
         std::to_string(kMostKinds) +
         ": each of them has pipelines of its own; equal herds share them, whatever their agents, "
         "spawn and goal");

@@ -17,7 +17,7 @@ struct Kinds {
 };
 
 // Herds are of one kind where they are equal but for agents, spawn and goal. Throws Error(input) where there
-// are more than a device can serve.
+// are more than a device can serve, or a herd's tuning is out of range.
 Kinds kindsOf(const Scene& scene);
 // With rigs that the caller made, one a herd, in place of those that the scene names.
 Kinds kindsOf(const Scene& scene, std::vector<Rig> rigs);

@@ -4,6 +4,7 @@
 #include "skitter/heightfield.h"
 #include "skitter/rig.h"
 #include "skitter/solver.h"
+#include "skitter/tuning.h"
 
 namespace skitter::crowd {
 
@@ -16,7 +17,8 @@ struct IkPlan {
 // Throws Error(input) where the solver is none of herdSolvers.
 IkPlan ikPlanFor(Solver);
 
-// The tuning that ships, scaled to the rig, for ticks of `dt` seconds on this terrain.
-shared::Parameters tuningFor(const Rig& rig, const IkPlan& ik, const Heightfield& terrain, float dt);
+// Scaled to the rig, for ticks of `dt` seconds on this terrain.
+shared::Parameters tuningFor(const Tuning& tuning, const Rig& rig, const IkPlan& ik,
+                             const Heightfield& terrain, float dt);
 
 }  // namespace skitter::crowd

@@ -84,6 +84,15 @@ TEST_F(ManifestTest, TheHashIsOfWhatIsSimulated) {
                                              {"--stepping", "reach"},
                                              {"--terrain", "noise:seed=2"}})
     EXPECT_NE(hashOf(other), hash) << other.front();
+  const auto tuned = [&](const char* tuning) {
+    std::ofstream(file("tuned.json")) << R"({"herds": [{"tuning": )" << tuning << "}]}";
+    return hashOf({file("tuned.json")});
+  };
+  const std::string usual = tuned("{}");
+  EXPECT_EQ(tuned(R"({"stepHeight": 0.12})"), usual);
+  const std::set<std::string> hashes = {usual, tuned(R"({"stepHeight": 0.2})"),
+                                        tuned(R"({"stepHeight": 0.3})"), tuned(R"({"leanMost": 0.2})")};
+  EXPECT_EQ(hashes.size(), 4u);
 }
 
 TEST_F(ManifestTest, TheHashIsOfTheFilesOfRigs) {

@@ -244,7 +244,8 @@ TEST(KindsRefusalTest, WhatDiffers) {
        }},
       {"keys", [](Herd& h) { h.keys = 6; }},
       {"solver", [](Herd& h) { h.solver = Solver::ccd; }},
-      {"stepping", [](Herd& h) { h.stepping = Stepping::reach; }}};
+      {"stepping", [](Herd& h) { h.stepping = Stepping::reach; }},
+      {"tuning", [](Herd& h) { h.tuning.stepHeight = 0.2f; }}};
   for (const auto& [name, change] : changes) {
     Scene scene = sceneOf(1);
     scene.herds.resize(2, scene.herds[0]);

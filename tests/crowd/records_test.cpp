@@ -53,7 +53,9 @@ Layout layoutOf(std::span<const uint8_t> spirv) {
 
 const std::map<std::string, size_t>& parameterOffsets() {
   static const std::map<std::string, size_t> offsets = {
-#include "parameter_offsets.inc"
+#define OFFSET(name) {#name, offsetof(shared::Parameters, name)},
+      PARAMETERS(OFFSET)
+#undef OFFSET
   };
   return offsets;
 }

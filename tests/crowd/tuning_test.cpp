@@ -2,22 +2,28 @@
 // pipelines are specialised by them.
 #include "crowd/tuning.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <map>
 #include <set>
+#include <string>
 #include <vector>
 
+#include "crowd/herd.h"
 #include "crowd/simulation.h"
+#include "skitter/error.h"
+#include "validation/convert.h"
 
 namespace skitter::test {
 namespace {
 
 TEST(KnownParameters, DoNotFollowTheTick) {
   const auto tuning = [](float dt) {
-    return crowd::tuningFor(spiderRig(), crowd::ikPlanFor(Solver::activeSet), rollingGround(), dt);
+    return crowd::tuningFor({}, spiderRig(), crowd::ikPlanFor(Solver::activeSet), rollingGround(), dt);
   };
   const shared::Parameters slow = tuning(1.0f / 20), quick = tuning(1.0f / 240);
   EXPECT_NE(slow.heightBlend, quick.heightBlend);
@@ -158,7 +164,7 @@ TEST(Tuning, FollowsLegLengthAndTick) {
     for (const float dt : {1.0f / 60, 0.07f}) {
       const Rig rig = scaledSpider(legLength);
       const shared::Parameters tuning =
-          crowd::tuningFor(rig, crowd::ikPlanFor(Solver::activeSet), oblong, dt);
+          crowd::tuningFor({}, rig, crowd::ikPlanFor(Solver::activeSet), oblong, dt);
       const std::vector<Value> values = spiderValues(legLength, dt);
       EXPECT_EQ(values.size() * sizeof(float), sizeof tuning) << "a value is not here";
       for (const Value& value : values)
@@ -167,8 +173,121 @@ TEST(Tuning, FollowsLegLengthAndTick) {
     }
   // Without a polish the approach goes all the way.
   const shared::Parameters compared =
-      crowd::tuningFor(spiderRig(), crowd::ikPlanFor(Solver::fabrik), oblong, kTick);
+      crowd::tuningFor({}, spiderRig(), crowd::ikPlanFor(Solver::fabrik), oblong, kTick);
   EXPECT_EQ(compared.approachError, compared.ikTolerance);
+}
+
+// By name.
+std::map<std::string, float> parametersOf(const Tuning& tuning) {
+  const shared::Parameters p =
+      crowd::tuningFor(tuning, scaledSpider(2), crowd::ikPlanFor(Solver::activeSet), rollingGround(), kTick);
+  return {
+#define NAMED(name) {#name, p.name},
+      PARAMETERS(NAMED)
+#undef NAMED
+  };
+}
+
+TEST(Tuning, EachReachesItsParameterAlone) {
+  // Where that is not the one of the same name alone.
+  const std::map<std::string, std::set<std::string>> others = {
+      {"heightTime", {"heightBlend"}},
+      {"tiltTime", {"tiltBlend"}},
+      {"fadeTime", {"clipFade"}},
+      {"plantTime", {"plantKeep"}},
+      {"springFrequency", {"springFrequency", "springKeep", "springDrift", "springPull", "springCarry"}},
+      {"springDamping", {"springDamping", "springKeep", "springDrift", "springPull", "springCarry"}}};
+  const std::map<std::string, float> usual = parametersOf({});
+  for (const TuningInfo& info : allTunings) {
+    Tuning tuning;
+    tuning.*info.member = 0.7f * info.usual + 0.3f * info.least;
+    const std::map<std::string, float> changed = parametersOf(tuning);
+    std::set<std::string> names;
+    for (const auto& [name, value] : changed)
+      if (value != usual.at(name)) names.insert(name);
+    const auto found = others.find(info.name);
+    EXPECT_EQ(names, found == others.end() ? std::set<std::string>{info.name} : found->second) << info.name;
+    // In metres, as the default is.
+    if (found != others.end()) continue;
+    EXPECT_NEAR(changed.at(info.name) / usual.at(info.name), tuning.*info.member / info.usual, 1e-6)
+        << info.name;
+  }
+}
+
+TEST(Tuning, TurnsBackNoFurtherInsideThanAFifthOfTheTerrain) {
+  Tuning tuning;
+  tuning.edgeMargin = 50;
+  const Heightfield ground = rollingGround();
+  const shared::Parameters p =
+      crowd::tuningFor(tuning, spiderRig(), crowd::ikPlanFor(Solver::activeSet), ground, kTick);
+  EXPECT_FLOAT_EQ(p.edgeMargin, 0.2f * ground.extentX());
+}
+
+using TuningTest = GpuTest;
+
+// Mean over the legs of the highest point of a foot above where it stood before.
+double liftOf(Device& device, const Tuning& tuning) {
+  Scene scene = sceneOf(8);
+  scene.herds[0].tuning = tuning;
+  Crowd crowd(device, flatGround(), scene, CrowdOptions{.feet = true});
+  const auto legs = static_cast<size_t>(crowd.rig(0).legCount());
+  std::vector<double> highest(8 * legs, -1e9);
+  simulate(device, crowd, 60);
+  for (int tick = 0; tick < 60; ++tick) {
+    simulate(device, crowd, 1);
+    const HerdState state = crowd.download(0);
+    for (size_t leg = 0; leg < highest.size(); ++leg) {
+      const double body = positionOf(state, leg / legs).y;
+      highest[leg] = std::max(highest[leg], body + validation::footOf(state, leg).target.y);
+    }
+  }
+  double sum = 0;
+  for (const double each : highest) sum += each - flatGround().at(0, 0);
+  return sum / static_cast<double>(highest.size());
+}
+
+TEST_F(TuningTest, AHigherStepLiftsTheFeetHigher) {
+  Tuning low, high;
+  low.stepHeight = 0.05f;
+  high.stepHeight = 0.2f;
+  // The lift vector of a step is its greatest height, by docs/stages/swing.md.
+  const double usual = liftOf(device(), {});
+  EXPECT_NEAR(liftOf(device(), low) / usual, 0.05 / 0.12, 0.04);
+  EXPECT_NEAR(liftOf(device(), high) / usual, 0.2 / 0.12, 0.1);
+}
+
+TEST_F(TuningTest, ATunedHerdAgreesWithTheReference) {
+  Scene scene = sceneOf(32, 1.5f);
+  scene.herds.resize(2, scene.herds[0]);
+  Tuning& tuning = scene.herds[1].tuning;
+  tuning.stepHeight = 0.3f;
+  tuning.swingStill = 0.6f;
+  tuning.halfStrideMax = 0.2f;
+  tuning.turnRate = 0.7f;
+  tuning.reachMost = 0.9f;
+  tuning.heightTime = 0.4f;
+  Crowd crowd(device(), rollingGround(), scene);
+  EXPECT_EQ(implOf(crowd).kinds.size(), 2u);
+  for (const auto& herd : replayAll(device(), crowd, rollingGround(), 120)) expectAllPass(herd);
+}
+
+TEST_F(TuningTest, ACrowdRefusesWhatIsOutOfRange) {
+  Scene scene = sceneOf(1);
+  scene.name = "mine";
+  scene.herds.resize(2, scene.herds[0]);
+  const auto refusal = [&] {
+    try {
+      Crowd crowd(device(), rollingGround(), scene);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+      return std::string(error.what());
+    }
+    return std::string("was taken");
+  };
+  scene.herds[1].tuning.stepHeight = 9;
+  EXPECT_EQ(refusal(), "mine: herds[1].tuning.stepHeight is 9, expected 0.01 to 1 leg lengths");
+  scene.herds[1].tuning = {.dutyStill = 0.6f, .dutyLeast = 0.7f};
+  EXPECT_THAT(refusal(), ::testing::HasSubstr("mine: herds[1].tuning.dutyLeast is 0.7 and dutyStill is 0.6"));
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ def texts():
     save_text("scene", "all.json", json.dumps({
         "terrain": {"kind": "file", "file": "hill.png", "spacingX": 1, "spacingZ": 2, "minHeight": -3, "maxHeight": 3,
                     "scale": 0.5, "exaggeration": 2, "columns": 4, "rows": 5, "voidValue": -32768},
-        "herds": [{"rig": "a.glb", "controller": "loop", "agents": 0,
+        "herds": [{"rig": "a.glb", "controller": "loop", "agents": 0, "tuning": {"stepHeight": 0.2, "dutyStill": 0.8},
                    "spawn": {"kind": "grid", "spacing": 1, "centre": [1, -2], "heading": 1.5},
                    "goal": {"kind": "point", "target": [5, 6], "speed": 0}}, {"goal": {"kind": "none"}}],
         "camera": {"kind": "fixed", "position": [1, 2, 3], "target": [4, 5, 6]}}))

@@ -145,6 +145,11 @@ Heightfield roughField() {
 
 shared::Parameters parametersFor(const Heightfield& terrain) {
   shared::Parameters p{};
+  // The defaults as they are: legs are 1 m long.
+#define SET(name, unit, value) p.name = static_cast<float>(value);
+  TUNED_PARAMETERS(SET)
+  FIXED_PARAMETERS(SET)
+#undef SET
   p.dt = 1.0f / 60;
   p.legLength = 1;
   p.homeRadius = 0.75f;
@@ -156,67 +161,21 @@ shared::Parameters parametersFor(const Heightfield& terrain) {
   p.inverseSpacingZ = 1 / terrain.spacingZ;
   p.halfExtentX = terrain.extentX() / 2;
   p.halfExtentZ = terrain.extentZ() / 2;
-  p.edgeMargin = 2;
-  p.slowRadius = 1;
+  p.heightBlend = 1 - std::exp(-p.dt / 0.1f);
+  p.tiltBlend = 1 - std::exp(-p.dt / 0.15f);
+  p.jerkTicks = 24;
+  // The tests' figures are of these.
   p.acceleration = 4;
-  p.braking = 6;
-  p.turnRate = 1.5f;
-  p.turnAcceleration = 8;
-  p.turnGain = 4;
   p.stretchSlow = 0.92f;
   p.stretchStop = 0.99f;
   p.errorStop = 0.1f;
-  p.heightBlend = 1 - std::exp(-p.dt / 0.1f);
-  p.tiltBlend = 1 - std::exp(-p.dt / 0.15f);
-  p.maxSlope = 2.75f;
+  p.followLeast = 0;
   p.bellyClearance = 0.18f;
-  p.ridge = 1e-4f;
-  p.leanGain = 0.06f;
-  p.leanMost = 0.12f;
-  p.leanLevel = 0.08f;
-  p.breathHeight = 0.012f;
-  p.halfStrideStill = 0.08f;
-  p.halfStrideMax = 0.3f;
-  p.dutyStill = 0.75f;
-  p.dutyGain = 0.05f;
-  p.dutyLeast = 0.55f;
-  p.lagShare = 1.2f;
-  p.swingStill = 0.35f;
-  p.swingSpeed = 1.7f;
-  p.cycleMax = 1.2f;
-  p.windowSlack = 1.1f;
-  p.windowOpen = 0.5f;
-  p.liftShare = 0.35f;
-  p.stretchLift = 0.95f;
   p.strayShare = 2.5f;
   p.errorLift = 0.05f;
-  p.missLeast = 2e-4f;
-  p.rootShare = 0.25f;
-  p.settleTime = 1;
-  p.sleepTime = 2;
-  p.reaimDistance = 0.15f;
-  p.reaimLatest = 0.7f;
-  p.groundTolerance = 0.02f;
-  p.reachMost = 0.95f;
-  p.reachLeast = 0.3f;
-  p.reachComfort = 0.85f;
-  p.slopeLeast = 0.35f;
-  p.slopeWeight = 0.05f;
-  p.reachWeight = 4;
-  p.nearestOnly = 0;
-  p.stepHeight = 0.12f;
-  p.stepClearance = 0.03f;
-  p.stepHeightMax = 0.5f;
-  p.routeWidth = 0.08f;
   p.approachError = 0.05f;
-  p.restPull = 0.05f;
   p.pullError = 2e-3f;
   p.ikTolerance = 1e-4f;
-  p.deadZone = 0.005f;
-  p.skateSpeed = 0.1f;
-  p.limitDeadZone = 1e-4f;
-  p.jerkTicks = 24;
-  p.jerkPath = 0.05f;
   return p;
 }
 

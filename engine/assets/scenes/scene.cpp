@@ -103,6 +103,15 @@ class Fields {
     if (!named) fail(pathOf(key), *json, fmt::format("one of \"{}\"", namesOf(all, "\", \"")));
     value = *named;
   }
+  // checkTuning() checks the range.
+  void read(const TuningInfo& info, Tuning& tuning) {
+    const auto* json = find(info.name);
+    if (!json) return;
+    // A number that float cannot hold is outside every range.
+    if (!json->is_number() || !isWithin(json->get<double>(), -1e30, 1e30))
+      fail(pathOf(info.name), *json, rangeOf(info));
+    tuning.*info.member = json->get<float>();
+  }
   const nlohmann::json* find(const char* key) {
     known_.insert(key);
     const auto found = json_.find(key);
@@ -244,11 +253,21 @@ class SceneReader {
     fields.readInteger("keys", herd.keys, Herd::minKeys, Herd::maxKeys);
     fields.readNamed("solver", herd.solver, herdSolvers);
     fields.readNamed("stepping", herd.stepping, allSteppings);
+    if (const auto* tuning = fields.find("tuning")) herd.tuning = readTuning(*tuning, path + ".tuning");
     fields.readInteger("agents", herd.agents, 0, Scene::maxAgents);
     if (const auto* spawn = fields.find("spawn")) herd.spawn = readSpawn(*spawn, path + ".spawn");
     if (const auto* goal = fields.find("goal")) herd.goal = readGoal(*goal, path + ".goal");
     fields.finish();
     return herd;
+  }
+
+  Tuning readTuning(const nlohmann::json& json, const std::string& path) const {
+    Tuning tuning;
+    Fields fields(json, file_, path);
+    for (const TuningInfo& info : allTunings) fields.read(info, tuning);
+    fields.finish();
+    checkTuning(tuning, fmt::format("{}: {}", file_, path));
+    return tuning;
   }
 
   Spawn readSpawn(const nlohmann::json& json, const std::string& path) const {

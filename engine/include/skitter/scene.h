@@ -12,6 +12,7 @@
 #include "skitter/controller.h"
 #include "skitter/heightfield.h"
 #include "skitter/solver.h"
+#include "skitter/tuning.h"
 
 namespace skitter {
 
@@ -52,6 +53,7 @@ struct Herd {
   uint32_t keys = 4;                  // key poses of controller pose, minKeys to maxKeys
   Solver solver = Solver::activeSet;  // one of herdSolvers
   Stepping stepping = Stepping::gait;
+  Tuning tuning;
   uint32_t agents = 1000;
   Spawn spawn;
   Goal goal;
