@@ -87,14 +87,14 @@ struct AgentBody {
   glm::dvec2 heading{0, 1};  // x, z
   double speed = 0;          // m/s, horizontal, along the heading
   glm::dquat orientation{1, 0, 0, 0};
-  double turnRate = 0;  // omega
-  double still = 0;     // seconds
-  double kappa = 1;     // follow factor
-  double v3 = 0;        // m/s along the ground
+  double turnRate = 0;      // omega
+  double still = 0;         // seconds
+  double follow = 1;        // follow factor
+  double surfaceSpeed = 0;  // m/s along the ground
 
   glm::dvec2 world() const { return {tileX * tileSize + localX, tileZ * tileSize + localZ}; }
   // v_e: how fast the feet must go, turning included.
-  double pace(const Tuning& tuning) const { return v3 + std::abs(turnRate) * tuning.homeRadius; }
+  double pace(const Tuning& tuning) const { return surfaceSpeed + std::abs(turnRate) * tuning.homeRadius; }
 };
 
 struct Gait {

@@ -19,7 +19,7 @@ struct Subject {
 inline constexpr std::array subjects = {
     Subject{Controller::clip, "clip (pre-animated)", 20, "#0072b2"},
     Subject{Controller::planted, "planted (clip, feet put down by IK)", 0, "#c98a00"},
-    Subject{Controller::pose, "pose (a few key poses, springs)", 0, "#cc79a7"},
+    Subject{Controller::keyPoses, "key-poses (a few key poses, springs)", 0, "#cc79a7"},
     Subject{Controller::loop, "loop (procedural, fixed foot loops)", 9, "#009e73"},
     Subject{Controller::adaptive, "adaptive (procedural, footholds on terrain)", 4, "#d55e00"},
 };

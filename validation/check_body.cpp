@@ -31,7 +31,7 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
   const auto scalar = [&](const char* quantity, double want, double found, double bounded) {
     sample.compare(quantity, std::abs(want - found), bounded, {want, 0, 0, 0}, {found, 0, 0, 0});
   };
-  scalar("follow factor", expected.kappa, got.kappa, bound.kappa);
+  scalar("follow factor", expected.follow, got.follow, bound.follow);
   scalar("turn rate, rad/s", expected.turnRate, got.turnRate, bound.turnRate);
   sample.compare("heading", glm::length(expected.heading - got.heading), bound.heading,
                  {expected.heading, 0, 0}, {got.heading, 0, 0});
@@ -53,7 +53,7 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
                  {q.x, q.y, q.z, q.w}, {r.x, r.y, r.z, r.w});
   sample.compare("height / leg length", std::abs(expected.y - got.y) / unit, bound.height / unit,
                  {expected.y, 0, 0, 0}, {got.y, 0, 0, 0});
-  scalar("surface speed, m/s", expected.v3, got.v3, bound.v3);
+  scalar("surface speed, m/s", expected.surfaceSpeed, got.surfaceSpeed, bound.surfaceSpeed);
   double still = std::abs(expected.still - got.still);
   if (result.stillMargin < 1e-4) {
     still = std::min({still, std::abs(got.still), std::abs(got.still - previous.still - setting.tuning.dt)});
@@ -96,11 +96,11 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
     if (leg.behind > -square) with = std::min(with, leg.factor);
     if (leg.behind > square) without = std::min(without, leg.factor);
   }
-  for (const double kappa : {with, without}) {
+  for (const double follow : {with, without}) {
     for (const int sign : {-1, 1}) {
       if (with == without && !(result.turnMargin < eitherWay)) continue;
       reference::BodyChoices choices;
-      if (with != without) choices.kappa = kappa;
+      if (with != without) choices.follow = follow;
       if (result.turnMargin < eitherWay) choices.turnSign = sign;
       const Sample other = compare(setting, moment, previous, inputs, run(choices));
       if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
@@ -115,7 +115,7 @@ void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) 
   const auto inputs = tolerance::blindGround(setting.heights, setting.extent, setting.creature, previous);
   const auto run = [&](int turnSign) {
     return reference::blindBody(setting.tuning, setting.heights, setting.creature, previous, desired,
-                                {.kappa = {}, .turnSign = turnSign});
+                                {.follow = {}, .turnSign = turnSign});
   };
   const reference::BodyResult result = run(0);
   const Sample sample = compare(setting, moment, previous, inputs, result);

@@ -159,8 +159,8 @@ reference::AgentBody bodyOf(const HerdState& state, size_t agent) {
   body.orientation = quaternion(load(state.body, base + 2));
   body.turnRate = rates.x;
   body.still = rates.y;
-  body.kappa = rates.z;
-  body.v3 = rates.w;
+  body.follow = rates.z;
+  body.surfaceSpeed = rates.w;
   return body;
 }
 
@@ -169,7 +169,7 @@ void putBody(HerdState& state, size_t agent, const reference::AgentBody& body) {
   store(state.body, base, {body.localX, body.y, body.localZ, shared::TILES * body.tileX + body.tileZ});
   store(state.body, base + 1, {body.heading, body.speed, 0});
   store(state.body, base + 2, components(body.orientation));
-  store(state.body, base + 3, {body.turnRate, body.still, body.kappa, body.v3});
+  store(state.body, base + 3, {body.turnRate, body.still, body.follow, body.surfaceSpeed});
 }
 
 reference::Gait gaitOf(const HerdState& state, size_t agent) {

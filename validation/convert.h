@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "cpu_reference/stages/measure.h"
-#include "cpu_reference/stages/swing_pose.h"
+#include "cpu_reference/stages/swing_key_poses.h"
 #include "cpu_reference/types.h"
 #include "crowd/key_poses.h"
 #include "shared/parameters.h"

@@ -7,8 +7,8 @@
 #include "cpu_reference/stages/clip.h"
 #include "cpu_reference/stages/foothold.h"
 #include "cpu_reference/stages/gait.h"
+#include "cpu_reference/stages/gait_key_poses.h"
 #include "cpu_reference/stages/gait_loop.h"
-#include "cpu_reference/stages/gait_pose.h"
 #include "cpu_reference/stages/ik.h"
 #include "cpu_reference/stages/navigate.h"
 #include "cpu_reference/stages/pose.h"
@@ -47,7 +47,7 @@ class Walk {
         return clip();
       case Controller::planted:
         return planted();
-      case Controller::pose:
+      case Controller::keyPoses:
         return keyPoses();
     }
   }

@@ -30,7 +30,7 @@ struct Check {
 };
 
 const std::vector<Controller> every(allControllers.begin(), allControllers.end());
-const std::vector<Controller> blind = {loop, clip, planted, Controller::pose};
+const std::vector<Controller> blind = {loop, clip, planted, Controller::keyPoses};
 
 // In the order in which a tick makes them.
 const std::vector<Check> checks = {
@@ -40,19 +40,19 @@ const std::vector<Check> checks = {
     {StageId::clip, {clip, planted}, checkClip, {Record::play}},
     {StageId::gait, {adaptive}, checkGait, {Record::gait}},
     {StageId::gait, {loop}, checkLoopGait, {Record::gait}},
-    {StageId::gait, {Controller::pose}, checkPoseGait, {Record::gait}},
+    {StageId::gait, {Controller::keyPoses}, checkKeyPoseGait, {Record::gait}},
     {StageId::foothold, {adaptive}, checkFoothold, {Record::step, Record::arc}},
     {StageId::swing, {adaptive}, checkSwing, {Record::foot}},
     {StageId::swing, {loop}, checkLoopSwing, {Record::foot}},
     {StageId::swing, {clip}, checkClipSwing, {Record::foot, Record::chain, Record::tip}},
     {StageId::swing, {planted}, checkPlantedSwing, {Record::step, Record::foot, Record::start}},
     {StageId::swing,
-     {Controller::pose},
-     checkPoseSwing,
+     {Controller::keyPoses},
+     checkKeyPoseSwing,
      {Record::foot, Record::chain, Record::tip, Record::spring}},
     {StageId::ik, {adaptive, loop}, checkIk, {Record::chain, Record::tip, Record::miss}},
     {StageId::ik, {planted}, checkPlantedIk, {Record::chain, Record::tip, Record::fix}},
-    {StageId::pose, {adaptive, loop, Controller::pose}, checkPose, {Record::pose}},
+    {StageId::pose, {adaptive, loop, Controller::keyPoses}, checkPose, {Record::pose}},
     {StageId::pose, {clip}, checkClipPose, {Record::pose}},
     {StageId::pose, {planted}, checkPlantedPose, {Record::pose}},
     {StageId::measure, every, checkMeasure},
@@ -156,7 +156,7 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
                 herd.ik.polish};
   if (crowd::traitsOf(herd.controller).playsClips)
     setting.clips = clipTableOf(herd.clips, setting.legs, setting.bones);
-  if (herd.controller == Controller::pose)
+  if (herd.controller == Controller::keyPoses)
     setting.keyPoses = keyPosesOf(herd.keyPoses, setting.legs, setting.bones);
   return setting;
 }

@@ -6,7 +6,7 @@
 
 #include "cpu_reference/clips/table.h"
 #include "cpu_reference/stages/ik.h"
-#include "cpu_reference/stages/swing_pose.h"
+#include "cpu_reference/stages/swing_key_poses.h"
 #include "cpu_reference/types.h"
 #include "crowd/clip_records.h"
 #include "crowd/controller.h"
@@ -28,7 +28,7 @@ struct HerdFacts {
   crowd::IkPlan ik{};
   Controller controller = Controller::adaptive;
   crowd::ClipRecords clips = {};  // where clips are played
-  crowd::KeyPoses keyPoses = {};  // of controller pose
+  crowd::KeyPoses keyPoses = {};  // of controller key-poses
 };
 
 // What every check needs to know about the herd.

@@ -38,7 +38,7 @@ constexpr KeyRow rows[] = {
     {"Controller", "2", "loop: feet on fixed loops", Action::loop, GLFW_KEY_2},
     {"Controller", "3", "clip: plays the model's animation", Action::clip, GLFW_KEY_3},
     {"Controller", "4", "planted: a clip with its feet on the ground", Action::planted, GLFW_KEY_4},
-    {"Controller", "5", "pose: key poses and springs", Action::pose, GLFW_KEY_5},
+    {"Controller", "5", "key-poses: key poses and springs", Action::keyPoses, GLFW_KEY_5},
     {"Window", "F1", "this help; its rows can be clicked", Action::help, GLFW_KEY_F1},
     {"Window", "F2", "figures: agents, rates, time by stage", Action::figures, GLFW_KEY_F2},
     {"Window", "F12", "screenshot: skitter-0001.png and so on, where skitter was started", Action::screenshot,
@@ -67,8 +67,8 @@ std::optional<Controller> controllerOf(Action action) {
       return Controller::clip;
     case Action::planted:
       return Controller::planted;
-    case Action::pose:
-      return Controller::pose;
+    case Action::keyPoses:
+      return Controller::keyPoses;
     default:
       return std::nullopt;
   }

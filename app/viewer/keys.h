@@ -29,7 +29,7 @@ enum class Action {
   loop,
   clip,
   planted,
-  pose,
+  keyPoses,
   chains,
   footholds,
   splines,

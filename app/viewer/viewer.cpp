@@ -287,7 +287,7 @@ void Viewer::act(Action action, bool shift) {
     case Action::loop:
     case Action::clip:
     case Action::planted:
-    case Action::pose:
+    case Action::keyPoses:
       restart(controllerOf(action));
       break;
     case Action::chains:

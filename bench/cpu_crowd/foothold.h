@@ -12,7 +12,7 @@ struct Beginning {
   Agent<F> agent;
   Step<F> step;  // the old one; foothold makes it the new one
   Vec3<F> root, home;
-  F reach, again;  // 1: aimed anew
+  F reach, reaim;  // 1: aimed anew
 };
 
 template <class F>
@@ -23,13 +23,13 @@ class Foothold {
         q_(world.q),
         b_(b),
         a_(b.agent),
-        again_(F(0.5f) < b.again),
+        reaim_(F(0.5f) < b.reaim),
         r_(matrixOf(a_.orientation)) {
     x_ = a_.tileX * shared::TILE_SIZE + a_.local.x;
     z_ = a_.tileZ * shared::TILE_SIZE + a_.local.z;
     oldTicks_ = absolute(b.step.ticks);
     flown_ = F(tick - 1) - b.step.firstTick;
-    ticks_ = select(again_, larger(oldTicks_ - flown_, 2), a_.stepTicks);
+    ticks_ = select(reaim_, larger(oldTicks_ - flown_, 2), a_.stepTicks);
   }
 
   Step<F> step(float tick) const {
@@ -42,16 +42,16 @@ class Foothold {
     const Flight<F> flight(b_.step, a_);
     const F inverse = reciprocal(oldTicks_), u = clamp(flown_ * inverse, 0, 1), way = flight.easedTime(u);
     Vec3<F> p0 = flight.p1, m0{F(0), F(0), F(0)};
-    if (any(again_)) {
-      p0 = select(again_, flight.point(way), p0);
-      m0 = select(again_, flight.tangent(way) * (flight.easedRate(u) * ticks_ * inverse), m0);
+    if (any(reaim_)) {
+      p0 = select(reaim_, flight.point(way), p0);
+      m0 = select(reaim_, flight.tangent(way) * (flight.easedRate(u) * ticks_ * inverse), m0);
     }
-    const F least = select(again_, F(1) - u, F(1)) * q_.stepHeight;
+    const F least = select(reaim_, F(1) - u, F(1)) * q_.stepHeight;
     const Vec3<F> lift = route(p0, p1, m0, least);
     next.landing = p1 + a_.local;
     next.liftOff = p0 + a_.local;
     next.lift = lift;
-    next.startTangent = select(again_, m0, lift);
+    next.startTangent = select(reaim_, m0, lift);
     next.tileX = a_.tileX;
     next.tileZ = a_.tileZ;
     next.firstTick = F(tick - 1);
@@ -168,7 +168,7 @@ class Foothold {
     Vec3<F> p = mix(p0, p1, F(early ? along : 1 - along));
     F share(clearing);
     if (early) {
-      share = select(again_, F(h01), share);
+      share = select(reaim_, F(h01), share);
       p = p + m0 * h10;  // nothing but for a step aimed anew
     }
     p = p + side * share;
@@ -180,7 +180,7 @@ class Foothold {
   const shared::Parameters& q_;
   const Beginning<F>& b_;
   const Agent<F>& a_;
-  Mask<F> again_;
+  Mask<F> reaim_;
   Mat3<F> r_;
   F x_, z_, oldTicks_, flown_, ticks_;
 };

@@ -13,7 +13,7 @@ inline constexpr float kReachShare = 0.6f;
 
 // Lanes whose leg lifts, or is aimed anew; a set a leg.
 struct Begun {
-  uint64_t lift[Rig::maxLegs], again[Rig::maxLegs];
+  uint64_t lift[Rig::maxLegs], reaim[Rig::maxLegs];
 };
 
 // Where in model space a foot should land that touches down in `time` seconds: its home in the middle of the
@@ -79,12 +79,12 @@ template <class F, int N>
     stoodSince = select(longest, stood, stoodSince);
     first = select(longest, F(float(l)), first);
 
-    begun.again[l] = 0;
+    begun.reaim[l] = 0;
     const auto mayAim = (!planted) & (F(4) <= flown) & (flown < ticks * q.reaimLatest);
     if (any(mayAim)) {
       const Vec3<F> to = predictLanding(broadcast<F>(model.home), a, (ticks - flown) * q.dt, stance);
       const F ax = to.x - foot.x, az = to.z - foot.z;
-      begun.again[l] = bits(mayAim & (F(q.reaimDistance * q.reaimDistance) < ax * ax + az * az));
+      begun.reaim[l] = bits(mayAim & (F(q.reaimDistance * q.reaimDistance) < ax * ax + az * az));
     }
   }
 
@@ -98,7 +98,7 @@ template <class F, int N>
       begun.lift[l] &= ~air[std::countr_zero(m)];
     }
   }
-  F lift(0), again(0), aloft(0);
+  F lift(0), reaim(0), aloft(0);
   for (int l = 0; l < count; ++l) {
     uint64_t blocked = yields[l];
     for (uint32_t m = world.legs[l].neighbours; m != 0; m &= m - 1)
@@ -106,11 +106,11 @@ template <class F, int N>
     begun.lift[l] |= wants[l] & ~blocked;
     const float bit = float(1u << l);
     lift = lift + flags<F>(begun.lift[l]) * bit;
-    again = again + flags<F>(begun.again[l]) * bit;
+    reaim = reaim + flags<F>(begun.reaim[l]) * bit;
     aloft = aloft + flags<F>(air[l]) * bit;
   }
   a.lift = lift;
-  a.again = again;
+  a.reaim = reaim;
   a.air = aloft;
 }
 

@@ -122,7 +122,7 @@ class HerdKernel final : public Kernel {
   struct Place {
     size_t block;
     uint16_t leg, lane;
-    bool again;
+    bool reaim;
   };
   // A leg, of one block, that needs more than ik's usual step.
   struct Rare {
@@ -144,9 +144,9 @@ class HerdKernel final : public Kernel {
     Begun begun;
     gait(world_, tick, agentBlocks_[block], legsOf(block), begun);
     for (size_t l = 0; l < legs_; ++l) {
-      for (uint64_t all = begun.lift[l] | begun.again[l]; all != 0; all &= all - 1) {
+      for (uint64_t all = begun.lift[l] | begun.reaim[l]; all != 0; all &= all - 1) {
         const int at = std::countr_zero(all);
-        scratch.begins[scratch.begun++] = {block, uint16_t(l), uint16_t(at), (begun.again[l] >> at & 1) != 0};
+        scratch.begins[scratch.begun++] = {block, uint16_t(l), uint16_t(at), (begun.reaim[l] >> at & 1) != 0};
       }
     }
   }
@@ -163,7 +163,7 @@ class HerdKernel final : public Kernel {
         copyLane<float, F>(leg.root, 0, b.root, int(k));
         copyLane<float, F>(leg.home, 0, b.home, int(k));
         lane(b.reach, int(k)) = leg.reach;
-        lane(b.again, int(k)) = place.again ? 1 : 0;
+        lane(b.reaim, int(k)) = place.reaim ? 1 : 0;
       }
       foothold(world_, tick, b);
       for (size_t k = 0; k < count; ++k) {

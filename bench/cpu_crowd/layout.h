@@ -21,7 +21,7 @@ struct Agent {
   Quaternion<F> orientation;
   F turnRate, still, follow, surfaceSpeed;
   // gait; masks of legs
-  F phase, lift, again, stepTicks, halfStride, cycle, air;
+  F phase, lift, reaim, stepTicks, halfStride, cycle, air;
 };
 
 // positions tile-local in x and z

@@ -29,7 +29,7 @@ inline Agent<float> readAgent(const HerdState& state, size_t agent) {
   a.headingX = b[4], a.headingZ = b[5], a.speed = b[6];
   a.orientation = {b[8], b[9], b[10], b[11]};
   a.turnRate = b[12], a.still = b[13], a.follow = b[14], a.surfaceSpeed = b[15];
-  a.phase = gait[0], a.lift = gait[1], a.again = gait[2], a.stepTicks = gait[3];
+  a.phase = gait[0], a.lift = gait[1], a.reaim = gait[2], a.stepTicks = gait[3];
   a.halfStride = gait[4], a.cycle = gait[5], a.air = gait[6];
   return a;
 }
@@ -46,7 +46,7 @@ inline void writeAgent(const Agent<float>& a, size_t agent, HerdState& state) {
        0, a.orientation.x, a.orientation.y, a.orientation.z, a.orientation.w, a.turnRate, a.still, a.follow,
        a.surfaceSpeed});
   put(state.gait, shared::GAIT_STRIDE,
-      {a.phase, a.lift, a.again, a.stepTicks, a.halfStride, a.cycle, a.air, 0});
+      {a.phase, a.lift, a.reaim, a.stepTicks, a.halfStride, a.cycle, a.air, 0});
 }
 
 // Where a tip is in the device's records: relative to the agent, world axes.

@@ -38,8 +38,8 @@ void turn(const Tuning& tuning, const glm::dvec2& desired, const BodyChoices& ch
       e = choices.turnSign != 0 ? choices.turnSign : (c >= 0 ? 1.0 : -1.0);
     }
   }
-  const double kappaTurn = glm::mix(0.25, 1.0, body.kappa);
-  const double wanted = std::clamp(tuning.turnGain * e, -tuning.turnRate, tuning.turnRate) * kappaTurn;
+  const double followTurn = glm::mix(0.25, 1.0, body.follow);
+  const double wanted = std::clamp(tuning.turnGain * e, -tuning.turnRate, tuning.turnRate) * followTurn;
   const double most = tuning.turnAcceleration * tuning.dt;
   body.turnRate += std::clamp(wanted - body.turnRate, -most, most);
   const glm::dvec3 turned = Turn(body.turnRate * tuning.dt)(glm::dvec3(h.x, 0, h.y));
@@ -61,7 +61,7 @@ void walk(const Tuning& tuning, const glm::dvec2& desired, BodyResult& result) {
   AgentBody& body = result.body;
   result.wantedSpeed = glm::length(desired);
   const glm::dvec2 w = result.wantedSpeed > 1e-4 * tuning.legLength ? glm::normalize(desired) : body.heading;
-  const double wanted = body.kappa * result.wantedSpeed * std::max(0.0, glm::dot(w, body.heading));
+  const double wanted = body.follow * result.wantedSpeed * std::max(0.0, glm::dot(w, body.heading));
   body.speed += std::clamp(wanted - body.speed, -tuning.braking * tuning.dt, tuning.acceleration * tuning.dt);
   result.ways = waysToEdges(tuning, body);
   body.speed = std::min(body.speed, stoppingSpeed(tuning, std::min(result.ways.x, result.ways.y)));
@@ -174,7 +174,7 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
   }
   next.y = glm::mix(predicted, wanted, tuning.heightBlend);
 
-  next.v3 = next.speed / std::hypot(forward.x, forward.z);
+  next.surfaceSpeed = next.speed / std::hypot(forward.x, forward.z);
   const double pace = 1e-2 * tuning.legLength;
   const double busiest =
       std::max({result.wantedSpeed / pace, next.speed / pace, std::abs(next.turnRate) / 1e-2});
@@ -196,15 +196,14 @@ BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& cr
                 std::span<const double> misses, double tick, double phase, const BodyChoices& choices) {
   BodyResult result;
   result.body = previous;
-  double kappa = 1;
+  double follow = 1;
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
-    const LegFollow follow =
-        followOf(tuning, creature.limbs[l], previous, steps[l], desired, misses[l], tick);
-    if (follow.planted && follow.behind > 0) kappa = std::min(kappa, follow.factor);
-    kappa = std::min(kappa, follow.errorFactor);
-    result.follow.push_back(follow);
+    const LegFollow leg = followOf(tuning, creature.limbs[l], previous, steps[l], desired, misses[l], tick);
+    if (leg.planted && leg.behind > 0) follow = std::min(follow, leg.factor);
+    follow = std::min(follow, leg.errorFactor);
+    result.follow.push_back(leg);
   }
-  result.body.kappa = std::max(choices.kappa.value_or(kappa), tuning.followLeast);
+  result.body.follow = std::max(choices.follow.value_or(follow), tuning.followLeast);
   move(tuning, heights, previous, desired, groundPoints(previous, steps, tick), phase, choices, result);
   return result;
 }
@@ -213,7 +212,7 @@ BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creatur
                      const AgentBody& previous, const glm::dvec2& desired, const BodyChoices& choices) {
   BodyResult result;
   result.body = previous;
-  result.body.kappa = 1;
+  result.body.follow = 1;
   Tuning upright = tuning;
   upright.leanGain = upright.leanLevel = upright.breathHeight = 0;
   move(upright, heights, previous, desired, groundBelowHomes(heights, creature, previous), 0, choices,

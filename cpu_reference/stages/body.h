@@ -38,7 +38,7 @@ struct BodyResult {
 
 // Decisions that the caller takes instead of the rule, to recompute the other side of a tie.
 struct BodyChoices {
-  std::optional<double> kappa;
+  std::optional<double> follow;
   int turnSign = 0;  // +1, -1: forced
 };
 

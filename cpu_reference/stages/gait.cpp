@@ -114,11 +114,11 @@ void findWindow(const Tuning& tuning, const Creature& creature, const Limb& limb
 
 glm::dvec3 predictedLanding(const Limb& limb, const AgentBody& body, double seconds, double stanceTime) {
   const double ahead = seconds + stanceTime / 2;
-  return Turn(body.turnRate * ahead)(limb.home) + glm::dvec3(0, 0, body.v3 * ahead);
+  return Turn(body.turnRate * ahead)(limb.home) + glm::dvec3(0, 0, body.surfaceSpeed * ahead);
 }
 
 glm::dvec3 predictedRoot(const Limb& limb, const AgentBody& body, double seconds) {
-  return Turn(body.turnRate * seconds)(limb.root) + glm::dvec3(0, 0, body.v3 * seconds);
+  return Turn(body.turnRate * seconds)(limb.root) + glm::dvec3(0, 0, body.surfaceSpeed * seconds);
 }
 
 Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,

@@ -15,7 +15,7 @@ LoopFoot loopSwing(const Tuning& tuning, int groups, const Limb& limb, const Age
 
   // Where a foot is on the ground `seconds` before it passes its home, seen from the body.
   const auto stance = [&](double seconds) {
-    return Turn(body.turnRate * seconds)(limb.home) + glm::dvec3(0, 0, body.v3 * seconds);
+    return Turn(body.turnRate * seconds)(limb.home) + glm::dvec3(0, 0, body.surfaceSpeed * seconds);
   };
   glm::dvec3 inModel;
   if (result.flown < 0) {

@@ -66,12 +66,12 @@ inline double foot(const Step& step, const AgentBody& body, bool planted) {
 // Distance of a foot from its root or home.
 inline double footDistance(double length) { return relative + rotated(length); }
 
-// What the body's bounds begin with: of kappa, and of the points that its plane goes through.
+// What the body's bounds begin with: of follow, and of the points that its plane goes through.
 struct BodyInputs {
-  double kappa = 0, horizontal = 0, vertical = 0;
+  double follow = 0, horizontal = 0, vertical = 0;
 };
-// The legs' ground points, which are records, and kappa of them: a stretch divided by the narrow band between
-// slowing and stopping.
+// The legs' ground points, which are records, and follow of them: a stretch divided by the narrow band
+// between slowing and stopping.
 inline BodyInputs feltGround(const Tuning& t, const Creature& creature, const AgentBody& previous) {
   double shortest = t.legLength;
   for (const Limb& limb : creature.limbs) shortest = std::min(shortest, limb.reach);
@@ -95,7 +95,7 @@ inline BodyInputs blindGround(const Heights& heights, double extent, const Creat
 }
 
 struct BodyBounds {
-  double kappa, turnRate, heading, speed, position, slope, orientation, height, v3;
+  double follow, turnRate, heading, speed, position, slope, orientation, height, surfaceSpeed;
 };
 // Follows the steps of the stage in order; each bound feeds the next.
 inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, const Creature& creature,
@@ -104,13 +104,13 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
   const AgentBody& next = result.body;
   const SupportPlane& plane = result.plane;
 
-  bound.kappa = inputs.kappa;
-  // omega: turnGain e with e from two normalised vectors, scaled by kappa_turn = 1/4 + 3/4 kappa.
+  bound.follow = inputs.follow;
+  // omega: turnGain e with e from two normalised vectors, scaled by followTurn = 1/4 + 3/4 follow.
   bound.turnRate =
-      t.turnGain * 10 * roundoff + 0.75 * t.turnRate * bound.kappa + 8 * roundoff * (t.turnRate + 1);
+      t.turnGain * 10 * roundoff + 0.75 * t.turnRate * bound.follow + 8 * roundoff * (t.turnRate + 1);
   bound.heading = bound.turnRate * t.dt + 10 * roundoff;
   // The speed before was at most what braking adds.
-  bound.speed = result.wantedSpeed * (bound.kappa + bound.heading + 12 * roundoff) +
+  bound.speed = result.wantedSpeed * (bound.follow + bound.heading + 12 * roundoff) +
                 4 * roundoff * (next.speed + t.braking * t.dt);
   // Not beyond the edge: places are records, their distance is taken within a tile of it, and divided by the
   // heading's share. The speed rises with the way, so it lies between those of the least and the longest.
@@ -149,7 +149,7 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
   bound.orientation = up + forward + 16 * roundoff;
   const glm::dvec3 f = next.orientation * glm::dvec3(0, 0, 1);
   const double level = std::hypot(f.x, f.z);
-  bound.v3 = (bound.speed + next.speed * forward / level) / level + 8 * roundoff;
+  bound.surfaceSpeed = (bound.speed + next.speed * forward / level) / level + 8 * roundoff;
 
   const double planeHeight = vertical + std::hypot(plane.mean.x, plane.mean.z) * bound.slope + slope * point +
                              8 * roundoff * slope * t.legLength;
@@ -182,7 +182,8 @@ inline GaitBounds gait(const Tuning& t, const Gait& gait, int groups, double lon
   // T / (1 - duty): duty errs by 4 roundoff, and 1 - duty is more than a fifth.
   bound.cycle = 32 * roundoff * gait.cycle;
   bound.duration = 12 * roundoff * (t.swingStill / t.dt + 1);
-  // Where a foot stands in the model, and where it is predicted to (a Cayley turn and v3 times a time).
+  // Where a foot stands in the model, and where it is predicted to (a Cayley turn and surfaceSpeed times a
+  // time).
   bound.length = footDistance(2 * t.legLength) + 16 * roundoff * longestForecast;
   // A leg's own beginning: a quotient, the spread (a share below 2 of 1 / groups - T / C) times its lag.
   bound.window = groups * (bound.phase + 24 * roundoff);
@@ -200,7 +201,7 @@ inline LoopBounds loopSwing(const Tuning& t, const Limb& limb, const AgentBody& 
   const double swingTime = gait.duration * t.dt;
   const double time = 12 * roundoff * gait.cycle;
   bound.flown = time / swingTime + 6 * roundoff;
-  const double speed = body.v3 + std::abs(body.turnRate) * glm::length(limb.home);
+  const double speed = body.surfaceSpeed + std::abs(body.turnRate) * glm::length(limb.home);
   const double stride = speed * gait.cycle, farthest = glm::length(limb.home) + stride + t.stepHeight;
   // A stance point is a Cayley turn and a product, the spline twelve of what it is made of; between its ends
   // it moves at most four times as far, and as high, in a swing.
@@ -213,7 +214,7 @@ struct FootholdBounds {
   double candidate;  // horizontally, before the ground is looked up
 };
 inline FootholdBounds foothold(const Tuning& t, const FootholdResult& result) {
-  // tau and r': a Cayley turn of home and v3 (t + S/2), with S = C - T.
+  // tau and r': a Cayley turn of home and surfaceSpeed (t + S/2), with S = C - T.
   const double target = 16 * roundoff * (glm::length(result.target) + t.legLength);
   // The ladder's direction o / |o| turns by the error of o over |o|; rungs reach 4/3 and 2/3 of rho from r'.
   const double ladder = target * (1 + 4 * result.stretch / std::max(result.side, 1e-6));

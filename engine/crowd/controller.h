@@ -22,7 +22,7 @@ constexpr ControllerTraits traitsOf(Controller controller) {
     case Controller::clip:
     case Controller::planted:
       return {.playsClips = true, .needsClips = true};
-    case Controller::pose:
+    case Controller::keyPoses:
       return {.needsClips = true};
   }
   return {};

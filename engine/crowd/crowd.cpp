@@ -58,7 +58,7 @@ void settle(Impl& crowd) {
     for (const crowd::Kind& kind : crowd.kinds)
       for (size_t i = 0; i < kind.stages.size(); ++i)
         for (const gpu::Kernel* kernel :
-             {&kind.stages[i].first, &kind.stages[i].afterEdit, &kind.stages[i].rest}) {
+             {&kind.stages[i].first, &kind.stages[i].afterEdit, &kind.stages[i].listed}) {
           if (!*kernel) continue;
           for (const Page& page : kind.pages)
             kernel->dispatch(cmd, page.bindings[i], gpu::bytesOf(nothing), 1);

@@ -119,9 +119,9 @@ void Frame::record(StageSet made) const {
   // What the first dispatches left out.
   bool listed = false;
   eachPage([&](const Kind& kind, const Page& page, size_t i) {
-    if (!kind.stages[i].rest) return;
+    if (!kind.stages[i].listed) return;
     if (!std::exchange(listed, true)) gpu::computeToIndirectAndCompute(cmd_);
-    dispatchRest(kind, page, i);
+    dispatchListed(kind, page, i);
   });
 }
 
@@ -139,11 +139,11 @@ void Frame::dispatch(const Kind& kind, const Page& page, size_t index) const {
                     gpu::groupsFor(invocations(kind, page, stage.over), shared::WORK_GROUP));
 }
 
-void Frame::dispatchRest(const Kind& kind, const Page& page, size_t index) const {
+void Frame::dispatchListed(const Kind& kind, const Page& page, size_t index) const {
   const ReadyStage& stage = kind.stages[index];
   const shared::TickConstants constants = constantsOf(crowd_, kind, page, stage.over, tick_);
-  stage.rest.dispatchIndirect(cmd_, page.bindings[index], gpu::bytesOf(constants), page.counters,
-                              static_cast<uint64_t>(stage.restArguments) * sizeof(uint32_t));
+  stage.listed.dispatchIndirect(cmd_, page.bindings[index], gpu::bytesOf(constants), page.counters,
+                                static_cast<uint64_t>(stage.listedArguments) * sizeof(uint32_t));
 }
 
 }  // namespace skitter::crowd

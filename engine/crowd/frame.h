@@ -26,7 +26,7 @@ class Frame {
 
  private:
   void dispatch(const Kind& kind, const Page& page, size_t stage) const;
-  void dispatchRest(const Kind& kind, const Page& page, size_t stage) const;
+  void dispatchListed(const Kind& kind, const Page& page, size_t stage) const;
 
   const Crowd::Impl& crowd_;
   uint64_t tick_;

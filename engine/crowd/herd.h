@@ -49,7 +49,7 @@ struct Kind {
   ClipSet clipSet;  // without its frames: what a picture and a tool need
   ClipRecords clips;
   gpu::Buffer clipHeads, clipTimes, clipRows, clipLegs, clipBones;
-  KeyPoses keyPoses;  // of controller pose
+  KeyPoses keyPoses;  // of controller key-poses
   gpu::Buffer keyBuffer;
   bool reachTriggered = false;  // legs step when out of reach, without a rhythm
   shared::Parameters parameters{};

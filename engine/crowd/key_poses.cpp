@@ -132,7 +132,7 @@ KeyPoses keyPoses(const ClipSet& set, const std::vector<std::string>& names, uin
   const auto still = std::find_if(clips.begin(), clips.end(), [](const Clip* c) { return c->speed == 0; });
   if (moving == clips.end()) {
     std::string message =
-        set.name + ": controller pose takes its key poses from a clip that moves forward, and of";
+        set.name + ": controller key-poses takes its key poses from a clip that moves forward, and of";
     for (const Clip* clip : clips) message += " '" + clip->name + "'";
     throw inputError(message + " none does; name one by `clips`, or cut one out by `cuts` (docs/scene.md)");
   }

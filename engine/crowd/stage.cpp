@@ -68,10 +68,10 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) 
   return stages;
 }
 
-void addRest(StageKernels& kernels) {
-  kernels.rest = kernels.first;
+void addListed(StageKernels& kernels) {
+  kernels.listed = kernels.first;
   kernels.first.constants.emplace_back(shared::CONSTANT_PASS, shared::PASS_QUICK);
-  kernels.rest->constants.emplace_back(shared::CONSTANT_PASS, shared::PASS_LISTED);
+  kernels.listed->constants.emplace_back(shared::CONSTANT_PASS, shared::PASS_LISTED);
 }
 
 void addRigLegs(const Kind& kind, gpu::KernelInfo& info) {
@@ -103,7 +103,7 @@ StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs) {
     if (given.stage != kernels.first.name) continue;
     const gpu::ShaderCode code{given.texel, given.storage};
     kernels.first.code = code;
-    if (kernels.rest) kernels.rest->code = code;
+    if (kernels.listed) kernels.listed->code = code;
     if (kernels.afterEdit) kernels.afterEdit->code = code;
   }
   return kernels;
@@ -112,7 +112,7 @@ StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs) {
 void makeKernels(const StageNeeds& needs, ReadyStage& stage) {
   const StageKernels kernels = kernelsOf(stage, needs);
   stage.first = gpu::Kernel(needs.context, kernels.first);
-  if (kernels.rest) stage.rest = gpu::Kernel(needs.context, *kernels.rest);
+  if (kernels.listed) stage.listed = gpu::Kernel(needs.context, *kernels.listed);
   if (kernels.afterEdit) stage.afterEdit = gpu::Kernel(needs.context, *kernels.afterEdit);
 }
 

@@ -11,11 +11,11 @@ namespace skitter::crowd {
 
 struct Kind;
 
-// A stage's shader, specialised: for its first dispatch, for what that leaves out (Stage::restArguments), and
-// for the ticks after an edit of the heights.
+// A stage's shader, specialised: for its first dispatch, for what that leaves out (Stage::listedArguments),
+// and for the ticks after an edit of the heights.
 struct StageKernels {
   gpu::KernelInfo first;
-  std::optional<gpu::KernelInfo> rest = {}, afterEdit = {};
+  std::optional<gpu::KernelInfo> listed = {}, afterEdit = {};
 };
 // What it is specialised by.
 struct StageNeeds {
@@ -38,7 +38,7 @@ struct Stage {
   void (*specialise)(const StageNeeds& needs, StageKernels& kernels) = nullptr;
   // Where the counters have the indirect dispatch over what few agents or legs need and the first dispatch
   // leaves out; -1: it leaves out nothing.
-  int restArguments = -1;
+  int listedArguments = -1;
 
   // Whether it passes over those who sleep.
   bool isOfTheAwake() const { return over == Over::agents || over == Over::legs || over == Over::joints; }
@@ -46,7 +46,7 @@ struct Stage {
 
 // A stage of a kind, with its pipelines.
 struct ReadyStage : Stage {
-  gpu::Kernel first = {}, rest = {}, afterEdit = {};
+  gpu::Kernel first = {}, listed = {}, afterEdit = {};
 };
 
 // Whether somebody looks at feet: ik, or what takes its place, writes tips, and what makes swing and ik at
@@ -62,7 +62,7 @@ void makeKernels(const StageNeeds& needs, ReadyStage& stage);
 // For what stages have in common.
 //
 // A second kernel, for what the first dispatch lists and leaves out.
-void addRest(StageKernels& kernels);
+void addListed(StageKernels& kernels);
 // The numbers with which the rig's records of legs begin.
 void addRigLegs(const Kind& kind, gpu::KernelInfo& info);
 

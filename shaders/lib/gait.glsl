@@ -7,7 +7,7 @@ const float REACH_SHARE = 0.6;
 // Places of a watched way, from where the foot is on.
 const int AHEAD = 3;
 // Ticks that a step aimed anew has left at least: what rises under a landing foot is climbed, not jumped on.
-const float AGAIN_LEAST = 2.0;
+const float REAIM_LEAST = 2.0;
 
 // What speed asks of the legs (docs/stages/gait.md).
 struct Stride {

@@ -53,7 +53,7 @@ namespace skitter::shared {
   DERIVED(X, UNIFORM, _, originZ, "world z of row 0") \
   DERIVED(X, UNIFORM, _, inverseSpacingX, "samples a metre") \
   DERIVED(X, UNIFORM, _, inverseSpacingZ, "samples a metre") \
-  DERIVED(X, UNIFORM, _, poseKeys, "K of controller pose") \
+  DERIVED(X, UNIFORM, _, poseKeys, "K of controller key-poses") \
   DERIVED(X, UNIFORM, _, poseStride, "metres a cycle") \
   DERIVED(X, UNIFORM, _, springKeep, "E of one tick: x of x") \
   DERIVED(X, UNIFORM, _, springDrift, "x of V, s") \

@@ -22,7 +22,7 @@ void main() {
   uint listed = gl_GlobalInvocationID.x;
   if (listed >= counters[COUNTER_LISTED]) return;
   int record = int(list[listed] >> 1);
-  bool again = (list[listed] & 1u) != 0u;
+  bool reaim = (list[listed] & 1u) != 0u;
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
 
   int rigAt = leg * rigStride(BONES);
@@ -34,7 +34,7 @@ void main() {
   float reach = root.w;
   float freshTicks = LOAD4(gaits, agent * GAIT_STRIDE).w, cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;
   float flown = thisTick - 1.0 - old.firstTick;
-  float ticks = again ? max(old.ticks - flown, AGAIN_LEAST) : freshTicks;
+  float ticks = reaim ? max(old.ticks - flown, REAIM_LEAST) : freshTicks;
   float time = ticks * parameters.dt, stance = cycle - freshTicks * parameters.dt;
 
   vec3 tau = predictLanding(home.xyz, body.turnRate, body.surfaceSpeed, time, stance);
@@ -98,11 +98,11 @@ void main() {
   Swing flight = swingOf(old, oldArc, body.local, body.tile);
   float u = stepProgress(old, thisTick - 1.0);
   float rate = startRate(flight), way = easedTime(u, rate);
-  vec3 p0 = again ? swingPoint(flight, way) : flight.p1;
+  vec3 p0 = reaim ? swingPoint(flight, way) : flight.p1;
   vec3 p1 = best.point;
-  vec3 m0 = again ? swingTangent(flight, way) * (easedRate(u, rate) * ticks / old.ticks) : vec3(0.0);
+  vec3 m0 = reaim ? swingTangent(flight, way) * (easedRate(u, rate) * ticks / old.ticks) : vec3(0.0);
   vec3 aside = unit(cross(up, p1 - p0)) * parameters.routeWidth;
-  float least = parameters.stepHeight * (again ? 1.0 - u : 1.0);
+  float least = parameters.stepHeight * (reaim ? 1.0 - u : 1.0);
   vec3 lift = vec3(0.0);
   float shortest = 3e38;
   // No bow is shorter than the least lift, so most steps look along the straight lane alone.
@@ -110,7 +110,7 @@ void main() {
     vec3 side = aside * sideOf(lane);
     float height = least;
     for (int i = 0; i < SAMPLES; ++i) {
-      Place place = placeOf(p0, p1, again, m0, i);
+      Place place = placeOf(p0, p1, reaim, m0, i);
       vec3 p = place.straight + place.share * side;
       float gap = groundAt(world + p.xz).x - (body.local.y + p.y);
       height = max(height, (gap * up.y + parameters.stepClearance * place.clearing) / place.share);
@@ -123,7 +123,7 @@ void main() {
       lift = bow;
     }
   }
-  m0 = again ? m0 : lift;
+  m0 = reaim ? m0 : lift;
 
   STORE4_TWO(stepsOut, record * STEP_STRIDE, vec4(p1 + body.local, thisTick - 1.0),
              vec4(p0 + body.local, packedTicks(lastResort ? -ticks : ticks, stepTile(body.tile.x, body.tile.y))));

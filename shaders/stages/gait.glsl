@@ -24,7 +24,7 @@ void makeGait(int agent, Body body) {
   phase -= floor(phase);
 
   mat3 orientation = matrixOf(body.orientation);
-  uint air = 0u, wants = 0u, again = 0u;
+  uint air = 0u, wants = 0u, reaim = 0u;
   // The leg that must lift and has stood longest goes first, and its neighbours wait for it.
   uint first = 0u, yields = 0u;
   float stoodSince = 3e38;
@@ -73,7 +73,7 @@ void makeGait(int agent, Body body) {
           moved = moved || above(ahead, body) > parameters.groundTolerance;
         }
       }
-      again |= (anew || moved) && flown >= 4.0 ? 1u << leg : 0u;
+      reaim |= (anew || moved) && flown >= 4.0 ? 1u << leg : 0u;
     }
   }
 
@@ -84,17 +84,17 @@ void makeGait(int agent, Body body) {
     lift |= (neighbours & (air | lift)) == 0u ? wants & (1u << leg) : 0u;
   }
 
-  STORE4_TWO(gaitsOut, agent * GAIT_STRIDE, vec4(phase, float(lift), float(again), stride.ticks),
+  STORE4_TWO(gaitsOut, agent * GAIT_STRIDE, vec4(phase, float(lift), float(reaim), stride.ticks),
              vec4(stride.halfStride, stride.cycle, float(air), 0.0));
 
   // Few legs begin a step in a tick: they are listed, and foothold runs over the list alone.
-  uint begin = lift | again;
+  uint begin = lift | reaim;
   if (begin != 0u) {
     uint next = atomicAdd(counters[COUNTER_LISTED], bitCount(begin));
     atomicMax(counters[COUNTER_DISPATCH_X], (next + bitCount(begin) + WORK_GROUP - 1u) / WORK_GROUP);
     for (; begin != 0u; begin &= begin - 1u) {
       int leg = findLSB(begin);
-      list[next] = uint(legRecord(agent, leg, LEGS)) * 2u + ((again >> leg) & 1u);
+      list[next] = uint(legRecord(agent, leg, LEGS)) * 2u + ((reaim >> leg) & 1u);
       ++next;
     }
   }

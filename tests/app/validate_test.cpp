@@ -49,7 +49,7 @@ TEST_F(Validate, EveryControllerHasItsStages) {
       {"loop", {"navigate", "body", "gait", "swing", "ik", "pose", "measure", "footfall"}},
       {"clip", {"navigate", "body", "clip", "swing", "pose", "measure", "footfall"}},
       {"planted", {"navigate", "body", "clip", "swing", "ik", "pose", "measure", "footfall"}},
-      {"pose", {"navigate", "body", "gait", "swing", "pose", "measure", "footfall"}}};
+      {"key-poses", {"navigate", "body", "gait", "swing", "pose", "measure", "footfall"}}};
   for (const auto& [controller, names] : stages) {
     SCOPED_TRACE(controller);
     const Result result = skitter({"validate", "--controller", controller, "--agents", "8", "--frames", "20",
@@ -84,7 +84,7 @@ TEST_F(Validate, HerdsWithDifferentStagesAreOneTable) {
                                       "measure", "footfall"}));
 }
 
-constexpr const char* kControllers[] = {"adaptive", "loop", "clip", "planted", "pose"};
+constexpr const char* kControllers[] = {"adaptive", "loop", "clip", "planted", "key-poses"};
 
 TEST_F(Validate, AFreeRunStaysTogether) {
   for (const char* controller : kControllers) {

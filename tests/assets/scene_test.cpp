@@ -174,6 +174,7 @@ TEST(Scene, knowsEveryNameOfAHerdsChoices) {
     EXPECT_EQ(controllerNamed(nameOf(each)), each);
     EXPECT_EQ(herdWith("controller", nameOf(each)).controller, each);
   }
+  EXPECT_EQ(herdWith("controller", "pose").controller, Controller::keyPoses);  // its earlier name
   for (const Stepping each : allSteppings) {
     EXPECT_EQ(steppingNamed(nameOf(each)), each);
     EXPECT_EQ(herdWith("stepping", nameOf(each)).stepping, each);

@@ -93,9 +93,9 @@ TEST_P(ControllersTest, AnyNumberOfAgentsInAnyPages) {
 INSTANTIATE_TEST_SUITE_P(, ControllersTest,
                          ::testing::Combine(bothLoadPaths(),
                                             ::testing::Values(Controller::loop, Controller::clip,
-                                                              Controller::planted, Controller::pose)),
+                                                              Controller::planted, Controller::keyPoses)),
                          [](const auto& param) {
-                           return std::string(nameOf(std::get<1>(param.param))) +
+                           return testNameOf(std::get<1>(param.param)) +
                                   (std::get<0>(param.param) == LoadPath::texel ? "Texel" : "Storage");
                          });
 
@@ -155,8 +155,8 @@ TEST_P(ControllerTest, RecordPathsAgreeToTheBit) {
 
 INSTANTIATE_TEST_SUITE_P(, ControllerTest,
                          ::testing::Values(Controller::loop, Controller::clip, Controller::planted,
-                                           Controller::pose),
-                         [](const auto& param) { return std::string(nameOf(param.param)); });
+                                           Controller::keyPoses),
+                         [](const auto& param) { return testNameOf(param.param); });
 
 using ClipHerdTest = GpuTest;
 
@@ -212,7 +212,7 @@ TEST_F(HerdsTest, ControllersMix) {
   const Heightfield ground = smallRollingGround();
   Scene scene = sceneOf(12);
   for (const Controller controller :
-       {Controller::loop, Controller::clip, Controller::planted, Controller::pose}) {
+       {Controller::loop, Controller::clip, Controller::planted, Controller::keyPoses}) {
     Herd& herd = scene.herds.emplace_back(scene.herds[0]);
     herd.controller = controller;
     herd.agents += 5;
@@ -328,7 +328,7 @@ TEST_F(SlipTest, ClipsRunAsFastAsTheGround) {
 }
 
 TEST_F(SlipTest, KeyPosesGoAsFastAsTheGround) {
-  Crowd crowd(device(), flatGround(), sceneOf(16, 1, 1, Controller::pose));
+  Crowd crowd(device(), flatGround(), sceneOf(16, 1, 1, Controller::keyPoses));
   simulate(device(), crowd, 120);
   const Slip slip = slipOver(device(), crowd, 180);
   EXPECT_GT(slip.stances, 300u);

@@ -66,7 +66,7 @@ TEST_P(AskedForBesideTest, DoesNotShow) {
 TEST_P(AskedForBesideTest, DoesNotShowWhereAgentsMaySleep) { EXPECT_EQ(hash(kBare, true), hash(kAll, true)); }
 
 INSTANTIATE_TEST_SUITE_P(, AskedForBesideTest, ::testing::ValuesIn(allControllers),
-                         [](const auto& param) { return std::string(nameOf(param.param)); });
+                         [](const auto& param) { return testNameOf(param.param); });
 
 TEST_F(DeterminismTest, RecordPathsAgreeToTheBit) {
   if (!hasTexelPath()) GTEST_SKIP() << "the device has one load path only";

@@ -54,8 +54,8 @@ TEST_P(EdgeTest, CliffsAndTheTerrainsEdge) {
 // However fast they are told to be.
 TEST_P(EdgeTest, NobodyLeavesTheMap) {
   const Heightfield ground = smallRollingGround();
-  for (const Controller controller :
-       {Controller::adaptive, Controller::loop, Controller::clip, Controller::planted, Controller::pose}) {
+  for (const Controller controller : {Controller::adaptive, Controller::loop, Controller::clip,
+                                      Controller::planted, Controller::keyPoses}) {
     SCOPED_TRACE(nameOf(controller));
     Crowd crowd(device(), ground, sceneOf(64, 1000, 1, controller));
     double farthest = 0;

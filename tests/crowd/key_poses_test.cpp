@@ -111,7 +111,7 @@ using KeyPoseHerdTest = GpuTest;
 
 // Nobody springs into place at the start.
 TEST_F(KeyPoseHerdTest, BeginsInTheStandingPose) {
-  Scene scene = sceneOf(20, 1, 1, Controller::pose);
+  Scene scene = sceneOf(20, 1, 1, Controller::keyPoses);
   scene.herds[0].goal.kind = Goal::Kind::none;
   Crowd crowd(device(), rollingGround(), scene);
   const HerdState before = crowd.download(0);

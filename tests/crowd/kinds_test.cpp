@@ -103,7 +103,7 @@ TEST_P(SharedPagesTest, DoNotShow) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, SharedPagesTest, ::testing::ValuesIn(allControllers),
-                         [](const auto& param) { return std::string(nameOf(param.param)); });
+                         [](const auto& param) { return testNameOf(param.param); });
 
 // Landings for want of anything better are counted for the herd whose legs they are of.
 TEST_F(KindsTest, CountsAreOfTheHerd) {

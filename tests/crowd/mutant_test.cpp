@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(, SituationTest,
                          ::testing::Combine(bothLoadPaths(), ::testing::Range(size_t{0}, sound().size())),
                          [](const auto& param) {
                            const Sound& each = sound()[std::get<1>(param.param)];
-                           return std::string(each.situation->name) + "_" + nameOf(each.controller) +
+                           return std::string(each.situation->name) + "_" + testNameOf(each.controller) +
                                   (std::get<0>(param.param) == LoadPath::texel ? "_texel" : "_storage");
                          });
 

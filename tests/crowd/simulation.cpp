@@ -57,6 +57,12 @@ Rig scaledSpider(float legLength) {
   return rig;
 }
 
+std::string testNameOf(Controller controller) {
+  std::string name = nameOf(controller);
+  std::erase(name, '-');
+  return name;
+}
+
 void simulate(Device& device, Crowd& crowd, int ticks, float dt) {
   gpu::CommandRing ring(device.context());
   for (int i = 0; i < ticks; ++i) {

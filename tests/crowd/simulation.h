@@ -26,6 +26,8 @@ Heightfield cliffGround();
 
 // The built-in spider with another leg length, in metres; without its skin.
 Rig scaledSpider(float legLength);
+// The controller's name as a part of a test's, where GoogleTest allows no hyphen.
+std::string testNameOf(Controller controller);
 
 // Submits `ticks` ticks and waits.
 void simulate(Device& device, Crowd& crowd, int ticks, float dt = kTick);

@@ -291,7 +291,7 @@ TEST_P(SleepTest, GroundThatMovesWakesThem) {
 INSTANTIATE_TEST_SUITE_P(, SleepTest,
                          ::testing::Combine(bothLoadPaths(), ::testing::ValuesIn(allControllers)),
                          [](const auto& param) {
-                           return std::string(nameOf(std::get<1>(param.param))) +
+                           return testNameOf(std::get<1>(param.param)) +
                                   (std::get<0>(param.param) == LoadPath::texel ? "Texel" : "Storage");
                          });
 

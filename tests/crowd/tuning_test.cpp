@@ -133,7 +133,7 @@ std::vector<Value> spiderValues(double L, double dt) {
       VALUE(clipRateMost, 2.5),
       VALUE(plantStray, 0.35 * L),
       VALUE(plantKeep, std::exp(-dt / 0.08)),
-      VALUE(poseKeys, 0),  // of the key poses, which a herd without controller pose has not
+      VALUE(poseKeys, 0),  // of the key poses, which a herd without controller key-poses has not
       VALUE(poseStride, 0),
       VALUE(poseWalk, 0.1 * L),
       VALUE(springFrequency, 45),

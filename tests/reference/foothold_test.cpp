@@ -32,7 +32,7 @@ class Foothold : public testing::Test {
 };
 
 TEST_F(Foothold, flatGroundTakesThePrediction) {
-  body.v3 = body.speed = 0.5;
+  body.surfaceSpeed = body.speed = 0.5;
   body.turnRate = 0.2;
   for (size_t l = 0; l < 8; ++l) {
     const auto result = lift(l);
@@ -46,7 +46,7 @@ TEST_F(Foothold, flatGroundTakesThePrediction) {
 }
 
 TEST_F(Foothold, predictionLiesAheadByHalfAStance) {
-  body.v3 = body.speed = 0.5;
+  body.surfaceSpeed = body.speed = 0.5;
   const double swingTime = 21 * tuning.dt, stance = gait.cycle - swingTime;
   const auto result = lift(0);
   EXPECT_NEAR(result.target.z - creature.limbs[0].home.z, 0.5 * (swingTime + stance / 2), 1e-12);
@@ -102,7 +102,7 @@ TEST_F(Foothold, stepRisesOverWhatLiesBetween) {
 
 TEST_F(Foothold, aimingAnewKeepsTheFootsPlaceAndWay) {
   steps[0] = lift(0).step;
-  body.v3 = body.speed = 1;
+  body.surfaceSpeed = body.speed = 1;
   const double tick = 17;
   const auto result =
       reference::foothold(tuning, heights, creature.limbs[0], body, gait, steps[0], false, tick);

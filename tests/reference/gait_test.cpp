@@ -23,7 +23,7 @@ class Gait : public testing::Test {
 };
 
 TEST_F(Gait, feetAtHomeStay) {
-  body.v3 = body.speed = 1;
+  body.surfaceSpeed = body.speed = 1;
   for (double phase = 0; phase < 1; phase += 0.05) {
     EXPECT_EQ(reference::gait(tuning, creature, body, phase, steps, misses, 10).gait.lift, 0u);
   }
@@ -44,7 +44,7 @@ TEST_F(Gait, displacedFeetLiftInTheirWindows) {
 }
 
 TEST_F(Gait, legsOfASideLiftInTheOrder4231) {
-  body.v3 = body.speed = 1;
+  body.surfaceSpeed = body.speed = 1;
   for (size_t l = 0; l < 8; ++l) displace(l, 0.15);
   std::vector<size_t> order;
   uint32_t before = 0;
@@ -116,7 +116,7 @@ TEST_F(Gait, footThatStraysOrMissesMustLift) {
 TEST_F(Gait, landingThatTheBodyLeftBehindIsAimedAnew) {
   steps[0].firstTick = 5;
   steps[0].duration = 20;
-  body.v3 = body.speed = 2;
+  body.surfaceSpeed = body.speed = 2;
   EXPECT_EQ(reference::gait(tuning, creature, body, 0, steps, misses, 12).gait.reaim, 1u);
   EXPECT_EQ(reference::gait(tuning, creature, body, 0, steps, misses, 9).gait.reaim, 0u);
   EXPECT_EQ(reference::gait(tuning, creature, body, 0, steps, misses, 24).gait.reaim, 0u);
@@ -125,7 +125,7 @@ TEST_F(Gait, landingThatTheBodyLeftBehindIsAimedAnew) {
 TEST_F(Gait, dutyFallsLinearlyWithSpeed) {
   double before = 2;
   for (const double speed : {0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0}) {
-    body.v3 = speed;
+    body.surfaceSpeed = speed;
     const auto gait = reference::gait(tuning, creature, body, 0, steps, misses, 1).gait;
     EXPECT_NEAR(1 - gait.duration * tuning.dt / gait.cycle, 0.75 - 0.05 * speed, 1e-6);
     EXPECT_LT(gait.cycle, before);

@@ -1,9 +1,9 @@
-// Controller pose: key poses, the curve through them, and springs that follow it.
+// Controller key-poses: key poses, the curve through them, and springs that follow it.
 #include <gtest/gtest.h>
 
 #include "cpu_reference/ik/kinematics.h"
-#include "cpu_reference/stages/gait_pose.h"
-#include "cpu_reference/stages/swing_pose.h"
+#include "cpu_reference/stages/gait_key_poses.h"
+#include "cpu_reference/stages/swing_key_poses.h"
 #include "spider.h"
 #include "validation/convert.h"
 
@@ -31,7 +31,7 @@ class KeyPose : public testing::Test {
     leg.land = 0.9;
     leg.stand = 0.6;
     poses.legs.assign(8, leg);
-    body.v3 = body.speed = 1;
+    body.surfaceSpeed = body.speed = 1;
   }
   static glm::dvec2 ellipse(double phase) {
     return {0.1 + 0.2 * std::cos(kTwoPi * phase), 0.3 * std::sin(kTwoPi * phase)};
@@ -90,7 +90,7 @@ TEST_F(KeyPose, springsAreSolvedInClosedForm) {
 }
 
 TEST_F(KeyPose, aCriticalSpringNeverOvershootsAndAnySettles) {
-  body.v3 = body.speed = 0;  // the goal is the standing pose
+  body.surfaceSpeed = body.speed = 0;  // the goal is the standing pose
   for (const double damping : {0.3, std::sqrt(0.5), 1.0}) {
     for (const double dt : {1.0 / 60, 0.5}) {
       tuning.springDamping = damping;
@@ -131,13 +131,13 @@ TEST_F(KeyPose, legsAreInTimeWithThePhase) {
 
 TEST_F(KeyPose, fadesToTheStandingPose) {
   const KeyPoses::Directions walking = tick(0.4, none, none).goals;
-  body.v3 = body.speed = 0.05;
+  body.surfaceSpeed = body.speed = 0.05;
   poses.stride = 1e12;  // no lead
   const KeyPoses::Directions half = tick(0.4, none, none).goals;
-  body.v3 = body.speed = 0;
+  body.surfaceSpeed = body.speed = 0;
   const reference::SprungLeg still = tick(0.4, none, none);
   EXPECT_LT(glm::length(still.goals[0] - glm::dvec2(0.02, 0.03)), 1e-15);
-  body.v3 = body.speed = 1;
+  body.surfaceSpeed = body.speed = 1;
   const KeyPoses::Directions whole = tick(0.4, none, none).goals;
   EXPECT_LT(glm::length(half[0] - (still.goals[0] + whole[0]) / 2.0), 1e-12);
   EXPECT_GT(glm::length(walking[0] - whole[0]), 1e-3);  // by the lead
@@ -151,7 +151,7 @@ TEST_F(KeyPose, feetStandForTheirShareAndWhileThereIsNoWalking) {
   EXPECT_FALSE(stands(0.51));
   EXPECT_NEAR(tick(0.49, none, none).stanceMargin, 0.01, 1e-12);
   EXPECT_NEAR(tick(0.92, none, none).stanceMargin, 0.02, 1e-12);
-  body.v3 = body.speed = 0.049;
+  body.surfaceSpeed = body.speed = 0.049;
   EXPECT_TRUE(stands(0.51));
 }
 
@@ -167,14 +167,14 @@ TEST_F(KeyPose, theTipIsWhereTheBonesEnd) {
 TEST_F(KeyPose, theWheelTurnsOnceAStrideHoweverFast) {
   double phase = 0, way = 0;
   for (int n = 0; n < 100; ++n) {
-    body.v3 = body.speed = 0.02 * n;
-    way += body.v3 * tuning.dt;
+    body.surfaceSpeed = body.speed = 0.02 * n;
+    way += body.surfaceSpeed * tuning.dt;
     phase = reference::wheelPhase(tuning, poses.stride, body, phase);
     EXPECT_GE(phase, 0);
     EXPECT_LT(phase, 1);
   }
   EXPECT_NEAR(phase, way / poses.stride - std::floor(way / poses.stride), 1e-12);
-  body.v3 = body.speed = 0;
+  body.surfaceSpeed = body.speed = 0;
   EXPECT_EQ(reference::wheelPhase(tuning, poses.stride, body, phase), phase);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 class Loop : public testing::Test {
  protected:
-  Loop() { body.v3 = body.speed = 1; }
+  Loop() { body.surfaceSpeed = body.speed = 1; }
   reference::Gait gaitAt(double phase) const {
     reference::Gait gait = reference::loopGait(tuning, 2, body, phase).gait;
     gait.phase = phase;
@@ -40,7 +40,7 @@ TEST_F(Loop, stanceIsStraightUniformAndAsFastAsTheBody) {
   for (double phase = step; phase < stanceShare(); phase += step) {
     const reference::LoopFoot before = footAt(phase - step), now = footAt(phase);
     EXPECT_EQ(now.foot.progress, 1);
-    EXPECT_NEAR(now.foot.target.z - before.foot.target.z, -body.v3 * step * cycle, 1e-12);
+    EXPECT_NEAR(now.foot.target.z - before.foot.target.z, -body.surfaceSpeed * step * cycle, 1e-12);
     EXPECT_NEAR(now.foot.target.x, home.x, 1e-12);
     EXPECT_NEAR(now.foot.target.y, home.y, 1e-12);
   }
@@ -64,7 +64,7 @@ TEST_F(Loop, swingRisesByTheStepHeightAndLessWhenSlow) {
   const double middle = 1 - (1 - stanceShare()) / 2;
   EXPECT_NEAR(footAt(middle).foot.target.y, tuning.stepHeight, 1e-9);
   EXPECT_NEAR(footAt(middle).foot.target.z, creature.limbs[0].home.z, 1e-9);
-  body.v3 = body.speed = 0.02;
+  body.surfaceSpeed = body.speed = 0.02;
   EXPECT_NEAR(footAt(1 - (1 - stanceShare()) / 2).foot.target.y, 0.2 * tuning.stepHeight, 1e-9);
 }
 
@@ -114,12 +114,12 @@ TEST_F(Loop, blindBodyLiesOnTheGroundBelowItsHomes) {
   const auto slope = [](double x, double z) { return 0.3 * x - 0.2 * z; };
   terrain = field(129, 0.5f, slope);
   heights = validation::heightsOf(terrain, parametersFor(terrain));
-  body.v3 = body.speed = 0;
+  body.surfaceSpeed = body.speed = 0;
   for (int n = 0; n < 240; ++n) body = reference::blindBody(tuning, heights, creature, body, {0, 0}).body;
   const glm::dvec3 up = body.orientation * glm::dvec3(0, 1, 0);
   EXPECT_NEAR(glm::length(up - glm::normalize(glm::dvec3(-0.3, 1, 0.2))), 0, 1e-3);
   EXPECT_NEAR(body.y, slope(0.5, 0.5), 1e-2);
-  EXPECT_EQ(body.kappa, 1);
+  EXPECT_EQ(body.follow, 1);
 }
 
 TEST_F(Loop, blindBodyWaitsForNobody) {

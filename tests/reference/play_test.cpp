@@ -36,7 +36,7 @@ class Clip : public testing::Test {
   }
   reference::ClipResult tick(double speed, const Play& play) const {
     reference::AgentBody body;
-    body.v3 = speed;
+    body.surfaceSpeed = speed;
     return reference::clip(tuning, table, body, play);
   }
   // What is played after a tick at this speed.
@@ -57,7 +57,7 @@ TEST_F(Clip, runsAsFastAsTheBodyUpToABound) {
 TEST_F(Clip, turningMovesFeetToo) {
   tuning.homeRadius = 0.7;
   reference::AgentBody body;
-  body.v3 = 0.3;
+  body.surfaceSpeed = 0.3;
   body.turnRate = -1;
   EXPECT_DOUBLE_EQ(reference::clip(tuning, table, body, playing(walk, 0)).play.to.rate, 1);
 }

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "reference_herd.h"
 #include "crowd/controller.h"
+#include "reference_herd.h"
 #include "skitter/records.h"
 #include "validation/convert.h"
 
@@ -55,7 +55,7 @@ class SleepersRecord : public testing::TestWithParam<Record> {
       fill(state.start, legs, shared::startStride(bones));
       fill(state.fix, legs * bones, shared::FIX_STRIDE);
     }
-    if (controller == Controller::pose) fill(state.spring, legs, shared::chainStride(bones));
+    if (controller == Controller::keyPoses) fill(state.spring, legs, shared::chainStride(bones));
     for (size_t agent = 0; agent < agents; ++agent) {
       validation::putGoal(state, agent, {});
       validation::putSteer(state, agent, {0, 0}, true);
@@ -140,13 +140,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Record{"plantedTip", Controller::planted, &HerdState::tip, "ik", 8},
                     Record{"plantedFix", Controller::planted, &HerdState::fix, "ik", 8},
                     Record{"plantedPose", Controller::planted, &HerdState::pose, "pose", 1},
-                    Record{"poseBody", Controller::pose, &HerdState::body, "body", 1},
-                    Record{"poseGait", Controller::pose, &HerdState::gait, "gait", 1},
-                    Record{"poseFoot", Controller::pose, &HerdState::foot, "swing", 8},
-                    Record{"poseChain", Controller::pose, &HerdState::chain, "swing", 8},
-                    Record{"poseTip", Controller::pose, &HerdState::tip, "swing", 8},
-                    Record{"poseSpring", Controller::pose, &HerdState::spring, "swing", 8},
-                    Record{"posePose", Controller::pose, &HerdState::pose, "pose", 1}),
+                    Record{"keyPosesBody", Controller::keyPoses, &HerdState::body, "body", 1},
+                    Record{"keyPosesGait", Controller::keyPoses, &HerdState::gait, "gait", 1},
+                    Record{"keyPosesFoot", Controller::keyPoses, &HerdState::foot, "swing", 8},
+                    Record{"keyPosesChain", Controller::keyPoses, &HerdState::chain, "swing", 8},
+                    Record{"keyPosesTip", Controller::keyPoses, &HerdState::tip, "swing", 8},
+                    Record{"keyPosesSpring", Controller::keyPoses, &HerdState::spring, "swing", 8},
+                    Record{"keyPosesPose", Controller::keyPoses, &HerdState::pose, "pose", 1}),
     [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace

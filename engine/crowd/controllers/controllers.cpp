@@ -12,7 +12,7 @@ const ControllerStages& controllerStages(Controller controller) {
       return clipController;
     case Controller::planted:
       return plantedController;
-    case Controller::pose:
+    case Controller::keyPoses:
       return keyPoseController;
     case Controller::adaptive:
       break;

@@ -4,10 +4,10 @@
 #include "embedded/body_gait_comp_texel.h"
 #include "embedded/gait_comp_storage.h"
 #include "embedded/gait_comp_texel.h"
+#include "embedded/gait_key_poses_comp_storage.h"
+#include "embedded/gait_key_poses_comp_texel.h"
 #include "embedded/gait_loop_comp_storage.h"
 #include "embedded/gait_loop_comp_texel.h"
-#include "embedded/gait_pose_comp_storage.h"
-#include "embedded/gait_pose_comp_texel.h"
 #include "embedded/navigate_body_gait_comp_storage.h"
 #include "embedded/navigate_body_gait_comp_texel.h"
 #include "shared/bindings.h"
@@ -93,7 +93,7 @@ Stage keyPoseGaitStage() {
   using namespace shared;
   using enum gpu::BindingKind;
   return {StageId::gait,
-          {embedded::gait_pose_comp_texel(), embedded::gait_pose_comp_storage()},
+          {embedded::gait_key_poses_comp_texel(), embedded::gait_key_poses_comp_storage()},
           {{BINDING_PARAMETERS, uniform},
            {BINDING_BODY, load4},
            {BINDING_GAIT, load4},

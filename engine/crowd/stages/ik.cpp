@@ -50,7 +50,7 @@ void specialise(const StageNeeds& needs, StageKernels& kernels) {
     info.constants.push_back(constant);
   // Without a polish every leg would be listed.
   if (kind.ik.polish == 0) return;
-  addRest(kernels);
+  addListed(kernels);
   // Where texel buffers are quicker loads are dear, and choosing is not.
   if (needs.context.texelLoads() && addRigBones(kind, info)) {
     addRigLegs(kind, info);

@@ -36,7 +36,7 @@ Stage clipPoseStage() {
            {BINDING_COUNTERS, store},
            {BINDING_POSE_OUT, store}},
           Stage::Over::joints,
-          [](const StageNeeds&, StageKernels& kernels) { addRest(kernels); },
+          [](const StageNeeds&, StageKernels& kernels) { addListed(kernels); },
           COUNTER_DISPATCH_X};
 }
 

@@ -3,12 +3,12 @@
 #include "embedded/swing_clip_comp_texel.h"
 #include "embedded/swing_comp_storage.h"
 #include "embedded/swing_comp_texel.h"
+#include "embedded/swing_key_poses_comp_storage.h"
+#include "embedded/swing_key_poses_comp_texel.h"
 #include "embedded/swing_loop_comp_storage.h"
 #include "embedded/swing_loop_comp_texel.h"
 #include "embedded/swing_planted_comp_storage.h"
 #include "embedded/swing_planted_comp_texel.h"
-#include "embedded/swing_pose_comp_storage.h"
-#include "embedded/swing_pose_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -88,7 +88,7 @@ Stage keyPoseSwingStage() {
   using namespace shared;
   using enum gpu::BindingKind;
   return {StageId::swing,
-          {embedded::swing_pose_comp_texel(), embedded::swing_pose_comp_storage()},
+          {embedded::swing_key_poses_comp_texel(), embedded::swing_key_poses_comp_storage()},
           {{BINDING_PARAMETERS, uniform},
            {BINDING_RIG, load4},
            {BINDING_BODY, load4},

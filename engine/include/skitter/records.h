@@ -158,7 +158,7 @@ SKITTER_FUNCTION int startStride(int bones) { return chainStride(bones) + 1; }
 //   [0] q, quaternion xyzw, model
 //   [1] move x, y, z (model), unused
 SKITTER_CONST int FIX_STRIDE = 2;
-// spring, per leg, of controller pose, written by swing, which writes its chain too.
+// spring, per leg, of controller key-poses, written by swing, which writes its chain too.
 //   as a chain record, rates of the directions X, Y (1/s)
 // step, of planted, written by swing.
 //   [0] lock x, y, z, tile   [1] offset o x, y, z, 1 if locked
@@ -176,7 +176,7 @@ SKITTER_FUNCTION int poseStride(int legs, int bones, int joints) {
 //   leg, a leg and joint 0 .. bones: place before skinning x, y, z, palette entry
 //   joint, each [0] place of its bone among an agent's (leg * bones + bone), or -1, unused
 
-// key, per leg, of controller pose, constant.
+// key, per leg, of controller key-poses, constant.
 //   [0] phase at which the foot begins to stand, share of the cycle for which it does, unused x 2
 //   then directions as in a chain record: of the standing pose, and of each key pose followed by its tangents
 SKITTER_FUNCTION int keyStride(int bones, int keys) { return 1 + (1 + 2 * keys) * chainStride(bones); }

@@ -50,7 +50,7 @@ struct Herd {
   // suit.
   std::vector<std::string> clips;
   std::vector<ClipCut> cuts;          // clips cut out of those of the file
-  uint32_t keys = 4;                  // key poses of controller pose, minKeys to maxKeys
+  uint32_t keys = 4;                  // key poses of controller key-poses, minKeys to maxKeys
   Solver solver = Solver::activeSet;  // one of herdSolvers
   Stepping stepping = Stepping::gait;
   Tuning tuning;

@@ -1,4 +1,4 @@
-#include "cpu_reference/stages/gait_pose.h"
+#include "cpu_reference/stages/gait_key_poses.h"
 
 namespace skitter::reference {
 

@@ -1,4 +1,4 @@
-#include "cpu_reference/stages/swing_pose.h"
+#include "cpu_reference/stages/swing_key_poses.h"
 
 #include "cpu_reference/ik/kinematics.h"
 

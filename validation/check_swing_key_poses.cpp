@@ -1,12 +1,12 @@
-#include "cpu_reference/stages/swing_pose.h"
-#include "cpu_reference/stages/tolerances_pose.h"
+#include "cpu_reference/stages/swing_key_poses.h"
+#include "cpu_reference/stages/tolerances_key_poses.h"
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 
 namespace skitter::validation {
 
-void checkPoseSwing(const Setting& setting, const Moment& moment, Judge& judge) {
+void checkKeyPoseSwing(const Setting& setting, const Moment& moment, Judge& judge) {
   namespace tolerance = reference::tolerance;
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
   const double phase = gaitOf(moment.after, moment.agent).phase;

@@ -1,12 +1,12 @@
-#include "cpu_reference/stages/gait_pose.h"
-#include "cpu_reference/stages/tolerances_pose.h"
+#include "cpu_reference/stages/gait_key_poses.h"
+#include "cpu_reference/stages/tolerances_key_poses.h"
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
 
 namespace skitter::validation {
 
-void checkPoseGait(const Setting& setting, const Moment& moment, Judge& judge) {
+void checkKeyPoseGait(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
   const reference::Gait before = gaitOf(moment.before, moment.agent);
   const reference::Gait got = gaitOf(moment.after, moment.agent);

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "cpu_reference/stages/swing_pose.h"
+#include "cpu_reference/stages/swing_key_poses.h"
 #include "cpu_reference/stages/tolerances.h"
 
-// As tolerances.h, of controller pose.
+// As tolerances.h, of controller key-poses.
 namespace skitter::reference::tolerance {
 
 // v_e (2 roundoff), two products or quotients (4 more), a sum below 2 + what is added, its floor.
