@@ -56,7 +56,7 @@ TEST(Tuning, RangesAreKeptByFilesAndByTheInterface) {
   EXPECT_EQ(inputFault([] {
               sceneWith({{"dutyStill", 0}});
             }),
-            "a.json: herds[0].tuning.dutyStill is 0, expected 0.5 to 0.9");
+            "a.json: herds[0].tuning.dutyStill is 0, expected 0.5 to 0.85");
   for (const TuningInfo& info : allTunings)
     for (const float outside : {std::nextafter(info.least, -1e9f), std::nextafter(info.most, 1e9f)}) {
       const std::string expected =
@@ -105,7 +105,9 @@ TEST(Tuning, RefusesWhatIsNoKeyAndNoNumber) {
               sceneWith({{"stepHeight", "high"}});
             }),
             "a.json: herds[0].tuning.stepHeight is \"high\", expected 0.01 to 1 leg lengths");
-  EXPECT_EQ(inputFault([] { sceneWith({{"stepHeight", 1e300}}); }),
+  EXPECT_EQ(inputFault([] {
+              sceneWith({{"stepHeight", 1e300}});
+            }),
             "a.json: herds[0].tuning.stepHeight is 1e+300, expected 0.01 to 1 leg lengths");
   EXPECT_THAT(inputFault([] { sceneWith(0.2); }),
               HasSubstr("a.json: herds[0].tuning is 0.2, expected an object"));

@@ -179,8 +179,9 @@ TEST(Tuning, FollowsLegLengthAndTick) {
 
 // By name.
 std::map<std::string, float> parametersOf(const Tuning& tuning) {
+  static const Heightfield ground = smallRollingGround();
   const shared::Parameters p =
-      crowd::tuningFor(tuning, scaledSpider(2), crowd::ikPlanFor(Solver::activeSet), rollingGround(), kTick);
+      crowd::tuningFor(tuning, scaledSpider(2), crowd::ikPlanFor(Solver::activeSet), ground, kTick);
   return {
 #define NAMED(name) {#name, p.name},
       PARAMETERS(NAMED)
@@ -216,8 +217,8 @@ TEST(Tuning, EachReachesItsParameterAlone) {
 
 TEST(Tuning, TurnsBackNoFurtherInsideThanAFifthOfTheTerrain) {
   Tuning tuning;
-  tuning.edgeMargin = 50;
-  const Heightfield ground = rollingGround();
+  tuning.edgeMargin = 100;
+  const Heightfield ground = smallRollingGround();
   const shared::Parameters p =
       crowd::tuningFor(tuning, spiderRig(), crowd::ikPlanFor(Solver::activeSet), ground, kTick);
   EXPECT_FLOAT_EQ(p.edgeMargin, 0.2f * ground.extentX());
@@ -229,7 +230,8 @@ using TuningTest = GpuTest;
 double liftOf(Device& device, const Tuning& tuning) {
   Scene scene = sceneOf(8);
   scene.herds[0].tuning = tuning;
-  Crowd crowd(device, flatGround(), scene, CrowdOptions{.feet = true});
+  const Heightfield ground = flatGround();
+  Crowd crowd(device, ground, scene, CrowdOptions{.feet = true});
   const auto legs = static_cast<size_t>(crowd.rig(0).legCount());
   std::vector<double> highest(8 * legs, -1e9);
   simulate(device, crowd, 60);
@@ -242,7 +244,7 @@ double liftOf(Device& device, const Tuning& tuning) {
     }
   }
   double sum = 0;
-  for (const double each : highest) sum += each - flatGround().at(0, 0);
+  for (const double each : highest) sum += each - ground.at(0, 0);
   return sum / static_cast<double>(highest.size());
 }
 
@@ -269,6 +271,50 @@ TEST_F(TuningTest, ATunedHerdAgreesWithTheReference) {
   Crowd crowd(device(), rollingGround(), scene);
   EXPECT_EQ(implOf(crowd).kinds.size(), 2u);
   for (const auto& herd : replayAll(device(), crowd, rollingGround(), 120)) expectAllPass(herd);
+}
+
+// Moves what is in order with `moved`, so that it stays so.
+void putInOrder(float Tuning::*moved, Tuning& tuning) {
+  for (const TuningOrder& order : allTuningOrders) {
+    float &less = tuning.*order.lessMember, &more = tuning.*order.moreMember;
+    if (more - less >= order.apart) continue;
+    if (order.lessMember == moved)
+      more = less + order.apart;
+    else
+      less = more - order.apart;
+  }
+}
+
+TEST_F(TuningTest, EndsOfRangesAgreeWithTheReference) {
+  Herd herd;
+  herd.agents = 8;
+  // They turn, walk, slow down and stand.
+  herd.goal = {.kind = Goal::Kind::point, .target = {0, 2}, .speed = 1.5f};
+  herd.spawn = {.kind = Spawn::Kind::grid, .spacing = 2, .centre = {0, 0}, .heading = 2.5f};
+  // Each herd has a sixth of the parameters at their least, another sixth at their most, so that six herds
+  // have had both ends of all.
+  Scene scene = sceneOf(0);
+  scene.herds.assign(6, herd);
+  for (size_t h = 0; h < scene.herds.size(); ++h) {
+    Tuning& tuning = scene.herds[h].tuning;
+    for (size_t i = 0; i < allTunings.size(); ++i) {
+      const TuningInfo& info = allTunings[i];
+      if ((i + h) % 3 != 0) continue;
+      tuning.*info.member = (i + h) % 6 == 0 ? info.least : info.most;
+      putInOrder(info.member, tuning);
+    }
+  }
+  const Heightfield ground = rollingGround();
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    for (Herd& each : scene.herds) each.controller = controller;
+    Crowd crowd(device(), ground, scene);
+    const auto results = replayAll(device(), crowd, ground, 90);
+    for (size_t h = 0; h < results.size(); ++h) {
+      SCOPED_TRACE(h);
+      expectAllPass(results[h]);
+    }
+  }
 }
 
 TEST_F(TuningTest, ACrowdRefusesWhatIsOutOfRange) {

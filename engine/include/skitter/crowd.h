@@ -136,9 +136,9 @@ struct StageTime {
 class Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
-  // cannot be (an unknown rig or controller, more than 100 herds that differ, legs of an adaptive herd above
-  // 100 m, a terrain that reaches beyond 4 km from the origin) and, before any agent is made, Error(device)
-  // when memory does not suffice (as DeviceLimits::availableBytes, but now).
+  // cannot be (an unknown rig or controller, tuning out of its range, more than 100 herds that differ, legs
+  // of an adaptive herd above 100 m, a terrain that reaches beyond 4 km from the origin) and, before any
+  // agent is made, Error(device) when memory does not suffice (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // With rigs that the caller made, one a herd, in place of those that the scene names.
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,

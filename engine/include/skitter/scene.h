@@ -53,7 +53,7 @@ struct Herd {
   uint32_t keys = 4;                  // key poses of controller key-poses, minKeys to maxKeys
   Solver solver = Solver::activeSet;  // one of herdSolvers
   Stepping stepping = Stepping::gait;
-  Tuning tuning;
+  Tuning tuning;  // docs/tuning.md
   uint32_t agents = 1000;
   Spawn spawn;
   Goal goal;

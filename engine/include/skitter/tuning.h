@@ -4,13 +4,14 @@
 #define SKITTER_TUNING_H
 
 // ROW(X, place, number, stage, name, unit, usual, least, most, does, breaks)
-//   X       whatever the caller of the table passes on to ROW
-//   place   where shaders find it. KNOWN: specialisation constant `number` (a software device pays
-//           instructions for a uniform). UNIFORM: the uniform block. HOST: nowhere, the host makes another
-//           parameter of it.
-//   unit    a TuningUnit; a herd of larger creatures with the same tuning moves in the same way
-//   usual, least, most   the default and the range
-//   breaks  what goes wrong near the ends of the range, or why the range ends there
+//   X       is passed on to every ROW.
+//   place   says where shaders find the parameter. KNOWN: specialisation constant `number`, since a uniform
+//           costs a software device instructions. UNIFORM: the uniform block. HOST: nowhere; the host makes
+//           another parameter of it.
+//   stage   the stage that uses it.
+//   unit    a TuningUnit.
+//   usual, least, most   the default and the range. `skitter validate` passes at both ends.
+//   breaks  the reason for the range: the fault that shows toward each end.
 // clang-format off
 #define SKITTER_TUNING(ROW, X) \
   ROW(X, UNIFORM, _, navigate, edgeMargin, legLengths, 2, 0.5, 100, \
@@ -39,13 +40,13 @@
       "less: the body creeps; more: it stops in one jerk") \
   ROW(X, KNOWN, 10, body, stretchStop, reaches, 1, 0.6, 1.05, \
       "stretch at which a planted leg stops the body", \
-      "more: a planted foot is torn off the ground") \
+      "less: the body hardly moves; more: a planted foot is torn off the ground") \
   ROW(X, KNOWN, 11, body, errorStop, reaches, 0.02, 0.002, 1, \
       "miss of a planted foot that stops the body", \
       "more: feet slide") \
   ROW(X, KNOWN, 12, body, followLeast, number, 0.1, 0.01, 1, \
       "share of its speed that a body keeps while it waits for its feet", \
-      "0: a body whose feet find no hold stands before a wall for ever; 1: it never waits, and feet slide") \
+      "less: a body whose feet find no hold stands before a wall for ever; more: it does not wait, and feet slide") \
   ROW(X, HOST, _, body, heightTime, seconds, 0.1, 0.02, 2, \
       "time in which the body's height follows the ground", \
       "less: it bounces over every foothold; more: it lags in dips") \
@@ -76,36 +77,36 @@
   ROW(X, KNOWN, 21, gait, halfStrideMax, legLengths, 0.3, 0.04, 0.5, \
       "half of the longest stride", \
       "more: the legs at the sides leave their reach") \
-  ROW(X, KNOWN, 22, gait, dutyStill, number, 0.75, 0.5, 0.9, \
+  ROW(X, KNOWN, 22, gait, dutyStill, number, 0.75, 0.5, 0.85, \
       "share of a cycle in which a foot stands, at rest", \
-      "less: neighbours have no time to take turns") \
+      "less: neighbours have no time to take turns; more: the body is faster than its feet, and legs cross") \
   ROW(X, KNOWN, 23, gait, dutyGain, secondsPerLegLength, 0.05, 0, 1, \
       "fall of that share with speed", \
       "more: a walk looks like a run") \
-  ROW(X, KNOWN, 24, gait, dutyLeast, number, 0.55, 0.5, 0.9, \
+  ROW(X, KNOWN, 24, gait, dutyLeast, number, 0.55, 0.5, 0.85, \
       "least share of a cycle in which a foot stands", \
-      "less: neighbours have no time to take turns") \
+      "less: neighbours have no time to take turns; more: the body is faster than its feet, and legs cross") \
   ROW(X, KNOWN, 25, gait, lagShare, number, 1.2, 0, 1.5, \
       "how far the lifts of a group spread; at 1, the last leg lands as the next group lifts", \
       "more: neighbours wait for each other") \
-  ROW(X, KNOWN, 26, gait, swingStill, seconds, 0.35, 0.05, 2, \
+  ROW(X, KNOWN, 26, gait, swingStill, seconds, 0.35, 0.05, 1, \
       "time of a step at rest", \
-      "less: feet flick; more: the body waits for its feet") \
+      "less: feet flick; more: the body outruns its feet, whose targets leave their reach") \
   ROW(X, KNOWN, 27, gait, swingSpeed, legLengthsPerSecond, 1.7, 0.2, 100, \
       "speed at which a step takes half of that time", \
-      "less: feet flick; more: the body waits for its feet") \
+      "less: feet flick; more: the body outruns its feet") \
   ROW(X, KNOWN, 28, gait, cycleMax, seconds, 1.2, 0.1, 5, \
       "longest cycle", \
       "more: a standing leg reacts too late to a start") \
-  ROW(X, KNOWN, 29, gait, windowSlack, number, 1.1, 1, 3, \
+  ROW(X, KNOWN, 29, gait, windowSlack, number, 1.1, 1, 2, \
       "least time between the lifts of two groups, in steps", \
-      "less: the landing of a leg delays its neighbours; more: the legs are slow") \
+      "less: the landing of a leg delays its neighbours; more: the body outruns its feet") \
   ROW(X, KNOWN, 30, gait, windowOpen, number, 0.5, 0.1, 1, \
       "share of a group's turn in which its legs may lift", \
       "less: legs miss their turn; more: late lifts disturb the rhythm") \
-  ROW(X, KNOWN, 31, gait, liftShare, halfStrides, 0.35, 0.05, 1, \
+  ROW(X, KNOWN, 31, gait, liftShare, halfStrides, 0.35, 0.05, 0.8, \
       "distance of a foot from home at which it wants to lift", \
-      "less: feet fidget at low speed") \
+      "less: feet fidget at low speed; more: legs lift too late, and feet slide") \
   ROW(X, KNOWN, 32, gait, stretchLift, reaches, 0.95, 0.6, 1, \
       "stretch beyond which a foot must lift", \
       "less: legs on steep ground never rest") \
@@ -133,16 +134,16 @@
   ROW(X, KNOWN, 39, gait, groundTolerance, legLengths, 0.02, 0.005, 0.5, \
       "movement of the ground under a foot that makes it step", \
       "less: rounding of heights far from 0 lifts feet; more: feet hang in the air after an edit") \
-  ROW(X, KNOWN, 40, foothold, reachMost, reaches, 0.95, 0.5, 0.98, \
+  ROW(X, KNOWN, 40, foothold, reachMost, reaches, 0.95, 0.6, 0.98, \
       "longest distance of a foothold from the leg's root", \
-      "more: the solver converges slowly, and feet miss") \
-  ROW(X, KNOWN, 41, foothold, reachLeast, reaches, 0.3, 0.1, 0.8, \
+      "less: steps are short, and legs cross; more: the solver converges slowly, and feet miss") \
+  ROW(X, KNOWN, 41, foothold, reachLeast, reaches, 0.3, 0.1, 0.6, \
       "shortest distance of a foothold from the leg's root", \
-      "less: legs fold beyond their limits; more: no foothold fits") \
-  ROW(X, KNOWN, 42, foothold, reachComfort, reaches, 0.85, 0.3, 1, \
+      "less: legs fold beyond their limits; more: no foothold fits, and feet miss the ground") \
+  ROW(X, KNOWN, 42, foothold, reachComfort, reaches, 0.85, 0.5, 1, \
       "distance from which a foothold costs", \
-      "less: steps are short") \
-  ROW(X, KNOWN, 43, foothold, slopeLeast, number, 0.35, 0, 0.95, \
+      "less: steps are short, and legs cross") \
+  ROW(X, KNOWN, 43, foothold, slopeLeast, number, 0.35, 0, 0.9, \
       "least cosine between a foothold's normal and the body's up axis", \
       "less: feet stand on walls; more: no foothold fits on rough ground") \
   ROW(X, KNOWN, 44, foothold, slopeWeight, number, 0.05, 0, 2, \
@@ -184,17 +185,17 @@
   ROW(X, HOST, _, planted, plantTime, seconds, 0.08, 0.01, 1, \
       "time in which a lifted foot returns to its clip", \
       "less: it snaps; more: it lands off the clip's place") \
-  ROW(X, UNIFORM, _, pose, poseWalk, legLengthsPerSecond, 0.1, 0.01, 5, \
+  ROW(X, UNIFORM, _, key-poses, poseWalk, legLengthsPerSecond, 0.1, 0.01, 5, \
       "speed from which the key poses are reached in full", \
       "more: the first steps are too short") \
-  ROW(X, UNIFORM, _, pose, springFrequency, radiansPerSecond, 45, 5, 200, \
+  ROW(X, UNIFORM, _, key-poses, springFrequency, radiansPerSecond, 45, 5, 200, \
       "speed of the springs of the joints", \
       "less: poses soften; more: the keys show") \
-  ROW(X, UNIFORM, _, pose, springDamping, number, 0.70710678, 0.1, 0.95, \
+  ROW(X, UNIFORM, _, key-poses, springDamping, number, 0.70710678, 0.1, 0.95, \
       "damping of the springs; 1 is critical", \
       "less: joints swing past their poses")
 
-// ROW(X, less, more, apart, why): `more` must exceed `less` by at least `apart`.
+// Pairs in order. ROW(X, less, more, apart, why): `more` must exceed `less` by at least `apart`.
 #define SKITTER_TUNING_ORDER(ROW, X) \
   ROW(X, stretchSlow, stretchStop, 0.02, "the body slows down between them") \
   ROW(X, halfStrideStill, halfStrideMax, 0, "a stride lies between them") \
@@ -260,11 +261,11 @@ constexpr const char* nameOf(TuningUnit unit) {
   return names[static_cast<size_t>(unit)];
 }
 
-// What a parameter is; docs/tuning.md shows all.
+// The row of a parameter.
 struct TuningInfo {
   const char* name;
   float Tuning::*member;
-  const char* stage;  // that uses it
+  const char* stage;
   TuningUnit unit;
   float usual, least, most;  // default and range
   const char* does;
@@ -285,13 +286,13 @@ inline constexpr std::array allTunings = {
 #undef SKITTER_INFO
 };
 
-// Two parameters of which one must exceed the other.
+// Two parameters in order: `more` must exceed `less` by at least `apart`.
 struct TuningOrder {
   const char* less;
   const char* more;
   float Tuning::*lessMember;
   float Tuning::*moreMember;
-  float apart;  // by so much at least
+  float apart;
   const char* why;
 };
 inline constexpr std::array allTuningOrders = {
