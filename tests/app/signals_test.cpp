@@ -77,7 +77,9 @@ constexpr int kFollowed = 7;
 // A file that grows beyond the limit of its size.
 [[noreturn]] void writeTooMuch(const char* file) {
   catchSignals();
-  const rlimit limit{1000, RLIM_INFINITY};
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  limit.rlim_cur = 1000;
   setrlimit(RLIMIT_FSIZE, &limit);
   const int out = open(file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
   const std::vector<char> much(1001);

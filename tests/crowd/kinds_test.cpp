@@ -197,6 +197,16 @@ TEST_F(KindsTest, AThousandCostWhatOneDoes) {
   EXPECT_EQ(crowd.memoryBytes(), one.memoryBytes() + 1023 * 336u);
 }
 
+// However many herds come before a page's own.
+TEST_F(KindsTest, APageSearchesItsOwnHerdsAlone) {
+  Scene scene = sceneOf(8);
+  scene.herds.resize(16, scene.herds[0]);
+  const Crowd crowd(device(), flatGround(), scene, CrowdOptions{.pageAgents = 16});
+  ASSERT_EQ(implOf(crowd).kinds.size(), 1u);
+  EXPECT_EQ(implOf(crowd).kinds[0].pages.size(), 8u);
+  EXPECT_EQ(implOf(crowd).kinds[0].herdSteps, 1);
+}
+
 TEST_F(KindsTest, SharesOfMemoryAreTheWhole) {
   const Scene scene = severalHerds();
   const Crowd crowd(device(), rollingGround(), scene, CrowdOptions{.pageAgents = 24});
