@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
+#include "base/split_mix.h"
 #include "files.h"
 #include "skitter/error.h"
 
@@ -189,6 +191,175 @@ TEST(Scene, knowsEveryNameOfAHerdsChoices) {
   EXPECT_FALSE(controllerNamed("magic"));
   EXPECT_FALSE(controllerNamed(""));
   EXPECT_EQ(namesOf(allSteppings), "gait, reach");
+}
+
+// Scenes of random values. Bindings name all members: a new one does not compile until it is drawn here, and
+// then fails until the scene's keys have it.
+class RandomScenes {
+ public:
+  explicit RandomScenes(uint64_t seed) : random_(seed) {}
+
+  Scene scene() {
+    Scene made;
+    auto& [name, terrain, herds, camera, seed] = made;
+    name = text();
+    terrain = coin() ? decltype(Scene::terrain)(noise()) : terrainFile();
+    herds.resize(whole(0, 3));
+    for (Herd& each : herds) each = herd();
+    camera = this->camera();
+    seed = random_();
+    return made;
+  }
+
+ private:
+  bool coin() { return whole(0, 1) == 1; }
+  uint64_t whole(uint64_t least, uint64_t most) { return least + random_() % (most - least + 1); }
+  float real(double least, double most) {
+    return static_cast<float>(least + (most - least) * random_.uniform());
+  }
+  std::string text() { return fmt::format("\"n\xc3\xa4me\" {}\\", random_()); }
+  glm::vec2 place() { return {real(-4096, 4096), real(-4096, 4096)}; }
+  glm::vec3 point() { return {real(-1e5, 1e5), real(-1e5, 1e5), real(-1e5, 1e5)}; }
+  template <typename Enum>
+  Enum one(std::initializer_list<Enum> all) {
+    return all.begin()[whole(0, all.size() - 1)];
+  }
+  template <typename Enum, size_t Count>
+  Enum one(const std::array<Enum, Count>& all) {
+    return all[whole(0, Count - 1)];
+  }
+  template <typename Value>
+  void maybe(std::optional<Value>& value, double least, double most) {
+    if (coin()) value = static_cast<Value>(real(least, most));
+  }
+
+  TerrainNoise noise() {
+    TerrainNoise made;
+    auto& [columns, rows, spacing, amplitude, wavelength, octaves, gain, seed] = made;
+    columns = static_cast<uint32_t>(whole(2, 16384));
+    rows = static_cast<uint32_t>(whole(2, 16384));
+    spacing = real(0.01, 10);
+    amplitude = real(0, 100);
+    wavelength = real(1, 100);
+    octaves = static_cast<int>(whole(1, 16));
+    gain = real(0, 1);
+    seed = random_();
+    return made;
+  }
+  TerrainFile terrainFile() {
+    TerrainFile made;
+    auto& [file, units] = made;
+    auto& [spacingX, spacingZ, least, most, scale, exaggeration, columns, rows, voidValue] = units;
+    file = "/heights/" + text();
+    maybe(spacingX, 0.1, 10);
+    maybe(spacingZ, 0.1, 10);
+    maybe(least, -100, 0);
+    maybe(most, 0, 100);
+    maybe(scale, 0.1, 10);
+    maybe(exaggeration, 0, 10);
+    maybe(columns, 2, 16384);
+    maybe(rows, 2, 16384);
+    if (coin()) voidValue = -std::numeric_limits<double>::max() * random_.uniform();
+    return made;
+  }
+  ClipCut cut() {
+    ClipCut made;
+    auto& [clip, name, from, to] = made;
+    if (coin()) clip = text();
+    name = text();
+    from = random_.uniform();
+    to = 1 + random_.uniform();
+    return made;
+  }
+  Tuning tuning() {
+    Tuning made;
+    for (const TuningInfo& info : allTunings) {
+      made.*info.member = std::clamp(real(info.least, info.most), info.least, info.most);
+      try {
+        checkTuning(made, "");
+      } catch (const Error&) {
+        made.*info.member = info.usual;  // it must be less or more than another
+      }
+    }
+    return made;
+  }
+  Herd herd() {
+    Herd made;
+    auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = made;
+    if (coin()) rig = "/rigs/" + text();
+    controller = one(allControllers);
+    clips.resize(whole(0, 2));
+    for (std::string& clip : clips) clip = text();
+    cuts.resize(whole(0, 2));
+    for (ClipCut& each : cuts) each = cut();
+    keys = static_cast<uint32_t>(whole(Herd::minKeys, Herd::maxKeys));
+    solver = one(herdSolvers);
+    stepping = one(allSteppings);
+    tuning = this->tuning();
+    agents = static_cast<uint32_t>(whole(0, 1000000));
+    auto& [spawnKind, spacing, centre, heading] = spawn;
+    spawnKind = one({Spawn::Kind::lanes, Spawn::Kind::grid});
+    spacing = real(0.1, 10);
+    centre = place();
+    heading = real(-10, 10);
+    auto& [goalKind, target, speed] = goal;
+    goalKind = one({Goal::Kind::cross, Goal::Kind::point, Goal::Kind::none});
+    target = place();
+    speed = real(0, 10);
+    return made;
+  }
+  Camera camera() {
+    Camera made;
+    auto& [kind, position, target, distance, fieldOfView] = made;
+    kind = one({Camera::Kind::follow, Camera::Kind::fixed});
+    position = point();
+    target = point();
+    distance = real(0.1, 100);
+    fieldOfView = real(0.1, 3);
+    return made;
+  }
+
+  base::SplitMix64 random_;
+};
+
+TEST(Scene, IsReadBackAsItIsWritten) {
+  RandomScenes random(1);
+  for (int i = 0; i < 200; ++i) {
+    const Scene scene = random.scene();
+    const std::string json = sceneJson(scene);
+    EXPECT_TRUE(parseScene(json, "a.json", "elsewhere") == scene) << json;
+  }
+  EXPECT_TRUE(parseScene(sceneJson(builtinScene()), "a.json", "") == builtinScene());
+}
+
+TEST(Scene, IsWrittenWithAbsoluteNamesAndShortNumbers) {
+  Scene scene;
+  scene.herds[0].rig = "models/../beast.glb";
+  scene.herds[0].spawn.spacing = 0.1f;
+  const Scene read = parseScene(sceneJson(scene), "a.json", "elsewhere");
+  EXPECT_EQ(read.herds[0].rig, (std::filesystem::current_path() / "beast.glb").string());
+  EXPECT_THAT(sceneJson(scene), testing::HasSubstr("\"spacing\": 0.1,"));
+}
+
+TEST(Scene, IsNotWrittenWhereItCouldNotBeRead) {
+  const auto faultOf = [](const std::function<void(Scene&)>& spoil) {
+    Scene scene;
+    spoil(scene);
+    return inputFault([&] { sceneJson(scene); });
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(faultOf([&](Scene& scene) { scene.herds[0].goal.speed = nan; }),
+            "built-in: herds[0].goal.speed is nan, expected a number from 0 to 1000");
+  EXPECT_EQ(faultOf([](Scene& scene) { scene.herds[0].keys = 9; }),
+            "built-in: herds[0].keys is 9, expected a whole number from 2 to 8");
+  EXPECT_EQ(faultOf([](Scene& scene) { scene.herds[0].rig = "beast\xff.glb"; }).substr(0, 24),
+            "built-in: herds[0].rig i");
+  EXPECT_EQ(faultOf([](Scene& scene) { scene.terrain = TerrainFile{}; }),
+            "built-in: terrain.file is missing, kind \"file\" needs it");
+  EXPECT_EQ(faultOf([](Scene& scene) {
+              scene.herds[0].cuts.push_back({"walk", "", 0, 1});
+            }),
+            "built-in: herds[0].cuts[0].name is missing");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include "assets/files/file.h"
 #include "assets/files/json.h"
@@ -20,30 +21,45 @@ constexpr double cameraLimit = 1e5;  // metres
 constexpr size_t maxCuts = 64;
 constexpr double maxVoidValue = std::numeric_limits<double>::max();
 
+// Where a scene comes from: what messages call it, and what its file names are relative to.
+struct Source {
+  std::string file;
+  std::filesystem::path folder;
+};
+
+[[noreturn]] void failIn(const std::string& file, const std::string& path, const nlohmann::json& found,
+                         const std::string& expected) {
+  throw inputError(fmt::format("{}: {} is {}, expected {}", file, path, describeJson(found), expected));
+}
+
+// keysOf(fields, object) lists the keys of each object of a scene, once for both directions: a Reader sets
+// the members, a Writer writes them. Bindings name all members, so that a new one does not compile until it
+// is looked at here. checkKeys(object, where) refuses what no single key shows.
+
 // One JSON object: reads its known keys, leaves defaults where a key is missing, and knows which key no one
 // asked for.
-class Fields {
+class Reader {
  public:
-  Fields(const nlohmann::json& json, std::string file, std::string path)
-      : json_(json), file_(std::move(file)), path_(std::move(path)) {
+  Reader(const nlohmann::json& json, const Source& source, std::string path)
+      : json_(json), source_(source), path_(std::move(path)) {
     if (!json_.is_object()) {
-      throw inputError(fmt::format("{}: {} is {}, expected an object", file_,
+      throw inputError(fmt::format("{}: {} is {}, expected an object", source_.file,
                                    path_.empty() ? "the scene" : path_, describeJson(json_)));
     }
   }
 
-  void read(const char* key, float& value, double least, double most) {
+  void key(const char* key, float& value, double least, double most) {
     if (const auto* json = find(key)) value = static_cast<float>(number(*json, pathOf(key), least, most));
   }
-  void read(const char* key, double& value, double least, double most) {
+  void key(const char* key, double& value, double least, double most) {
     if (const auto* json = find(key)) value = number(*json, pathOf(key), least, most);
   }
   template <typename Number>
-  void read(const char* key, std::optional<Number>& value, double least, double most) {
+  void key(const char* key, std::optional<Number>& value, double least, double most) {
     if (const auto* json = find(key)) value = static_cast<Number>(number(*json, pathOf(key), least, most));
   }
   template <typename Integer>
-  void readInteger(const char* key, Integer& value, uint64_t least, uint64_t most) {
+  void integer(const char* key, Integer& value, uint64_t least, uint64_t most) {
     const auto* json = find(key);
     if (!json) return;
     const bool whole = json->is_number_unsigned();
@@ -52,7 +68,11 @@ class Fields {
     }
     value = static_cast<Integer>(json->get<uint64_t>());
   }
-  void read(const char* key, std::string& value) {
+  template <typename Integer>
+  void integer(const char* key, std::optional<Integer>& value, uint64_t least, uint64_t most) {
+    if (find(key)) integer(key, value.emplace(), least, most);
+  }
+  void key(const char* key, std::string& value) {
     const auto* json = find(key);
     if (!json) return;
     if (!json->is_string() || json->get_ref<const std::string&>().empty()) {
@@ -60,7 +80,17 @@ class Fields {
     }
     value = json->get<std::string>();
   }
-  void read(const char* key, std::vector<std::string>& values) {
+  // A file's name, or `word`, which is none.
+  void file(const char* key, std::string& value, std::string_view word) {
+    this->key(key, value);
+    if (value != word) value = (source_.folder / value).string();
+  }
+  void file(const char* key, std::filesystem::path& value) {
+    std::string name;
+    this->key(key, name);
+    if (!name.empty()) value = source_.folder / name;
+  }
+  void key(const char* key, std::vector<std::string>& values) {
     const auto* json = find(key);
     if (!json) return;
     const bool strings = json->is_array() && std::all_of(json->begin(), json->end(),
@@ -69,7 +99,7 @@ class Fields {
     values = json->get<std::vector<std::string>>();
   }
   template <int Size>
-  void read(const char* key, glm::vec<Size, float>& value, double limit) {
+  void key(const char* key, glm::vec<Size, float>& value, double limit) {
     const auto* json = find(key);
     if (!json) return;
     if (!json->is_array() || json->size() != size_t{Size}) {
@@ -82,7 +112,7 @@ class Fields {
   }
   // The index of the key's string among `names`.
   template <typename Kind>
-  void readKind(const char* key, Kind& value, std::initializer_list<const char*> names) {
+  void kind(const char* key, Kind& value, std::initializer_list<const char*> names) {
     const auto* json = find(key);
     if (!json) return;
     int index = 0;
@@ -96,7 +126,7 @@ class Fields {
     fail(pathOf(key), *json, fmt::format("one of \"{}\"", fmt::join(names, "\", \"")));
   }
   template <typename Enum, size_t Count>
-  void readNamed(const char* key, Enum& value, const std::array<Enum, Count>& all) {
+  void named(const char* key, Enum& value, const std::array<Enum, Count>& all) {
     const auto* json = find(key);
     if (!json) return;
     const auto named = json->is_string() ? enumNamed(all, json->get_ref<const std::string&>()) : std::nullopt;
@@ -104,7 +134,7 @@ class Fields {
     value = *named;
   }
   // checkTuning() checks the range.
-  void read(const TuningInfo& info, Tuning& tuning) {
+  void key(const TuningInfo& info, Tuning& tuning) {
     const auto* json = find(info.name);
     if (!json) return;
     // A number that float cannot hold is outside every range.
@@ -112,6 +142,37 @@ class Fields {
       fail(pathOf(info.name), *json, rangeOf(info));
     tuning.*info.member = json->get<float>();
   }
+  template <typename Object>
+  void object(const char* key, Object& value) {
+    if (const auto* json = find(key)) read(*json, pathOf(key), value);
+  }
+  template <typename Object>
+  void objects(const char* key, std::vector<Object>& values, size_t most, const char* what) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_array() || json->size() > most)
+      fail(pathOf(key), *json, fmt::format("an array of at most {} {}", most, what));
+    values.clear();
+    for (const nlohmann::json& item : *json) {
+      const std::string path = fmt::format("{}[{}]", pathOf(key), values.size());
+      read(item, path, values.emplace_back());
+    }
+  }
+
+  // Call last: every key must have been asked for.
+  void finish() const {
+    for (const auto& [key, value] : json_.items()) {
+      if (known_.count(key) == 0) {
+        throw inputError(fmt::format("{}: {} is no known key, expected one of {}", source_.file,
+                                     pathOf(describeKey(key)), fmt::join(known_, ", ")));
+      }
+    }
+  }
+
+ private:
+  template <typename Object>
+  void read(const nlohmann::json& json, const std::string& path, Object& value) const;
+
   const nlohmann::json* find(const char* key) {
     known_.insert(key);
     const auto found = json_.find(key);
@@ -120,19 +181,8 @@ class Fields {
   std::string pathOf(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   [[noreturn]] void fail(const std::string& path, const nlohmann::json& found,
                          const std::string& expected) const {
-    throw inputError(fmt::format("{}: {} is {}, expected {}", file_, path, describeJson(found), expected));
+    failIn(source_.file, path, found, expected);
   }
-  // Call last: every key must have been asked for.
-  void finish() const {
-    for (const auto& [key, value] : json_.items()) {
-      if (known_.count(key) == 0) {
-        throw inputError(fmt::format("{}: {} is no known key, expected one of {}", file_,
-                                     pathOf(describeKey(key)), fmt::join(known_, ", ")));
-      }
-    }
-  }
-
- private:
   static std::string describeKey(const std::string& key) {
     const std::string quoted = describeJson(key);
     return quoted.substr(1, quoted.size() - 2);
@@ -145,171 +195,257 @@ class Fields {
   }
 
   const nlohmann::json& json_;
-  std::string file_, path_;
+  const Source& source_;
+  std::string path_;
   std::set<std::string> known_;
 };
 
-class SceneReader {
+// The other direction. What a Reader would not read is no less refused: a program may make any scene. Every
+// key is written, so that a scene outlives a change of the defaults; but no empty string, which is what a
+// missing key means.
+class Writer {
  public:
-  SceneReader(std::string file, std::filesystem::path folder)
-      : file_(std::move(file)), folder_(std::move(folder)) {}
+  Writer(const std::string& file, std::string path) : file_(file), path_(std::move(path)) {}
 
-  Scene scene(const nlohmann::json& json) const {
-    Scene scene;
-    Fields fields(json, file_, "");
-    scene.name = std::filesystem::path(file_).stem().string();
-    fields.read("name", scene.name);
-    fields.readInteger("seed", scene.seed, 0, UINT64_MAX);
-    if (const auto* terrain = fields.find("terrain")) readTerrain(*terrain, scene);
-    if (const auto* herds = fields.find("herds")) {
-      if (!herds->is_array() || herds->size() > Scene::maxHerds)
-        fields.fail("herds", *herds, fmt::format("an array of at most {} herds", Scene::maxHerds));
-      scene.herds.clear();
-      for (const auto& herd : *herds) {
-        scene.herds.push_back(readHerd(herd, fmt::format("herds[{}]", scene.herds.size())));
-      }
-    }
-    if (const auto* camera = fields.find("camera")) scene.camera = readCamera(*camera);
-    fields.finish();
-    if (scene.agentCount() > Scene::maxAgents) {
-      throw inputError(fmt::format("{}: herds have {} agents in all, expected at most {}", file_,
-                                   scene.agentCount(), Scene::maxAgents));
-    }
-    return scene;
+  void key(const char* key, const float& value, double least, double most) {
+    json_[key] = number(value, pathOf(key), least, most);
   }
+  void key(const char* key, const double& value, double least, double most) {
+    if (!isWithin(value, least, most)) failRange(pathOf(key), value, least, most);
+    json_[key] = value;
+  }
+  template <typename Number>
+  void key(const char* key, const std::optional<Number>& value, double least, double most) {
+    if (value) this->key(key, *value, least, most);
+  }
+  template <typename Integer>
+  void integer(const char* key, const Integer& value, uint64_t least, uint64_t most) {
+    const auto whole = static_cast<uint64_t>(value);
+    if (whole < least || whole > most)
+      failIn(file_, pathOf(key), value, fmt::format("a whole number from {} to {}", least, most));
+    json_[key] = whole;
+  }
+  template <typename Integer>
+  void integer(const char* key, const std::optional<Integer>& value, uint64_t least, uint64_t most) {
+    if (value) integer(key, *value, least, most);
+  }
+  void key(const char* key, const std::string& value) {
+    if (!value.empty()) json_[key] = text(value, pathOf(key));
+  }
+  void file(const char* key, const std::string& value, std::string_view word) {
+    this->key(key, value == word ? value : std::filesystem::absolute(value).lexically_normal().string());
+  }
+  void file(const char* key, const std::filesystem::path& value) { file(key, value.string(), ""); }
+  void key(const char* key, const std::vector<std::string>& values) {
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    for (const std::string& value : values)
+      array.push_back(text(value, fmt::format("{}[{}]", pathOf(key), array.size())));
+  }
+  template <int Size>
+  void key(const char* key, const glm::vec<Size, float>& value, double limit) {
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    for (int i = 0; i < Size; ++i)
+      array.push_back(number(value[i], fmt::format("{}[{}]", pathOf(key), i), -limit, limit));
+  }
+  template <typename Kind>
+  void kind(const char* key, const Kind& value, std::initializer_list<const char*> names) {
+    json_[key] = names.begin()[static_cast<size_t>(value)];
+  }
+  template <typename Enum, size_t Count>
+  void named(const char* key, const Enum& value, const std::array<Enum, Count>&) {
+    json_[key] = nameOf(value);
+  }
+  void key(const TuningInfo& info, const Tuning& tuning) {
+    this->key(info.name, tuning.*info.member, info.least, info.most);
+  }
+  template <typename Object>
+  void object(const char* key, Object& value) {
+    json_[key] = written(pathOf(key), value);
+  }
+  template <typename Object>
+  void objects(const char* key, std::vector<Object>& values, size_t, const char*) {
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    for (Object& value : values)
+      array.push_back(written(fmt::format("{}[{}]", pathOf(key), array.size()), value));
+  }
+
+  const nlohmann::ordered_json& json() const { return json_; }
 
  private:
-  void readTerrain(const nlohmann::json& json, Scene& scene) const {
-    Fields fields(json, file_, "terrain");
-    enum class Kind { noise, file } kind = Kind::noise;
-    fields.readKind("kind", kind, {"noise", "file"});
-    if (kind == Kind::noise) {
-      TerrainNoise noise;
-      fields.readInteger("columns", noise.columns, minSamples, maxSamples);
-      fields.readInteger("rows", noise.rows, minSamples, maxSamples);
-      fields.read("spacing", noise.spacing, minSpacing, maxSpacing);
-      fields.read("amplitude", noise.amplitude, 0, Scene::maxCoordinate);
-      fields.read("wavelength", noise.wavelength, minSpacing, maxHeightMagnitude);
-      fields.readInteger("octaves", noise.octaves, 1, TerrainNoise::maxOctaves);
-      fields.read("gain", noise.gain, 0, 1);
-      fields.readInteger("seed", noise.seed, 0, UINT64_MAX);
-      scene.terrain = noise;
-    } else {
-      TerrainFile terrain;
-      std::string name;
-      fields.read("file", name);
-      if (name.empty())
-        throw inputError(fmt::format("{}: terrain.file is missing, kind \"file\" needs it", file_));
-      terrain.file = folder_ / name;
-      fields.read("spacingX", terrain.units.spacingX, minSpacing, maxSpacing);
-      fields.read("spacingZ", terrain.units.spacingZ, minSpacing, maxSpacing);
-      fields.read("minHeight", terrain.units.minHeight, -maxHeightMagnitude, maxHeightMagnitude);
-      fields.read("maxHeight", terrain.units.maxHeight, -maxHeightMagnitude, maxHeightMagnitude);
-      fields.read("scale", terrain.units.scale, minScale, maxScale);
-      fields.read("exaggeration", terrain.units.exaggeration, 0, maxExaggeration);
-      fields.read("voidValue", terrain.units.voidValue, -maxVoidValue, maxVoidValue);
-      readSide(fields, "columns", terrain.units.columns);
-      readSide(fields, "rows", terrain.units.rows);
-      scene.terrain = terrain;
+  template <typename Object>
+  nlohmann::ordered_json written(const std::string& path, Object& value) const;
+
+  std::string pathOf(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+  [[noreturn]] void failRange(const std::string& path, double found, double least, double most) const {
+    throw inputError(
+        fmt::format("{}: {} is {}, expected a number from {} to {}", file_, path, found, least, most));
+  }
+  // The shortest decimals that are read as this float.
+  double number(float value, const std::string& path, double least, double most) const {
+    if (!isWithin(value, least, most)) failRange(path, value, least, most);
+    const double shortest = std::stod(fmt::format("{}", value));
+    return static_cast<float>(shortest) == value ? shortest : value;
+  }
+  const std::string& text(const std::string& value, const std::string& path) const {
+    try {
+      nlohmann::json(value).dump();
+    } catch (const nlohmann::json::exception&) {
+      failIn(file_, path, value, "UTF-8, which is all that JSON can hold");
     }
-    fields.finish();
+    return value;
   }
 
-  static void readSide(Fields& fields, const char* key, std::optional<uint32_t>& side) {
-    if (!fields.find(key)) return;
-    fields.readInteger(key, side.emplace(), minSamples, maxSamples);
-  }
-
-  std::vector<ClipCut> readCuts(const nlohmann::json& json, const std::string& path) const {
-    if (!json.is_array() || json.size() > maxCuts)
-      throw inputError(fmt::format("{}: {} is {}, expected an array of at most {} objects", file_, path,
-                                   describeJson(json), maxCuts));
-    std::vector<ClipCut> cuts;
-    for (const nlohmann::json& item : json) {
-      const std::string itemPath = fmt::format("{}[{}]", path, cuts.size());
-      ClipCut cut;
-      Fields fields(item, file_, itemPath);
-      fields.read("clip", cut.clip);
-      fields.read("name", cut.name);
-      fields.read("from", cut.from, 0, Clip::maxSeconds);
-      fields.read("to", cut.to, 0, Clip::maxSeconds);
-      fields.finish();
-      if (cut.name.empty()) throw inputError(fmt::format("{}: {}.name is missing", file_, itemPath));
-      if (!(cut.from < cut.to))
-        throw inputError(
-            fmt::format("{}: {}.to is {}, expected more than from, {}", file_, itemPath, cut.to, cut.from));
-      cuts.push_back(cut);
-    }
-    return cuts;
-  }
-  Herd readHerd(const nlohmann::json& json, const std::string& path) const {
-    Herd herd;
-    Fields fields(json, file_, path);
-    fields.read("rig", herd.rig);
-    if (herd.rig != "spider") herd.rig = (folder_ / herd.rig).string();
-    fields.readNamed("controller", herd.controller, allControllers);
-    fields.read("clips", herd.clips);
-    if (const auto* cuts = fields.find("cuts")) herd.cuts = readCuts(*cuts, path + ".cuts");
-    fields.readInteger("keys", herd.keys, Herd::minKeys, Herd::maxKeys);
-    fields.readNamed("solver", herd.solver, herdSolvers);
-    fields.readNamed("stepping", herd.stepping, allSteppings);
-    if (const auto* tuning = fields.find("tuning")) herd.tuning = readTuning(*tuning, path + ".tuning");
-    fields.readInteger("agents", herd.agents, 0, Scene::maxAgents);
-    if (const auto* spawn = fields.find("spawn")) herd.spawn = readSpawn(*spawn, path + ".spawn");
-    if (const auto* goal = fields.find("goal")) herd.goal = readGoal(*goal, path + ".goal");
-    fields.finish();
-    return herd;
-  }
-
-  Tuning readTuning(const nlohmann::json& json, const std::string& path) const {
-    Tuning tuning;
-    Fields fields(json, file_, path);
-    for (const TuningInfo& info : allTunings) fields.read(info, tuning);
-    fields.finish();
-    checkTuning(tuning, fmt::format("{}: {}", file_, path));
-    return tuning;
-  }
-
-  Spawn readSpawn(const nlohmann::json& json, const std::string& path) const {
-    Spawn spawn;
-    Fields fields(json, file_, path);
-    fields.readKind("kind", spawn.kind, {"lanes", "grid"});
-    fields.read("spacing", spawn.spacing, 0.01, Scene::maxCoordinate);
-    fields.read("centre", spawn.centre, Scene::maxCoordinate);
-    fields.read("heading", spawn.heading, -1000, 1000);
-    fields.finish();
-    return spawn;
-  }
-
-  Goal readGoal(const nlohmann::json& json, const std::string& path) const {
-    Goal goal;
-    Fields fields(json, file_, path);
-    fields.readKind("kind", goal.kind, {"cross", "point", "none"});
-    fields.read("target", goal.target, Scene::maxCoordinate);
-    fields.read("speed", goal.speed, 0, 1000);
-    fields.finish();
-    return goal;
-  }
-
-  Camera readCamera(const nlohmann::json& json) const {
-    Camera camera;
-    Fields fields(json, file_, "camera");
-    fields.readKind("kind", camera.kind, {"follow", "fixed"});
-    fields.read("position", camera.position, cameraLimit);
-    fields.read("target", camera.target, cameraLimit);
-    fields.read("distance", camera.distance, 0.01, cameraLimit);
-    fields.read("fieldOfView", camera.fieldOfView, 0.01, 3.1);
-    fields.finish();
-    if (camera.kind == Camera::Kind::fixed && camera.position == camera.target) {
-      throw inputError(
-          fmt::format("{}: camera.position equals camera.target, a fixed camera needs a direction", file_));
-    }
-    return camera;
-  }
-
-  std::string file_;
-  std::filesystem::path folder_;
+  const std::string& file_;
+  std::string path_;
+  nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
 };
+
+template <class Fields>
+void keysOf(Fields& fields, TerrainNoise& noise) {
+  auto& [columns, rows, spacing, amplitude, wavelength, octaves, gain, seed] = noise;
+  fields.integer("columns", columns, minSamples, maxSamples);
+  fields.integer("rows", rows, minSamples, maxSamples);
+  fields.key("spacing", spacing, minSpacing, maxSpacing);
+  fields.key("amplitude", amplitude, 0, Scene::maxCoordinate);
+  fields.key("wavelength", wavelength, minSpacing, maxHeightMagnitude);
+  fields.integer("octaves", octaves, 1, TerrainNoise::maxOctaves);
+  fields.key("gain", gain, 0, 1);
+  fields.integer("seed", seed, 0, UINT64_MAX);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, TerrainFile& terrain) {
+  auto& [file, units] = terrain;
+  auto& [spacingX, spacingZ, minHeight, maxHeight, scale, exaggeration, columns, rows, voidValue] = units;
+  fields.file("file", file);
+  fields.key("spacingX", spacingX, minSpacing, maxSpacing);
+  fields.key("spacingZ", spacingZ, minSpacing, maxSpacing);
+  fields.key("minHeight", minHeight, -maxHeightMagnitude, maxHeightMagnitude);
+  fields.key("maxHeight", maxHeight, -maxHeightMagnitude, maxHeightMagnitude);
+  fields.key("scale", scale, minScale, maxScale);
+  fields.key("exaggeration", exaggeration, 0, maxExaggeration);
+  fields.key("voidValue", voidValue, -maxVoidValue, maxVoidValue);
+  fields.integer("columns", columns, minSamples, maxSamples);
+  fields.integer("rows", rows, minSamples, maxSamples);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, decltype(Scene::terrain)& terrain) {
+  size_t kind = terrain.index();
+  fields.kind("kind", kind, {"noise", "file"});
+  if (kind != terrain.index()) terrain = TerrainFile{};
+  std::visit([&](auto& each) { keysOf(fields, each); }, terrain);
+}
+void checkKeys(const decltype(Scene::terrain)& terrain, const std::string& file, const std::string& path) {
+  const auto* named = std::get_if<TerrainFile>(&terrain);
+  if (named && named->file.empty())
+    throw inputError(fmt::format("{}: {}.file is missing, kind \"file\" needs it", file, path));
+}
+
+template <class Fields>
+void keysOf(Fields& fields, ClipCut& cut) {
+  auto& [clip, name, from, to] = cut;
+  fields.key("clip", clip);
+  fields.key("name", name);
+  fields.key("from", from, 0, Clip::maxSeconds);
+  fields.key("to", to, 0, Clip::maxSeconds);
+}
+void checkKeys(const ClipCut& cut, const std::string& file, const std::string& path) {
+  if (cut.name.empty()) throw inputError(fmt::format("{}: {}.name is missing", file, path));
+  if (!(cut.from < cut.to))
+    throw inputError(
+        fmt::format("{}: {}.to is {}, expected more than from, {}", file, path, cut.to, cut.from));
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Tuning& tuning) {
+  for (const TuningInfo& info : allTunings) fields.key(info, tuning);
+}
+void checkKeys(const Tuning& tuning, const std::string& file, const std::string& path) {
+  checkTuning(tuning, fmt::format("{}: {}", file, path));
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Spawn& spawn) {
+  auto& [kind, spacing, centre, heading] = spawn;
+  fields.kind("kind", kind, {"lanes", "grid"});
+  fields.key("spacing", spacing, 0.01, Scene::maxCoordinate);
+  fields.key("centre", centre, Scene::maxCoordinate);
+  fields.key("heading", heading, -1000, 1000);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Goal& goal) {
+  auto& [kind, target, speed] = goal;
+  fields.kind("kind", kind, {"cross", "point", "none"});
+  fields.key("target", target, Scene::maxCoordinate);
+  fields.key("speed", speed, 0, 1000);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Herd& herd) {
+  auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
+  fields.file("rig", rig, "spider");
+  fields.named("controller", controller, allControllers);
+  fields.key("clips", clips);
+  fields.objects("cuts", cuts, maxCuts, "objects");
+  fields.integer("keys", keys, Herd::minKeys, Herd::maxKeys);
+  fields.named("solver", solver, herdSolvers);
+  fields.named("stepping", stepping, allSteppings);
+  fields.object("tuning", tuning);
+  fields.integer("agents", agents, 0, Scene::maxAgents);
+  fields.object("spawn", spawn);
+  fields.object("goal", goal);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Camera& camera) {
+  auto& [kind, position, target, distance, fieldOfView] = camera;
+  fields.kind("kind", kind, {"follow", "fixed"});
+  fields.key("position", position, cameraLimit);
+  fields.key("target", target, cameraLimit);
+  fields.key("distance", distance, 0.01, cameraLimit);
+  fields.key("fieldOfView", fieldOfView, 0.01, 3.1);
+}
+void checkKeys(const Camera& camera, const std::string& file, const std::string& path) {
+  if (camera.kind == Camera::Kind::fixed && camera.position == camera.target)
+    throw inputError(
+        fmt::format("{}: {}.position equals {}.target, a fixed camera needs a direction", file, path, path));
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Scene& scene) {
+  auto& [name, terrain, herds, camera, seed] = scene;
+  fields.key("name", name);
+  fields.integer("seed", seed, 0, UINT64_MAX);
+  fields.object("terrain", terrain);
+  fields.objects("herds", herds, Scene::maxHerds, "herds");
+  fields.object("camera", camera);
+}
+void checkKeys(const Scene& scene, const std::string& file, const std::string&) {
+  if (scene.agentCount() > Scene::maxAgents)
+    throw inputError(fmt::format("{}: herds have {} agents in all, expected at most {}", file,
+                                 scene.agentCount(), Scene::maxAgents));
+}
+
+template <class Object>
+void checkKeys(const Object&, const std::string&, const std::string&) {}
+
+template <typename Object>
+void Reader::read(const nlohmann::json& json, const std::string& path, Object& value) const {
+  Reader fields(json, source_, path);
+  keysOf(fields, value);
+  fields.finish();
+  checkKeys(value, source_.file, path);
+}
+
+template <typename Object>
+nlohmann::ordered_json Writer::written(const std::string& path, Object& value) const {
+  Writer fields(file_, path);
+  keysOf(fields, value);
+  checkKeys(value, file_, path);
+  return fields.json();
+}
 
 }  // namespace
 
@@ -337,7 +473,24 @@ Scene loadScene(const std::filesystem::path& file) {
 }
 
 Scene parseScene(const std::string& json, const std::string& name, const std::filesystem::path& folder) {
-  return SceneReader(name, folder).scene(parseJson(json, name, true));
+  const Source source{name, folder};
+  const nlohmann::json object = parseJson(json, name, true);
+  Scene scene;
+  scene.name = std::filesystem::path(name).stem().string();
+  Reader fields(object, source, "");
+  keysOf(fields, scene);
+  fields.finish();
+  checkKeys(scene, name, "");
+  return scene;
+}
+
+std::string sceneJson(const Scene& scene) {
+  const std::string name = scene.name.empty() ? "the scene" : scene.name;
+  Scene copy = scene;  // a list of keys is for both directions, so it cannot take what is const
+  Writer fields(name, "");
+  keysOf(fields, copy);
+  checkKeys(scene, name, "");
+  return fields.json().dump(2) + "\n";
 }
 
 }  // namespace skitter

@@ -46,6 +46,8 @@ struct HeightfieldUnits {
   std::optional<float> exaggeration;      // multiplies heights alone
   std::optional<uint32_t> columns, rows;  // of raw files; others must agree
   std::optional<double> voidValue;        // a sample of this value, as stored, is a void
+
+  bool operator==(const HeightfieldUnits&) const = default;
 };
 
 // Reads .png (grey, 8 or 16 bits), .r16, .r32f, .hgt (SRTM) or .npy, by the name's extension. Voids are
@@ -63,6 +65,8 @@ struct TerrainNoise {
   int octaves = 6;
   float gain = 0.47f;  // amplitude ratio between octaves
   uint64_t seed = 1;
+
+  bool operator==(const TerrainNoise&) const = default;
 };
 Heightfield generateHeightfield(const TerrainNoise& noise);
 

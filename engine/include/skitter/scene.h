@@ -21,6 +21,8 @@ namespace skitter {
 struct TerrainFile {
   std::filesystem::path file;
   HeightfieldUnits units;
+
+  bool operator==(const TerrainFile&) const = default;
 };
 
 // Where agents start and where they go.
@@ -31,6 +33,8 @@ struct Spawn {
   float spacing = 2.5f;  // metres between lanes, or between agents of a grid
   glm::vec2 centre{0};   // x, z
   float heading = 0;     // radians about +Y, 0 faces +Z
+
+  bool operator==(const Spawn&) const = default;
 };
 struct Goal {
   // cross: walk to the far side of the terrain, turn, and come back beside the own lane, for ever.
@@ -38,6 +42,8 @@ struct Goal {
   enum class Kind { cross, point, none } kind = Kind::cross;
   glm::vec2 target{0};  // x, z
   float speed = 1;      // commanded horizontal speed, metres a second, >= 0
+
+  bool operator==(const Goal&) const = default;
 };
 
 struct Herd {
@@ -57,6 +63,8 @@ struct Herd {
   uint32_t agents = 1000;
   Spawn spawn;
   Goal goal;
+
+  bool operator==(const Herd&) const = default;
 };
 
 struct Camera {
@@ -65,6 +73,8 @@ struct Camera {
   glm::vec3 position{0}, target{0};
   float distance = 9;        // metres from the crowd's middle, follow only
   float fieldOfView = 0.8f;  // radians, vertical
+
+  bool operator==(const Camera&) const = default;
 };
 
 struct Scene {
@@ -80,6 +90,7 @@ struct Scene {
 
   Heightfield loadTerrain() const;  // throws Error(input)
   uint64_t agentCount() const;
+  bool operator==(const Scene&) const = default;
 };
 
 // The built-in scene: 1,000 spiders crossing generated ground in parallel lanes
@@ -88,5 +99,8 @@ Scene builtinScene();
 // Throws Error(input) that names the file and the field.
 Scene loadScene(const std::filesystem::path& file);
 Scene parseScene(const std::string& json, const std::string& name, const std::filesystem::path& folder);
+// The JSON form, with every key and with absolute file names: it is read back as an equal scene. Throws
+// Error(input) that names the key of a value that no scene file may have.
+std::string sceneJson(const Scene& scene);
 
 }  // namespace skitter
