@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/spelling.h"
 #include "skitter/enum_names.h"
 #include "skitter/error.h"
 
@@ -26,7 +27,9 @@ std::vector<double> parseNumbers(const std::string& option, const std::string& t
 template <typename Enum, size_t Count>
 Enum parseNamed(const std::string& option, const std::string& text, const std::array<Enum, Count>& all) {
   if (const auto named = enumNamed(all, text)) return *named;
-  throw inputError(option + " is " + (text.empty() ? "empty" : text) + ", expected one of " + namesOf(all));
+  std::vector<std::string> names;
+  for (const Enum each : all) names.emplace_back(nameOf(each));
+  throw inputError(option + " is " + (text.empty() ? "empty" : text) + base::expectedOneOf(text, names));
 }
 
 // "A,B,..", one or more.

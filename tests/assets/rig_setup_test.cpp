@@ -145,7 +145,7 @@ TEST_F(Sidecar, FaultsNameTheKey) {
   const std::pair<std::function<void(nlohmann::json&)>, const char*> cases[] = {
       {[](auto& j) { j.erase("model"); }, "model is missing"},
       {[](auto& j) { j["model"] = 3; }, "model is 3"},
-      {[](auto& j) { j["modle"] = "x"; }, "unknown key \"modle\""},
+      {[](auto& j) { j["modle"] = "x"; }, "unknown key \"modle\"; did you mean model? Expected one of "},
       {[](auto& j) { j["scale"] = 0; }, "scale is 0"},
       {[](auto& j) { j["scale"] = "big"; }, "scale is \"big\""},
       {[](auto& j) { j["legLength"] = 1; }, "scale and legLength"},

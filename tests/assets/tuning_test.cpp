@@ -97,10 +97,12 @@ TEST(Tuning, OrdersNameBothKeys) {
 }
 
 TEST(Tuning, RefusesWhatIsNoKeyAndNoNumber) {
-  EXPECT_THAT(inputFault([] {
-                sceneWith({{"stepHight", 0.2}});
-              }),
-              HasSubstr("a.json: herds[0].tuning.stepHight is no known key, expected one of "));
+  EXPECT_THAT(
+      inputFault([] {
+        sceneWith({{"stepHight", 0.2}});
+      }),
+      HasSubstr(
+          "a.json: herds[0].tuning.stepHight is no known key; did you mean stepHeight? Expected one of "));
   EXPECT_EQ(inputFault([] {
               sceneWith({{"stepHeight", "high"}});
             }),

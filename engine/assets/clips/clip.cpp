@@ -10,6 +10,7 @@
 #include "assets/clips/clip_stance.h"
 #include "assets/rigs/placement.h"
 #include "assets/rigs/rig_source.h"
+#include "base/spelling.h"
 #include "embedded/spider_glb.h"
 #include "skitter/error.h"
 
@@ -101,10 +102,10 @@ const Clip& ClipSet::clip(const std::string& clipName) const {
       std::find_if(clips.begin(), clips.end(), [&](const Clip& clip) { return clip.name == clipName; });
   if (found != clips.end()) return *found;
   std::vector<std::string> names;
-  for (const Clip& clip : clips) names.push_back(fmt::format("\"{}\"", clip.name));
-  throw inputError(fmt::format(
-      "{}: no clip is named \"{}\", {}", name, clipName,
-      names.empty() ? "and there is none" : fmt::format("expected one of {}", fmt::join(names, ", "))));
+  for (const Clip& clip : clips) names.push_back(clip.name);
+  throw inputError(
+      fmt::format("{}: no clip is named \"{}\"{}", name, clipName,
+                  names.empty() ? ", and there is none" : base::expectedOneOf(clipName, names, "\"")));
 }
 
 ClipSet loadClips(const std::filesystem::path& file, const Rig& rig, std::span<const ClipCut> cuts) {

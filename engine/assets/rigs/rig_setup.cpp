@@ -8,6 +8,7 @@
 
 #include "assets/files/file.h"
 #include "assets/files/json.h"
+#include "base/spelling.h"
 #include "skitter/error.h"
 
 namespace skitter {
@@ -93,8 +94,9 @@ class SetupReader {
     for (const auto& [key, value] : json.items()) {
       const auto same = [&k = key](const char* known) { return k == known; };
       if (std::none_of(keys.begin(), keys.end(), same)) {
-        throw inputError(fmt::format("{}: {} has the unknown key {}, expected one of {}", name_, what,
-                                     describeJson(key), fmt::join(keys, ", ")));
+        throw inputError(
+            fmt::format("{}: {} has the unknown key {}{}", name_, what, describeJson(key),
+                        base::expectedOneOf(key, std::vector<std::string>(keys.begin(), keys.end()))));
       }
     }
   }

@@ -11,6 +11,7 @@
 #include "assets/files/file.h"
 #include "assets/files/json.h"
 #include "assets/heights/heightfield_limits.h"
+#include "base/spelling.h"
 #include "embedded/crossing_json.h"
 #include "skitter/error.h"
 
@@ -123,14 +124,18 @@ class Reader {
       }
       ++index;
     }
-    fail(pathOf(key), *json, fmt::format("one of \"{}\"", fmt::join(names, "\", \"")));
+    failNamed(pathOf(key), *json, {names.begin(), names.end()});
   }
   template <typename Enum, size_t Count>
   void named(const char* key, Enum& value, const std::array<Enum, Count>& all) {
     const auto* json = find(key);
     if (!json) return;
     const auto named = json->is_string() ? enumNamed(all, json->get_ref<const std::string&>()) : std::nullopt;
-    if (!named) fail(pathOf(key), *json, fmt::format("one of \"{}\"", namesOf(all, "\", \"")));
+    if (!named) {
+      std::vector<std::string> names;
+      for (const Enum each : all) names.emplace_back(nameOf(each));
+      failNamed(pathOf(key), *json, names);
+    }
     value = *named;
   }
   // checkTuning() checks the range.
@@ -163,8 +168,9 @@ class Reader {
   void finish() const {
     for (const auto& [key, value] : json_.items()) {
       if (known_.count(key) == 0) {
-        throw inputError(fmt::format("{}: {} is no known key, expected one of {}", source_.file,
-                                     pathOf(describeKey(key)), fmt::join(known_, ", ")));
+        const std::vector<std::string> known(known_.begin(), known_.end());
+        throw inputError(fmt::format("{}: {} is no known key{}", source_.file, pathOf(describeKey(key)),
+                                     base::expectedOneOf(key, known)));
       }
     }
   }
@@ -182,6 +188,13 @@ class Reader {
   [[noreturn]] void fail(const std::string& path, const nlohmann::json& found,
                          const std::string& expected) const {
     failIn(source_.file, path, found, expected);
+  }
+  // Where a string was expected that is one of `names`.
+  [[noreturn]] void failNamed(const std::string& path, const nlohmann::json& found,
+                              const std::vector<std::string>& names) const {
+    const std::string word = found.is_string() ? found.get<std::string>() : "";
+    throw inputError(fmt::format("{}: {} is {}{}", source_.file, path, describeJson(found),
+                                 base::expectedOneOf(word, names, "\"")));
   }
   static std::string describeKey(const std::string& key) {
     const std::string quoted = describeJson(key);
