@@ -116,7 +116,7 @@ int main(int argc, char** argv) {
   try {
     return printed(runCommand(argc, argv));
   } catch (const skitter::app::Interrupted& interrupted) {
-    return fail(skitter::app::interruptedCode, interrupted.what());
+    return fail(skitter::app::stopCode(), interrupted.what());
   } catch (const skitter::Error& error) {
     return fail(static_cast<int>(error.kind()), error.what());
   } catch (const std::bad_alloc&) {

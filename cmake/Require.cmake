@@ -11,6 +11,7 @@ set(SKITTER_DEBIAN_PNG libpng-dev)
 set(SKITTER_DEBIAN_Python3 python3)
 set(SKITTER_DEBIAN_SPIRV-Tools-opt spirv-tools spirv-headers)
 set(SKITTER_DEBIAN_Threads libc6-dev)
+set(SKITTER_DEBIAN_tinyxml2 libtinyxml2-dev)
 set(SKITTER_DEBIAN_Vulkan libvulkan-dev)
 set(SKITTER_DEBIAN_ZLIB zlib1g-dev)
 # Debian splits some packages, so that the configuration can be there without a target.

@@ -6,12 +6,22 @@
 #include <limits>
 
 namespace skitter::validation {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+double ratioOf(double error, double tolerance) {
+  return error == 0 ? 0 : (tolerance > 0 ? error / tolerance : infinite);
+}
+
+}  // namespace
+
+double StageResult::ratio() const { return ratioOf(maxError, tolerance); }
 
 void Sample::compare(const char* quantity, double error, double tolerance, const glm::dvec4& expected,
                      const glm::dvec4& got) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   if (!std::isfinite(error)) error = infinite;
-  const double ratio = error == 0 ? 0 : (tolerance > 0 ? error / tolerance : infinite);
+  const double ratio = ratioOf(error, tolerance);
   if (ratio <= ratio_) return;
   quantity_ = quantity;
   error_ = error;
@@ -28,7 +38,7 @@ void Sample::same(const char* quantity, double expected, double got) {
 void Sample::finite(const char* record, std::span<const float> values) {
   for (const float value : values) {
     if (!std::isfinite(value)) {
-      compare(record, std::numeric_limits<double>::infinity(), 0, glm::dvec4(0), glm::dvec4(value));
+      compare(record, infinite, 0, glm::dvec4(0), glm::dvec4(value));
       return;
     }
   }

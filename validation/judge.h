@@ -20,6 +20,8 @@ struct StageResult {
   bool pass = true;
   std::string worst;  // that quantity, agent, leg, expected, got
   std::string why;    // empty where it passed, else every reason why it did not
+
+  double ratio() const;  // of error and tolerance
 };
 
 // The comparisons of one sample; the one worst relative to its tolerance is kept.

@@ -59,10 +59,14 @@ const std::vector<Check> checks = {
     {StageId::footfall, every, checkFootfall},
 };
 
-std::vector<const Check*> checksOf(Controller controller) {
+// Of the stages in `only`; empty: of all.
+std::vector<const Check*> checksOf(Controller controller, const std::vector<StageId>& only = {}) {
+  const auto has = [](const auto& list, const auto& value) {
+    return std::ranges::find(list, value) != list.end();
+  };
   std::vector<const Check*> found;
   for (const Check& check : checks)
-    if (std::ranges::find(check.of, controller) != check.of.end()) found.push_back(&check);
+    if (has(check.of, controller) && (only.empty() || has(only, check.stage))) found.push_back(&check);
   return found;
 }
 
@@ -161,8 +165,9 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   return setting;
 }
 
-Replay::Replay(const HerdFacts& herd) : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)) {
-  for (const Check* check : checksOf(herd.controller)) judges_.emplace_back(nameOf(check->stage));
+Replay::Replay(const HerdFacts& herd, std::vector<StageId> only)
+    : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)), only_(std::move(only)) {
+  for (const Check* check : checksOf(herd.controller, only_)) judges_.emplace_back(nameOf(check->stage));
 }
 
 void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
@@ -172,7 +177,7 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
   }
   expectSizes(setting_, before);
   expectSizes(setting_, after);
-  const std::vector<const Check*> checks = checksOf(setting_.controller);
+  const std::vector<const Check*> checks = checksOf(setting_.controller, only_);
   if (leftOut_.empty()) leftOut_.assign(checks.size(), true);
   for (size_t c = 0; c < checks.size(); ++c) {
     const Check& check = *checks[c];

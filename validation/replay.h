@@ -62,8 +62,9 @@ HerdState sampled(const HerdState& whole, const AgentSample& sample);
 // be what it was before, and only what is not counts as a sample; what is was kept.
 class Replay {
  public:
-  // Copies what it needs. Throws Error(input) when the rig records' size does not fit the rig.
-  explicit Replay(const HerdFacts& herd);
+  // Copies what it needs. Of the controller's stages those in `only` are compared; empty: all. Throws
+  // Error(input) when the rig records' size does not fit the rig.
+  explicit Replay(const HerdFacts& herd, std::vector<crowd::StageId> only = {});
   Replay(const Replay&) = delete;
   Replay& operator=(const Replay&) = delete;
 
@@ -75,13 +76,14 @@ class Replay {
   // The terrain was edited before the next tick (Crowd::editHeights).
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
 
-  // The controller's stages, in order, less those that every tick left out.
+  // The stages that are compared, in order, less those that every tick left out.
   std::vector<StageResult> results() const;
   bool pass() const;
 
  private:
   Heightfield terrain_;
   Setting setting_;
+  std::vector<crowd::StageId> only_;
   std::vector<Judge> judges_;
   std::vector<bool> leftOut_;  // by every tick so far; before the first, none is
 };

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "app/bench/baseline.h"
 #include "app/bench/match_report.h"
 #include "app/commands.h"
 #include "app/common/files.h"
@@ -32,13 +33,15 @@ using namespace bench;
 constexpr uint64_t mostRounds = 1000;
 constexpr uint32_t quickRounds = 3, quickWarmUp = 20;
 constexpr double quickTurn = 0.05;
+constexpr double usualFailAbove = 10, mostFailAbove = 1e6;  // per cent
 
 struct BenchOptions {
   SceneOptions scene;
   std::vector<double> agents = {1000, 10000, 100000};
   std::vector<Controller> controllers = {Controller::adaptive, Controller::clip};
   std::optional<uint64_t> rounds;
-  std::string json;
+  std::string json, baseline;
+  std::optional<double> failAbove;  // per cent
   bool poses = false, quick = false, quiet = false;
 };
 
@@ -52,14 +55,6 @@ void refuseSlowness() {
     if (layers != nullptr && std::string(layers).find("validation") != std::string::npos)
       throw inputError(fmt::format("bench: {} turns the validation layer on; unset it", name));
   }
-}
-
-std::vector<std::string> devicesOf(const BenchOptions& options) {
-  if (options.scene.device != "all") return {options.scene.device.value_or("")};
-  std::vector<std::string> names;
-  for (const DeviceReport& report : listDevices())
-    if (report.suitable) names.push_back(fmt::format("{}", report.index));
-  return names;
 }
 
 ContestOptions contestOf(const BenchOptions& options, Controller controller) {
@@ -82,6 +77,9 @@ struct Record {
   Manifest manifest;
   ordered_json devices = ordered_json::array();
   uint64_t matches = 0, wanted = 0;
+  std::optional<Baseline> baseline = {};
+  uint64_t compared = 0;    // matches that the baseline has
+  std::string slower = {};  // those that take too much longer than there
 };
 
 void write(const BenchOptions& options, const Record& record) {
@@ -91,6 +89,27 @@ void write(const BenchOptions& options, const Record& record) {
                              {"matchesWanted", record.wanted},
                              {"interrupted", record.matches < record.wanted}};
   writeJson(options.json, json, record.manifest);
+}
+
+// Holds a match against the same one of the baseline.
+void compare(const BenchOptions& options, const DeviceReport& device, Controller controller,
+             const Match& match, ordered_json& made, Record& record) {
+  if (!record.baseline) return;
+  const auto slowdown =
+      record.baseline->slowdown(device.name, controller, made.at("poses"), match, isCpu(device));
+  if (!slowdown) {
+    fmt::print("baseline      has no such match of this device\n");
+    return;
+  }
+  ++record.compared;
+  const double limit = options.failAbove.value_or(usualFailAbove);
+  const double median = 100 * slowdown->median, low = 100 * slowdown->low;
+  fmt::print("baseline      {:+.1f} % of time (lower quartile {:+.1f} %), at most +{:g} %\n", median, low,
+             limit);
+  made["slowdownPercent"] = {{"median", median}, {"low", low}};
+  if (low > limit)
+    record.slower += fmt::format("{}{}, {} agents: {:+.1f} %", record.slower.empty() ? "" : "; ",
+                                 nameOf(controller), match.agents, median);
 }
 
 void benchDevice(const BenchOptions& options, const Heightfield& terrain, const std::string& name,
@@ -143,7 +162,9 @@ void benchDevice(const BenchOptions& options, const Heightfield& terrain, const 
       if (const std::string faults = faultsOf(match); !faults.empty())
         throw Error(Error::Kind::check, fmt::format("{}, {} agents: results are wrong: {}",
                                                     nameOf(controller), match.agents, faults));
-      made["matches"].push_back(jsonOf(controller, match));
+      ordered_json& row = made["matches"].emplace_back(jsonOf(controller, match));
+      row["poses"] = contestOptions.crowd.pose;
+      compare(options, device.report(), controller, match, row, record);
       ++record.matches;
     }
 }
@@ -153,14 +174,25 @@ int bench(const BenchOptions& options) {
   Files files;
   const Scene scene = options.scene.load();
   options.scene.declare(files, scene);
+  files.reads("--baseline", options.baseline);
   files.writes("--json", options.json);
   files.check();
+  if (options.failAbove && options.baseline.empty())
+    throw inputError("--fail-above needs --baseline FILE to compare with");
   const Heightfield terrain = scene.loadTerrain();
-  const std::vector<std::string> names = devicesOf(options);
+  const std::vector<std::string> names = options.scene.devices();
   Record record{.manifest = {.scene = &scene, .terrain = &terrain, .dt = options.scene.dt}};
+  if (!options.baseline.empty()) record.baseline.emplace(options.baseline);
   record.wanted = names.size() * options.controllers.size() * options.agents.size();
   for (const std::string& name : names) benchDevice(options, terrain, name, record);
   write(options, record);
+  if (record.baseline && record.compared == 0)
+    throw inputError(
+        fmt::format("--baseline {}: has none of these matches: device, controller, agents and poses "
+                    "must be the same",
+                    options.baseline));
+  if (!record.slower.empty())
+    throw Error(Error::Kind::check, fmt::format("slower than {}: {}", options.baseline, record.slower));
   return 0;
 }
 
@@ -202,6 +234,20 @@ void addBench(CLI::App& app, Command& chosen) {
   command->add_flag("--quick", options->quick, "3 short rounds");
   command->add_option("--json", options->json, "write all figures to a file, for scripts/plots")
       ->type_name("FILE");
+  command
+      ->add_option("--baseline", options->baseline,
+                   "figures of an earlier --json, to hold the same matches against")
+      ->type_name("FILE");
+  command
+      ->add_option_function<std::string>(
+          "--fail-above",
+          [options](const std::string& text) {
+            options->failAbove = parseNumber("--fail-above", text, 0, mostFailAbove);
+          },
+          fmt::format("exit code 1 where a tick takes so much longer than the baseline's median in three "
+                      "quarters of the turns [{:g}]",
+                      usualFailAbove))
+      ->type_name("PERCENT");
   command->add_flag("--quiet", options->quiet, "no progress on stderr");
   command->footer(
       "--device all times every suitable device. Each match checks a timed tick of every contestant against "
@@ -213,7 +259,8 @@ void addBench(CLI::App& app, Command& chosen) {
       "\n"
       "Examples:\n"
       "  skitter bench --quick\n"
-      "  skitter bench --agents 1000,10000,100000,1000000 --controllers adaptive --json bench.json");
+      "  skitter bench --agents 1000,10000,100000,1000000 --controllers adaptive --json bench.json\n"
+      "  skitter bench --agents 10000 --baseline bench.json --fail-above 10");
   command->callback([options, &chosen] { chosen = [options] { return bench(*options); }; });
 }
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "app/common/noise_option.h"
+#include "skitter/device.h"
 #include "skitter/error.h"
 #include "skitter/rig_setup.h"
 
@@ -193,6 +194,15 @@ void SceneOptions::applyTerrain(Scene& result) const {
   if (scale) units.scale = static_cast<float>(*scale);
   if (exaggeration) units.exaggeration = static_cast<float>(*exaggeration);
   if (voidValue) units.voidValue = *voidValue;
+}
+
+std::vector<std::string> SceneOptions::devices() const {
+  if (device != "all") return {device.value_or("")};
+  std::vector<std::string> names;
+  for (const DeviceReport& report : listDevices())
+    if (report.suitable) names.push_back(std::to_string(report.index));
+  if (names.empty()) throw deviceError("--device all: no device is suitable (skitter info tells why)");
+  return names;
 }
 
 Scene SceneOptions::load() const {

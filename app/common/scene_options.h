@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/common/files.h"
 #include "app/common/values.h"
@@ -29,6 +30,10 @@ struct SceneOptions {
   std::optional<double> scale, exaggeration, voidValue;
   double dt = 1.0 / 60;
   std::optional<std::string> device;
+
+  // What DeviceRequest::device is to be, one after the other: "" for the best one; of "all", every suitable
+  // one. Throws Error(device) where there is none.
+  std::vector<std::string> devices() const;
 
   // `agentsHelp` says what happens without --agents; null: neither --agents nor --controller, of which the
   // command has lists.

@@ -4,6 +4,7 @@
 #include <semaphore.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
@@ -30,6 +31,7 @@ constexpr double together = 0.1;  // seconds
 volatile std::sig_atomic_t stop = 0, killed = 0;
 timespec first{};  // when `stop` was set
 sem_t stopped;
+std::atomic<bool> timeIsOver = false;
 
 void requestStop(int signal) {
   const int error = errno;
@@ -65,7 +67,7 @@ Watch& watch() {
 
 // Holds the lock until the end, so that the work cannot go on.
 [[noreturn]] void leaveNow(const StopDeadline::Leave& leave) {
-  int code = interruptedCode;
+  int code = stopCode();
   std::string message;
   try {
     message = leave();
@@ -96,7 +98,7 @@ void watchForStop() {
 }  // namespace
 
 std::string interruptedAfter(uint64_t done, uint64_t wanted, const char* what) {
-  return fmt::format("interrupted after {} of {} {}", done, wanted, what);
+  return fmt::format("{} after {} of {} {}", timedOut() ? "timed out" : "interrupted", done, wanted, what);
 }
 
 void catchSignals() {
@@ -119,7 +121,19 @@ void catchSignals() {
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-bool stopRequested() { return stop != 0; }
+bool stopRequested() { return stop != 0 || timeIsOver; }
+
+void stopAfter(double seconds) {
+  std::thread([seconds] {
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    if (stopRequested()) return;
+    timeIsOver = true;
+    sem_post(&stopped);
+  }).detach();
+}
+
+bool timedOut() { return timeIsOver; }
+int stopCode() { return timedOut() ? 1 : interruptedCode; }
 
 void awaitKill() {
   while (killed != 0) pause();

@@ -3,9 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
-#include <cmath>
+#include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/commands.h"
@@ -17,6 +16,7 @@
 #include "app/common/simulate.h"
 #include "app/common/values.h"
 #include "app/validate/ground_edits.h"
+#include "app/validate/outcome.h"
 #include "crowd/herd.h"
 #include "gpu/submit.h"
 #include "skitter/error.h"
@@ -30,6 +30,7 @@ using validation::Replay;
 using validation::StageResult;
 
 constexpr uint64_t defaultAgents = 64, defaultFrames = 120, maxFrames = 1000000;
+constexpr double longestTimeout = 1e6;  // seconds
 // The reference takes about a millisecond for one of them; of larger herds every so many-th agent is
 // compared, others in each tick.
 constexpr uint32_t agentsATick = 1024;
@@ -37,13 +38,12 @@ constexpr uint32_t agentsATick = 1024;
 struct ValidateOptions {
   SceneOptions scene;
   uint64_t frames = defaultFrames;
-  std::string json;
+  std::string json, junit;
+  std::vector<crowd::StageId> stages;  // that are compared; none: all
+  std::optional<double> timeout;       // seconds
   bool apart = false, edits = false, freeRun = false, quiet = false, sleep = false;
   uint32_t pageAgents = 0;  // 0: as many as the device allows
 };
-
-// A share of a leg length. Nobody sees a difference of so little in where an agent stands.
-constexpr double freeRunTolerance = 0.01;
 
 // Beside the device's crowd: the same herds walked by the reference alone, from the same first state.
 class FreeRuns {
@@ -69,11 +69,11 @@ class FreeRuns {
   std::vector<std::unique_ptr<validation::FreeRun>> runs_;
 };
 
-std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd) {
+std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd, const std::vector<crowd::StageId>& only) {
   std::vector<std::unique_ptr<Replay>> replays;
   for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-    replays.push_back(
-        std::make_unique<Replay>(validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain)));
+    replays.push_back(std::make_unique<Replay>(
+        validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), only));
   return replays;
 }
 
@@ -95,13 +95,8 @@ std::vector<HerdState> download(const Crowd& crowd) {
   return download(crowd, std::vector<AgentSample>(crowd.herdCount()));
 }
 
-double ratioOf(const StageResult& result) {
-  if (result.tolerance > 0) return result.maxError / result.tolerance;
-  return result.maxError > 0 ? HUGE_VAL : 0;
-}
-
 void add(const StageResult& result, StageResult& sum) {
-  const bool worse = result.pass == sum.pass ? ratioOf(result) > ratioOf(sum) : !result.pass;
+  const bool worse = result.pass == sum.pass ? result.ratio() > sum.ratio() : !result.pass;
   if (worse) {
     sum.maxError = result.maxError;
     sum.tolerance = result.tolerance;
@@ -138,69 +133,44 @@ std::vector<StageResult> merge(const Scene& scene, const std::vector<std::unique
   return all;
 }
 
-void print(const Device& device, const Scene& scene, uint64_t ticks,
-           const std::vector<StageResult>& results) {
-  fmt::print("{}: {} agents, {} ticks, seed {}\n", device.report().name, scene.agentCount(), ticks,
-             scene.seed);
-  fmt::print("{}", validation::table(results));
-  const auto closest = std::max_element(results.begin(), results.end(),
-                                        [](const auto& a, const auto& b) { return ratioOf(a) < ratioOf(b); });
-  if (closest != results.end() && closest->pass && closest->samples > 0) {
-    fmt::print("closest to its tolerance: {}: {}\n", closest->name, closest->worst);
+// A validation under way: what may be told when it is ended from another thread.
+struct Validation {
+  const ValidateOptions& options;
+  const Scene& scene;
+  bool several;  // devices
+  Manifest manifest;
+  Heightfield terrain = {};
+  std::vector<Outcome> outcomes = {};  // of the devices that are done
+  std::string device = {};             // at work
+  std::atomic<uint64_t> done = 0;      // its ticks
+
+  void write(std::span<const Outcome> all) const {
+    if (!options.json.empty()) writeJson(options.json, jsonOf(all, several), manifest);
+    if (!options.junit.empty()) writeJunit(options.junit, all, manifest);
   }
-}
-
-// A validation's results.
-struct Outcome {
-  std::vector<StageResult> stages;
-  uint64_t ticks = 0;           // done
-  uint64_t edits = 0;           // of the ground, rectangles
-  std::optional<double> share;  // of the free run
-
-  std::string failed() const {
-    std::string names;
-    for (const StageResult& stage : stages)
-      if (!stage.pass) names += (names.empty() ? "" : ", ") + stage.name;
-    return names;
+  // Without the stages of the device that is at work.
+  std::string leave() const {
+    std::vector<Outcome> all = outcomes;
+    all.push_back({.device = device, .ticks = done, .wanted = options.frames});
+    write(all);
+    return interruptedAfter(done, options.frames, "ticks");
   }
 };
 
-nlohmann::ordered_json describe(const Device& device, const ValidateOptions& options,
-                                const Outcome& outcome) {
-  nlohmann::ordered_json stages = nlohmann::ordered_json::array();
-  for (const StageResult& result : outcome.stages) {
-    stages.push_back({{"name", result.name},
-                      {"samples", result.samples},
-                      {"kept", result.kept},
-                      {"maxError", result.maxError},
-                      {"tolerance", result.tolerance},
-                      {"ties", result.ties},
-                      {"worst", result.worst},
-                      {"pass", result.pass},
-                      {"why", result.why}});
-  }
-  const bool interrupted = outcome.ticks < options.frames;
-  nlohmann::ordered_json json = {{"device", device.report().name},
-                                 {"ticks", outcome.ticks},
-                                 {"ticksWanted", options.frames},
-                                 {"interrupted", interrupted},
-                                 {"stages", stages}};
-  if (options.edits) json["edits"] = outcome.edits;
-  if (outcome.share) json["freeRunShare"] = *outcome.share;
-  json["pass"] = outcome.failed().empty() && !interrupted;
-  return json;
-}
-
-// `done` is how many ticks are, for another thread to see.
-Outcome replay(const ValidateOptions& options, const Scene& scene, Device& device, Crowd& crowd,
-               std::atomic<uint64_t>& done) {
+Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
+  const ValidateOptions& options = validation.options;
+  const Scene& scene = validation.scene;
   gpu::CommandRing ring(device.context());
   TickTimes times;
-  Outcome outcome;
+  Outcome outcome{.device = device.report().name, .wanted = options.frames};
+  const auto began = std::chrono::steady_clock::now();
   std::vector<std::unique_ptr<Replay>> replays;
   std::optional<FreeRuns> freeRuns;
   std::optional<GroundEdits> edits;
-  if (options.edits) edits.emplace(crowd, scene.seed, options.scene.dt);
+  if (options.edits) {
+    edits.emplace(crowd, scene.seed, options.scene.dt);
+    outcome.edits = 0;
+  }
   Progress progress("ticks", options.frames, options.quiet);
   while (crowd.tick() < options.frames && !stopRequested()) {
     const std::vector<AgentSample> samples = samplesAt(crowd.tick() + 1, scene);
@@ -212,78 +182,98 @@ Outcome replay(const ValidateOptions& options, const Scene& scene, Device& devic
       for (const HeightEdit& e : edits->before(crowd.tick(), before)) {
         crowd.editHeights(e.x, e.z, e.columns, e.rows, e.heights);
         for (const auto& replay : replays) replay->edit(e.x, e.z, e.columns, e.rows, e.heights);
-        ++outcome.edits;
+        ++*outcome.edits;
       }
     }
     runTick(ring, crowd, static_cast<float>(options.scene.dt), times);
     // A herd's parameters are complete only once the length of a tick is known.
-    if (replays.empty()) replays = replaysOf(crowd);
+    if (replays.empty()) replays = replaysOf(crowd, options.stages);
     if (options.freeRun && !freeRuns) freeRuns.emplace(crowd, first);
     const std::vector<HerdState> after = download(crowd, samples);
     if (freeRuns) freeRuns->tick(after);
     for (size_t h = 0; h < replays.size(); ++h) replays[h]->tick(crowd.tick(), before[h], after[h]);
-    done = crowd.tick();
-    progress.update(done);
+    validation.done = crowd.tick();
+    progress.update(validation.done);
   }
-  if (replays.empty()) replays = replaysOf(crowd);
+  if (replays.empty()) replays = replaysOf(crowd, options.stages);
   outcome.stages = merge(scene, replays);
   outcome.ticks = crowd.tick();
-  if (freeRuns) outcome.share = freeRuns->shareWithin(download(crowd));
+  if (freeRuns) outcome.freeShare = freeRuns->shareWithin(download(crowd));
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return outcome;
 }
 
-int validate(const ValidateOptions& options) {
-  Files files;
-  files.writes("--json", options.json);
-  const Scene scene = options.scene.load();
-  options.scene.declare(files, scene);
-  files.check();
-  if (scene.agentCount() == 0)
-    throw inputError(fmt::format("{} has no agents, expected at least one to compare", scene.name));
-  Manifest manifest{.scene = &scene, .dt = options.scene.dt};
-  std::atomic<uint64_t> done = 0;
-  const auto leave = [&] {
-    if (!options.json.empty()) {
-      const nlohmann::ordered_json json = {{"ticks", done.load()},
-                                           {"ticksWanted", options.frames},
-                                           {"interrupted", true},
-                                           {"stages", nlohmann::ordered_json::array()},
-                                           {"pass", false}};
-      writeJson(options.json, json, manifest);
-    }
-    return interruptedAfter(done, options.frames, "ticks");
-  };
-  std::optional<StopDeadline> deadline(std::in_place, leave);
-  const Heightfield terrain = scene.loadTerrain();
+Outcome validateOn(const std::string& name, Validation& validation, Files& files) {
+  const ValidateOptions& options = validation.options;
+  const auto leave = [&] { return validation.leave(); };
+  std::optional<StopDeadline> deadline(leave);
   DeviceRequest request;
-  request.device = options.scene.device;
+  if (!name.empty()) request.device = name;
   Device device = Device::create(request);
   CrowdOptions crowdOptions;
   crowdOptions.footfalls = UINT32_MAX;  // all that can be
   crowdOptions.sleep = options.sleep;
   crowdOptions.fuse = !options.apart;
   crowdOptions.pageAgents = options.pageAgents;
-  Crowd crowd(device, terrain, scene, crowdOptions);
-
+  Crowd crowd(device, validation.terrain, validation.scene, crowdOptions);
   deadline.reset();
-  manifest.terrain = &terrain;
-  manifest.add(device.report());
+  validation.device = device.report().name;
+  validation.manifest.add(device.report());
   files.check();
   deadline.emplace(leave);
-  const Outcome outcome = replay(options, scene, device, crowd, done);
-  deadline.reset();
-  print(device, scene, outcome.ticks, outcome.stages);
-  if (options.edits) fmt::print("edits of the ground: {}\n", outcome.edits);
-  if (outcome.share)
-    fmt::print(
-        "free run: {:.1f} % of the agents within {:g} % of leg length of where the reference alone has "
-        "them\n",
-        100 * *outcome.share, 100 * freeRunTolerance);
-  if (!options.json.empty()) writeJson(options.json, describe(device, options, outcome), manifest);
-  if (outcome.ticks < options.frames)
-    throw Interrupted(interruptedAfter(outcome.ticks, options.frames, "ticks"));
-  if (!outcome.failed().empty())
-    throw Error(Error::Kind::check, fmt::format("stages differ from the reference: {}", outcome.failed()));
+  return replay(validation, device, crowd);
+}
+
+// Every stage that is asked for is one that some herd has compared.
+void checkStages(const std::vector<crowd::StageId>& stages, const Scene& scene) {
+  std::vector<crowd::StageId> compared;
+  for (const crowd::StageId stage : crowd::allStages)
+    for (const Herd& herd : scene.herds)
+      for (const validation::CheckedStage& checked : validation::checkedStages(herd.controller))
+        if (checked.stage == stage) compared.push_back(stage);
+  for (const crowd::StageId stage : stages)
+    if (std::ranges::find(compared, stage) == compared.end())
+      throw inputError(fmt::format("--stages: no herd of {} has {} compared", scene.name, nameOf(stage)));
+}
+
+int validate(const ValidateOptions& options) {
+  if (options.timeout) stopAfter(*options.timeout);
+  Files files;
+  files.writes("--json", options.json);
+  files.writes("--junit", options.junit);
+  const Scene scene = options.scene.load();
+  options.scene.declare(files, scene);
+  files.check();
+  if (scene.agentCount() == 0)
+    throw inputError(fmt::format("{} has no agents, expected at least one to compare", scene.name));
+  checkStages(options.stages, scene);
+  Validation validation{.options = options,
+                        .scene = scene,
+                        .several = options.scene.device == "all",
+                        .manifest = {.scene = &scene, .dt = options.scene.dt}};
+  {
+    const StopDeadline deadline([&] { return validation.leave(); });
+    validation.terrain = scene.loadTerrain();
+  }
+  validation.manifest.terrain = &validation.terrain;
+  for (const std::string& name : options.scene.devices()) {
+    validation.device = "";
+    validation.done = 0;
+    if (stopRequested()) throw Interrupted(validation.leave());
+    validation.outcomes.push_back(validateOn(name, validation, files));
+    print(validation.outcomes.back(), scene);
+  }
+  const std::vector<Outcome>& outcomes = validation.outcomes;
+  validation.write(outcomes);
+  std::string failed;
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.isWhole()) throw Interrupted(interruptedAfter(outcome.ticks, outcome.wanted, "ticks"));
+    if (outcome.failed().empty()) continue;
+    failed += fmt::format("{}{}{}", failed.empty() ? "" : "; ",
+                          validation.several ? outcome.device + ": " : "", outcome.failed());
+  }
+  if (!failed.empty())
+    throw Error(Error::Kind::check, fmt::format("stages differ from the reference: {}", failed));
   return 0;
 }
 
@@ -303,7 +293,28 @@ void addValidate(CLI::App& app, Command& chosen) {
           },
           fmt::format("ticks to compare [{}]", defaultFrames))
       ->type_name("N");
+  command
+      ->add_option_function<std::string>(
+          "--stages",
+          [options](const std::string& text) {
+            options->stages = parseNames("--stages", text, crowd::allStages);
+          },
+          "compare only these stages [all that the herds have]")
+      ->type_name("NAME,NAME,..");
+  command
+      ->add_option_function<std::string>(
+          "--timeout",
+          [options](const std::string& text) {
+            options->timeout = parseNumber("--timeout", text, 0.001, longestTimeout);
+          },
+          "stop after so long, with exit code 1 and \"timedOut\" in the JSON; also where a device hangs "
+          "[never]")
+      ->type_name("SECONDS");
   command->add_option("--json", options->json, "write the table to a file")->type_name("FILE");
+  command
+      ->add_option("--junit", options->junit,
+                   "write a report in JUnit's XML: a suite a device, a case a stage")
+      ->type_name("FILE");
   command->add_flag("--edits", options->edits,
                     "raise and lower the ground under the crowd: blocks and pits near agents, four times in "
                     "the first second of every four");
@@ -331,12 +342,14 @@ void addValidate(CLI::App& app, Command& chosen) {
       "none. In a tie the device decided otherwise than the reference, which rounding allows, "
       "and all else is right for what it decided.\n"
       "\n"
-      "Interrupted, the table and the file tell of the ticks that were done.\n"
+      "Interrupted, the table and the files tell of the ticks that were done. --device all validates on "
+      "every suitable device, one after the other.\n"
       "\n"
       "Examples:\n"
       "  skitter validate\n"
       "  skitter validate --edits --controller planted\n"
-      "  skitter validate scene.json --agents 256 --frames 600 --json validation.json",
+      "  skitter validate scene.json --agents 256 --frames 600 --json validation.json\n"
+      "  skitter validate --device all --stages foothold,ik --junit report.xml --timeout 300",
       agentsATick));
   command->callback([options, &chosen] { chosen = [options] { return validate(*options); }; });
 }

@@ -48,6 +48,48 @@ TEST_F(Bench, RefusesWhatCannotBeTimed) {
   }
 }
 
+// The device's tick took `factor` times as long as in the first match of the file.
+void scaleTimes(nlohmann::json& figures, double factor) {
+  nlohmann::json& result = figures["devices"][0]["matches"][0]["results"][0];
+  for (const char* clock : {"cpuMilliseconds", "wallMilliseconds"})
+    result[clock]["median"] = factor * result[clock]["median"].get<double>();
+}
+
+TEST_F(Bench, FailsWhereATickTakesTooMuchLongerThanTheBaselines) {
+  const std::vector<std::string> bench = {"bench",    "--quick", "--rounds",      "1",
+                                          "--agents", "16",      "--controllers", "adaptive"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), bench.begin(), bench.end());
+    return skitter(more);
+  };
+  ASSERT_EQ(with({"--json", file("then.json")}).code, 0);
+  nlohmann::json slow = json("then.json"), quick = slow;
+  scaleTimes(slow, 100);
+  scaleTimes(quick, 0.01);
+  write("slow.json", slow.dump());
+  write("quick.json", quick.dump());
+
+  const Result passes = with({"--baseline", file("slow.json"), "--fail-above", "0"});
+  EXPECT_EQ(passes.code, 0) << passes.err;
+  const Result fails =
+      with({"--baseline", file("quick.json"), "--fail-above", "50", "--json", file("now.json")});
+  EXPECT_EQ(fails.code, 1) << fails.out;
+  EXPECT_NE(fails.err.find("adaptive, 16 agents: +"), std::string::npos) << fails.err;
+  EXPECT_GT(json("now.json").at("devices")[0].at("matches")[0].at("slowdownPercent").at("low"), 50);
+
+  const Result other = with({"--baseline", file("quick.json"), "--poses"});
+  EXPECT_EQ(other.code, 2) << other.err;
+  EXPECT_NE(other.err.find("none of these matches"), std::string::npos) << other.err;
+}
+
+TEST_F(Bench, RefusesABaselineThatIsNone) {
+  write("text.json", "no figures");
+  write("empty.json", "{}");
+  for (const char* name : {"text.json", "empty.json", "missing.json"})
+    expectRefusal(skitter({"bench", "--quick", "--baseline", file(name)}), 2, {"--baseline", name});
+  expectRefusal(skitter({"bench", "--quick", "--fail-above", "5"}), 2, {"--fail-above", "--baseline"});
+}
+
 TEST_F(Bench, RefusesToTimeUnderTheValidationLayer) {
   const Result result =
       skitter({"bench", "--quick"}, {{"VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation"}});

@@ -143,6 +143,7 @@ TEST_F(Validate, InterruptedIsNoPass) {
     const nlohmann::json validation = json("v.json");
     EXPECT_FALSE(validation.at("pass"));
     EXPECT_TRUE(validation.at("interrupted"));
+    EXPECT_FALSE(validation.at("timedOut"));
     EXPECT_EQ(validation.at("ticksWanted"), 2000);
     const auto ticks = validation.at("ticks").get<uint64_t>();
     EXPECT_LT(ticks, 2000u);
@@ -151,6 +152,50 @@ TEST_F(Validate, InterruptedIsNoPass) {
     for (const nlohmann::json& stage : validation.at("stages"))
       EXPECT_EQ(stage.at("why") == "no samples", stage.at("samples") == 0 && stage.at("kept") == 0);
   }
+}
+
+TEST_F(Validate, ComparesTheStagesThatAreAskedFor) {
+  const Result result = skitter(
+      {"validate", "--agents", "8", "--frames", "20", "--stages", "ik,foothold", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_EQ(stagesThatAgree(json("v.json")), (std::vector<std::string>{"foothold", "ik"}));
+  expectRefusal(skitter({"validate", "--stages", "trot"}), 2, {"--stages", "trot", "foothold"});
+  expectRefusal(skitter({"validate", "--controller", "clip", "--stages", "swing,foothold"}), 2,
+                {"--stages", "foothold", "no herd"});
+}
+
+TEST_F(Validate, ReportsToServersOfContinuousIntegration) {
+  const Result result = skitter({"validate", "--device", "all", "--agents", "8", "--frames", "20", "--json",
+                                 file("v.json"), "--junit", file("v.xml")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  const nlohmann::json devices = json("v.json").at("devices");
+  ASSERT_FALSE(devices.empty());
+  std::ifstream in(file("v.xml"));
+  const std::string xml(std::istreambuf_iterator<char>(in), {});
+  for (const nlohmann::json& device : devices) {
+    EXPECT_TRUE(device.at("pass"));
+    const std::string suite =
+        "<testsuite name=\"" + device.at("device").get<std::string>() + "\" tests=\"9\"";
+    EXPECT_NE(xml.find(suite + " failures=\"0\" errors=\"0\""), std::string::npos) << xml;
+  }
+  EXPECT_NE(xml.find("<testcase classname=\"skitter.validate\" name=\"foothold\">"), std::string::npos)
+      << xml;
+  EXPECT_NE(xml.find("<property name=\"sceneHash\""), std::string::npos) << xml;
+}
+
+TEST_F(Validate, StopsWhenItsTimeIsOver) {
+  const Result result = skitter({"validate", "--agents", "64", "--frames", "100000", "--timeout", "1.5",
+                                 "--json", file("v.json"), "--junit", file("v.xml")});
+  EXPECT_EQ(result.code, 1) << result.out;
+  EXPECT_NE(result.err.find("skitter: timed out after "), std::string::npos) << result.err;
+  const nlohmann::json validation = json("v.json");
+  EXPECT_TRUE(validation.at("timedOut"));
+  EXPECT_FALSE(validation.at("pass"));
+  EXPECT_EQ(validation.at("ticksWanted"), 100000);
+  std::ifstream in(file("v.xml"));
+  const std::string xml(std::istreambuf_iterator<char>(in), {});
+  EXPECT_NE(xml.find("<error message=\"timed out after "), std::string::npos) << xml;
+  expectRefusal(skitter({"validate", "--timeout", "0"}), 2, {"--timeout", "0"});
 }
 
 TEST_F(Validate, HelpListsTheExitCodes) {

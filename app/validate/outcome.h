@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/common/manifest.h"
+#include "skitter/scene.h"
+#include "validation/judge.h"
+
+namespace skitter::app {
+
+// A share of a leg length. Nobody sees a difference of so little in where an agent stands.
+inline constexpr double freeRunTolerance = 0.01;
+
+// What the validation on one device came to.
+struct Outcome {
+  std::string device = {};
+  std::vector<validation::StageResult> stages = {};
+  uint64_t ticks = 0, wanted = 0;        // done, and asked for
+  std::optional<uint64_t> edits = {};    // of the ground, rectangles
+  std::optional<double> freeShare = {};  // of a free run: agents that stay within freeRunTolerance
+  double seconds = 0;                    // wall
+
+  bool isWhole() const { return ticks >= wanted; }
+  std::string failed() const;  // the names of stages that differ from the reference; empty: none
+  bool passes() const { return isWhole() && failed().empty(); }
+};
+
+void print(const Outcome& outcome, const Scene& scene);
+
+// Of --json: of one device what it came to, of several a list.
+nlohmann::ordered_json jsonOf(std::span<const Outcome> outcomes, bool several);
+
+// Of --junit: a suite a device, a case a stage, for servers of continuous integration. Throws Error(input).
+void writeJunit(const std::string& file, std::span<const Outcome> outcomes, const Manifest& manifest);
+
+}  // namespace skitter::app
