@@ -1,9 +1,11 @@
-"""The tables of scripts/mutate name files and tests that exist."""
+"""The tables of scripts/mutate name files and tests that exist, and a mutant's build leaves nothing behind."""
 import fnmatch
 import importlib.machinery
 import importlib.util
+import os
 import pathlib
 import sys
+import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
@@ -35,6 +37,22 @@ class Mutate(unittest.TestCase):
                 with self.subTest(step=step):
                     program, name = step.split(":")
                     self.assertIn(name, mutate.VALIDATIONS if program == "v" else mutate.GROUPS[program])
+
+    def test_a_folder_is_put_back_with_its_times(self):
+        with tempfile.TemporaryDirectory() as folder:
+            sound, build = pathlib.Path(folder) / "sound", pathlib.Path(folder) / "build"
+            for name in "same.o", "part/changed.o", "part/lost.o":
+                (build / name).parent.mkdir(parents=True, exist_ok=True)
+                (build / name).write_text("sound")
+            mutate.mirror(build, sound)
+            (build / "part" / "changed.o").write_text("fault")
+            os.utime(build / "part" / "changed.o", ns=(0, 1))
+            (build / "part" / "lost.o").unlink()
+            (build / "new.o").write_text("fault")
+            self.assertEqual(mutate.differing(sound, build), ["new.o", "part/changed.o", "part/lost.o"])
+            mutate.mirror(sound, build)
+            self.assertEqual(mutate.differing(sound, build), [])
+            self.assertEqual((build / "part" / "changed.o").read_text(), "sound")
 
 
 if __name__ == "__main__":
