@@ -1,4 +1,6 @@
 // What the host asks of a crowd after the fact; each waits for the device.
+#include "crowd/readback.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -77,28 +79,38 @@ void appendWatch(const Crowd::Impl& crowd, const crowd::Kind& kind, const Part& 
 
 }  // namespace
 
-HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
+namespace crowd {
+
+HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<const Record> records,
+                          const AgentSample& sample) {
   assert(sample.stride > 0);
-  impl_->context->waitIdle();
+  crowd.context->waitIdle();
   HerdState state;
-  state.tick = impl_->tick;
+  state.tick = crowd.tick;
   state.sample = sample;
+  const Kind& kind = crowd.kindOf(herd);
+  for (const Part& part : partsOf(crowd, herd)) {
+    state.agents += sampleOf(part.firstAgent, part.agents, sample).count;
+    for (const Record record : records) {
+      const Per per = infoOf(record).per;
+      if (per == Per::watched || !keeps(kind, crowd.options, record)) continue;
+      appendRecords(*crowd.context, part, part.page->of(record), per == Per::leg ? kind.legs : 0, sample,
+                    state.of(record));
+    }
+  }
+  return state;
+}
+
+}  // namespace crowd
+
+HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
+  HerdState state = crowd::downloadRecords(*impl_, herdIndex, allRecords, sample);
   state.watchEvery = impl_->watchEvery;
   state.sleep = impl_->options.sleep;
   state.watched = impl_->tick > 0 && impl_->tick <= impl_->watchUntil;
-  const crowd::Kind& kind = impl_->kindOf(herdIndex);
   state.watchOffset = impl_->herds[herdIndex].firstAgent % impl_->watchEvery;
-  for (const Part& part : crowd::partsOf(*impl_, herdIndex)) {
-    const Page& page = *part.page;
-    state.agents += crowd::sampleOf(part.firstAgent, part.agents, sample).count;
-    for (const Record record : allRecords) {
-      const crowd::Per per = crowd::infoOf(record).per;
-      if (per == crowd::Per::watched || !crowd::keeps(kind, impl_->options, record)) continue;
-      appendRecords(*impl_->context, part, page.of(record), per == crowd::Per::leg ? kind.legs : 0, sample,
-                    state.of(record));
-    }
-    if (page.watch) appendWatch(*impl_, kind, part, state.watchOffset, state.watch);
-  }
+  for (const Part& part : crowd::partsOf(*impl_, herdIndex))
+    if (part.page->watch) appendWatch(*impl_, impl_->kindOf(herdIndex), part, state.watchOffset, state.watch);
   state.footfallsKept = impl_->options.footfalls > 0 && droppedFootfalls(herdIndex) == 0;
   if (state.footfallsKept) state.footfalls = footfalls(herdIndex);
   return state;

@@ -1,0 +1,91 @@
+#include "bindings/common/herd_reader.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "crowd/herd.h"
+#include "crowd/places.h"
+#include "crowd/readback.h"
+#include "skitter/error.h"
+
+namespace skitter::bindings {
+namespace {
+
+HerdState stateOf(const Crowd& crowd, uint32_t herd, std::span<const Record> records) {
+  checkHerd(crowd, herd);
+  return crowd::downloadRecords(implOf(crowd), herd, records);
+}
+
+}  // namespace
+
+void checkHerd(const Crowd& crowd, uint32_t herd) {
+  if (herd < crowd.herdCount()) return;
+  throw inputError(fmt::format("herd {}: the crowd has {}, counted from 0", herd, crowd.herdCount()));
+}
+
+uint32_t agentsOf(const Crowd& crowd, uint32_t herd) {
+  checkHerd(crowd, herd);
+  return implOf(crowd).herds[herd].agents;
+}
+
+float dtOf(const Crowd& crowd) { return implOf(crowd).dt; }
+
+HerdState recordsOf(const Crowd& crowd, uint32_t herd) { return stateOf(crowd, herd, allRecords); }
+
+uint32_t legsOf(const Crowd& crowd, uint32_t herd) {
+  checkHerd(crowd, herd);
+  return static_cast<uint32_t>(crowd.rig(herd).legCount());
+}
+
+uint32_t bonesOf(const Crowd& crowd, uint32_t herd) {
+  checkHerd(crowd, herd);
+  return static_cast<uint32_t>(crowd.rig(herd).maxBones());
+}
+
+std::vector<glm::dvec3> positionsOf(const Crowd& crowd, uint32_t herd) {
+  const HerdState state = stateOf(crowd, herd, std::array{Record::body});
+  std::vector<glm::dvec3> positions(state.agents);
+  for (size_t agent = 0; agent < positions.size(); ++agent)
+    positions[agent] = crowd::bodyPosition(state, agent);
+  return positions;
+}
+
+std::vector<Body> bodiesOf(const Crowd& crowd, uint32_t herd) {
+  const HerdState state = stateOf(crowd, herd, std::array{Record::body});
+  std::vector<Body> bodies(state.agents);
+  for (size_t agent = 0; agent < bodies.size(); ++agent) {
+    const float* motion = state.body.data() + 4 * (agent * shared::BODY_STRIDE + 1);
+    bodies[agent] = {.position = crowd::bodyPosition(state, agent),
+                     .rotation = crowd::bodyRotation(state, agent),
+                     .heading = std::atan2(motion[0], motion[1]),
+                     .speed = motion[2]};
+  }
+  return bodies;
+}
+
+std::vector<glm::dvec3> jointsOf(const Crowd& crowd, uint32_t herd) {
+  const HerdState state = stateOf(crowd, herd, std::array{Record::body, Record::pose});
+  if (state.pose.empty() && state.agents > 0)
+    throw inputError("joints are known only of a crowd that was made with poses (the option pose)");
+  const crowd::Kind& kind = implOf(crowd).kindOf(herd);
+  const auto bones = static_cast<size_t>(kind.bones), legs = static_cast<size_t>(kind.legs);
+  std::vector<glm::dvec3> joints(state.agents * legs * (bones + 1),
+                                 glm::dvec3(std::numeric_limits<double>::quiet_NaN()));
+  auto* chain = joints.data();
+  for (size_t agent = 0; agent < state.agents; ++agent) {
+    const glm::dvec3 position = crowd::bodyPosition(state, agent);
+    for (size_t leg = 0; leg < legs; ++leg, chain += bones + 1) {
+      const size_t own = kind.rig.legs[leg].bones.size();
+      for (size_t bone = 0; bone < own; ++bone)
+        chain[bone] = position + glm::dvec3(crowd::placedBone(state, kind, agent, leg, bone).start);
+      chain[own] = position + glm::dvec3(crowd::placedTip(state, kind, agent, leg));
+    }
+  }
+  return joints;
+}
+
+}  // namespace skitter::bindings
