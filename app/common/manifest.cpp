@@ -7,6 +7,7 @@
 #include "app/common/scene_hash.h"
 #include "commit.h"
 #include "render/partial_file.h"
+#include "skitter/version.h"
 
 namespace skitter::app {
 namespace {

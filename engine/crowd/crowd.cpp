@@ -143,6 +143,7 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
   const gpu::Context& context = device.context();
   crowd.context = &context;
   crowd.options = options;
+  crowd.options.rigs = {};  // each kind has its own
   if (std::max(terrain.extentX(), terrain.extentZ()) > 2 * Scene::maxCoordinate)
     throw inputError(terrain.name + ": the terrain is " +
                      std::to_string(static_cast<int>(terrain.extentX())) + " x " +
@@ -198,11 +199,9 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
 }  // namespace
 
 Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options)
-    : impl_(makeCrowd(device, terrain, scene, crowd::kindsOf(scene), options)) {}
-
-Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,
-             const CrowdOptions& options)
-    : impl_(makeCrowd(device, terrain, scene, crowd::kindsOf(scene, std::move(rigs)), options)) {}
+    : impl_(makeCrowd(device, terrain, scene,
+                      options.rigs.empty() ? crowd::kindsOf(scene) : crowd::kindsOf(scene, options.rigs),
+                      options)) {}
 
 Crowd::~Crowd() = default;
 Crowd::Crowd(Crowd&&) noexcept = default;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -73,7 +72,9 @@ Kinds kindsOf(const Scene& scene) {
 }
 
 Kinds kindsOf(const Scene& scene, std::vector<Rig> rigs) {
-  assert(rigs.size() == scene.herds.size());
+  if (rigs.size() != scene.herds.size())
+    throw inputError(fmt::format("{}: {} rigs were given, expected one for each of {} herds", scene.name,
+                                 rigs.size(), scene.herds.size()));
   Kinds kinds = grouped(scene, [&](uint32_t a, uint32_t b) { return rigs[a] == rigs[b]; });
   for (const uint32_t h : kinds.firstHerds) kinds.rigs.push_back(std::move(rigs[h]));
   return kinds;

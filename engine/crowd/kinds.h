@@ -19,7 +19,8 @@ struct Kinds {
 // Herds are of one kind where they are equal but for agents, spawn and goal. Throws Error(input) where there
 // are more than a device can serve, or a herd's tuning is out of range.
 Kinds kindsOf(const Scene& scene);
-// With rigs that the caller made, one a herd, in place of those that the scene names.
+// With rigs that the caller made, one a herd, in place of those that the scene names. Throws Error(input) for
+// another count of them, too.
 Kinds kindsOf(const Scene& scene, std::vector<Rig> rigs);
 
 }  // namespace skitter::crowd

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "skitter/device.h"
+#include "skitter/export.h"
 #include "skitter/heightfield.h"
 #include "skitter/records.h"
 #include "skitter/rig.h"
@@ -45,6 +46,7 @@ struct CrowdOptions {
   bool timestamps = false;                // time every stage on the device
   uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
+  std::vector<Rig> rigs = {};  // one a herd, in place of those that the scene names; empty: the scene's
 };
 
 // How well agents moved in the ticks in which they were watched (docs/stages/measure.md defines each).
@@ -133,16 +135,14 @@ struct StageTime {
 // The herds on one terrain, living on one device. Herds that are equal but for agents, spawn and goal share
 // pipelines and dispatches, so that any number of them costs what one of as many agents does. Not
 // thread-safe; one crowd may be recorded while another is.
-class Crowd {
+class SKITTER_API Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
-  // cannot be (an unknown rig or controller, tuning out of its range, more than 100 herds that differ, legs
-  // of an adaptive herd above 100 m, a terrain that reaches beyond 4 km from the origin) and, before any
-  // agent is made, Error(device) when memory does not suffice (as DeviceLimits::availableBytes, but now).
+  // cannot be (an unknown rig or controller, a count of rigs that is not that of herds, tuning out of its
+  // range, more than 100 herds that differ, legs of an adaptive herd above 100 m, a terrain that reaches
+  // beyond 4 km from the origin) and, before any agent is made, Error(device) when memory does not suffice
+  // (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
-  // With rigs that the caller made, one a herd, in place of those that the scene names.
-  Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,
-        const CrowdOptions& options = {});
   ~Crowd();
   Crowd(Crowd&&) noexcept;
   Crowd& operator=(Crowd&&) noexcept;
@@ -192,7 +192,7 @@ class Crowd {
   // One a page of the herd; does not wait. The last barrier of record() makes them visible.
   std::vector<FootfallBuffer> footfallBuffers(uint32_t herd) const;
 
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
 
  private:
   // For the engine's own rooms and tools (crowd/herd.h).

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "skitter/export.h"
+
 namespace skitter {
 
 namespace gpu {
@@ -86,7 +88,7 @@ struct DeviceFeatures {
   bool presentation = false;  // VK_KHR_swapchain
 };
 
-struct DeviceReport {
+struct SKITTER_API DeviceReport {
   std::string name;
   std::string driver;  // name and version as the driver tells them
   uint32_t index = 0;  // the number that DeviceRequest::device accepts
@@ -127,7 +129,7 @@ struct ValidationMessage {
 
 // What the validation layer said, warnings and errors. It may outlive its device, so that complaints about
 // the device's own destruction can still be read. Thread-safe.
-class ValidationLog {
+class SKITTER_API ValidationLog {
  public:
   std::vector<ValidationMessage> messages() const;
   void clear();
@@ -140,11 +142,11 @@ class ValidationLog {
 
 // Every device of this machine, suitable or not, in Vulkan's order, with the choice that create() would make.
 // Throws Error(device) when there is no Vulkan driver at all.
-std::vector<DeviceReport> listDevices(const DeviceRequest& = {});
+SKITTER_API std::vector<DeviceReport> listDevices(const DeviceRequest& = {});
 
 // One Vulkan device with one queue that does graphics, compute and transfer. Everything made on it must be
 // gone before it is destroyed. Work is submitted from one thread at a time.
-class Device {
+class SKITTER_API Device {
  public:
   // The best suitable device: Vulkan 1.3, a graphics and compute queue, dynamicRendering, synchronization2
   // and timelineSemaphore; discrete before integrated before virtual before cpu. Throws Error(device) listing

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "skitter/export.h"
+
 namespace skitter {
 
 // A terrain y = h(x, z), sampled at the corners of a regular grid and bilinear in between.
 // Columns run to +x and rows to +z; the grid is centred on the world's origin and heights are metres relative
 // to mid height (the mean of the lowest and the highest sample). Outside, heights clamp to the edge.
-struct Heightfield {
+struct SKITTER_API Heightfield {
   std::string name;
   uint32_t columns = 0;        // samples along x, at least 2
   uint32_t rows = 0;           // samples along z, at least 2
@@ -52,7 +54,8 @@ struct HeightfieldUnits {
 
 // Reads .png (grey, 8 or 16 bits), .r16, .r32f, .hgt (SRTM) or .npy, by the name's extension. Voids are
 // filled and counted. Throws Error(input) that names the file and the fault.
-Heightfield loadHeightfield(const std::filesystem::path& file, const HeightfieldUnits& units = {});
+SKITTER_API Heightfield loadHeightfield(const std::filesystem::path& file,
+                                        const HeightfieldUnits& units = {});
 
 // Rolling ground made of value noise in octaves, with ridges; the same bits for the same arguments.
 struct TerrainNoise {
@@ -68,6 +71,6 @@ struct TerrainNoise {
 
   bool operator==(const TerrainNoise&) const = default;
 };
-Heightfield generateHeightfield(const TerrainNoise& noise);
+SKITTER_API Heightfield generateHeightfield(const TerrainNoise& noise);
 
 }  // namespace skitter

@@ -10,6 +10,7 @@
 
 #include "skitter/crowd.h"
 #include "skitter/device.h"
+#include "skitter/export.h"
 #include "skitter/scene.h"
 
 namespace skitter {
@@ -24,10 +25,10 @@ struct View {
 // The scene's camera at a time. `follow` frames the action: one walker and those about it, seen from behind,
 // aside and above, moving as the first herd is commanded to, never below the ground. It needs no readback.
 // `crowd` was made of `scene`.
-View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
+SKITTER_API View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
 
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.
-class Renderer {
+class SKITTER_API Renderer {
  public:
   // Throws Error(input) for a picture without pixels or a crowd without poses, Error(device) when width or
   // height exceed the device's limits or memory does not suffice. The crowd outlives the renderer and stays
@@ -56,7 +57,7 @@ class Renderer {
   std::vector<uint8_t> download() const;
 
  private:
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "skitter/clip.h"
 #include "skitter/controller.h"
+#include "skitter/export.h"
 #include "skitter/heightfield.h"
 #include "skitter/solver.h"
 #include "skitter/tuning.h"
@@ -77,7 +78,7 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
-struct Scene {
+struct SKITTER_API Scene {
   static constexpr size_t maxHerds = 1024;
   static constexpr uint32_t maxAgents = 1 << 24;  // of all herds: records hold an agent's index as a float
   static constexpr float maxCoordinate = 4096;  // metres from the origin: feet beyond are placed too coarsely
@@ -95,12 +96,13 @@ struct Scene {
 
 // The built-in scene: 1,000 spiders crossing generated ground in parallel lanes
 // (assets/scenes/crossing.json).
-Scene builtinScene();
+SKITTER_API Scene builtinScene();
 // Throws Error(input) that names the file and the field.
-Scene loadScene(const std::filesystem::path& file);
-Scene parseScene(const std::string& json, const std::string& name, const std::filesystem::path& folder);
+SKITTER_API Scene loadScene(const std::filesystem::path& file);
+SKITTER_API Scene parseScene(const std::string& json, const std::string& name,
+                             const std::filesystem::path& folder);
 // The JSON form, with every key and with absolute file names: it is read back as an equal scene. Throws
 // Error(input) that names the key of a value that no scene file may have.
-std::string sceneJson(const Scene& scene);
+SKITTER_API std::string sceneJson(const Scene& scene);
 
 }  // namespace skitter
