@@ -154,7 +154,7 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
   crowd.heights = gpu::Image(
       context, {vk::Format::eR32Sfloat, {terrain.columns, terrain.rows}, vk::ImageUsageFlagBits::eSampled},
       "heights");
-  gpu::uploadImage(context, crowd.heights, terrain.heights);
+  gpu::uploadImage(context, crowd.heights, terrain.heights, gpu::sampledOn(context));
   crowd.edits = crowd::HeightEdits(context);
   if (options.timestamps) crowd.timer = gpu::StageTimer(context, crowd::Frame::mostStages);
 
@@ -214,11 +214,12 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   const uint64_t tick = ++crowd.tick;
 
   crowd.timer.reset(cmd);
-  gpu::graphicsToCompute(cmd);
+  if (crowd.context->draws()) gpu::graphicsToCompute(cmd);
   gpu::computeToTransfer(cmd);
   crowd::clearLists(crowd, cmd);
   crowd::clearAwake(crowd, cmd);
-  if (!crowd.edits.empty()) crowd.edits.record(cmd, crowd.terrain, crowd.heights);
+  if (!crowd.edits.empty())
+    crowd.edits.record(cmd, crowd.terrain, crowd.heights, gpu::sampledOn(*crowd.context));
   gpu::transferToCompute(cmd);
   const crowd::Frame frame(crowd, tick, cmd);
   const char* last = nullptr;
@@ -248,7 +249,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   run(measure, written);
   run(footfall, written);
   if (last != nullptr) crowd.timer.end(cmd, last);
-  gpu::computeToGraphics(cmd);
+  if (crowd.context->draws()) gpu::computeToGraphics(cmd);
   gpu::computeToTransfer(cmd);
 }
 

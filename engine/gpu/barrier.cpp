@@ -49,6 +49,8 @@ Scope scopeOf(ImageState state) {
     case ImageState::sampled:
       return {Stage::eComputeShader | Stage::eVertexShader | Stage::eFragmentShader,
               Access::eShaderSampledRead};
+    case ImageState::sampledByCompute:
+      return {Stage::eComputeShader, Access::eShaderSampledRead};
     case ImageState::colour:
       return {Stage::eColorAttachmentOutput, Access::eColorAttachmentRead | Access::eColorAttachmentWrite};
     case ImageState::depth:
@@ -92,6 +94,7 @@ vk::ImageLayout layoutOf(ImageState state) {
     case ImageState::transferDst:
       return vk::ImageLayout::eTransferDstOptimal;
     case ImageState::sampled:
+    case ImageState::sampledByCompute:
       return vk::ImageLayout::eShaderReadOnlyOptimal;
     case ImageState::colour:
     case ImageState::depth:

@@ -34,15 +34,20 @@ void allToAll(vk::CommandBuffer);
 
 // What an image is being used for; each has one layout.
 enum class ImageState {
-  discard,      // as a source only: the contents are of no interest; waits for all earlier uses
-  transferSrc,  // copied from
-  transferDst,  // copied to
-  sampled,      // read by compute or graphics shaders
-  colour,       // colour attachment (and target of a resolve)
-  depth,        // depth attachment
-  present,      // handed to the window system
+  discard,           // as a source only: the contents are of no interest; waits for all earlier uses
+  transferSrc,       // copied from
+  transferDst,       // copied to
+  sampled,           // read by compute or graphics shaders
+  sampledByCompute,  // the same, on a queue that only computes
+  colour,            // colour attachment (and target of a resolve)
+  depth,             // depth attachment
+  present,           // handed to the window system
 };
 vk::ImageLayout layoutOf(ImageState);
+// One of both, by the device's queue.
+inline ImageState sampledOn(const Context& context) {
+  return context.draws() ? ImageState::sampled : ImageState::sampledByCompute;
+}
 
 void transition(vk::CommandBuffer, vk::Image, vk::ImageAspectFlags, ImageState from, ImageState to);
 inline void transition(vk::CommandBuffer cmd, const Image& image, ImageState from, ImageState to) {

@@ -30,6 +30,14 @@ vk::Extent2D checkedExtent(const gpu::Context& context, uint32_t width, uint32_t
   return {width, height};
 }
 
+const gpu::Context& checkedContext(const gpu::Context& context) {
+  if (!context.draws())
+    throw deviceError(fmt::format(
+        "a renderer needs a queue for graphics, and {} was given queue family {}, which only computes",
+        context.report().name, context.queueFamily()));
+  return context;
+}
+
 // Four samples where a GPU gives them almost for nothing; a software device pays sevenfold.
 vk::SampleCountFlagBits sampleCount(const gpu::Context& context) {
   return context.isCpu() ? vk::SampleCountFlagBits::e1 : vk::SampleCountFlagBits::e4;
@@ -64,7 +72,7 @@ struct Renderer::Impl {
 };
 
 Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height)
-    : context(c),
+    : context(checkedContext(c)),
       timer(c, kPasses),
       samples(sampleCount(c)),
       colour(c,

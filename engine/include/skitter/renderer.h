@@ -30,9 +30,9 @@ SKITTER_API View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.
 class SKITTER_API Renderer {
  public:
-  // Throws Error(input) for a picture without pixels or a crowd without poses, Error(device) when width or
-  // height exceed the device's limits or memory does not suffice. The crowd outlives the renderer and stays
-  // where it is.
+  // Throws Error(input) for a picture without pixels or a crowd without poses, Error(device) for a device
+  // whose queue has no graphics, when width or height exceed the device's limits or memory does not suffice.
+  // The crowd outlives the renderer and stays where it is.
   Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
