@@ -145,18 +145,20 @@ reference::Goal goalOf(const HerdState& state, size_t agent) {
   const float* record = recordAt(state.goal, agent, shared::GOAL_STRIDE);
   reference::Goal to;
   SKITTER_GOAL_FIELDS(READ)
-  to.kind = record[6] == shared::GOAL_CROSS   ? reference::GoalKind::cross
-            : record[6] == shared::GOAL_POINT ? reference::GoalKind::point
-                                              : reference::GoalKind::none;
+  to.kind = record[6] == shared::GOAL_CROSS      ? reference::GoalKind::cross
+            : record[6] == shared::GOAL_POINT    ? reference::GoalKind::point
+            : record[6] == shared::GOAL_VELOCITY ? reference::GoalKind::velocity
+                                                 : reference::GoalKind::none;
   return to;
 }
 
 void putGoal(HerdState& state, size_t agent, const reference::Goal& from) {
   float* record = clearedAt(state.goal, agent, shared::GOAL_STRIDE);
   SKITTER_GOAL_FIELDS(WRITE)
-  record[6] = from.kind == reference::GoalKind::cross   ? shared::GOAL_CROSS
-              : from.kind == reference::GoalKind::point ? shared::GOAL_POINT
-                                                        : shared::GOAL_NONE;
+  record[6] = from.kind == reference::GoalKind::cross      ? shared::GOAL_CROSS
+              : from.kind == reference::GoalKind::point    ? shared::GOAL_POINT
+              : from.kind == reference::GoalKind::velocity ? shared::GOAL_VELOCITY
+                                                           : shared::GOAL_NONE;
 }
 
 glm::dvec2 desiredOf(const HerdState& state, size_t agent) {
@@ -177,6 +179,7 @@ reference::AgentBody bodyOf(const HerdState& state, size_t agent) {
   SKITTER_BODY_FIELDS(READ)
   to.tileX = shared::tileX(record[3]);
   to.tileZ = shared::tileZ(record[3]);
+  to.absent = record[7] == 1;
   return to;
 }
 
@@ -184,6 +187,7 @@ void putBody(HerdState& state, size_t agent, const reference::AgentBody& from) {
   float* record = clearedAt(state.body, agent, shared::BODY_STRIDE);
   SKITTER_BODY_FIELDS(WRITE)
   write(record + 3, shared::TILES * from.tileX + from.tileZ);
+  record[7] = from.absent ? 1 : 0;
 }
 
 reference::Gait gaitOf(const HerdState& state, size_t agent) {

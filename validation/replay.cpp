@@ -121,6 +121,11 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
     for (size_t agent = 0; agent < before.agents; ++agent) {
       const Moment moment{n, before, after, agent};
       const bool asleep = asleepOf(after, agent);
+      // Nobody is there: measure adds nothing.
+      if (check.stage == StageId::measure && bodyOf(after, agent).absent) {
+        checkKept(setting_, moment, Record::metric, judges_[c]);
+        continue;
+      }
       if (!asleep || check.writes.empty()) check.check(setting_, moment, judges_[c]);
       for (const Record record : check.writes)
         if (asleep) checkKept(setting_, moment, record, judges_[c]);

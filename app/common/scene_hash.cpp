@@ -56,7 +56,8 @@ class Files {
 
 // Bindings to all members: a new one does not compile until it is looked at here.
 void add(Hash& hash, Files& files, const Herd& herd) {
-  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
+  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal] =
+      herd;
   hash.add(rig);
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   if (rig != "spider") {
@@ -80,15 +81,17 @@ void add(Hash& hash, Files& files, const Herd& herd) {
       hash.add(tuning.*info.member);
     }
   hash.add(uint64_t{agents});
+  if (reserve > 0) hash.add(uint64_t{reserve});
   const auto& [spawnKind, spacing, centre, heading] = spawn;
   hash.add(static_cast<uint64_t>(spawnKind));
   hash.add(spacing);
   hash.add(centre);
   hash.add(heading);
-  const auto& [goalKind, target, speed] = goal;
+  const auto& [goalKind, target, speed, velocity] = goal;
   hash.add(static_cast<uint64_t>(goalKind));
   hash.add(target);
   hash.add(speed);
+  if (goalKind == Goal::Kind::velocity) hash.add(velocity);
 }
 
 }  // namespace

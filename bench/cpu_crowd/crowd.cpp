@@ -1,5 +1,7 @@
 #include "bench/cpu_crowd/crowd.h"
 
+#include <fmt/format.h>
+
 #include "bench/cpu_baseline/lanes.h"
 #include "bench/cpu_crowd/kernel.h"
 #include "bench/cpu_crowd/pool.h"
@@ -32,6 +34,9 @@ void check(const validation::HerdFacts& facts, const HerdState& start, const Opt
   expectSize("steer", start.steer, agents, shared::STEER_STRIDE);
   expectSize("body", start.body, agents, shared::BODY_STRIDE);
   expectSize("gait", start.gait, agents, shared::GAIT_STRIDE);
+  for (size_t agent = 0; agent < agents; ++agent)
+    if (start.body[4 * shared::BODY_STRIDE * agent + 7] != 0)
+      throw inputError(fmt::format("CPU crowd: nobody is in place {}; set the herd's reserve to 0", agent));
   if (clips) return expectSize("play", start.play, agents, shared::PLAY_STRIDE);
   expectSize("step", start.step, agents * legs, shared::STEP_STRIDE);
   expectSize("arc", start.arc, agents * legs, shared::ARC_STRIDE);

@@ -21,6 +21,8 @@ class HeightEdits {
     pending_.push_back({x0, z0, columns, rows});
   }
   bool empty() const { return pending_.empty(); }
+  // Of kMostSamples floats: for whatever else a tick's command buffer carries, too.
+  const gpu::Buffer& staging() const { return staging_; }
   // Copies the pending rectangles from `terrain` to the image, which is in state `between` before and after.
   void record(vk::CommandBuffer cmd, const Heightfield& terrain, const gpu::Image& image,
               gpu::ImageState between);

@@ -13,14 +13,12 @@
 namespace skitter::crowd {
 namespace {
 
-// Each has about ten pipelines. Mesa's software device keeps the machine code of 1024; with more it makes
-// some anew in every tick, which then takes 20 times as long.
-constexpr size_t kMostKinds = 100;
-
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
-  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
-  return std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning);
+  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal] =
+      herd;
+  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning),
+                        std::tuple(reserve > 0));
 }
 
 // `areEqual` compares what the rigs of two herds, by number, are.
@@ -37,11 +35,11 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
     kinds.ofHerds.push_back(static_cast<uint32_t>(found - kinds.firstHerds.begin()));
     if (found == kinds.firstHerds.end()) kinds.firstHerds.push_back(h);
   }
-  if (kinds.firstHerds.size() > kMostKinds)
+  if (kinds.firstHerds.size() > mostKinds)
     throw inputError(
         scene.name + ": " + std::to_string(kinds.firstHerds.size()) +
         " herds differ in rig, controller, clips, cuts, keys, solver, stepping or tuning, expected at most " +
-        std::to_string(kMostKinds) +
+        std::to_string(mostKinds) +
         ": each of them has pipelines of its own; equal herds share them, whatever their agents, "
         "spawn and goal");
   return kinds;

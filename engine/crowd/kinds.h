@@ -9,6 +9,10 @@
 
 namespace skitter::crowd {
 
+// Each has about ten pipelines. Mesa's software device keeps the machine code of 1024; with more it makes
+// some anew in every tick, which then takes 20 times as long.
+constexpr size_t mostKinds = 100;
+
 // The kinds of a scene's herds, in the order of each one's first herd.
 struct Kinds {
   std::vector<uint32_t> ofHerds;     // the kind of each herd

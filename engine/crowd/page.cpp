@@ -183,7 +183,7 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Kind& kind) 
   // The last work group reads on after the list's end.
   constexpr uint64_t anEntry = AWAKE_STRIDE * 16;
   PageBuffer awake{.name = "awake", .bytes = anEntry, .buffer = &Page::awake, .agents = BLOCK};
-  if (options.sleep)
+  if (kind.rests(options))
     awake.more = WORK_GROUP * anEntry;
   else
     awake.most = anEntry;
@@ -264,6 +264,7 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::spa
 std::vector<Part> partsOf(const Crowd::Impl& crowd, uint32_t herd) {
   const Kind& kind = crowd.kindOf(herd);
   std::vector<Part> parts;
+  if (crowd.herds[herd].agents == 0) return parts;
   for (const Page& page : kind.pages)
     if (const Part part = partOf(kind, crowd.herds[herd].place, page); part.agents > 0) parts.push_back(part);
   return parts;

@@ -121,7 +121,7 @@ std::vector<Footfall> Crowd::footfalls(uint32_t herdIndex) const {
   context.waitIdle();
   std::vector<Footfall> all;
   if (impl_->options.footfalls == 0) return all;
-  const crowd::Herd& herd = impl_->herds.at(herdIndex);
+  const crowd::Herd& herd = impl_->herdAt(herdIndex);
   for (const Part& part : crowd::partsOf(*impl_, herdIndex)) {
     const Page& page = *part.page;
     const uint32_t count = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_FOOTFALLS];
@@ -151,7 +151,7 @@ uint64_t Crowd::droppedFootfalls(uint32_t herd) const {
 }
 
 std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herdIndex) const {
-  const crowd::Herd& herd = impl_->herds.at(herdIndex);
+  const crowd::Herd& herd = impl_->herdAt(herdIndex);
   std::vector<FootfallBuffer> buffers;
   for (const Part& part : crowd::partsOf(*impl_, herdIndex))
     buffers.push_back({part.page->footfall.handle(), part.page->counters.handle(),
@@ -162,7 +162,7 @@ std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herdIndex) const {
 uint64_t Crowd::sleeping() const {
   impl_->context->waitIdle();
   if (!impl_->options.sleep || impl_->tick == 0) return 0;
-  uint64_t sleeping = agentCount();
+  uint64_t sleeping = impl_->agentsInTick;
   for (const crowd::Kind& kind : impl_->kinds)
     for (const Page& page : kind.pages)
       sleeping -= gpu::download<uint32_t>(*impl_->context, page.counters)[shared::COUNTER_AWAKE];

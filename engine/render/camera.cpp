@@ -27,6 +27,13 @@ Walk walkOf(const Herd& herd, const crowd::Kind& live, const Heightfield& terrai
   const glm::vec2 there(placed.targetX, placed.targetZ), back(placed.otherX, placed.otherZ);
   const float length = glm::distance(start, there);
   Walk walk{start, {std::sin(placed.heading), std::cos(placed.heading)}};
+  if (herd.goal.kind == Goal::Kind::velocity) {
+    const glm::vec2 velocity = herd.goal.velocity,
+                    edge = 0.5f * glm::vec2(terrain.extentX(), terrain.extentZ());
+    if (glm::length(velocity) > 1e-3f) walk.along = glm::normalize(velocity);
+    walk.at = glm::clamp(start + velocity * float(seconds), -edge, edge);
+    return walk;
+  }
   if (herd.goal.kind == Goal::Kind::none || length < 1e-3f) return walk;
   walk.along = (there - start) / length;
   const double gone = seconds * herd.goal.speed;

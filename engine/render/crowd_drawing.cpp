@@ -84,6 +84,10 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s
   if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
   for (const crowd::Kind& source : crowd.kinds) {
     Kind kind;
+    if (source.pages.empty()) {  // of a herd that is gone; kinds keep their numbers
+      kinds_.push_back(std::move(kind));
+      continue;
+    }
     const bool clips = crowd::traitsOf(source.controller).playsClips;
     kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
     kind.mesh =

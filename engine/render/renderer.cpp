@@ -56,6 +56,8 @@ struct Renderer::Impl {
   void smoothEdges(vk::CommandBuffer);
 
   const gpu::Context& context;
+  const Crowd::Impl& source;
+  uint32_t revision;  // of the source that is drawn
   gpu::StageTimer timer;
   vk::SampleCountFlagBits samples;
   gpu::Image colour, depth;
@@ -73,6 +75,8 @@ struct Renderer::Impl {
 
 Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height)
     : context(checkedContext(c)),
+      source(source),
+      revision(source.revision),
       timer(c, kPasses),
       samples(sampleCount(c)),
       colour(c,
@@ -109,6 +113,12 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
 // The whole picture.
 void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
                             const std::function<void(VkCommandBuffer)>& over) {
+  // Herds have come or gone. Pictures in flight may still use what goes.
+  if (revision != source.revision) {
+    context.waitIdle();
+    crowd = render::CrowdDrawing(setting, source);
+    revision = source.revision;
+  }
   const vk::Extent2D extent = colour.extent();
   const render::Composition composition =
       render::compose(view, setting.terrain, terrain.lowest(), terrain.highest(), extent.width, extent.height,

@@ -76,6 +76,19 @@ Results atTheEdge(Device& device, Controller controller, const CrowdOptions& opt
   return replay(device, crowd, ground, 60);
 }
 
+// By velocities of every direction, half of them longer than they are cut to.
+Results goingByVelocity(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), options);
+  simulate(device, crowd, 30);
+  setGoals(device, crowd, [&](size_t agent, float* goal) {
+    const float angle = 0.785398f * static_cast<float>(agent);
+    goal[0] = 0.8f * std::sin(angle), goal[1] = 0.8f * std::cos(angle);
+    goal[4] = agent < 8 ? 0.6f : 1.0f, goal[6] = shared::GOAL_VELOCITY;
+  });
+  return replay(device, crowd, ground, 30);
+}
+
 // On a small map agents run faster than they can turn back in time: they brake before its edge.
 Results tooFastForTheMap(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = smallRollingGround();
@@ -208,6 +221,7 @@ const std::vector<Situation>& situations() {
       {"walking", {Controller::adaptive}, walking},
       {"fallingAsleep", {Controller::adaptive}, fallingAsleep},
       {"atTheEdge", {Controller::adaptive}, atTheEdge},
+      {"goingByVelocity", {Controller::adaptive, Controller::loop}, goingByVelocity},
       {"tooFastForTheMap", {Controller::adaptive, Controller::loop}, tooFastForTheMap},
       {"reachingOverRocks", {Controller::adaptive}, reachingOverRocks},
       {"liftingAtOnce", {Controller::adaptive}, liftingAtOnce},

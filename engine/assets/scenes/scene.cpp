@@ -389,15 +389,21 @@ void keysOf(Fields& fields, Spawn& spawn) {
 
 template <class Fields>
 void keysOf(Fields& fields, Goal& goal) {
-  auto& [kind, target, speed] = goal;
-  fields.kind("kind", kind, {"cross", "point", "none"});
+  auto& [kind, target, speed, velocity] = goal;
+  fields.kind("kind", kind, {"cross", "point", "none", "velocity"});
   fields.key("target", target, Scene::maxCoordinate);
-  fields.key("speed", speed, 0, 1000);
+  fields.key("speed", speed, 0, double{Goal::maxSpeed});
+  fields.key("velocity", velocity, double{Goal::maxSpeed});
+}
+void checkKeys(const Goal& goal, const std::string& file, const std::string& path) {
+  if (glm::length(goal.velocity) > Goal::maxSpeed)
+    throw inputError(fmt::format("{}: {}.velocity is {:.6g} m/s long, expected at most {:.6g}", file, path,
+                                 glm::length(goal.velocity), Goal::maxSpeed));
 }
 
 template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
-  auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
+  auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -407,6 +413,7 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.named("stepping", stepping, allSteppings);
   fields.object("tuning", tuning);
   fields.integer("agents", agents, 0, Scene::maxAgents);
+  fields.integer("reserve", reserve, 0, Scene::maxAgents);
   fields.object("spawn", spawn);
   fields.object("goal", goal);
 }
@@ -436,9 +443,9 @@ void keysOf(Fields& fields, Scene& scene) {
   fields.object("camera", camera);
 }
 void checkKeys(const Scene& scene, const std::string& file, const std::string&) {
-  if (scene.agentCount() > Scene::maxAgents)
+  if (scene.capacity() > Scene::maxAgents)
     throw inputError(fmt::format("{}: herds have {} agents in all, expected at most {}", file,
-                                 scene.agentCount(), Scene::maxAgents));
+                                 scene.capacity(), Scene::maxAgents));
 }
 
 template <class Object>
@@ -471,6 +478,12 @@ Heightfield Scene::loadTerrain() const {
 uint64_t Scene::agentCount() const {
   uint64_t count = 0;
   for (const Herd& herd : herds) count += herd.agents;
+  return count;
+}
+
+uint64_t Scene::capacity() const {
+  uint64_t count = agentCount();
+  for (const Herd& herd : herds) count += herd.reserve;
   return count;
 }
 

@@ -16,6 +16,7 @@
 #include "skitter/records.h"
 #include "skitter/rig.h"
 #include "skitter/scene.h"
+#include "skitter/steering.h"
 
 namespace skitter {
 
@@ -96,7 +97,7 @@ struct AgentSample {
 // and validation.
 struct HerdState : ForRecords<std::vector<float>> {
   uint64_t tick = 0;        // the last one made
-  uint32_t agents = 0;      // that are here
+  uint32_t agents = 0;      // that are here, and empty places: body [1].w tells
   AgentSample sample;       // which of the herd they are
   uint32_t watchEvery = 1;  // measure watches one agent of this many at a time
   // Equal herds take turns as one, the herd's agent g as number watchOffset + g; number n that is being
@@ -164,10 +165,63 @@ class SKITTER_API Crowd {
   void editHeights(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
   const Heightfield& terrain() const;  // as edited
 
-  uint64_t tick() const;  // ticks recorded so far
-  uint32_t herdCount() const;
-  uint32_t watchEvery() const;  // the fidelity figures are of one agent of this many at a time
-  uint64_t agentCount() const;
+  // Steering (docs/steering.md). What the host says takes effect in the next recorded tick, which carries it
+  // in its command buffer: the data may go at once, nothing waits, and of several calls for one agent the
+  // last counts. A number that is not finite or out of its range, a count that is not the herd's, a herd that
+  // is not there and a handle of nobody throw Error(input), and nothing is changed then.
+  //
+  // Goals: of all agents of a herd, of each one (one goal a place), or of some. Kind cross: along the lane in
+  // which the herd's spawn has the agent's place.
+  void steer(uint32_t herd, const Goal& goal);
+  void steer(uint32_t herd, std::span<const Goal> goals);
+  void steer(std::span<const AgentGoal> goals);
+  // The speed alone, 0 to Goal::maxSpeed, metres a second. Of kind velocity it is what the velocity is cut to
+  // from then on, until the next goal.
+  void setSpeed(uint32_t herd, float speed);
+  void setSpeed(uint32_t herd, std::span<const float> speeds);
+  void setSpeed(std::span<const AgentSpeed> speeds);
+  // Puts agents elsewhere: standing, feet on the ground at their homes, without speed and past. The goal
+  // stays.
+  void teleport(std::span<const AgentPlace> places);
+  void teleport(AgentId agent, const Place& place);
+  // The goals themselves, one buffer a page of the herd, for the caller's own shaders. record() begins with a
+  // barrier against what compute shaders and transfers wrote before it; before the caller's shader writes
+  // goals it needs one of its own against the tick before: from COMPUTE_SHADER, SHADER_STORAGE_WRITE to
+  // COMPUTE_SHADER, SHADER_STORAGE_READ | SHADER_STORAGE_WRITE. What the host says counts, where both do.
+  std::vector<GoalBuffer> goalBuffers(uint32_t herd) const;
+  // The handle of who is in that place of the herd. Throws Error(input) where nobody is.
+  AgentId agentId(uint32_t herd, uint32_t agent) const;
+
+  // Agents that come and go, in herds with a reserve (Herd::reserve): a herd has `places` for its agents and
+  // its reserve, and the lowest empty one is taken first. Handles of who is gone are of nobody.
+  //
+  // Throw Error(input) where no place is left, or where the herd has no reserve.
+  AgentId add(uint32_t herd, const Place& place, const Goal& goal);
+  AgentId add(uint32_t herd, const Place& place);  // with the herd's goal
+  void remove(AgentId agent);
+  bool has(AgentId agent) const;
+  uint32_t places(uint32_t herd) const;
+  uint32_t agentCount(uint32_t herd) const;
+
+  // Herds that come and go, between ticks: both calls make or free device memory at once, and take as long.
+  //
+  // The herd is there in the next recorded tick, as one of the scene in a crowd that begins. It has pipelines
+  // and pages of its own (about 0.3 s), and the lowest number that no herd has. A renderer of the crowd
+  // follows at its next picture. Throws as the constructor does, and Error(input) beyond Scene::maxHerds.
+  HerdId addHerd(const Herd& herd);
+  // Waits for the device, frees the herd's memory, and its number is of a herd without places. Command
+  // buffers that were recorded before must not be submitted any more. A herd that shares its kind with others
+  // (equal but for agents, reserve, spawn and goal) leaves its places empty where the kind has a reserve, and
+  // is refused by an Error(input) where it has none.
+  void removeHerd(HerdId herd);
+  bool has(HerdId herd) const;
+  HerdId herdId(uint32_t herd) const;
+
+  uint64_t tick() const;         // ticks recorded so far
+  uint32_t herdCount() const;    // numbers, those of herds that are gone among them
+  uint32_t watchEvery() const;   // the fidelity figures are of one agent of this many at a time
+  uint64_t agentCount() const;   // who is there, as the host has said
+  uint64_t capacity() const;     // places for agents, empty ones among them
   uint64_t memoryBytes() const;  // device memory of all records
   std::vector<MemoryUse> memoryUse(uint32_t herd) const;
   const Rig& rig(uint32_t herd) const;

@@ -53,13 +53,16 @@ SKITTER_FUNCTION float packedTile(float x, float z) { return TILES * x + z; }
 SKITTER_INLINE float tileX(float tile) { return floor(tile / TILES + 0.5f); }
 SKITTER_INLINE float tileZ(float tile) { return tile - TILES * tileX(tile); }
 
-// goal, per agent, written by navigate.
+// goal, per agent, written by navigate, and by whoever steers: the host (Crowd::steer) or shaders of the
+// caller's (Crowd::goalBuffers). Other kinds than these are undefined, as is what is not finite.
 //   [0] target x, target z, other end x, other end z    world metres
-//   [1] speed (m/s), arrival radius (m), kind (0 none, 1 point, 2 cross), unused
+//       of kind velocity: desired velocity x, z (m/s), unused x 2
+//   [1] speed (m/s; of kind velocity what it is cut to), arrival radius (m), kind (GOAL_), unused
 SKITTER_CONST int GOAL_STRIDE = 2;
 SKITTER_CONST float GOAL_NONE = 0.0;
 SKITTER_CONST float GOAL_POINT = 1.0;
 SKITTER_CONST float GOAL_CROSS = 2.0;
+SKITTER_CONST float GOAL_VELOCITY = 3.0;
 
 // steer, per agent, written by navigate.
 //   [0] desired velocity x, z (m/s), 1 if the agent sleeps, unused
@@ -76,10 +79,12 @@ SKITTER_CONST int AWAKE_STRIDE = 1;
 
 // body, per agent, written by body.
 //   [0] local x, y (world), local z, tile
-//   [1] heading x, heading z, speed s (m/s, horizontal, along the heading), unused
+//   [1] heading x, heading z, speed s (m/s, horizontal, along the heading), 1 where the place is empty
 //   [2] R_0, quaternion xyzw, worldFromModel
 //   [3] turn rate omega (rad/s), still time (s), follow factor kappa, surface speed v3 (m/s)
 SKITTER_CONST int BODY_STRIDE = 4;
+// World y of an empty place's body, metres: out of every picture.
+SKITTER_CONST float ABSENT_HEIGHT = -1e6;
 
 // gait, per agent, written by gait.
 //   [0] phase phi in [0,1), lift mask, re-aim mask, step duration (ticks)

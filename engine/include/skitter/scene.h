@@ -39,10 +39,13 @@ struct Spawn {
 };
 struct Goal {
   // cross: walk to the far side of the terrain, turn, and come back beside the own lane, for ever.
-  // point: walk to `target` and stand there.   none: stand.
-  enum class Kind { cross, point, none } kind = Kind::cross;
-  glm::vec2 target{0};  // x, z
-  float speed = 1;      // commanded horizontal speed, metres a second, >= 0
+  // point: walk to `target` and stand there.   none: stand.   velocity: go by `velocity`.
+  enum class Kind { cross, point, none, velocity } kind = Kind::cross;
+  static constexpr float maxSpeed = 1000;  // metres a second
+
+  glm::vec2 target{0};    // x, z
+  float speed = 1;        // commanded horizontal speed, metres a second, 0 to maxSpeed; not of kind velocity
+  glm::vec2 velocity{0};  // x, z, metres a second, at most maxSpeed long
 
   bool operator==(const Goal&) const = default;
 };
@@ -62,6 +65,7 @@ struct Herd {
   Stepping stepping = Stepping::gait;
   Tuning tuning;  // docs/tuning.md
   uint32_t agents = 1000;
+  uint32_t reserve = 0;  // places for more, who come and go while the crowd runs (Crowd::add)
   Spawn spawn;
   Goal goal;
 
@@ -91,6 +95,7 @@ struct SKITTER_API Scene {
 
   Heightfield loadTerrain() const;  // throws Error(input)
   uint64_t agentCount() const;
+  uint64_t capacity() const;  // with the herds' reserves, at most maxAgents
   bool operator==(const Scene&) const = default;
 };
 
