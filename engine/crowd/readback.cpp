@@ -13,6 +13,7 @@
 #include "gpu/context.h"
 #include "gpu/transfer.h"
 #include "skitter/crowd.h"
+#include "skitter/decode.h"
 
 namespace skitter {
 namespace {
@@ -128,11 +129,9 @@ std::vector<Footfall> Crowd::footfalls(uint32_t herdIndex) const {
     std::vector<float> events(size_t{std::min(count, page.footfallRoom)} * 4 * shared::FOOTFALL_STRIDE);
     gpu::downloadBytes(context, page.footfall, std::as_writable_bytes(std::span(events)));
     for (size_t i = 0; i < std::min(count, page.footfallRoom); ++i) {
-      const float* e = events.data() + i * 4 * shared::FOOTFALL_STRIDE;
-      const auto agent = static_cast<uint32_t>(e[4]) - herd.firstAgent;
-      if (agent >= herd.agents) continue;
-      all.push_back({agent, static_cast<uint32_t>(e[5]), static_cast<uint64_t>(e[6]),
-                     double{e[6]} * impl_->dt, glm::vec3(e[0], e[1], e[2]), e[3]});
+      const Footfall footfall =
+          footfallOf(std::span(events).subspan(i * 4 * shared::FOOTFALL_STRIDE), herd.firstAgent, impl_->dt);
+      if (footfall.agent < herd.agents) all.push_back(footfall);
     }
   }
   // The device appends them in any order.

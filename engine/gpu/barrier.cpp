@@ -72,6 +72,19 @@ void computeToIndirectAndCompute(vk::CommandBuffer cmd) {
 
 void computeToGraphics(vk::CommandBuffer cmd) { barrier(cmd, kComputeDone, kGraphics); }
 void graphicsToCompute(vk::CommandBuffer cmd) { barrier(cmd, kGraphicsDone, kCompute); }
+
+void anyToCompute(vk::CommandBuffer cmd) {
+  barrier(cmd,
+          {kGraphicsDone.stages | kComputeDone.stages | kTransferDone.stages,
+           kComputeDone.access | kTransferDone.access},
+          kCompute);
+}
+void computeToAny(vk::CommandBuffer cmd) {
+  barrier(cmd, kComputeDone,
+          {kGraphics.stages | kCompute.stages | kTransfer.stages,
+           kGraphics.access | kCompute.access | kTransfer.access});
+}
+
 void computeToTransfer(vk::CommandBuffer cmd) { barrier(cmd, kComputeDone, kTransfer); }
 
 // Fills set indirect arguments too.

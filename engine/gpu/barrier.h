@@ -17,6 +17,10 @@ void computeToGraphics(vk::CommandBuffer);
 // The picture has been read from records that compute writes next (write after read).
 void graphicsToCompute(vk::CommandBuffer);
 
+// Compute between the caller's own work of any kind, before and after it.
+void anyToCompute(vk::CommandBuffer);
+void computeToAny(vk::CommandBuffer);
+
 void computeToTransfer(vk::CommandBuffer);
 void transferToCompute(vk::CommandBuffer);
 void transferToGraphics(vk::CommandBuffer);

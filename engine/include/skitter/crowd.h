@@ -10,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "skitter/buffers.h"
 #include "skitter/device.h"
 #include "skitter/export.h"
 #include "skitter/heightfield.h"
+#include "skitter/picking.h"
 #include "skitter/records.h"
 #include "skitter/rig.h"
 #include "skitter/scene.h"
@@ -226,6 +228,11 @@ class SKITTER_API Crowd {
   std::vector<MemoryUse> memoryUse(uint32_t herd) const;
   const Rig& rig(uint32_t herd) const;
 
+  // The nearest agent under a ray; the one nearest to a point. Positions are relative to `origin`. Both wait
+  // for the device and read every agent's body; Snapshot (skitter/readback.h) has the same without waiting.
+  std::optional<Picked> pick(const Ray& ray, const glm::dvec3& origin = glm::dvec3(0)) const;
+  std::optional<Picked> nearest(const glm::dvec3& point, const glm::dvec3& origin = glm::dvec3(0)) const;
+
   // Each of these waits for the device.
   HerdState download(uint32_t herd, const AgentSample& sample = {}) const;
   Fidelity fidelity() const;  // of all herds
@@ -245,6 +252,8 @@ class SKITTER_API Crowd {
 
   // One a page of the herd; does not wait. The last barrier of record() makes them visible.
   std::vector<FootfallBuffer> footfallBuffers(uint32_t herd) const;
+  // Likewise, of any record but `watch`. Empty where the herd keeps none (CrowdOptions).
+  std::vector<RecordBuffer> buffers(uint32_t herd, Record record) const;
 
   struct SKITTER_LOCAL Impl;
 

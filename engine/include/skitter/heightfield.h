@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,6 +30,8 @@ struct SKITTER_API Heightfield {
   float extentZ() const { return spacingZ * static_cast<float>(rows - 1); }
   // Bilinear height at world (x, z), for spawning, cameras and tools; the simulation samples on the device.
   float at(float x, float z) const;
+  // The ground's unit normal there, of the same surface.
+  glm::vec3 normalAt(float x, float z) const;
   // The same, but beyond its edge the ground goes on as its mirror image, as it does in pictures.
   float seenAt(float x, float z) const;
   // Replaces the samples of columns [x0, x0 + columns) and rows [z0, z0 + rows) by `samples`, row-major,

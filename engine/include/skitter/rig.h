@@ -66,6 +66,8 @@ struct SKITTER_API Rig {
   int groupCount() const { return static_cast<int>(groups.size()); }
   int maxBones() const;  // the longest chain; shorter ones are padded in the palette
   int paletteSize() const { return 1 + legCount() * maxBones(); }
+  // Where the bone of each palette entry starts at rest; of padding, the leg's last bone.
+  std::vector<glm::vec3> restStarts() const;
   bool operator==(const Rig&) const = default;
 };
 
