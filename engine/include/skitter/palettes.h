@@ -9,6 +9,7 @@
 
 #include "skitter/crowd.h"
 #include "skitter/device.h"
+#include "skitter/export.h"
 #include "skitter/host_space.h"
 
 namespace skitter {
@@ -57,7 +58,7 @@ struct PaletteOptions {
 // has transforms of zeros, so that it vanishes.
 //
 // Of one thread at a time. The crowd outlives it; so do the buffers.
-class Palettes {
+class SKITTER_API Palettes {
  public:
   // A target for each frame that may be in flight. Throws Error(input) for a herd that is not there, a range
   // that is too small or not aligned, palettes of a crowd without poses (CrowdOptions::pose), and quaternions

@@ -12,6 +12,7 @@
 #include "skitter/crowd.h"
 #include "skitter/decode.h"
 #include "skitter/device.h"
+#include "skitter/export.h"
 #include "skitter/picking.h"
 
 namespace skitter {
@@ -30,7 +31,7 @@ class Readback;
 
 // Where agents were after a tick. It looks into the memory of the Readback, until Readback::record() is
 // called again. Positions are relative to `origin`. Herds that are not read have no agents.
-class Snapshot {
+class SKITTER_API Snapshot {
  public:
   uint64_t tick() const { return tick_; }
   uint32_t agents(uint32_t herd) const;
@@ -58,7 +59,7 @@ class Snapshot {
 // to pass on.
 //
 // Of one thread at a time. The crowd outlives it, and what was recorded has finished before it goes.
-class Readback {
+class SKITTER_API Readback {
  public:
   // Throws Error(input) for a herd that is not there, named twice, or less than two slots; Error(device) when
   // memory does not suffice: 64 bytes an agent and slot.

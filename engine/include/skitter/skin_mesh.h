@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "skitter/crowd.h"
+#include "skitter/export.h"
 #include "skitter/host_space.h"
 #include "skitter/rig.h"
 
@@ -28,6 +29,6 @@ struct SkinMesh {
 
 // In the host's axes and unit, to go with palettes of the same HostSpace. Takes a while: levels are
 // simplified here. Throws Error(input) for a herd that is not there.
-SkinMesh skinMeshOf(const Crowd& crowd, uint32_t herd, const HostSpace& space = {});
+SKITTER_API SkinMesh skinMeshOf(const Crowd& crowd, uint32_t herd, const HostSpace& space = {});
 
 }  // namespace skitter
