@@ -7,6 +7,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "skitter/device.h"
+
 namespace host {
 
 void check(VkResult result, const char* call) {
@@ -34,7 +36,7 @@ std::optional<uint32_t> familyWith(const std::vector<VkQueueFamilyProperties>& f
 }  // namespace
 
 Gpu::Gpu(const std::vector<const char*>& instanceExtensions, bool validate) {
-  std::vector<const char*> extensions = instanceExtensions;
+  std::vector<const char*> wanted = instanceExtensions;
   std::vector<const char*> layers;
   const std::array checks = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
   const VkValidationFeaturesEXT validation{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
@@ -45,7 +47,7 @@ Gpu::Gpu(const std::vector<const char*>& instanceExtensions, bool validate) {
                                            .pDisabledValidationFeatures = nullptr};
   if (validate) {
     layers.push_back("VK_LAYER_KHRONOS_validation");
-    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    wanted.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
   VkApplicationInfo application{};
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
@@ -57,8 +59,8 @@ Gpu::Gpu(const std::vector<const char*>& instanceExtensions, bool validate) {
   instanceInfo.pApplicationInfo = &application;
   instanceInfo.enabledLayerCount = static_cast<uint32_t>(layers.size());
   instanceInfo.ppEnabledLayerNames = layers.data();
-  instanceInfo.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
-  instanceInfo.ppEnabledExtensionNames = extensions.data();
+  instanceInfo.enabledExtensionCount = static_cast<uint32_t>(wanted.size());
+  instanceInfo.ppEnabledExtensionNames = wanted.data();
   VK_CHECK(vkCreateInstance(&instanceInfo, nullptr, &instance));
   if (validate) {
     VkDebugUtilsMessengerCreateInfoEXT info{};
@@ -97,23 +99,21 @@ Gpu::Gpu(const std::vector<const char*>& instanceExtensions, bool validate) {
                       .queueCount = 1,
                       .pQueuePriorities = &priority});
   }
-  // What Skitter needs (skitter/device.h), and nothing for the host's own drawing beyond it.
-  VkPhysicalDeviceVulkan13Features v13{};
-  v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-  v13.synchronization2 = v13.dynamicRendering = v13.maintenance4 = VK_TRUE;
-  VkPhysicalDeviceVulkan12Features v12{};
-  v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-  v12.pNext = &v13;
-  v12.timelineSemaphore = VK_TRUE;
-  std::vector<const char*> deviceExtensions;
-  if (!instanceExtensions.empty()) deviceExtensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  // What Skitter needs and likes, and nothing for the host's own drawing beyond it.
+  features13_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+  features12_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  features12_.pNext = &features13_;
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  features.pNext = &features12_;
+  skitter::addFeatures(features, physical);
+  if (!instanceExtensions.empty()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   VkDeviceCreateInfo deviceInfo{};
   deviceInfo.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-  deviceInfo.pNext = &v12;
+  deviceInfo.pNext = &features;
   deviceInfo.queueCreateInfoCount = static_cast<uint32_t>(queues.size());
   deviceInfo.pQueueCreateInfos = queues.data();
-  deviceInfo.enabledExtensionCount = static_cast<uint32_t>(deviceExtensions.size());
-  deviceInfo.ppEnabledExtensionNames = deviceExtensions.data();
+  deviceInfo.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+  deviceInfo.ppEnabledExtensionNames = extensions.data();
   VK_CHECK(vkCreateDevice(physical, &deviceInfo, nullptr, &device));
   vkGetDeviceQueue(device, graphics.family, 0, &graphics.queue);
   vkGetDeviceQueue(device, compute.family, 0, &compute.queue);

@@ -59,6 +59,9 @@ class Gpu {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
+  // As the device was made with, for Skitter to be told.
+  VkPhysicalDeviceFeatures2 features{};
+  std::vector<const char*> extensions;
   // The crowd walks on `compute`: a queue of its own where the device has another one, else the same.
   Queue graphics, compute;
   uint32_t messages() const { return messages_; }
@@ -89,6 +92,8 @@ class Gpu {
   VkSemaphore makeSemaphore();
 
  private:
+  VkPhysicalDeviceVulkan12Features features12_{};
+  VkPhysicalDeviceVulkan13Features features13_{};
   Buffer upload(std::span<const std::byte> bytes, VkBufferUsageFlags usage);
   VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted);
   VkShaderModule module(std::span<const uint32_t> code);

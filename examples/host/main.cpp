@@ -207,8 +207,13 @@ int run(const Options& options) {
 
   // Skitter on the host's device. It owns nothing of it, and submits only while the crowd is made and where a
   // function says that it waits.
-  Device device = Device::adopt(gpu.instance, gpu.physical, gpu.device, gpu.compute.family, gpu.compute.queue,
-                                vkGetInstanceProcAddr);
+  Device device = Device::adopt({.instance = gpu.instance,
+                                 .physicalDevice = gpu.physical,
+                                 .device = gpu.device,
+                                 .queue = gpu.compute.queue,
+                                 .queueFamily = gpu.compute.family,
+                                 .features = &gpu.features,
+                                 .extensions = gpu.extensions});
   const Scene scene = sceneOf(options);
   Crowd crowd(device, scene.loadTerrain(), scene, CrowdOptions{.measure = false});
   Readback readback(device, crowd);
