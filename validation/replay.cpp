@@ -122,7 +122,7 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
       const Moment moment{n, before, after, agent};
       const bool asleep = asleepOf(after, agent);
       // Nobody is there: measure adds nothing.
-      if (check.stage == StageId::measure && bodyOf(after, agent).absent) {
+      if (check.stage == crowd::StageId::measure && bodyOf(after, agent).absent) {
         checkKept(setting_, moment, Record::metric, judges_[c]);
         continue;
       }
