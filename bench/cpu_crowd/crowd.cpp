@@ -1,7 +1,5 @@
 #include "bench/cpu_crowd/crowd.h"
 
-#include <fmt/format.h>
-
 #include "bench/cpu_baseline/lanes.h"
 #include "bench/cpu_crowd/kernel.h"
 #include "bench/cpu_crowd/pool.h"
@@ -36,7 +34,8 @@ void check(const validation::HerdFacts& facts, const HerdState& start, const Opt
   expectSize("gait", start.gait, agents, shared::GAIT_STRIDE);
   for (size_t agent = 0; agent < agents; ++agent)
     if (start.body[4 * shared::BODY_STRIDE * agent + 7] != 0)
-      throw inputError(fmt::format("CPU crowd: nobody is in place {}; set the herd's reserve to 0", agent));
+      throw inputError("CPU crowd: nobody is in place " + std::to_string(agent) +
+                       "; set the herd's reserve to 0");
   if (clips) return expectSize("play", start.play, agents, shared::PLAY_STRIDE);
   expectSize("step", start.step, agents * legs, shared::STEP_STRIDE);
   expectSize("arc", start.arc, agents * legs, shared::ARC_STRIDE);

@@ -17,7 +17,8 @@ Presence::Presence(uint32_t agents, uint32_t places, uint32_t generation)
 }
 
 uint32_t Presence::nextGeneration() const {
-  const uint32_t last = generations.empty() ? 0 : std::ranges::max(generations);
+  if (generations.empty()) return 0;
+  const uint32_t last = std::ranges::max(generations);
   return std::min(last / 2 * 2 + 2, kLastGeneration);
 }
 

@@ -56,8 +56,8 @@ struct Renderer::Impl {
   void smoothEdges(vk::CommandBuffer);
 
   const gpu::Context& context;
-  const Crowd::Impl& source;
-  uint32_t revision;  // of the source that is drawn
+  const Crowd::Impl& live;
+  uint32_t revision;  // of the live crowd, as it is drawn
   gpu::StageTimer timer;
   vk::SampleCountFlagBits samples;
   gpu::Image colour, depth;
@@ -75,7 +75,7 @@ struct Renderer::Impl {
 
 Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height)
     : context(checkedContext(c)),
-      source(source),
+      live(source),
       revision(source.revision),
       timer(c, kPasses),
       samples(sampleCount(c)),
@@ -114,10 +114,10 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
 void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
                             const std::function<void(VkCommandBuffer)>& over) {
   // Herds have come or gone. Pictures in flight may still use what goes.
-  if (revision != source.revision) {
+  if (revision != live.revision) {
     context.waitIdle();
-    crowd = render::CrowdDrawing(setting, source);
-    revision = source.revision;
+    crowd = render::CrowdDrawing(setting, live);
+    revision = live.revision;
   }
   const vk::Extent2D extent = colour.extent();
   const render::Composition composition =

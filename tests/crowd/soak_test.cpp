@@ -125,6 +125,7 @@ class Soak {
     here_.push_back(crowd_.add(herd, anyPlace(), anyGoal()));
   }
   void leave(size_t who) {
+    if (guest_ && here_[who].herd() == guest_->index) return;  // has no reserve
     crowd_.remove(here_[who]);
     if (gone_.size() < 1000) gone_.push_back(here_[who]);
     here_.erase(here_.begin() + static_cast<ptrdiff_t>(who));
