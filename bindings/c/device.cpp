@@ -59,6 +59,13 @@ skitter_result skitter_device_create(const char* name, skitter_device** device) 
   });
 }
 
+skitter_result skitter_add_features(VkPhysicalDeviceFeatures2* chain, VkPhysicalDevice physical) {
+  return guarded([&] {
+    given(physical, "device");
+    addFeatures(given(chain, "chain"), physical);
+  });
+}
+
 skitter_result skitter_device_adopt(const skitter_adoption* from, skitter_device** device) {
   return guarded([&] {
     const skitter_adoption& parts = given(from, "from");
@@ -67,10 +74,21 @@ skitter_result skitter_device_adopt(const skitter_adoption* from, skitter_device
     given(parts.physical_device, "from->physical_device");
     given(parts.device, "from->device");
     given(parts.queue, "from->queue");
-    const auto load =
-        parts.get_instance_proc_addr != nullptr ? parts.get_instance_proc_addr : vkGetInstanceProcAddr;
-    *device = new skitter_device{std::make_shared<Device>(Device::adopt(
-        parts.instance, parts.physical_device, parts.device, parts.queue_family, parts.queue, load))};
+    given(parts.features, "from->features");
+    if (parts.extension_count > 0) given(parts.extensions, "from->extensions");
+    AdoptedDevice adopted{.instance = parts.instance,
+                          .physicalDevice = parts.physical_device,
+                          .device = parts.device,
+                          .queue = parts.queue,
+                          .queueFamily = parts.queue_family,
+                          .getInstanceProcAddr = parts.get_instance_proc_addr,
+                          .features = parts.features,
+                          .extensions = {parts.extensions, parts.extension_count},
+                          .pipelineCache = parts.pipeline_cache};
+    void* const user = parts.user;
+    if (const auto lock = parts.lock_queue) adopted.lockQueue = [=] { lock(user); };
+    if (const auto unlock = parts.unlock_queue) adopted.unlockQueue = [=] { unlock(user); };
+    *device = new skitter_device{std::make_shared<Device>(Device::adopt(adopted))};
   });
 }
 

@@ -65,9 +65,14 @@ SKITTER_C skitter_result skitter_device_list(skitter_device_info* infos, uint32_
 /* `name`: an index, or part of a name in any case; NULL: the best suitable device. */
 SKITTER_C skitter_result skitter_device_create(const char* name, skitter_device** device);
 
-/* A Vulkan device of the caller's, who keeps it and destroys it after all that was made on it here. It is of
- * Vulkan 1.3 with dynamicRendering, synchronization2, timelineSemaphore and maintenance4 enabled; the queue
- * does graphics and compute. The caller keeps its own submissions to the queue apart from these functions. */
+/* Switches on in a chain of features, before vkCreateDevice, what the engine needs and, of what makes it
+ * quicker, what the device has. The chain has VkPhysicalDeviceVulkan12Features and
+ * VkPhysicalDeviceVulkan13Features. */
+SKITTER_C skitter_result skitter_add_features(VkPhysicalDeviceFeatures2* chain, VkPhysicalDevice device);
+
+/* A Vulkan device of the caller's, who keeps it and destroys it after all that was made on it here; Vulkan
+ * 1.3. docs/embedding.md lists what it needs. What is missing is named in one error. All zero but for the
+ * handles, queue family and features: the defaults. */
 typedef struct skitter_adoption {
   VkInstance instance;
   VkPhysicalDevice physical_device;
@@ -75,6 +80,15 @@ typedef struct skitter_adoption {
   uint32_t queue_family;
   VkQueue queue;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* NULL: that of the Vulkan loader */
+  const VkPhysicalDeviceFeatures2* features;        /* the chain that vkCreateDevice was given */
+  const char* const* extensions;                    /* enabled ones, of instance and device; or NULL */
+  uint32_t extension_count;
+  /* Called about each use of the queue by the engine, both or neither. Without them the caller keeps its own
+   * submissions to the queue apart from these functions. */
+  void (*lock_queue)(void* user);
+  void (*unlock_queue)(void* user);
+  void* user;
+  VkPipelineCache pipeline_cache; /* or VK_NULL_HANDLE */
 } skitter_adoption;
 SKITTER_C skitter_result skitter_device_adopt(const skitter_adoption* from, skitter_device** device);
 

@@ -309,14 +309,20 @@ typedef struct host {
     }                           \
   } while (0)
 
+/* What the host's device is made with, and what the engine is told of it. */
+static VkPhysicalDeviceVulkan13Features v13 = {.sType =
+                                                   VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+static VkPhysicalDeviceVulkan12Features v12 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+                                               .pNext = &v13};
+static VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                             .pNext = &v12};
+
 static host makeHost(void) {
   host h;
   VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO};
   VkInstanceCreateInfo instance = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
   VkPhysicalDevice devices[16];
   VkQueueFamilyProperties families[16];
-  VkPhysicalDeviceVulkan13Features v13 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-  VkPhysicalDeviceVulkan12Features v12 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
   VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
   VkDeviceCreateInfo device = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
   VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
@@ -338,13 +344,13 @@ static host makeHost(void) {
   h.family = 0;
   while (h.family + 1 < familyCount && (families[h.family].queueFlags & both) != both) ++h.family;
 
-  v13.synchronization2 = v13.dynamicRendering = v13.maintenance4 = VK_TRUE;
-  v12.timelineSemaphore = VK_TRUE;
-  v12.pNext = &v13;
+  REFUSED(skitter_add_features(NULL, h.physical), "chain is NULL");
+  REFUSED(skitter_add_features(&features, NULL), "device is NULL");
+  OK(skitter_add_features(&features, h.physical));
   queue.queueFamilyIndex = h.family;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  device.pNext = &v12;
+  device.pNext = &features;
   device.queueCreateInfoCount = 1;
   device.pQueueCreateInfos = &queue;
   VK(vkCreateDevice(h.physical, &device, NULL, &h.device));
@@ -373,16 +379,36 @@ static void submit(const host* h) {
   VK(vkQueueWaitIdle(h->queue));
 }
 
+static int locks = 0, depth = 0;
+static void lockQueue(void* user) {
+  CHECK(user == &locks && ++depth == 1);
+  ++locks;
+}
+static void unlockQueue(void* user) { CHECK(user == &locks && --depth == 0); }
+
 static skitter_device* adopt(const host* h) {
   skitter_adoption from;
   skitter_device* device = NULL;
+  memset(&from, 0, sizeof from);
   from.instance = h->instance;
   from.physical_device = h->physical;
   from.device = h->device;
   from.queue_family = h->family;
   from.queue = h->queue;
-  from.get_instance_proc_addr = NULL;
+  REFUSED(skitter_device_adopt(&from, &device), "from->features is NULL");
+  from.features = &features;
+  from.lock_queue = lockQueue;
+  CHECK(skitter_device_adopt(&from, &device) == SKITTER_ERROR_DEVICE);
+  CHECK(strstr(skitter_last_error(), "unlockQueue") != NULL);
+  from.unlock_queue = unlockQueue;
+  from.user = &locks;
+  v13.maintenance4 = VK_FALSE;
+  CHECK(skitter_device_adopt(&from, &device) == SKITTER_ERROR_DEVICE);
+  CHECK(strstr(skitter_last_error(), "was made without maintenance4") != NULL);
+  v13.maintenance4 = VK_TRUE;
+  CHECK(locks == 0);
   NEED(skitter_device_adopt(&from, &device));
+  CHECK(locks > 0);
   return device;
 }
 
