@@ -56,7 +56,8 @@ TEST(Scene, EveryKey) {
     "herds": [{"rig": "crab.glb", "controller": "loop", "agents": 7, "keys": 6,
                "spawn": {"kind": "grid", "spacing": 3, "centre": [1, -2], "heading": 1.5},
                "goal": {"kind": "point", "target": [5, 6], "speed": 0}},
-              {"agents": 0, "goal": {"kind": "none"}}],
+              {"agents": 0, "reserve": 9, "goal": {"kind": "none"}},
+              {"agents": 0, "goal": {"kind": "velocity", "velocity": [0.5, -1]}}],
     "camera": {"kind": "fixed", "position": [1, 2, 3], "target": [4, 5, 6], "distance": 2, "fieldOfView": 1}
   })",
                                  "all.json", "folder");
@@ -72,7 +73,7 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(terrain.units.columns, 3u);
   EXPECT_EQ(terrain.units.rows, 4u);
   EXPECT_EQ(terrain.units.voidValue, -9999.0);
-  ASSERT_EQ(scene.herds.size(), 2u);
+  ASSERT_EQ(scene.herds.size(), 3u);
   const Herd& herd = scene.herds[0];
   EXPECT_EQ(std::filesystem::path(herd.rig), std::filesystem::path("folder/crab.glb"));
   EXPECT_EQ(herd.controller, Controller::loop);
@@ -84,6 +85,10 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(herd.goal.kind, Goal::Kind::point);
   EXPECT_EQ(herd.goal.target, glm::vec2(5, 6));
   EXPECT_EQ(herd.goal.speed, 0);
+  EXPECT_EQ(scene.herds[1].reserve, 9u);
+  EXPECT_EQ(scene.capacity(), 16u);
+  EXPECT_EQ(scene.herds[2].goal.kind, Goal::Kind::velocity);
+  EXPECT_EQ(scene.herds[2].goal.velocity, glm::vec2(0.5f, -1));
   EXPECT_EQ(scene.herds[1].goal.kind, Goal::Kind::none);
   EXPECT_EQ(scene.camera.kind, Camera::Kind::fixed);
   EXPECT_EQ(scene.camera.target, glm::vec3(4, 5, 6));
@@ -123,6 +128,8 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"herds": [{"spawn": {"centre": [1, 4097]}}]})", "herds[0].spawn.centre[1] is 4097"},
       {R"({"herds": [{"spawn": {"center": [1, 2]}}]})", "herds[0].spawn.center is no known key"},
       {R"({"herds": [{"goal": {"speed": -0.5}}]})", "herds[0].goal.speed is -0.5"},
+      {R"({"herds": [{"goal": {"velocity": [800, 800]}}]})", "herds[0].goal.velocity is 1131.37 m/s long"},
+      {R"({"herds": [{"agents": 9, "reserve": 16777210}]})", "16777219 agents in all"},
       {R"({"terrain": {"columns": 1}})", "terrain.columns is 1"},
       {R"({"terrain": {"rows": 16385}})", "terrain.rows is 16385"},
       {R"({"terrain": {"octaves": 0}})", "terrain.octaves is 0"},

@@ -7,8 +7,6 @@
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
 #include "crowd/spawn.h"
-#include "gpu/barrier.h"
-#include "gpu/submit.h"
 #include "skitter/error.h"
 #include "validation/convert.h"
 #include "validation/herd_facts.h"
@@ -39,17 +37,6 @@ bool sameRecords(const HerdState& a, size_t i, const HerdState& b, size_t j) {
                                                      x.begin() + static_cast<ptrdiff_t>((i + 1) * each),
                                                      y.begin() + static_cast<ptrdiff_t>(j * each));
   });
-}
-
-// Submits what waits for the next tick by itself, so that a state can be had from before that tick.
-void applyChanges(Device& device, Crowd& crowd) {
-  ++implOf(crowd).tick;
-  gpu::submitAndWait(device.context(), [&](vk::CommandBuffer cmd) {
-    gpu::allToAll(cmd);
-    crowd::recordChanges(implOf(crowd), cmd);
-    gpu::allToAll(cmd);
-  });
-  --implOf(crowd).tick;
 }
 
 TEST_P(ComeAndGoTest, AReserveThatNobodyUsesShowsNowhere) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "crowd/herd.h"
+#include "gpu/barrier.h"
 #include "gpu/submit.h"
 #include "validation/herd_facts.h"
 
@@ -70,6 +71,16 @@ void simulate(Device& device, Crowd& crowd, int ticks, float dt) {
     ring.submit();
   }
   ring.waitAll();
+}
+
+void applyChanges(Device& device, Crowd& crowd) {
+  ++implOf(crowd).tick;
+  gpu::submitAndWait(device.context(), [&](vk::CommandBuffer cmd) {
+    gpu::allToAll(cmd);
+    crowd::recordChanges(implOf(crowd), cmd);
+    gpu::allToAll(cmd);
+  });
+  --implOf(crowd).tick;
 }
 
 std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const validation::HerdFacts& facts,

@@ -8,8 +8,6 @@
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
 #include "crowd/spawn.h"
-#include "gpu/submit.h"
-#include "gpu/transfer.h"
 #include "skitter/error.h"
 #include "validation/convert.h"
 #include "validation/herd_facts.h"
@@ -43,17 +41,6 @@ const CrowdOptions smallPages{.feet = true, .footfalls = UINT32_MAX, .pageAgents
 glm::dvec2 speedOf(const HerdState& state, size_t agent) {
   const reference::AgentBody body = validation::bodyOf(state, agent);
   return body.heading * body.speed;
-}
-
-// Submits what waits for the next tick by itself, so that a state can be had from before that tick.
-void applyChanges(Device& device, Crowd& crowd) {
-  ++implOf(crowd).tick;
-  gpu::submitAndWait(device.context(), [&](vk::CommandBuffer cmd) {
-    gpu::allToAll(cmd);
-    crowd::recordChanges(implOf(crowd), cmd);
-    gpu::allToAll(cmd);
-  });
-  --implOf(crowd).tick;
 }
 
 TEST_P(SteerTest, AgentsGoByTheVelocityThatTheyAreGiven) {
