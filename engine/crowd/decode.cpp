@@ -28,7 +28,8 @@ BodyState bodyOf(std::span<const float> body, const glm::dvec3& origin) {
           .rotation = quaternion(load(body, 2)),
           .heading = glm::vec2(way),
           .velocity = way.z * glm::vec3(way.x, 0, way.y),
-          .turnRate = rates.x};
+          .turnRate = rates.x,
+          .present = way.w == 0};
 }
 
 StepState stepOf(std::span<const float> step, std::span<const float> body, const glm::dvec3& origin) {

@@ -70,7 +70,7 @@ struct Output {
 struct Palettes::Impl {
   const gpu::Context* context = nullptr;
   const Crowd::Impl* crowd = nullptr;
-  const crowd::Kind* kind = nullptr;
+  Controller controller = Controller::adaptive;
   uint32_t herd = 0, entries = 0;
   PaletteOptions options;
   gpu::Buffer starts;
@@ -104,7 +104,7 @@ gpu::KernelInfo Palettes::Impl::infoOf(TransformFormat format, bool ofPalettes) 
   info.bindings.push_back({TRANSFORM_POSE, BindingKind::load4});
   info.bindings.push_back({TRANSFORM_START, BindingKind::load4});
   info.constants.push_back({CONSTANT_ENTRIES, entries});
-  info.constants.push_back({CONSTANT_JOINTS_STRETCH, crowd::traitsOf(kind->controller).playsClips});
+  info.constants.push_back({CONSTANT_JOINTS_STRETCH, crowd::traitsOf(controller).playsClips});
   info.constants.push_back({CONSTANT_RELATIVE, options.relative});
   return info;
 }
@@ -121,12 +121,11 @@ void Palettes::Impl::add(std::vector<Write>& writes, const TransformRange& range
   const char* what = ofPalettes ? "palettes" : "instances";
   if (ofPalettes && !crowd->options.pose)
     throw inputError("palettes of a crowd without poses, expected CrowdOptions::pose");
-  if (ofPalettes && range.format == TransformFormat::quaternion &&
-      crowd::traitsOf(kind->controller).playsClips)
+  if (ofPalettes && range.format == TransformFormat::quaternion && crowd::traitsOf(controller).playsClips)
     throw inputError(
         fmt::format("palettes of herd {}: controller {} poses by matrices, which may stretch, "
                     "expected TransformFormat::matrix",
-                    herd, nameOf(kind->controller)));
+                    herd, nameOf(controller)));
   const uint64_t each = ofPalettes ? entries : 1;
   const Arrangement arrangement = arrangementOf(range, each * crowd->herds[herd].agents, what);
   Write write{.kernel = &kernelOf(range.format, ofPalettes), .outputs = {}};
@@ -164,16 +163,17 @@ Palettes::Palettes(Device& device, const Crowd& crowd, uint32_t herd,
   Impl& made = *impl_;
   made.context = &device.context();
   made.crowd = &implOf(crowd);
-  made.kind = &made.crowd->kindOf(herd);
+  const crowd::Kind& kind = made.crowd->kindOf(herd);
+  made.controller = kind.controller;
   made.herd = herd;
-  made.entries = entriesOfKind(*made.kind);
+  made.entries = entriesOfKind(kind);
   made.options = options;
   if (!(options.space.metresPerUnit > 0) || !std::isfinite(options.space.metresPerUnit))
     throw inputError(
         fmt::format("metresPerUnit {}, expected a finite length above 0", options.space.metresPerUnit));
   std::vector<glm::vec4> starts(made.entries, glm::vec4(0));
-  if (!crowd::traitsOf(made.kind->controller).playsClips) {
-    const std::vector<glm::vec3> rest = made.kind->rig.restStarts();
+  if (!crowd::traitsOf(made.controller).playsClips) {
+    const std::vector<glm::vec3> rest = kind.rig.restStarts();
     std::ranges::transform(rest, starts.begin(), [](const glm::vec3& start) { return glm::vec4(start, 0); });
   }
   made.starts = gpu::Buffer(*made.context, starts.size() * sizeof(glm::vec4), "rest starts");
@@ -189,7 +189,7 @@ Palettes::~Palettes() = default;
 Palettes::Palettes(Palettes&&) noexcept = default;
 Palettes& Palettes::operator=(Palettes&&) noexcept = default;
 
-uint32_t Palettes::agentsOf(const Crowd& crowd, uint32_t herd) { return implOf(crowd).herds.at(herd).agents; }
+uint32_t Palettes::agentsOf(const Crowd& crowd, uint32_t herd) { return implOf(crowd).herdAt(herd).agents; }
 uint32_t Palettes::entriesOf(const Crowd& crowd, uint32_t herd) {
   return entriesOfKind(implOf(crowd).kindOf(herd));
 }
@@ -202,7 +202,7 @@ void Palettes::record(VkCommandBuffer commandBuffer, const glm::dvec3& origin, u
   const glm::dvec2 tile = glm::floor(glm::dvec2(origin.x, origin.z) / double{shared::TILE_SIZE});
   const glm::dvec3 local = origin - double{shared::TILE_SIZE} * glm::dvec3(tile.x, 0, tile.y);
   const vk::CommandBuffer cmd(commandBuffer);
-  gpu::anyToCompute(cmd);
+  gpu::anyToCompute(*palettes.context, cmd);
   for (const Impl::Write& write : palettes.targets[target])
     for (const Output& output : write.outputs) {
       shared::TransformConstants constants = output.constants;
@@ -211,7 +211,7 @@ void Palettes::record(VkCommandBuffer commandBuffer, const glm::dvec3& origin, u
       constants.how = glm::vec4(tile, 1 / space.metresPerUnit, space.isMirrored() ? -1 : 1);
       write.kernel->dispatch(cmd, output.bindings, gpu::bytesOf(constants), output.groups);
     }
-  gpu::computeToAny(cmd);
+  gpu::computeToAny(*palettes.context, cmd);
 }
 
 }  // namespace skitter

@@ -1,6 +1,7 @@
 #include "crowd/picking.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -20,8 +21,9 @@ void eachSphere(std::span<const PickHerd> herds, const glm::dvec3& origin, const
   for (const PickHerd& herd : herds)
     for (size_t agent = 0; agent < herd.bodies.size() / floats; ++agent) {
       const BodyState body = bodyOf(herd.bodies.subspan(agent * floats, floats), origin);
+      if (!body.present) continue;
       call(herd, static_cast<uint32_t>(agent),
-           body.position + glm::dvec3(body.rotation * glm::vec3(0, herd.height, 0)));
+           body.position + glm::dvec3(body.rotation * glm::vec3(0, herd.sphere.height, 0)));
     }
 }
 
@@ -37,15 +39,14 @@ double along(const Ray& ray, const glm::dvec3& direction, const glm::dvec3& midd
 
 }  // namespace
 
-PickHerd pickHerdOf(uint32_t herd, std::span<const float> bodies, const Rig& rig) {
-  return {herd, bodies, rig.bodyHeight, std::max(rig.bodyRadius, rig.bodyHeight)};
-}
+PickSphere pickSphereOf(const Rig& rig) { return {rig.bodyHeight, std::max(rig.bodyRadius, rig.bodyHeight)}; }
 
 std::optional<Picked> pick(std::span<const PickHerd> herds, const Ray& ray, const glm::dvec3& origin) {
+  assert(glm::length(ray.direction) > 0);
   std::optional<Picked> best;
   const glm::dvec3 direction = glm::normalize(ray.direction);
   eachSphere(herds, origin, [&](const PickHerd& herd, uint32_t agent, const glm::dvec3& middle) {
-    const double distance = along(ray, direction, middle, double{herd.radius});
+    const double distance = along(ray, direction, middle, double{herd.sphere.radius});
     if (distance > ray.length || !std::isfinite(distance) || (best && best->distance <= distance)) return;
     best = {herd.herd, agent, distance, ray.start + distance * direction};
   });
@@ -86,7 +87,7 @@ Bodies bodiesOf(const Crowd& crowd) {
     }
   }
   for (uint32_t herd = 0; herd < crowd.herdCount(); ++herd)
-    bodies.herds.push_back(crowd::pickHerdOf(herd, bodies.records[herd], impl.kindOf(herd).rig));
+    bodies.herds.push_back({herd, bodies.records[herd], crowd::pickSphereOf(impl.kindOf(herd).rig)});
   return bodies;
 }
 

@@ -8,13 +8,19 @@
 
 namespace skitter::crowd {
 
-// A herd's body records, agent by agent, and the sphere that an agent is picked by.
+// The sphere that an agent is picked by, metres.
+struct PickSphere {
+  float height = 0;  // of its middle above the ground, in model space
+  float radius = 0;
+};
+PickSphere pickSphereOf(const Rig& rig);
+
+// A herd's body records, agent by agent.
 struct PickHerd {
   uint32_t herd = 0;
   std::span<const float> bodies;
-  float height = 0, radius = 0;  // metres, of the sphere's middle above the ground, in model space
+  PickSphere sphere;
 };
-PickHerd pickHerdOf(uint32_t herd, std::span<const float> bodies, const Rig& rig);
 
 std::optional<Picked> pick(std::span<const PickHerd> herds, const Ray& ray, const glm::dvec3& origin);
 std::optional<Picked> nearest(std::span<const PickHerd> herds, const glm::dvec3& point,

@@ -25,16 +25,15 @@ struct Snapshot::Layout {
   struct Herd {
     size_t first = 0;  // floats
     uint32_t agents = 0;
-    float radius = 0;
-    const Rig* rig = nullptr;
+    float radius = 0;  // metres, that holds every pose; 0: not read
+    crowd::PickSphere sphere;
   };
   std::vector<Herd> herds;
 
   std::vector<crowd::PickHerd> pickHerds(const Snapshot& snapshot) const {
     std::vector<crowd::PickHerd> picks;
     for (uint32_t herd = 0; herd < herds.size(); ++herd)
-      if (herds[herd].agents > 0)
-        picks.push_back(crowd::pickHerdOf(herd, snapshot.bodies(herd), *herds[herd].rig));
+      if (herds[herd].agents > 0) picks.push_back({herd, snapshot.bodies(herd), herds[herd].sphere});
     return picks;
   }
 };
@@ -55,10 +54,11 @@ BodyState Snapshot::body(uint32_t herd, uint32_t agent, const glm::dvec3& origin
 std::optional<Box> Snapshot::bounds(uint32_t herd, const glm::dvec3& origin) const {
   std::optional<Box> box;
   for (uint32_t agent = 0; agent < agents(herd); ++agent) {
-    const glm::dvec3 place = body(herd, agent, origin).position;
-    if (!box) box = {place, place};
-    box->least = glm::min(box->least, place);
-    box->most = glm::max(box->most, place);
+    const BodyState there = body(herd, agent, origin);
+    if (!there.present) continue;
+    if (!box) box = {there.position, there.position};
+    box->least = glm::min(box->least, there.position);
+    box->most = glm::max(box->most, there.position);
   }
   if (box) {
     const glm::dvec3 around(double{layout_->herds[herd].radius});
@@ -121,8 +121,9 @@ Readback::Readback(Device& device, const Crowd& crowd, ReadbackOptions options)
   for (const uint32_t herd : options.herds) {
     const crowd::Kind& kind = read.kindOf(herd);
     Snapshot::Layout::Herd& place = impl_->layout.herds[herd];
-    if (place.rig != nullptr) throw inputError(fmt::format("readback: herd {} is named twice", herd));
-    place = {bytes / sizeof(float), read.herds[herd].agents, crowd::radiusOf(kind), &kind.rig};
+    if (place.radius > 0) throw inputError(fmt::format("readback: herd {} is named twice", herd));
+    place = {bytes / sizeof(float), read.herds[herd].agents, crowd::radiusOf(kind),
+             crowd::pickSphereOf(kind.rig)};
     for (const RecordBuffer& each : crowd.buffers(herd, Record::body)) {
       impl_->copies.push_back({each.buffer, {each.offset, bytes, each.bytes}});
       bytes += each.bytes;

@@ -73,16 +73,16 @@ void computeToIndirectAndCompute(vk::CommandBuffer cmd) {
 void computeToGraphics(vk::CommandBuffer cmd) { barrier(cmd, kComputeDone, kGraphics); }
 void graphicsToCompute(vk::CommandBuffer cmd) { barrier(cmd, kGraphicsDone, kCompute); }
 
-void anyToCompute(vk::CommandBuffer cmd) {
-  barrier(cmd,
-          {kGraphicsDone.stages | kComputeDone.stages | kTransferDone.stages,
-           kComputeDone.access | kTransferDone.access},
-          kCompute);
+void anyToCompute(const Context& context, vk::CommandBuffer cmd) {
+  Scope before{kComputeDone.stages | kTransferDone.stages, kComputeDone.access | kTransferDone.access};
+  if (context.draws()) before.stages |= kGraphicsDone.stages;
+  barrier(cmd, before, kCompute);
 }
-void computeToAny(vk::CommandBuffer cmd) {
-  barrier(cmd, kComputeDone,
-          {kGraphics.stages | kCompute.stages | kTransfer.stages,
-           kGraphics.access | kCompute.access | kTransfer.access});
+
+void computeToAny(const Context& context, vk::CommandBuffer cmd) {
+  Scope after{kCompute.stages | kTransfer.stages, kCompute.access | kTransfer.access};
+  if (context.draws()) after.stages |= kGraphics.stages, after.access |= kGraphics.access;
+  barrier(cmd, kComputeDone, after);
 }
 
 void computeToTransfer(vk::CommandBuffer cmd) { barrier(cmd, kComputeDone, kTransfer); }

@@ -17,9 +17,9 @@ void computeToGraphics(vk::CommandBuffer);
 // The picture has been read from records that compute writes next (write after read).
 void graphicsToCompute(vk::CommandBuffer);
 
-// Compute between the caller's own work of any kind, before and after it.
-void anyToCompute(vk::CommandBuffer);
-void computeToAny(vk::CommandBuffer);
+// Compute between the caller's own work of any kind that the device's queue does, before and after it.
+void anyToCompute(const Context&, vk::CommandBuffer);
+void computeToAny(const Context&, vk::CommandBuffer);
 
 void computeToTransfer(vk::CommandBuffer);
 void transferToCompute(vk::CommandBuffer);

@@ -7,5 +7,9 @@ void main() {
   uint transform = gl_GlobalInvocationID.x;
   if (transform >= constants.agents) return;
   int at = int(constants.first + transform) * BODY_STRIDE;
+  if (isAbsent(at)) {
+    writeNothing(transform);
+    return;
+  }
   writeRotation(transform, LOAD4(bodies, at + 2), fromOrigin(LOAD4(bodies, at)));
 }

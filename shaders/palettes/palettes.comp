@@ -14,6 +14,10 @@ void main() {
   uint agent = transform / uint(ENTRIES), entry = transform - agent * uint(ENTRIES);
   if (agent >= constants.agents) return;
   int body = int(constants.first + agent) * BODY_STRIDE;
+  if (isAbsent(body)) {
+    writeNothing(transform);
+    return;
+  }
   int pose = int((constants.first + agent) * uint(ENTRIES) + entry) * (JOINTS_STRETCH ? MATRIX_STRIDE : POSE_STRIDE);
   vec3 from = RELATIVE ? vec3(0.0) : fromOrigin(LOAD4(bodies, body));
   vec4 back = LOAD4(bodies, body + 2) * vec4(-1.0, -1.0, -1.0, 1.0);

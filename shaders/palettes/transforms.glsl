@@ -43,6 +43,8 @@ void writeRotation(uint transform, vec4 rotation, vec3 position) {
   }
 }
 
+// Whether nobody is in the place whose body record begins there. The host draws nothing of it.
+bool isAbsent(int body) { return LOAD4(bodies, body + 1).w != 0.0; }
 void writeNothing(uint transform) {
   for (uint i = 0u; i < (QUATERNIONS ? 2u : 3u); ++i) writeVec4(transform, i, vec4(0.0));
 }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "crowd/simulation.h"
+#include "gpu/barrier.h"
 #include "gpu/submit.h"
 #include "skitter/error.h"
 
@@ -190,6 +191,22 @@ TEST_F(ReadbackTest, PicksTheAgentUnderTheRay) {
 }
 
 TEST_F(ReadbackTest, PicksNobodyWhereNobodyIs) {
+  // In an empty place.
+  Crowd one(device(), flatGround(), sceneOf(1), options);
+  Readback readback(device(), one);
+  const RecordBuffer bodies = one.buffers(0, Record::body).at(0);
+  gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+    one.record(cmd, kTick);
+    const float empty = 1;
+    cmd.updateBuffer(bodies.buffer, 16 + 12, sizeof empty, &empty);
+    gpu::transferToTransfer(cmd);
+    readback.record(cmd);
+  });
+  EXPECT_FALSE(readback.latest()->body(0, 0).present);
+  EXPECT_FALSE(readback.latest()->nearest({0, 0, 0}));
+  EXPECT_FALSE(readback.latest()->bounds(0));
+  EXPECT_FALSE(one.nearest({0, 0, 0}));
+  // In a herd without agents.
   const Crowd crowd(device(), rollingGround(), sceneOf(0), options);
   EXPECT_FALSE(crowd.pick({{0, 50, 0}, {0, -1, 0}}));
   EXPECT_FALSE(crowd.nearest({0, 0, 0}));

@@ -235,6 +235,38 @@ TEST_P(PalettesTest, TargetsTakeTurns) {
   for (int agent = 0; agent < 3; ++agent) EXPECT_NE(floats[36 + static_cast<size_t>(agent) * 12], 0);
 }
 
+// An empty place has transforms of zeros, so that the host draws a point.
+TEST_P(PalettesTest, NothingOfWhoIsNotThere) {
+  for (const Controller controller : {Controller::adaptive, Controller::clip}) {
+    Scene scene;
+    scene.herds[0].agents = 3;
+    scene.herds[0].controller = controller;
+    Crowd crowd(device(), ground(), scene, CrowdOptions{.measure = false});
+    const uint64_t entries = Palettes::entriesOf(crowd, 0), floatsEach = 8 + 12 * entries;
+    const gpu::Buffer buffer(context(), 3 * floatsEach * sizeof(float), "the caller's");
+    const Palettes writer(device(), crowd, 0,
+                          {{.instances = {buffer.handle(), 0, 3 * 32, TransformFormat::quaternion},
+                            .palettes = {buffer.handle(), 3 * 32, 3 * 48 * entries}}});
+    const RecordBuffer bodies = crowd.buffers(0, Record::body).at(0);
+    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+      crowd.record(cmd, 1.0f / 60);
+      const float empty = 1;
+      cmd.updateBuffer(bodies.buffer, 16 * (bodies.recordAt(1) + 1) + 12, sizeof empty, &empty);
+      writer.record(cmd);
+    });
+    const std::vector<float> floats = gpu::download<float>(context(), buffer);
+    const auto isNothing = [&](uint64_t first, uint64_t count) {
+      return std::all_of(floats.begin() + static_cast<ptrdiff_t>(first),
+                         floats.begin() + static_cast<ptrdiff_t>(first + count),
+                         [](float f) { return f == 0; });
+    };
+    for (uint64_t agent = 0; agent < 3; ++agent) {
+      EXPECT_EQ(isNothing(8 * agent, 8), agent == 1) << agent;
+      EXPECT_EQ(isNothing(24 + 12 * entries * agent, 12 * entries), agent == 1) << agent;
+    }
+  }
+}
+
 TEST_P(PalettesTest, RefuseWhatCannotBe) {
   Scene scene;
   scene.herds[0].agents = 3;

@@ -22,6 +22,7 @@ struct BodyState {
   glm::vec2 heading{0, 1};         // unit, world x and z
   glm::vec3 velocity{0};           // m/s, horizontal
   float turnRate = 0;              // radians a second
+  bool present = true;             // false: nobody is in this place of the herd
 };
 SKITTER_API BodyState bodyOf(std::span<const float> body, const glm::dvec3& origin = glm::dvec3(0));
 
