@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <vulkan/vulkan.h>
 
+// What is not named is 0, which is what Vulkan wants.
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+
 #include <array>
 #include <cmath>
 
