@@ -58,8 +58,8 @@ class Files {
 void add(Hash& hash, Files& files, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
                phase, colour, tint] = herd;
-  hash.add(rig);
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
+  hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
     hash.add(files.hashOf(rig));
     hash.add(files.hashOf(sidecarOf(rig)));

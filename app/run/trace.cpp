@@ -143,7 +143,7 @@ nlohmann::ordered_json describe(const Rig& rig, uint32_t agents) {
 }  // namespace
 
 Trace::Trace(const fs::path& folder, const Crowd& crowd, const Scene& scene, double dt)
-    : folder_(folder), dt_(dt) {
+    : folder_(folder), dt_(dt), firstTick_(crowd.tick() + 1) {
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
     const auto file = [&](const char* name) { return folder_.add(fmt::format("herd{}/{}", h, name)); };
     const Rig& rig = crowd.rig(h);
@@ -199,6 +199,7 @@ size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manif
     herds.push_back(describe(crowd.rig(h), herds_[h].agents));
   }
   const nlohmann::ordered_json json = {{"dt", dt_},
+                                       {"firstTick", firstTick_},
                                        {"ticks", entries_},
                                        {"herds", herds},
                                        {"terrain",

@@ -27,6 +27,7 @@ struct AgentChange {
 class AgentChanges {
  public:
   bool empty() const { return changes_.empty(); }
+  const std::vector<AgentChange>& all() const { return changes_; }
   // Of one of so many agents; what was said of it before stands.
   AgentChange& of(uint32_t agent, uint64_t agents);
   // By agent; afterwards there are none.

@@ -20,8 +20,10 @@
 #include "crowd/kinds.h"
 #include "crowd/page.h"
 #include "crowd/rig_records.h"
+#include "crowd/setup.h"
 #include "crowd/spawn.h"
 #include "crowd/stage.h"
+#include "crowd/state.h"
 #include "crowd/tint.h"
 #include "crowd/tuning.h"
 #include "crowd/watch.h"
@@ -47,10 +49,8 @@ std::string gibibytes(uint64_t bytes) {
   return text;
 }
 
-// Every pipeline runs once with nothing to do, so that no tick pays for its translation to machine code, and
-// the chains are brought to their feet.
-void settle(const Impl& crowd, std::span<const crowd::Kind> kinds) {
-  using enum crowd::StageId;
+// Every pipeline runs once with nothing to do, so that no tick pays for its translation to machine code.
+void warmUp(const Impl& crowd, std::span<const crowd::Kind> kinds) {
   gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
     crowd::clearLists(kinds, cmd);
     crowd::clearAwake(crowd, kinds, cmd);
@@ -65,6 +65,17 @@ void settle(const Impl& crowd, std::span<const crowd::Kind> kinds) {
             kernel->dispatch(cmd, page.bindings[i], gpu::bytesOf(nothing), 1);
           gpu::computeToCompute(cmd);
         }
+  });
+}
+
+// The chains of agents that have just been spawned are brought to their feet.
+void settle(const Impl& crowd, std::span<const crowd::Kind> kinds) {
+  using enum crowd::StageId;
+  warmUp(crowd, kinds);
+  gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
+    crowd::clearLists(kinds, cmd);
+    crowd::clearAwake(crowd, kinds, cmd);
+    gpu::transferToCompute(cmd);
     const crowd::Frame frame(crowd, kinds, 0, cmd);
     frame.record(wake);
     gpu::computeToIndirectAndCompute(cmd);
@@ -91,27 +102,9 @@ shared::Parameters parametersOf(const Impl& crowd, const crowd::Kind& kind, floa
   return parameters;
 }
 
-void setParameters(const Impl& crowd, float dt, crowd::Kind& kind) {
-  kind.parameters = parametersOf(crowd, kind, dt);
-  std::memcpy(kind.parameterBlock.bytes().data(), &kind.parameters, sizeof kind.parameters);
-}
-
 void checkTick(const crowd::Kind& kind, float dt) {
   const auto check = crowd::controllerStages(kind.controller).checkTick;
   if (check != nullptr && !kind.stages.empty()) check(kind, dt);
-}
-
-void setTick(Impl& crowd, float dt) {
-  if (!(dt > 0) || !std::isfinite(dt))
-    throw inputError("dt " + std::to_string(dt) + ": expected a finite time above 0");
-  if (crowd.dt == dt) return;
-  if (crowd.dt != 0)
-    throw inputError("dt changed from " + std::to_string(crowd.dt) + " to " + std::to_string(dt) +
-                     ": steps are timed in ticks, so a crowd keeps its first dt");
-  for (const crowd::Kind& kind : crowd.kinds) checkTick(kind, dt);
-  crowd.dt = dt;
-  for (crowd::Kind& kind : crowd.kinds)
-    if (!kind.stages.empty()) setParameters(crowd, dt, kind);
 }
 
 // All of a kind but its agents.
@@ -135,7 +128,7 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, Rig rig) {
   if (prepare != nullptr) prepare(context, from, kind);
   kind.parameterBlock =
       gpu::HostBuffer(context, sizeof(shared::Parameters), gpu::HostUse::upload, "parameters");
-  setParameters(crowd, 1.0f / 60, kind);
+  crowd::setParameters(crowd, crowd::usualDt, kind);
   kind.reserves = from.reserve > 0;
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
@@ -167,27 +160,31 @@ void uploadTints(const Impl& crowd, uint32_t kind) {
   }
 }
 
-// The kind's pipelines, and its agents.
-void fill(Impl& crowd, uint32_t k) {
+// The kind's pipelines, and its agents: where they begin, or zeros.
+void fill(Impl& crowd, uint32_t k, bool spawns = true) {
   crowd::Kind& kind = crowd.kinds[k];
   for (crowd::ReadyStage& stage : kind.stages)
     crowd::makeKernels({*crowd.context, crowd.options, kind}, stage);
   std::vector<crowd::Spawner> spawners;
   for (const crowd::Herd& herd : crowd.herds)
-    if (herd.kind == k) spawners.emplace_back(herd.from, kind, crowd.terrain, herd.seed);
+    if (herd.kind == k && spawns) spawners.emplace_back(herd.from, kind, crowd.terrain, herd.seed);
   kind.pages = crowd::makePages(crowd, kind, spawners);
   if (kind.tinted) uploadTints(crowd, k);
 }
 
-std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
-                                crowd::Kinds kinds, const CrowdOptions& options) {
+// A crowd without herds.
+std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
+                                 const CrowdOptions& options) {
   auto made = std::make_unique<Impl>();
   Impl& crowd = *made;
   const gpu::Context& context = device.context();
   crowd.context = &context;
   crowd.options = options;
+  crowd.rigsAreCallers = !options.rigs.empty();
   crowd.options.rigs = {};  // each kind has its own
   crowd.seed = scene.seed;
+  crowd.scene = scene;
+  crowd.scene.herds = {};  // each has its own
   if (std::max(terrain.extentX(), terrain.extentZ()) > 2 * Scene::maxCoordinate)
     throw inputError(terrain.name + ": the terrain is " +
                      std::to_string(static_cast<int>(terrain.extentX())) + " x " +
@@ -203,9 +200,31 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
   crowd::checkEvents(scene, terrain);
   crowd.events = scene.events;
   if (options.timestamps) crowd.timer = gpu::StageTimer(context, crowd::Frame::mostStages);
+  crowd.watchEvery = crowd::watchEvery(options, scene.capacity());
+  return made;
+}
 
-  const uint64_t agents = scene.capacity();
-  crowd.watchEvery = crowd::watchEvery(options, agents);
+// The kinds' pipelines and agents, once herds and kinds have their places.
+void fillAll(Impl& crowd, bool spawn) {
+  uint64_t needed = 0, agents = 0;
+  for (crowd::Kind& kind : crowd.kinds) {
+    if (kind.stages.empty()) continue;
+    kind.herdSteps = crowd::herdStepsOf(crowd, kind);
+    needed += crowd::bytesOf(crowd, kind);
+    agents += kind.agents;
+  }
+  expectMemory(*crowd.context, agents, needed);
+  if (agents > Scene::maxAgents)
+    throw inputError(std::to_string(agents) + " agents, expected at most " +
+                     std::to_string(Scene::maxAgents));
+  for (uint32_t k = 0; k < crowd.kinds.size(); ++k)
+    if (!crowd.kinds[k].stages.empty()) fill(crowd, k, spawn);
+}
+
+std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
+                                crowd::Kinds kinds, const CrowdOptions& options) {
+  auto made = beginCrowd(device, terrain, scene, options);
+  Impl& crowd = *made;
   for (size_t k = 0; k < kinds.rigs.size(); ++k)
     crowd.kinds.push_back(makeKind(crowd, scene.herds[kinds.firstHerds[k]], std::move(kinds.rigs[k])));
   for (size_t h = 0; h < scene.herds.size(); ++h) {
@@ -222,30 +241,52 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
     kind.firstAgents.push_back(kind.agents);
     kind.agents += crowd.herds.back().agents;
   }
-  uint64_t needed = 0;
-  for (crowd::Kind& kind : crowd.kinds) {
-    kind.herdSteps = crowd::herdStepsOf(crowd, kind);
-    needed += crowd::bytesOf(crowd, kind);
-  }
-  expectMemory(context, agents, needed);
-  if (agents > Scene::maxAgents)
-    throw inputError(std::to_string(agents) + " agents, expected at most " +
-                     std::to_string(Scene::maxAgents));
-
-  for (uint32_t k = 0; k < crowd.kinds.size(); ++k) fill(crowd, k);
+  fillAll(crowd, true);
   settle(crowd, crowd.kinds);
+  return made;
+}
+
+// The rig of a herd alone.
+Rig rigFor(const Herd& from) {
+  Scene scene;
+  scene.name = "a new herd";
+  scene.herds = {from};
+  return std::move(crowd::kindsOf(scene).rigs.front());
+}
+
+// Herds and kinds have the numbers that they had, those that are gone among them.
+std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
+  auto made = beginCrowd(device, state.terrain, state.scene, state.options);
+  Impl& crowd = *made;
+  crowd::restoreHerds(crowd, state);
+  for (uint32_t k = 0; k < crowd.kinds.size(); ++k) {
+    const auto first = std::ranges::find_if(
+        crowd.herds, [&](const crowd::Herd& herd) { return herd.kind == k && herd.generation % 2 == 0; });
+    if (first == crowd.herds.end()) continue;
+    const auto h = static_cast<size_t>(first - crowd.herds.begin());
+    crowd::Kind kind = makeKind(crowd, first->from,
+                                state.options.rigs.empty() ? rigFor(first->from) : state.options.rigs[h]);
+    kind.firstAgents = std::move(crowd.kinds[k].firstAgents);
+    kind.agents = crowd.kinds[k].agents;
+    for (const crowd::Herd& herd : crowd.herds)
+      if (herd.kind == k && herd.generation % 2 == 0)
+        kind.tinted = kind.tinted || (state.options.pose && crowd::isTinted(herd.from));
+    crowd.kinds[k] = std::move(kind);
+  }
+  for (size_t h = 0; h < crowd.herds.size(); ++h) crowd.herds[h].seed = seedOf(crowd, h);
+  crowd::checkState(crowd, state);
+  fillAll(crowd, false);
+  warmUp(crowd, crowd.kinds);
+  crowd::restore(crowd, state);
   return made;
 }
 
 // A kind for that herd alone, without its pipelines and agents.
 crowd::Kind kindFor(const Impl& crowd, const Herd& from) {
-  Scene scene;
-  scene.name = "a new herd";
-  scene.herds = {from};
-  crowd::Kind kind = makeKind(crowd, from, std::move(crowd::kindsOf(scene).rigs.front()));
+  crowd::Kind kind = makeKind(crowd, from, rigFor(from));
   if (crowd.dt > 0) {
     checkTick(kind, crowd.dt);
-    setParameters(crowd, crowd.dt, kind);
+    crowd::setParameters(crowd, crowd.dt, kind);
   }
   kind.tinted = crowd.options.pose && crowd::isTinted(from);
   kind.firstAgents = {0};
@@ -273,10 +314,34 @@ void vacate(Impl& crowd, uint32_t number) {
 
 }  // namespace
 
+namespace crowd {
+
+void setParameters(const Crowd::Impl& crowd, float dt, Kind& kind) {
+  kind.parameters = parametersOf(crowd, kind, dt);
+  std::memcpy(kind.parameterBlock.bytes().data(), &kind.parameters, sizeof kind.parameters);
+}
+
+void setTick(Crowd::Impl& crowd, float dt) {
+  if (!(dt > 0) || !std::isfinite(dt))
+    throw inputError("dt " + std::to_string(dt) + ": expected a finite time above 0");
+  if (crowd.dt == dt) return;
+  if (crowd.dt != 0)
+    throw inputError("dt changed from " + std::to_string(crowd.dt) + " to " + std::to_string(dt) +
+                     ": steps are timed in ticks, so a crowd keeps its first dt");
+  for (const Kind& kind : crowd.kinds) checkTick(kind, dt);
+  crowd.dt = dt;
+  for (Kind& kind : crowd.kinds)
+    if (!kind.stages.empty()) setParameters(crowd, dt, kind);
+}
+
+}  // namespace crowd
+
 Crowd::Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options)
     : impl_(makeCrowd(device, terrain, scene,
                       options.rigs.empty() ? crowd::kindsOf(scene) : crowd::kindsOf(scene, options.rigs),
                       options)) {}
+
+Crowd::Crowd(Device& device, const State& state) : impl_(remakeCrowd(device, state)) {}
 
 Crowd::~Crowd() = default;
 Crowd::Crowd(Crowd&&) noexcept = default;
@@ -285,7 +350,7 @@ Crowd& Crowd::operator=(Crowd&&) noexcept = default;
 void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   Impl& crowd = *impl_;
   const vk::CommandBuffer cmd(commandBuffer);
-  setTick(crowd, dt);
+  crowd::setTick(crowd, dt);
   for (const Event& event : crowd::eventsAt(crowd.events, crowd.tick + 1, double{dt}))
     crowd::happen(event, *this);
   const uint64_t tick = ++crowd.tick;

@@ -126,6 +126,8 @@ struct Crowd::Impl {
   uint64_t agentsInTick = 0;  // who were there in it
   float dt = 0;               // of the first tick; 0 before it
   gpu::StageTimer timer;
+  Scene scene;                  // that it was made of
+  bool rigsAreCallers = false;  // not those that the scene names
 
   // Throws Error(input) where there is no such herd.
   const crowd::Herd& herdAt(uint32_t herd) const;

@@ -104,7 +104,8 @@ void uploadHerds(const gpu::Context& context, const Kind& kind, const Page& page
                    bytesOfCounters(shared::counterHerd(0, rows)));
 }
 
-// What is spawned is written once, to where the device copies it from; all else begins as zeros.
+// What is spawned is written once, to where the device copies it from; all else begins as zeros, and so does
+// everything without spawners.
 void spawn(const gpu::Context& context, const std::vector<PageBuffer>& buffers, const Kind& kind,
            std::span<const Spawner> spawners, const gpu::HostBuffer& staging, const Page& page) {
   SpawnRecords records;
@@ -112,7 +113,7 @@ void spawn(const gpu::Context& context, const std::vector<PageBuffer>& buffers, 
     uint64_t end = 0;
     for (const PageBuffer& each : buffers) {
       const gpu::Buffer& buffer = each.in(page);
-      if (!each.spawned) {
+      if (!each.spawned || spawners.empty()) {
         cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 0);
         continue;
       }

@@ -99,6 +99,10 @@ TEST_F(Running, WritesEveryFootfall) {
   std::ifstream lines(file("feet.csv"));
   std::string line;
   std::getline(lines, line);
+  const std::string manifest = "# manifest: ";
+  ASSERT_EQ(line.substr(0, manifest.size()), manifest);
+  EXPECT_EQ(nlohmann::json::parse(line.substr(manifest.size())), json("run.json").at("manifest"));
+  std::getline(lines, line);
   EXPECT_EQ(line, "herd,agent,leg,tick,seconds,x,y,z,speed");
   int count = 0, last = 0;
   for (; std::getline(lines, line); ++count) {

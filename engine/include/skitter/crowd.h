@@ -3,7 +3,9 @@
 #include <vulkan/vulkan.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +23,8 @@
 #include "skitter/steering.h"
 
 namespace skitter {
+
+struct State;  // skitter/state.h
 
 // Another shader for a stage: a changed copy of shaders/stages/<stage>.comp, compiled once for each load
 // path, of which the device takes one, with the defines that engine/crowd/CMakeLists.txt has for it:
@@ -146,6 +150,11 @@ class SKITTER_API Crowd {
   // beyond 4 km from the origin) and, before any agent is made, Error(device) when memory does not suffice
   // (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
+  // As it was when it was saved; on another device and in other pages, too: every record has the bits that it
+  // had. What the state's options ask for and the state lacks (poses, feet, footfalls) follows from it.
+  // Throws Error as above, and Error(input) that names the state where it is damaged, or where a rig or its
+  // clips are others than they were.
+  Crowd(Device& device, const State& state);
   ~Crowd();
   Crowd(Crowd&&) noexcept;
   Crowd& operator=(Crowd&&) noexcept;
@@ -219,6 +228,14 @@ class SKITTER_API Crowd {
   void removeHerd(HerdId herd);
   bool has(HerdId herd) const;
   HerdId herdId(uint32_t herd) const;
+
+  // Writes a state, with which a run can go on later (skitter/state.h). Waits for the device. The file takes
+  // its name once it is whole and on the disk; until then an older one stays. `note` is JSON of the
+  // caller's own, which comes back with the state. Throws Error(input) that names the file, or the value of
+  // the scene or the note that cannot be written.
+  void save(const std::filesystem::path& file, const std::string& note = {}) const;
+  std::vector<std::byte> saveToMemory(const std::string& note = {}) const;
+  uint64_t stateBytes() const;  // about what a state takes, without the note
 
   uint64_t tick() const;         // ticks recorded so far
   uint32_t herdCount() const;    // numbers, those of herds that are gone among them
