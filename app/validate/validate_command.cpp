@@ -17,6 +17,7 @@
 #include "app/common/values.h"
 #include "app/validate/ground_edits.h"
 #include "app/validate/outcome.h"
+#include "crowd/events.h"
 #include "crowd/herd.h"
 #include "gpu/submit.h"
 #include "skitter/error.h"
@@ -93,6 +94,20 @@ std::vector<HerdState> download(const Crowd& crowd, const std::vector<AgentSampl
 
 std::vector<HerdState> download(const Crowd& crowd) {
   return download(crowd, std::vector<AgentSample>(crowd.herdCount()));
+}
+
+// The ground that the scene's events have changed just before the last tick.
+void tellOfEvents(const Crowd& crowd, double dt, const std::vector<std::unique_ptr<Replay>>& replays) {
+  const Heightfield& ground = crowd.terrain();
+  for (const Event& event : crowd::eventsAt(implOf(crowd).events, crowd.tick(), static_cast<float>(dt))) {
+    const crowd::Rectangle at = crowd::groundOf(event, ground);
+    std::vector<float> heights;
+    for (uint32_t row = at.z; row < at.z + at.rows; ++row) {
+      const auto first = ground.heights.begin() + static_cast<std::ptrdiff_t>(row) * ground.columns + at.x;
+      heights.insert(heights.end(), first, first + at.columns);
+    }
+    for (const auto& replay : replays) replay->edit(at.x, at.z, at.columns, at.rows, heights);
+  }
 }
 
 void add(const StageResult& result, StageResult& sum) {
@@ -189,6 +204,7 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
     // A herd's parameters are complete only once the length of a tick is known.
     if (replays.empty()) replays = replaysOf(crowd, options.stages);
     if (options.freeRun && !freeRuns) freeRuns.emplace(crowd, first);
+    tellOfEvents(crowd, options.scene.dt, replays);
     const std::vector<HerdState> after = download(crowd, samples);
     if (freeRuns) freeRuns->tick(after);
     for (size_t h = 0; h < replays.size(); ++h) replays[h]->tick(crowd.tick(), before[h], after[h]);

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "crowd/controllers/controllers.h"
+#include "crowd/events.h"
 #include "crowd/frame.h"
 #include "crowd/herd.h"
 #include "crowd/kinds.h"
@@ -21,6 +22,7 @@
 #include "crowd/rig_records.h"
 #include "crowd/spawn.h"
 #include "crowd/stage.h"
+#include "crowd/tint.h"
 #include "crowd/tuning.h"
 #include "crowd/watch.h"
 #include "gpu/barrier.h"
@@ -151,6 +153,20 @@ void expectMemory(const gpu::Context& context, uint64_t agents, uint64_t needed)
                       available.of + ")");
 }
 
+// Of the agents of a kind that some herd has coloured.
+void uploadTints(const Impl& crowd, uint32_t kind) {
+  const float lightness = crowd::meanLightness(crowd.kinds[kind]);
+  for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
+    const crowd::Herd& herd = crowd.herds[h];
+    if (herd.kind != kind) continue;
+    for (const crowd::Part& part : crowd::partsOf(crowd, h)) {
+      const std::vector<glm::vec4> tints = crowd::tintsOf(herd.from, part, herd.seed, lightness);
+      gpu::uploadBytes(*crowd.context, part.page->tint, std::as_bytes(std::span(tints)),
+                       part.first * sizeof(glm::vec4));
+    }
+  }
+}
+
 // The kind's pipelines, and its agents.
 void fill(Impl& crowd, uint32_t k) {
   crowd::Kind& kind = crowd.kinds[k];
@@ -160,6 +176,7 @@ void fill(Impl& crowd, uint32_t k) {
   for (const crowd::Herd& herd : crowd.herds)
     if (herd.kind == k) spawners.emplace_back(herd.from, kind, crowd.terrain, herd.seed);
   kind.pages = crowd::makePages(crowd, kind, spawners);
+  if (kind.tinted) uploadTints(crowd, k);
 }
 
 std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
@@ -183,6 +200,8 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
       "heights");
   gpu::uploadImage(context, crowd.heights, terrain.heights, gpu::sampledOn(context));
   crowd.edits = crowd::HeightEdits(context);
+  crowd::checkEvents(scene, terrain);
+  crowd.events = scene.events;
   if (options.timestamps) crowd.timer = gpu::StageTimer(context, crowd::Frame::mostStages);
 
   const uint64_t agents = scene.capacity();
@@ -199,6 +218,7 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
          .presence = {scene.herds[h].agents, scene.herds[h].agents + scene.herds[h].reserve},
          .from = scene.herds[h],
          .seed = seedOf(crowd, h)});
+    kind.tinted = kind.tinted || (options.pose && crowd::isTinted(scene.herds[h]));
     kind.firstAgents.push_back(kind.agents);
     kind.agents += crowd.herds.back().agents;
   }
@@ -227,6 +247,7 @@ crowd::Kind kindFor(const Impl& crowd, const Herd& from) {
     checkTick(kind, crowd.dt);
     setParameters(crowd, crowd.dt, kind);
   }
+  kind.tinted = crowd.options.pose && crowd::isTinted(from);
   kind.firstAgents = {0};
   kind.agents = uint64_t{from.agents} + from.reserve;
   kind.herdSteps = crowd::herdStepsOf(crowd, kind);
@@ -265,6 +286,8 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   Impl& crowd = *impl_;
   const vk::CommandBuffer cmd(commandBuffer);
   setTick(crowd, dt);
+  for (const Event& event : crowd::eventsAt(crowd.events, crowd.tick + 1, double{dt}))
+    crowd::happen(event, *this);
   const uint64_t tick = ++crowd.tick;
   crowd.agentsInTick = agentCount();
 

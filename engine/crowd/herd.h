@@ -35,6 +35,7 @@ struct Page : ForRecords<gpu::Buffer> {
   gpu::Buffer list;                     // legs that begin a step this tick
   gpu::Buffer counters;                 // indirect arguments and counts
   gpu::Buffer histogram;                // of reach errors
+  gpu::Buffer tint;                     // of each agent, where its kind is tinted; only pictures read it
   std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
@@ -56,6 +57,7 @@ struct Kind {
   KeyPoses keyPoses;  // of controller key-poses
   gpu::Buffer keyBuffer;
   bool reachTriggered = false;  // legs step when out of reach, without a rhythm
+  bool tinted = false;          // some herd of it has a colour or a tint of its own
   shared::Parameters parameters{};
   gpu::HostBuffer parameterBlock;  // Parameters; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
@@ -118,6 +120,7 @@ struct Crowd::Impl {
   uint64_t seed = 0;               // of the scene
   uint32_t revision = 0;           // of kinds and herds: a renderer that has seen another looks again
   crowd::HeightEdits edits;
+  std::vector<Event> events;  // the scene's, by time
   uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground; 0: never
   uint64_t tick = 0;
   uint64_t agentsInTick = 0;  // who were there in it

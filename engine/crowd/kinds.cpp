@@ -15,17 +15,28 @@ namespace {
 
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
-  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal] =
-      herd;
+  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
+               phase, colour, tint] = herd;
   return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning),
                         std::tuple(reserve > 0));
+}
+
+void check(const skitter::Herd& herd, const std::string& what) {
+  checkTuning(herd.tuning, what + ".tuning");
+  if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
+    throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
+  if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))
+    throw inputError(fmt::format("{}.tint is {}, expected 0 to 1", what, *herd.tint));
+  for (int i = 0; herd.colour && i < 3; ++i)
+    if (!((*herd.colour)[i] >= 0 && (*herd.colour)[i] <= 1))
+      throw inputError(fmt::format("{}.colour[{}] is {}, expected 0 to 1", what, i, (*herd.colour)[i]));
 }
 
 // `areEqual` compares what the rigs of two herds, by number, are.
 template <class Equal>
 Kinds grouped(const Scene& scene, const Equal& areEqual) {
   for (size_t h = 0; h < scene.herds.size(); ++h)
-    checkTuning(scene.herds[h].tuning, fmt::format("{}: herds[{}].tuning", scene.name, h));
+    check(scene.herds[h], fmt::format("{}: herds[{}]", scene.name, h));
   Kinds kinds;
   for (uint32_t h = 0; h < scene.herds.size(); ++h) {
     const auto isOfIt = [&](uint32_t first) {

@@ -180,6 +180,7 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Kind& kind) 
                        .bytes = legs * FOOTFALL_STRIDE * 16,
                        .buffer = &Page::footfall,
                        .most = uint64_t{options.footfalls} * FOOTFALL_STRIDE * 16});
+  if (kind.tinted) buffers.push_back({.name = "tint", .bytes = 16, .buffer = &Page::tint});
   // The last work group reads on after the list's end.
   constexpr uint64_t anEntry = AWAKE_STRIDE * 16;
   PageBuffer awake{.name = "awake", .bytes = anEntry, .buffer = &Page::awake, .agents = BLOCK};

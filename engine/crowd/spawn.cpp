@@ -179,6 +179,7 @@ void Spawner::stand(uint32_t agent, const Place& place, uint32_t at, const Spawn
       foot(records.foot, FOOT_STRIDE), chain(records.chain, chainStride(rig_.maxBones())),
       tip(records.tip, TIP_STRIDE), play(records.play, PLAY_STRIDE);
   for (Writer* each : {&body, &gait, &play}) each->seek(record);
+  const float phase = herd_.phase ? *herd_.phase - std::floor(*herd_.phase) : uniform(seed_, agent, 2);
 
   // Standing on the plane through the ground a leg length around.
   const glm::vec2 p = place.position;
@@ -198,12 +199,12 @@ void Spawner::stand(uint32_t agent, const Place& place, uint32_t at, const Spawn
   body.push(heading.x, heading.y, 0, 0);
   body.push(q.x, q.y, q.z, q.w);
   body.push(0, 0, 1, 0);
-  gait.push(uniform(seed_, agent, 2), 0, 0, 1);
+  gait.push(phase, 0, 0, 1);
   gait.push(0, 1, 0, 0);
   if (clips_.clips > 0) {
     const auto clip = static_cast<float>(clips_.standing);
     const float seconds = clips_.heads[static_cast<size_t>(clips_.standing) * 4 + 2];
-    const float time = seconds * uniform(seed_, agent, 2);
+    const float time = seconds * phase;
     play.push(clip, time, clip, time);
     play.push(1, 0, 0, 0);
     const glm::vec2 frame = frameAt(clips_, clips_.standing, time);

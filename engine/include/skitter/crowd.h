@@ -153,7 +153,8 @@ class SKITTER_API Crowd {
   // Records one tick of `dt` seconds into the caller's command buffer (outside a render pass). It begins with
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in
-  // order. Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an
+  // order. What Scene::events has for that time happens first, as if the caller had called editHeights just
+  // before. Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an
   // adaptive herd, below 22 microseconds.
   void record(VkCommandBuffer commandBuffer, float dt);
 
