@@ -41,6 +41,7 @@ foreach(library IN LISTS libraries)
   set_target_properties(${library} PROPERTIES OUTPUT_NAME skitter EXPORT_NAME skitter)
   target_include_directories(${library} PUBLIC
     "$<BUILD_INTERFACE:$<TARGET_PROPERTY:skitter_headers,INTERFACE_INCLUDE_DIRECTORIES>>"
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/bindings/c>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${library} PUBLIC cxx_std_20)
   target_link_libraries(${library} PUBLIC Vulkan::Vulkan glm::glm PRIVATE fmt::fmt PNG::PNG meshoptimizer::meshoptimizer)

@@ -58,6 +58,11 @@ separate_arguments(flags UNIX_COMMAND "${flags}")
 run(out c++ -std=c++20 ${ROOT}/tests/install/version/main.cpp -o ${FOLDER}/build/pkgconfig ${flags})
 run(out ${FOLDER}/build/pkgconfig)
 expect("a program by pkg-config" "${out}" "${told}")
+run(flags pkg-config --cflags --libs skitter)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+run(out cc -std=c99 -Wall -Wextra -Wpedantic -Werror ${ROOT}/tests/install/version/main.c -o ${FOLDER}/build/c ${flags})
+run(out ${FOLDER}/build/c)
+expect("a C program by pkg-config" "${out}" "${told}")
 
 # Each header by itself, as strict as here.
 file(GLOB headers RELATIVE ${prefix}/include ${prefix}/include/skitter/*.h)
