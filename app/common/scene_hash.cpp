@@ -56,7 +56,8 @@ class Files {
 
 // Bindings to all members: a new one does not compile until it is looked at here.
 void add(Hash& hash, Files& files, const Herd& herd) {
-  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
+  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal, sizes,
+               phase, colour, tint] = herd;
   hash.add(rig);
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   if (rig != "spider") {
@@ -73,7 +74,16 @@ void add(Hash& hash, Files& files, const Herd& herd) {
     hash.add(to);
   }
   hash.add(uint64_t{keys});
-  // A parameter that is new to the engine must not change the hash of a scene that does not set it.
+  // What is new to the engine must not change the hash of a scene that does not set it.
+  if (!sizes.empty()) {
+    hash.add("sizes");
+    hash.add(uint64_t{sizes.size()});
+    for (const float size : sizes) hash.add(size);
+  }
+  if (phase) {
+    hash.add("phase");
+    hash.add(*phase);
+  }
   for (const TuningInfo& info : allTunings)
     if (tuning.*info.member != info.usual) {
       hash.add(info.name);
@@ -91,15 +101,33 @@ void add(Hash& hash, Files& files, const Herd& herd) {
   hash.add(speed);
 }
 
+void add(Hash& hash, const Event& event) {
+  const auto& [at, what] = event;
+  hash.add(at);
+  if (const auto* mound = std::get_if<Mound>(&what)) {
+    const auto& [centre, radius, height] = *mound;
+    hash.add("mound");
+    hash.add(centre);
+    hash.add(radius);
+    hash.add(height);
+  } else {
+    const auto& [x, z, columns, rows, heights] = std::get<HeightSamples>(what);
+    hash.add("edit");
+    for (const uint32_t each : {x, z, columns, rows}) hash.add(uint64_t{each});
+    for (const float height : heights) hash.add(height);
+  }
+}
+
 }  // namespace
 
 uint64_t sceneHash(const Scene& scene, const Heightfield& terrain) {
   Hash hash;
   Files files;
-  const auto& [name, source, herds, camera, seed] = scene;
+  const auto& [name, source, herds, camera, events, seed] = scene;
   hash.add(seed);
   hash.add(uint64_t{herds.size()});
   for (const Herd& herd : herds) add(hash, files, herd);
+  for (const Event& event : events) add(hash, event);
   hash.add(uint64_t{terrain.columns});
   hash.add(terrain.spacingX);
   hash.add(terrain.spacingZ);

@@ -133,6 +133,17 @@ nlohmann::ordered_json describe(const Rig& rig, uint32_t agents) {
           {"limits", limits}};
 }
 
+// Which agents of a herd of several sizes are how much larger than the first ones, which it is described by.
+void addSizes(const Crowd::Impl& crowd, uint32_t herd, nlohmann::ordered_json& described) {
+  const std::span<const crowd::Herd> sizes = crowd.sizesOf(herd);
+  if (sizes.size() == 1) return;
+  for (const crowd::Herd& size : sizes)
+    described["sizes"].push_back({{"firstAgent", size.firstOfScene},
+                                  {"agents", size.agents},
+                                  {"size", crowd.kindOf(size).size},
+                                  {"legLength", crowd.kindOf(size).rig.legLength}});
+}
+
 }  // namespace
 
 Trace::Trace(const fs::path& folder, const Crowd& crowd, const Scene& scene, double dt)
@@ -169,8 +180,9 @@ void Trace::append(const Crowd& crowd) {
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
     const HerdState state = crowd.download(h);
     Values values;
-    for (size_t agent = 0; agent < state.agents; ++agent)
-      appendAgent(state, implOf(crowd).kindOf(h), agent, values);
+    const Crowd::Impl& impl = implOf(crowd);
+    for (uint32_t agent = 0; agent < state.agents; ++agent)
+      appendAgent(state, impl.kindOf(impl.sizeOf(h, agent)), agent, values);
     herds_[h].joints.append(std::span<const float>(values.joints));
     herds_[h].rotations.append(std::span<const float>(values.rotations));
     herds_[h].stance.append(std::span<const uint8_t>(values.stance));
@@ -190,6 +202,7 @@ size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manif
     herds_[h].stance.finish(entries_);
     herds_[h].body.finish(entries_);
     herds.push_back(describe(crowd.rig(h), herds_[h].agents));
+    addSizes(implOf(crowd), h, herds.back());
   }
   const nlohmann::ordered_json json = {{"dt", dt_},
                                        {"ticks", entries_},

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crowd/herd.h"
 #include "skitter/records.h"
 
 namespace skitter::app {
 namespace {
 
-constexpr double kEvery = 0.25;                                             // seconds
-constexpr uint64_t kTimes = 4, kCycle = 16;                                 // times out of so many
-constexpr uint32_t kAtOnce = 16;                                            // of a herd
-constexpr uint32_t kMostSamples = 64;                                       // a side
+constexpr double kEvery = 0.25;              // seconds
+constexpr uint64_t kTimes = 4, kCycle = 16;  // times out of so many
+constexpr uint32_t kAtOnce = 16;             // of a herd, or of one of its sizes
+constexpr uint32_t kMostSamples = 64;        // a side
 constexpr float kAway = 1, kLeast = 0.15f, kMost = 0.75f, kHeight = 0.25f;  // leg lengths
 
 }  // namespace
@@ -20,7 +21,8 @@ GroundEdits::GroundEdits(const Crowd& crowd, uint64_t seed, double dt)
     : ground_(crowd.terrain()),
       every_(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(kEvery / dt)))),
       random_(seed) {
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h) legLengths_.push_back(crowd.rig(h).legLength);
+  const Crowd::Impl& impl = implOf(crowd);
+  for (const crowd::Herd& herd : impl.herds) legLengths_.push_back(impl.kindOf(herd).rig.legLength);
 }
 
 // Not a standard distribution: those differ from library to library.
@@ -33,18 +35,18 @@ HeightEdit GroundEdits::near(const HerdState& herd, float legLength) {
   const float x = shared::tileX(b[3]) * shared::TILE_SIZE + b[0] + drawn(-kAway, kAway) * legLength;
   const float z = shared::tileZ(b[3]) * shared::TILE_SIZE + b[2] + drawn(-kAway, kAway) * legLength;
   const float half = drawn(kLeast, kMost) * legLength, by = drawn(-kHeight, kHeight) * legLength;
-  struct Run {
+  struct Range {
     uint32_t first, count;
   };
-  const auto run = [&](float middle, float origin, float spacing, uint32_t samples) -> Run {
+  const auto range = [&](float middle, float origin, float spacing, uint32_t samples) -> Range {
     const float last = static_cast<float>(samples - 1);
     const float first = std::clamp(std::round((middle - half - origin) / spacing), 0.0f, last);
     const float end = std::clamp(std::round((middle + half - origin) / spacing), first, last);
     return {static_cast<uint32_t>(first),
             std::min(kMostSamples, static_cast<uint32_t>(end) - static_cast<uint32_t>(first) + 1)};
   };
-  const Run columns = run(x, ground_.originX(), ground_.spacingX, ground_.columns);
-  const Run rows = run(z, ground_.originZ(), ground_.spacingZ, ground_.rows);
+  const Range columns = range(x, ground_.originX(), ground_.spacingX, ground_.columns);
+  const Range rows = range(z, ground_.originZ(), ground_.spacingZ, ground_.rows);
   HeightEdit edit{columns.first, rows.first, columns.count, rows.count, {}};
   for (uint32_t row = rows.first; row < rows.first + rows.count; ++row)
     for (uint32_t column = columns.first; column < columns.first + columns.count; ++column)

@@ -17,7 +17,8 @@
 #include "app/common/values.h"
 #include "app/validate/ground_edits.h"
 #include "app/validate/outcome.h"
-#include "crowd/herd.h"
+#include "crowd/events.h"
+#include "crowd/page.h"
 #include "gpu/submit.h"
 #include "skitter/error.h"
 #include "validation/free_run.h"
@@ -49,9 +50,10 @@ struct ValidateOptions {
 class FreeRuns {
  public:
   FreeRuns(const Crowd& crowd, const std::vector<HerdState>& first) {
-    for (uint32_t h = 0; h < first.size(); ++h)
+    const Crowd::Impl& impl = implOf(crowd);
+    for (size_t r = 0; r < first.size(); ++r)
       runs_.push_back(std::make_unique<validation::FreeRun>(
-          validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), first[h]));
+          validation::herdFacts(impl.kindOf(impl.herds[r]), impl.terrain), first[r]));
   }
   void tick(const std::vector<HerdState>& device) {
     for (size_t h = 0; h < runs_.size(); ++h) runs_[h]->tick(device[h].watched);
@@ -70,29 +72,52 @@ class FreeRuns {
 };
 
 std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd, const std::vector<crowd::StageId>& only) {
+  const Crowd::Impl& impl = implOf(crowd);
   std::vector<std::unique_ptr<Replay>> replays;
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-    replays.push_back(std::make_unique<Replay>(
-        validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), only));
+  for (const crowd::Herd& herd : impl.herds)
+    replays.push_back(std::make_unique<Replay>(validation::herdFacts(impl.kindOf(herd), impl.terrain), only));
   return replays;
 }
 
-// What tick n compares of every herd.
-std::vector<AgentSample> samplesAt(uint64_t n, const Scene& scene) {
+// What tick n compares of every herd, size by size.
+std::vector<AgentSample> samplesAt(uint64_t n, const Crowd& crowd, uint64_t seed) {
   std::vector<AgentSample> samples;
-  for (const Herd& herd : scene.herds)
-    samples.push_back(validation::sampleAt(scene.seed, n, herd.agents, agentsATick));
+  for (const crowd::Herd& herd : implOf(crowd).herds)
+    samples.push_back(validation::sampleAt(seed, n, herd.agents, agentsATick));
   return samples;
 }
 
 std::vector<HerdState> download(const Crowd& crowd, const std::vector<AgentSample>& samples) {
+  const Crowd::Impl& impl = implOf(crowd);
   std::vector<HerdState> states;
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h) states.push_back(crowd.download(h, samples[h]));
+  for (size_t r = 0; r < samples.size(); ++r)
+    states.push_back(crowd::download(impl, impl.herds[r], samples[r]));
   return states;
 }
 
 std::vector<HerdState> download(const Crowd& crowd) {
-  return download(crowd, std::vector<AgentSample>(crowd.herdCount()));
+  return download(crowd, std::vector<AgentSample>(implOf(crowd).herds.size()));
+}
+
+std::string nameOf(const Crowd& crowd, size_t herd) {
+  const crowd::Herd& each = implOf(crowd).herds[herd];
+  const bool alone = implOf(crowd).sizesOf(each.ofScene).size() == 1;
+  return fmt::format("herd {}{}", each.ofScene,
+                     alone ? "" : fmt::format(", size {}", implOf(crowd).kindOf(each).size));
+}
+
+// The ground that the scene's events have changed just before the last tick.
+void tellOfEvents(const Crowd& crowd, double dt, const std::vector<std::unique_ptr<Replay>>& replays) {
+  const Heightfield& ground = crowd.terrain();
+  for (const Event& event : crowd::eventsAt(implOf(crowd).events, crowd.tick(), static_cast<float>(dt))) {
+    const crowd::Rectangle at = crowd::groundOf(event, ground);
+    std::vector<float> heights;
+    for (uint32_t row = at.z; row < at.z + at.rows; ++row) {
+      const auto first = ground.heights.begin() + static_cast<std::ptrdiff_t>(row) * ground.columns + at.x;
+      heights.insert(heights.end(), first, first + at.columns);
+    }
+    for (const auto& replay : replays) replay->edit(at.x, at.z, at.columns, at.rows, heights);
+  }
 }
 
 void add(const StageResult& result, StageResult& sum) {
@@ -110,18 +135,18 @@ void add(const StageResult& result, StageResult& sum) {
 }
 
 // Adds up the results of all herds that have agents, by stage; the worst herd gives a stage's error.
-std::vector<StageResult> merge(const Scene& scene, const std::vector<std::unique_ptr<Replay>>& replays) {
+std::vector<StageResult> merge(const Crowd& crowd, const std::vector<std::unique_ptr<Replay>>& replays) {
   std::vector<StageResult> all;
   for (const crowd::StageId stage : crowd::allStages) {
-    const char* name = nameOf(stage);
+    const char* name = crowd::nameOf(stage);
     StageResult* sum = nullptr;
-    for (size_t h = 0; h < replays.size(); ++h) {
-      if (scene.herds[h].agents == 0) continue;
-      for (StageResult result : replays[h]->results()) {
+    for (size_t r = 0; r < replays.size(); ++r) {
+      if (implOf(crowd).herds[r].agents == 0) continue;
+      for (StageResult result : replays[r]->results()) {
         if (result.name != name) continue;
         if (replays.size() > 1) {
-          result.worst = fmt::format("herd {}: {}", h, result.worst);
-          if (!result.pass) result.why = fmt::format("herd {}: {}", h, result.why);
+          result.worst = fmt::format("{}: {}", nameOf(crowd, r), result.worst);
+          if (!result.pass) result.why = fmt::format("{}: {}", nameOf(crowd, r), result.why);
         }
         if (sum != nullptr)
           add(result, *sum);
@@ -173,7 +198,7 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
   }
   Progress progress("ticks", options.frames, options.quiet);
   while (crowd.tick() < options.frames && !stopRequested()) {
-    const std::vector<AgentSample> samples = samplesAt(crowd.tick() + 1, scene);
+    const std::vector<AgentSample> samples = samplesAt(crowd.tick() + 1, crowd, scene.seed);
     const std::vector<HerdState> before = download(crowd, samples);
     std::vector<HerdState> first;
     if (options.freeRun && !freeRuns) first = download(crowd);
@@ -186,9 +211,10 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
       }
     }
     runTick(ring, crowd, static_cast<float>(options.scene.dt), times);
-    // A herd's parameters are complete only once the length of a tick is known.
+    // A kind's parameters are complete only once the length of a tick is known.
     if (replays.empty()) replays = replaysOf(crowd, options.stages);
     if (options.freeRun && !freeRuns) freeRuns.emplace(crowd, first);
+    tellOfEvents(crowd, options.scene.dt, replays);
     const std::vector<HerdState> after = download(crowd, samples);
     if (freeRuns) freeRuns->tick(after);
     for (size_t h = 0; h < replays.size(); ++h) replays[h]->tick(crowd.tick(), before[h], after[h]);
@@ -196,7 +222,7 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
     progress.update(validation.done);
   }
   if (replays.empty()) replays = replaysOf(crowd, options.stages);
-  outcome.stages = merge(scene, replays);
+  outcome.stages = merge(crowd, replays);
   outcome.ticks = crowd.tick();
   if (freeRuns) outcome.freeShare = freeRuns->shareWithin(download(crowd));
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -19,7 +19,7 @@ namespace {
 constexpr int splineParts = 24;
 
 HerdState stateOf(const Crowd& crowd, AgentId id) {
-  return crowd.download(id.herd, {id.agent, implOf(crowd).herds.at(id.herd).agents});
+  return crowd.download(id.herd, {id.agent, Scene::maxAgents});
 }
 
 // Bodies alone: a click into a large crowd must not fetch everything else.
@@ -49,6 +49,11 @@ reference::Creature creatureOf(const crowd::Kind& kind) {
   return validation::creatureOf(kind.rigRecords, kind.legs, kind.bones, kind.groups);
 }
 
+const crowd::Kind& kindOf(const Crowd& crowd, AgentId id) {
+  const Crowd::Impl& impl = implOf(crowd);
+  return impl.kindOf(impl.sizeOf(id.herd, id.agent));
+}
+
 glm::dvec3 originOf(const reference::AgentBody& body) {
   const glm::dvec2 world = body.world();
   return {world.x, body.y, world.y};
@@ -60,9 +65,9 @@ std::optional<AgentId> agentAt(const Crowd& crowd, const Lens& lens, const glm::
   std::optional<AgentId> best;
   float least = std::numeric_limits<float>::infinity();
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
-    const Rig& rig = crowd.rig(h);
     const std::vector<glm::vec3> places = placesOf(crowd, h);
     for (uint32_t a = 0; a < places.size(); ++a) {
+      const Rig& rig = crowd.rig(h, a);
       const glm::vec3 middle = places[a] + glm::vec3(0, rig.bodyHeight, 0);
       const std::optional<glm::vec2> at = lens.pixel(middle);
       if (!at) continue;
@@ -79,23 +84,26 @@ std::optional<AgentId> agentAt(const Crowd& crowd, const Lens& lens, const glm::
 }
 
 AgentId neighbourOf(const Crowd& crowd, AgentId id, bool after) {
-  const std::vector<crowd::Herd>& all = implOf(crowd).herds;
   const uint32_t herds = crowd.herdCount();
-  if (after ? id.agent + 1 < all[id.herd].agents : id.agent > 0) {
+  const auto agentsOf = [&](uint32_t herd) {
+    const crowd::Herd& last = implOf(crowd).sizesOf(herd).back();
+    return last.firstOfScene + last.agents;
+  };
+  if (after ? id.agent + 1 < agentsOf(id.herd) : id.agent > 0) {
     id.agent += after ? 1u : UINT32_MAX;
     return id;
   }
   do id.herd = (id.herd + (after ? 1 : herds - 1)) % herds;
-  while (all[id.herd].agents == 0);
-  id.agent = after ? 0 : all[id.herd].agents - 1;
+  while (agentsOf(id.herd) == 0);
+  id.agent = after ? 0 : agentsOf(id.herd) - 1;
   return id;
 }
 
 Followed::Followed(const Crowd& crowd, AgentId id)
     : id_(id),
-      creature_(creatureOf(implOf(crowd).kindOf(id.herd))),
-      legLength_(crowd.rig(id.herd).legLength),
-      bodyHeight_(crowd.rig(id.herd).bodyHeight) {
+      creature_(creatureOf(kindOf(crowd, id))),
+      legLength_(crowd.rig(id.herd, id.agent).legLength),
+      bodyHeight_(crowd.rig(id.herd, id.agent).bodyHeight) {
   legs_.resize(crowd.rig(id.herd).legs.size());
   look(crowd);
 }
@@ -107,7 +115,7 @@ void Followed::look(const Crowd& crowd) {
 }
 
 void Followed::lookAtLeg(const Crowd& crowd, size_t leg) {
-  const crowd::Kind& kind = implOf(crowd).kindOf(id_.herd);
+  const crowd::Kind& kind = kindOf(crowd, id_);
   const reference::Limb& limb = creature_.limbs[leg];
   const reference::AgentBody body = validation::bodyOf(now_, 0);
   const glm::dvec3 origin = originOf(body);

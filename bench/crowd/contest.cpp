@@ -26,7 +26,7 @@ constexpr uint32_t kTicksAWatchedOne = 4;
 // The reference takes about a millisecond for one of them.
 constexpr uint32_t kAgentsChecked = 1024;
 
-// A tick's states before and after, of every herd.
+// A tick's states before and after, of every herd, size by size.
 struct Witness {
   std::vector<HerdState> before, after;
 };
@@ -52,9 +52,10 @@ std::vector<HerdState> statesOf(const Crowd& crowd, const Contestant& contestant
 std::vector<validation::StageResult> judge(const Crowd& crowd, const Witness& witness,
                                            const std::vector<StageDemand>& timed) {
   std::vector<validation::StageResult> results;
-  for (uint32_t h = 0; h < witness.before.size(); ++h) {
-    validation::Replay replay(validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain));
-    replay.tick(witness.after[h].tick, witness.before[h], witness.after[h]);
+  const Crowd::Impl& impl = implOf(crowd);
+  for (size_t r = 0; r < witness.before.size(); ++r) {
+    validation::Replay replay(validation::herdFacts(impl.kindOf(impl.herds[r]), impl.terrain));
+    replay.tick(witness.after[r].tick, witness.before[r], witness.after[r]);
     for (const validation::StageResult& result : replay.results())
       if (std::any_of(timed.begin(), timed.end(),
                       [&](const StageDemand& d) { return crowd::makes(d.stage, result.name); }))

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "bench/cpu_crowd/crowd.h"
-#include "crowd/herd.h"
+#include "crowd/page.h"
 #include "shared/ik_batch.h"
 #include "validation/herd_facts.h"
 
@@ -27,7 +27,7 @@ class DeviceContestant : public Contestant {
     for (const StageTime& time : crowd_.stageTimes()) add(times_, time.stage, time.milliseconds);
   }
   HerdState state(uint32_t herd, const AgentSample& sample) const override {
-    return crowd_.download(herd, sample);
+    return crowd::download(implOf(crowd_), implOf(crowd_).herds[herd], sample);
   }
   void finish() override { ring_.waitAll(); }
   void timeStages(bool on) override {
@@ -49,9 +49,10 @@ class CpuContestant : public Contestant {
  public:
   CpuContestant(const Crowd& crowd, const cpu_crowd::Options& options)
       : options_(options), tick_(crowd.tick()) {
-    for (uint32_t h = 0; h < crowd.herdCount(); ++h)
+    const Crowd::Impl& impl = implOf(crowd);
+    for (const crowd::Herd& herd : impl.herds)
       herds_.push_back(std::make_unique<cpu_crowd::CpuCrowd>(
-          validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), crowd.download(h), options));
+          validation::herdFacts(impl.kindOf(herd), impl.terrain), crowd::download(impl, herd), options));
   }
 
   std::string name() const override {

@@ -13,13 +13,16 @@
 #include <utility>
 
 #include "crowd/controllers/controllers.h"
+#include "crowd/events.h"
 #include "crowd/frame.h"
 #include "crowd/herd.h"
 #include "crowd/kinds.h"
 #include "crowd/page.h"
 #include "crowd/rig_records.h"
+#include "crowd/scale.h"
 #include "crowd/spawn.h"
 #include "crowd/stage.h"
+#include "crowd/tint.h"
 #include "crowd/tuning.h"
 #include "crowd/watch.h"
 #include "gpu/barrier.h"
@@ -110,12 +113,13 @@ void setTick(Impl& crowd, float dt) {
   for (crowd::Kind& kind : crowd.kinds) setParameters(crowd, dt, kind);
 }
 
-// All of a kind but its agents.
-crowd::Kind makeKind(const Impl& crowd, const Herd& from, Rig rig) {
+// All of a kind but its agents; `made` is its rig at size 1.
+crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& made, float size) {
   const gpu::Context& context = *crowd.context;
   crowd::Kind kind;
   kind.controller = from.controller;
-  kind.rig = std::move(rig);
+  kind.size = size;
+  kind.rig = crowd::scaled(made, size);
   kind.legs = kind.rig.legCount();
   kind.bones = kind.rig.maxBones();
   kind.groups = kind.rig.groupCount();
@@ -128,12 +132,49 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, Rig rig) {
   kind.rigBuffer = gpu::Buffer(context, kind.rigRecords.size() * sizeof(float), "rig");
   gpu::upload(context, kind.rigBuffer, kind.rigRecords);
   const auto prepare = crowd::controllerStages(kind.controller).prepare;
-  if (prepare != nullptr) prepare(context, from, kind);
+  if (prepare != nullptr) prepare(context, from, made, kind);
   kind.parameterBlock =
       gpu::HostBuffer(context, sizeof(shared::Parameters), gpu::HostUse::upload, "parameters");
   setParameters(crowd, 1.0f / 60, kind);
   for (const Stage& stage : crowd::stagesOf(kind.controller, crowd.options)) kind.stages.push_back({stage});
   return kind;
+}
+
+// The crowd's herds, and how many agents each kind has.
+void addHerds(Impl& crowd, const Scene& scene, const crowd::Kinds& kinds, const crowd::SpawnPlaces& places) {
+  uint32_t ofScene = 0;  // agents of the scene's herd so far
+  for (const crowd::SizedHerd& from : kinds.herds) {
+    if (from.place == 0) {
+      crowd.firstHerds.push_back(static_cast<uint32_t>(crowd.herds.size()));
+      ofScene = 0;
+    }
+    crowd::Kind& kind = crowd.kinds[from.kind];
+    const uint32_t agents = places.count(from.herd, from.place);
+    crowd.herds.push_back({.kind = from.kind,
+                           .place = static_cast<uint32_t>(kind.firstAgents.size()),
+                           .firstAgent = static_cast<uint32_t>(kind.agents),
+                           .agents = agents,
+                           .ofScene = from.herd,
+                           .firstOfScene = ofScene});
+    kind.tinted = kind.tinted || (crowd.options.pose && crowd::isTinted(scene.herds[from.herd]));
+    kind.firstAgents.push_back(kind.agents);
+    kind.agents += agents;
+    ofScene += agents;
+  }
+  crowd.firstHerds.push_back(static_cast<uint32_t>(crowd.herds.size()));
+}
+
+// Of the agents of a kind that some herd has coloured.
+void uploadTints(const Impl& crowd, const Scene& scene, uint32_t kind) {
+  const float lightness = crowd::meanLightness(crowd.kinds[kind]);
+  for (uint32_t h = 0; h < scene.herds.size(); ++h)
+    for (const crowd::Part& part : crowd::partsOf(crowd, h)) {
+      if (part.kind != &crowd.kinds[kind]) continue;
+      const std::vector<glm::vec4> tints =
+          crowd::tintsOf(scene.herds[h], part, crowd::seedOf(scene, h), lightness);
+      gpu::uploadBytes(*crowd.context, part.page->tint, std::as_bytes(std::span(tints)),
+                       part.first * sizeof(glm::vec4));
+    }
 }
 
 std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
@@ -155,19 +196,18 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
       "heights");
   gpu::uploadImage(context, crowd.heights, terrain.heights);
   crowd.edits = crowd::HeightEdits(context);
+  crowd::checkEvents(scene, terrain);
+  crowd.events = scene.events;
   if (options.timestamps) crowd.timer = gpu::StageTimer(context, crowd::Frame::mostStages);
 
   const uint64_t agents = scene.agentCount();
   crowd.watchEvery = crowd::watchEvery(options, agents);
-  for (size_t k = 0; k < kinds.rigs.size(); ++k)
-    crowd.kinds.push_back(makeKind(crowd, scene.herds[kinds.firstHerds[k]], std::move(kinds.rigs[k])));
-  for (size_t h = 0; h < scene.herds.size(); ++h) {
-    crowd::Kind& kind = crowd.kinds[kinds.ofHerds[h]];
-    crowd.herds.push_back({kinds.ofHerds[h], static_cast<uint32_t>(kind.firstAgents.size()),
-                           static_cast<uint32_t>(kind.agents), scene.herds[h].agents});
-    kind.firstAgents.push_back(kind.agents);
-    kind.agents += scene.herds[h].agents;
+  for (size_t k = 0; k < kinds.rigs.size(); ++k) {
+    const crowd::SizedHerd& first = kinds.herds[kinds.firstHerds[k]];
+    crowd.kinds.push_back(makeKind(crowd, scene.herds[first.herd], kinds.rigs[k], first.size));
   }
+  const crowd::SpawnPlaces places(scene);
+  addHerds(crowd, scene, kinds, places);
   uint64_t needed = 0;
   for (crowd::Kind& kind : crowd.kinds) {
     kind.herdSteps = crowd::herdStepsOf(crowd, kind);
@@ -186,10 +226,12 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
     crowd::Kind& kind = crowd.kinds[k];
     for (crowd::ReadyStage& stage : kind.stages) crowd::makeKernels({context, options, kind}, stage);
     std::vector<crowd::Spawner> spawners;
-    for (size_t h = 0; h < scene.herds.size(); ++h)
-      if (crowd.herds[h].kind == k)
-        spawners.emplace_back(scene.herds[h], kind, terrain, scene.seed + (uint64_t{h} << 32));
+    for (const crowd::SizedHerd& from : kinds.herds)
+      if (from.kind == k)
+        spawners.emplace_back(scene.herds[from.herd], kind, terrain, crowd::seedOf(scene, from.herd),
+                              places.of(from.herd, from.place));
     kind.pages = crowd::makePages(crowd, kind, spawners);
+    if (kind.tinted) uploadTints(crowd, scene, static_cast<uint32_t>(k));
   }
   settle(crowd);
   return made;
@@ -212,6 +254,8 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   Impl& crowd = *impl_;
   const vk::CommandBuffer cmd(commandBuffer);
   setTick(crowd, dt);
+  for (const Event& event : crowd::eventsAt(crowd.events, crowd.tick + 1, double{dt}))
+    crowd::happen(event, *this);
   const uint64_t tick = ++crowd.tick;
 
   crowd.timer.reset(cmd);
@@ -253,10 +297,21 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   gpu::computeToTransfer(cmd);
 }
 
+const crowd::Herd& Crowd::Impl::sizeOf(uint32_t herd, uint32_t agent) const {
+  const std::span<const crowd::Herd> sizes = sizesOf(herd);
+  return *(std::ranges::upper_bound(sizes, agent, {}, &crowd::Herd::firstOfScene) - 1);
+}
+
 uint64_t Crowd::tick() const { return impl_->tick; }
 uint32_t Crowd::watchEvery() const { return impl_->watchEvery; }
-uint32_t Crowd::herdCount() const { return static_cast<uint32_t>(impl_->herds.size()); }
+uint32_t Crowd::herdCount() const { return static_cast<uint32_t>(impl_->firstHerds.size()) - 1; }
 const Rig& Crowd::rig(uint32_t herd) const { return impl_->kindOf(herd).rig; }
+const Rig& Crowd::rig(uint32_t herd, uint32_t agent) const {
+  return impl_->kindOf(impl_->sizeOf(herd, agent)).rig;
+}
+float Crowd::size(uint32_t herd, uint32_t agent) const {
+  return impl_->kindOf(impl_->sizeOf(herd, agent)).size;
+}
 
 uint64_t Crowd::agentCount() const {
   uint64_t count = 0;
@@ -265,16 +320,22 @@ uint64_t Crowd::agentCount() const {
 }
 
 std::vector<MemoryUse> Crowd::memoryUse(uint32_t herdIndex) const {
-  const crowd::Herd& herd = impl_->herds.at(herdIndex);
-  const crowd::Kind& kind = impl_->kinds[herd.kind];
   std::vector<MemoryUse> uses;
-  for (const crowd::PageBuffer& each : crowd::pageBuffers(*impl_, kind)) {
-    uint64_t bytes = 0;
-    for (const Page& page : kind.pages) bytes += each.in(page).size();
-    // What agents before the herd's end take, less what those before its beginning do: all shares are the
-    // whole.
-    const auto upTo = [&](uint64_t agents) { return kind.agents > 0 ? bytes * agents / kind.agents : 0; };
-    uses.push_back({each.name, upTo(herd.firstAgent + herd.agents) - upTo(herd.firstAgent)});
+  for (const crowd::Herd& herd : impl_->sizesOf(herdIndex)) {
+    const crowd::Kind& kind = impl_->kindOf(herd);
+    for (const crowd::PageBuffer& each : crowd::pageBuffers(*impl_, kind)) {
+      uint64_t bytes = 0;
+      for (const Page& page : kind.pages) bytes += each.in(page).size();
+      // What agents before the herd's end take, less what those before its beginning do: all shares are the
+      // whole.
+      const auto upTo = [&](uint64_t agents) { return kind.agents > 0 ? bytes * agents / kind.agents : 0; };
+      const uint64_t share = upTo(herd.firstAgent + herd.agents) - upTo(herd.firstAgent);
+      const auto same = std::ranges::find(uses, each.name, &MemoryUse::name);
+      if (same == uses.end())
+        uses.push_back({each.name, share});
+      else
+        same->bytes += share;
+    }
   }
   return uses;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct Page : ForRecords<gpu::Buffer> {
   gpu::Buffer list;                     // legs that begin a step this tick
   gpu::Buffer counters;                 // indirect arguments and counts
   gpu::Buffer histogram;                // of reach errors
+  gpu::Buffer tint;                     // of each agent, where its kind is tinted; only pictures read it
   std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
@@ -41,7 +43,8 @@ struct Kind {
   std::vector<uint64_t> firstAgents;  // the first agent of each of its herds
   uint64_t agents = 0;
   int herdSteps = 0;  // 2 to their power is at least the number of herds in a page
-  Rig rig;
+  float size = 1;
+  Rig rig;  // of that size
   Controller controller = Controller::adaptive;
   int legs = 0, bones = 0, groups = 0;  // bones of the longest chain
   IkPlan ik{};
@@ -52,6 +55,7 @@ struct Kind {
   KeyPoses keyPoses;  // of controller key-poses
   gpu::Buffer keyBuffer;
   bool reachTriggered = false;  // legs step when out of reach, without a rhythm
+  bool tinted = false;          // some herd of it has a colour or a tint of its own
   shared::Parameters parameters{};
   gpu::HostBuffer parameterBlock;  // Parameters; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
@@ -63,11 +67,13 @@ struct Kind {
   uint32_t herdOf(uint64_t agent) const;
 };
 
-// A herd of the scene: a run of its kind's agents.
+// A herd of the scene, or its agents of one size: a run of its kind's agents.
 struct Herd {
   uint32_t kind = 0;   // which of the crowd's
   uint32_t place = 0;  // among the kind's herds
   uint32_t firstAgent = 0, agents = 0;
+  uint32_t ofScene = 0;       // which of the scene's
+  uint32_t firstOfScene = 0;  // the number of its first agent in that
 };
 
 }  // namespace skitter::crowd
@@ -80,16 +86,26 @@ struct Crowd::Impl {
   Heightfield terrain;  // heights in memory too: cameras and tools look up the ground
   gpu::Image heights;   // R32F, columns x rows, in state sampled; what every stage and the picture read
   std::vector<crowd::Kind> kinds;
-  std::vector<crowd::Herd> herds;  // as in the scene
-  uint32_t watchEvery = 1;         // measure watches one agent of this many
+  std::vector<crowd::Herd> herds;    // as in the scene, each size by itself
+  std::vector<uint32_t> firstHerds;  // of these, the first of each herd of the scene; their number at the end
+  uint32_t watchEvery = 1;           // measure watches one agent of this many
   crowd::HeightEdits edits;
+  std::vector<Event> events;  // the scene's, by time
   uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground; 0: never
   uint64_t tick = 0;
   float dt = 0;  // of the first tick; 0 before it
   gpu::StageTimer timer;
 
-  crowd::Kind& kindOf(uint32_t herd) { return kinds[herds.at(herd).kind]; }
-  const crowd::Kind& kindOf(uint32_t herd) const { return kinds[herds.at(herd).kind]; }
+  // The sizes of a herd of the scene.
+  std::span<const crowd::Herd> sizesOf(uint32_t herd) const {
+    const uint32_t first = firstHerds.at(herd);
+    return std::span(herds).subspan(first, firstHerds.at(herd + 1) - first);
+  }
+  // The one of them that an agent of the scene's herd is of; the last one for an agent that is not there.
+  const crowd::Herd& sizeOf(uint32_t herd, uint32_t agent) const;
+  const crowd::Kind& kindOf(const crowd::Herd& herd) const { return kinds[herd.kind]; }
+  // The kind of the first size: but for lengths that of all others.
+  const crowd::Kind& kindOf(uint32_t herd) const { return kindOf(sizesOf(herd).front()); }
 };
 
 inline Crowd::Impl& implOf(Crowd& crowd) { return *crowd.impl_; }

@@ -20,31 +20,65 @@ constexpr size_t kMostKinds = 100;
 
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
-  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
+  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal, sizes,
+               phase, colour, tint] = herd;
   return std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning);
+}
+
+void check(const skitter::Herd& herd, const std::string& what) {
+  using skitter::Herd;
+  checkTuning(herd.tuning, what + ".tuning");
+  if (herd.sizes.size() > Herd::maxSizes)
+    throw inputError(
+        fmt::format("{}.sizes are {}, expected at most {}", what, herd.sizes.size(), Herd::maxSizes));
+  for (size_t s = 0; s < herd.sizes.size(); ++s)
+    if (!(herd.sizes[s] >= Herd::minSize && herd.sizes[s] <= Herd::maxSize))
+      throw inputError(fmt::format("{}.sizes[{}] is {}, expected {} to {}", what, s, herd.sizes[s],
+                                   Herd::minSize, Herd::maxSize));
+  if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
+    throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
+  if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))
+    throw inputError(fmt::format("{}.tint is {}, expected 0 to 1", what, *herd.tint));
+  if (herd.colour)
+    for (int i = 0; i < 3; ++i)
+      if (!((*herd.colour)[i] >= 0 && (*herd.colour)[i] <= 1))
+        throw inputError(fmt::format("{}.colour[{}] is {}, expected 0 to 1", what, i, (*herd.colour)[i]));
+}
+
+// All of them, their kinds yet to be found.
+std::vector<SizedHerd> sizedHerds(const Scene& scene) {
+  std::vector<SizedHerd> herds;
+  for (uint32_t h = 0; h < scene.herds.size(); ++h) {
+    check(scene.herds[h], fmt::format("{}: herds[{}]", scene.name, h));
+    const std::vector<float>& sizes = scene.herds[h].sizes;
+    if (sizes.empty()) herds.push_back({.herd = h});
+    for (size_t s = 0; s < sizes.size(); ++s) herds.push_back({.herd = h, .place = s, .size = sizes[s]});
+  }
+  return herds;
 }
 
 // `areEqual` compares what the rigs of two herds, by number, are.
 template <class Equal>
 Kinds grouped(const Scene& scene, const Equal& areEqual) {
-  for (size_t h = 0; h < scene.herds.size(); ++h)
-    checkTuning(scene.herds[h].tuning, fmt::format("{}: herds[{}].tuning", scene.name, h));
-  Kinds kinds;
-  for (uint32_t h = 0; h < scene.herds.size(); ++h) {
-    const auto isOfIt = [&](uint32_t first) {
-      return membersOf(scene.herds[first]) == membersOf(scene.herds[h]) && areEqual(first, h);
+  Kinds kinds{.herds = sizedHerds(scene)};
+  for (uint32_t r = 0; r < kinds.herds.size(); ++r) {
+    SizedHerd& herd = kinds.herds[r];
+    const auto isOfIt = [&](uint32_t other) {
+      const SizedHerd& first = kinds.herds[other];
+      return first.size == herd.size &&
+             membersOf(scene.herds[first.herd]) == membersOf(scene.herds[herd.herd]) &&
+             areEqual(first.herd, herd.herd);
     };
     const auto found = std::ranges::find_if(kinds.firstHerds, isOfIt);
-    kinds.ofHerds.push_back(static_cast<uint32_t>(found - kinds.firstHerds.begin()));
-    if (found == kinds.firstHerds.end()) kinds.firstHerds.push_back(h);
+    herd.kind = static_cast<uint32_t>(found - kinds.firstHerds.begin());
+    if (found == kinds.firstHerds.end()) kinds.firstHerds.push_back(r);
   }
   if (kinds.firstHerds.size() > kMostKinds)
     throw inputError(
-        scene.name + ": " + std::to_string(kinds.firstHerds.size()) +
-        " herds differ in rig, controller, clips, cuts, keys, solver, stepping or tuning, expected at most " +
-        std::to_string(kMostKinds) +
-        ": each of them has pipelines of its own; equal herds share them, whatever their agents, "
-        "spawn and goal");
+        fmt::format("{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning or "
+                    "size, expected at most {}: each of them, and each size of one, has pipelines of its "
+                    "own; equal herds share them, whatever their agents, spawn, goal and phase",
+                    scene.name, kinds.firstHerds.size(), kMostKinds));
   return kinds;
 }
 
@@ -60,10 +94,13 @@ Rig rigOf(const skitter::Herd& herd) {
 
 Kinds kindsOf(const Scene& scene) {
   Kinds kinds = grouped(scene, [](uint32_t, uint32_t) { return true; });
+  const auto herdOf = [&](uint32_t run) -> const skitter::Herd& {
+    return scene.herds[kinds.herds[run].herd];
+  };
   for (size_t k = 0; k < kinds.firstHerds.size(); ++k) {
-    const skitter::Herd& herd = scene.herds[kinds.firstHerds[k]];
+    const skitter::Herd& herd = herdOf(kinds.firstHerds[k]);
     const auto hasItsRig = [&](uint32_t other) {
-      return scene.herds[other].rig == herd.rig && proposes(scene.herds[other]) == proposes(herd);
+      return herdOf(other).rig == herd.rig && proposes(herdOf(other)) == proposes(herd);
     };
     const auto earlier =
         static_cast<size_t>(std::ranges::find_if(kinds.firstHerds, hasItsRig) - kinds.firstHerds.begin());
@@ -75,7 +112,7 @@ Kinds kindsOf(const Scene& scene) {
 Kinds kindsOf(const Scene& scene, std::vector<Rig> rigs) {
   assert(rigs.size() == scene.herds.size());
   Kinds kinds = grouped(scene, [&](uint32_t a, uint32_t b) { return rigs[a] == rigs[b]; });
-  for (const uint32_t h : kinds.firstHerds) kinds.rigs.push_back(std::move(rigs[h]));
+  for (const uint32_t run : kinds.firstHerds) kinds.rigs.push_back(rigs[kinds.herds[run].herd]);
   return kinds;
 }
 

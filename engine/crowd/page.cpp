@@ -89,8 +89,12 @@ Part partOf(const Kind& kind, uint32_t herd, const Page& page) {
   const auto end =
       static_cast<uint32_t>(herd + 1 < kind.firstAgents.size() ? kind.firstAgents[herd + 1] : kind.agents);
   const uint32_t from = std::max(begin, page.firstAgent), to = std::min(end, page.firstAgent + page.agents);
-  return {&page, from - begin, from - page.firstAgent, to > from ? to - from : 0,
-          herd - kind.herdOf(page.firstAgent)};
+  return {.kind = &kind,
+          .page = &page,
+          .firstAgent = from - begin,
+          .first = from - page.firstAgent,
+          .agents = to > from ? to - from : 0,
+          .row = herd - kind.herdOf(page.firstAgent)};
 }
 
 // Where the page's herds begin, for shaders to look up an agent's.
@@ -180,6 +184,7 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Kind& kind) 
                        .bytes = legs * FOOTFALL_STRIDE * 16,
                        .buffer = &Page::footfall,
                        .most = uint64_t{options.footfalls} * FOOTFALL_STRIDE * 16});
+  if (kind.tinted) buffers.push_back({.name = "tint", .bytes = 16, .buffer = &Page::tint});
   // The last work group reads on after the list's end.
   constexpr uint64_t anEntry = AWAKE_STRIDE * 16;
   PageBuffer awake{.name = "awake", .bytes = anEntry, .buffer = &Page::awake, .agents = BLOCK};
@@ -261,11 +266,21 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::spa
   return pages;
 }
 
-std::vector<Part> partsOf(const Crowd::Impl& crowd, uint32_t herd) {
+std::vector<Part> partsOf(const Crowd::Impl& crowd, const Herd& herd) {
   const Kind& kind = crowd.kindOf(herd);
   std::vector<Part> parts;
   for (const Page& page : kind.pages)
-    if (const Part part = partOf(kind, crowd.herds[herd].place, page); part.agents > 0) parts.push_back(part);
+    if (const Part part = partOf(kind, herd.place, page); part.agents > 0) parts.push_back(part);
+  return parts;
+}
+
+std::vector<Part> partsOf(const Crowd::Impl& crowd, uint32_t herd) {
+  std::vector<Part> parts;
+  for (const Herd& size : crowd.sizesOf(herd))
+    for (Part& part : partsOf(crowd, size)) {
+      part.firstAgent += size.firstOfScene;
+      parts.push_back(part);
+    }
   return parts;
 }
 

@@ -67,12 +67,15 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::spa
 
 // A herd's agents that are in one page.
 struct Part {
+  const Kind* kind;
   const Page* page;
-  uint32_t firstAgent;     // of the herd
+  uint32_t firstAgent;     // of the herd; of the scene's, where these are the parts of that
   uint32_t first, agents;  // where in the page, and how many
   uint32_t row;            // the herd's in what the page counts for each of its herds
 };
 // In order.
+std::vector<Part> partsOf(const Crowd::Impl& crowd, const Herd& herd);
+// Of a herd of the scene, size after size.
 std::vector<Part> partsOf(const Crowd::Impl& crowd, uint32_t herd);
 
 // What the page has counted for the part's herd, ROW_ by ROW_. Waits for the device.
@@ -83,6 +86,9 @@ CounterRow rowOf(const gpu::Context& context, const Part& part);
 struct RunSample {
   uint32_t first, count;
 };
+// The records of a herd's agents of one size, as Crowd::download has a herd's. Waits for the device.
+HerdState download(const Crowd::Impl& crowd, const Herd& herd, const AgentSample& sample = {});
+
 // Those of the sample that are among `agents` from `firstAgent` on; `first` is counted from there.
 RunSample sampleOf(uint32_t firstAgent, uint32_t agents, const AgentSample& sample);
 

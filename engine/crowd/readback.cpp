@@ -58,10 +58,9 @@ void appendRecords(const gpu::Context& context, const Part& part, const gpu::Buf
 }
 
 // A page's watched agents come from its start; in the herd each has the place of its number.
-void appendWatch(const Crowd::Impl& crowd, const crowd::Kind& kind, const Part& part, uint32_t offset,
-                 std::vector<float>& watch) {
+void appendWatch(const Crowd::Impl& crowd, const Part& part, uint32_t offset, std::vector<float>& watch) {
   const crowd::Watch now = crowd::watchAt(crowd.tick, crowd.watchEvery, *part.page);
-  const auto floats = static_cast<size_t>(4 * shared::watchStride(kind.legs));
+  const auto floats = static_cast<size_t>(4 * shared::watchStride(part.kind->legs));
   const std::vector<float> slots = gpu::download<float>(*crowd.context, part.page->watch);
   const auto placeOf = [&](uint32_t agent) {
     return (size_t{offset} + part.firstAgent + agent - part.first) / crowd.watchEvery * floats;
@@ -75,52 +74,29 @@ void appendWatch(const Crowd::Impl& crowd, const crowd::Kind& kind, const Part& 
   }
 }
 
-}  // namespace
-
-HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
-  assert(sample.stride > 0);
-  impl_->context->waitIdle();
-  HerdState state;
-  state.tick = impl_->tick;
-  state.sample = sample;
-  state.watchEvery = impl_->watchEvery;
-  state.sleep = impl_->options.sleep;
-  state.watched = impl_->tick > 0 && impl_->tick <= impl_->watchUntil;
-  const crowd::Kind& kind = impl_->kindOf(herdIndex);
-  state.watchOffset = impl_->herds[herdIndex].firstAgent % impl_->watchEvery;
-  for (const Part& part : crowd::partsOf(*impl_, herdIndex)) {
-    const Page& page = *part.page;
-    state.agents += crowd::sampleOf(part.firstAgent, part.agents, sample).count;
-    for (const Record record : allRecords) {
-      const crowd::Per per = crowd::infoOf(record).per;
-      if (per == crowd::Per::watched || !crowd::keeps(kind, impl_->options, record)) continue;
-      appendRecords(*impl_->context, part, page.of(record), per == crowd::Per::leg ? kind.legs : 0, sample,
-                    state.of(record));
-    }
-    if (page.watch) appendWatch(*impl_, kind, part, state.watchOffset, state.watch);
-  }
-  state.footfallsKept = impl_->options.footfalls > 0 && droppedFootfalls(herdIndex) == 0;
-  if (state.footfallsKept) state.footfalls = footfalls(herdIndex);
-  return state;
+uint64_t droppedFootfalls(const Crowd::Impl& crowd, const std::vector<Part>& parts) {
+  crowd.context->waitIdle();
+  uint64_t dropped = 0;
+  for (const Part& part : parts) dropped += crowd::rowOf(*crowd.context, part)[shared::ROW_FOOTFALLS_DROPPED];
+  return dropped;
 }
 
-std::vector<Footfall> Crowd::footfalls(uint32_t herdIndex) const {
-  const gpu::Context& context = *impl_->context;
+std::vector<Footfall> footfalls(const Crowd::Impl& crowd, const std::vector<Part>& parts) {
+  const gpu::Context& context = *crowd.context;
   context.waitIdle();
   std::vector<Footfall> all;
-  if (impl_->options.footfalls == 0) return all;
-  const crowd::Herd& herd = impl_->herds.at(herdIndex);
-  for (const Part& part : crowd::partsOf(*impl_, herdIndex)) {
+  if (crowd.options.footfalls == 0) return all;
+  for (const Part& part : parts) {
     const Page& page = *part.page;
     const uint32_t count = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_FOOTFALLS];
     std::vector<float> events(size_t{std::min(count, page.footfallRoom)} * 4 * shared::FOOTFALL_STRIDE);
     gpu::downloadBytes(context, page.footfall, std::as_writable_bytes(std::span(events)));
     for (size_t i = 0; i < std::min(count, page.footfallRoom); ++i) {
       const float* e = events.data() + i * 4 * shared::FOOTFALL_STRIDE;
-      const auto agent = static_cast<uint32_t>(e[4]) - herd.firstAgent;
-      if (agent >= herd.agents) continue;
-      all.push_back({agent, static_cast<uint32_t>(e[5]), static_cast<uint64_t>(e[6]),
-                     double{e[6]} * impl_->dt, glm::vec3(e[0], e[1], e[2]), e[3]});
+      const auto agent = static_cast<uint32_t>(e[4]) - page.firstAgent - part.first;
+      if (agent >= part.agents) continue;
+      all.push_back({part.firstAgent + agent, static_cast<uint32_t>(e[5]), static_cast<uint64_t>(e[6]),
+                     double{e[6]} * crowd.dt, glm::vec3(e[0], e[1], e[2]), e[3]});
     }
   }
   // The device appends them in any order.
@@ -130,20 +106,66 @@ std::vector<Footfall> Crowd::footfalls(uint32_t herdIndex) const {
   return all;
 }
 
+// All but the watched agents' records.
+HerdState download(const Crowd::Impl& crowd, const std::vector<Part>& parts, const AgentSample& sample) {
+  assert(sample.stride > 0);
+  crowd.context->waitIdle();
+  HerdState state;
+  state.tick = crowd.tick;
+  state.sample = sample;
+  state.watchEvery = crowd.watchEvery;
+  state.sleep = crowd.options.sleep;
+  state.watched = crowd.tick > 0 && crowd.tick <= crowd.watchUntil;
+  for (const Part& part : parts) {
+    state.agents += crowd::sampleOf(part.firstAgent, part.agents, sample).count;
+    for (const Record record : allRecords) {
+      const crowd::Per per = crowd::infoOf(record).per;
+      if (per == crowd::Per::watched || !crowd::keeps(*part.kind, crowd.options, record)) continue;
+      appendRecords(*crowd.context, part, part.page->of(record), per == crowd::Per::leg ? part.kind->legs : 0,
+                    sample, state.of(record));
+    }
+  }
+  state.footfallsKept = crowd.options.footfalls > 0 && droppedFootfalls(crowd, parts) == 0;
+  if (state.footfallsKept) state.footfalls = footfalls(crowd, parts);
+  return state;
+}
+
+}  // namespace
+
+HerdState crowd::download(const Crowd::Impl& crowd, const Herd& herd, const AgentSample& sample) {
+  const std::vector<Part> parts = partsOf(crowd, herd);
+  HerdState state = skitter::download(crowd, parts, sample);
+  state.watchOffset = herd.firstAgent % crowd.watchEvery;
+  for (const Part& part : parts)
+    if (part.page->watch) appendWatch(crowd, part, state.watchOffset, state.watch);
+  return state;
+}
+
+HerdState Crowd::download(uint32_t herd, const AgentSample& sample) const {
+  const std::span<const crowd::Herd> sizes = impl_->sizesOf(herd);
+  if (sizes.size() == 1) return crowd::download(*impl_, sizes.front(), sample);
+  return skitter::download(*impl_, crowd::partsOf(*impl_, herd), sample);
+}
+
+std::vector<Footfall> Crowd::footfalls(uint32_t herd) const {
+  return skitter::footfalls(*impl_, crowd::partsOf(*impl_, herd));
+}
+
 uint64_t Crowd::droppedFootfalls(uint32_t herd) const {
-  impl_->context->waitIdle();
-  uint64_t dropped = 0;
-  for (const Part& part : crowd::partsOf(*impl_, herd))
-    dropped += crowd::rowOf(*impl_->context, part)[shared::ROW_FOOTFALLS_DROPPED];
-  return dropped;
+  return skitter::droppedFootfalls(*impl_, crowd::partsOf(*impl_, herd));
 }
 
 std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herdIndex) const {
-  const crowd::Herd& herd = impl_->herds.at(herdIndex);
   std::vector<FootfallBuffer> buffers;
-  for (const Part& part : crowd::partsOf(*impl_, herdIndex))
-    buffers.push_back({part.page->footfall.handle(), part.page->counters.handle(),
-                       shared::COUNTER_FOOTFALLS * 4, part.page->footfallRoom, herd.firstAgent, herd.agents});
+  for (const crowd::Herd& herd : impl_->sizesOf(herdIndex))
+    for (const Part& part : crowd::partsOf(*impl_, herd))
+      buffers.push_back({.events = part.page->footfall.handle(),
+                         .counters = part.page->counters.handle(),
+                         .countOffset = shared::COUNTER_FOOTFALLS * 4,
+                         .room = part.page->footfallRoom,
+                         .firstAgent = herd.firstAgent,
+                         .agents = herd.agents,
+                         .firstOfHerd = herd.firstOfScene});
   return buffers;
 }
 
@@ -163,15 +185,14 @@ uint64_t Crowd::stateHash() const {
   std::vector<float> records;
   uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, a word at a time
   for (uint32_t herd = 0; herd < herdCount(); ++herd) {
-    const crowd::Kind& kind = impl_->kindOf(herd);
     const std::vector<Part> parts = crowd::partsOf(*impl_, herd);
     // Record by record over the herd, not page by page: how agents are paged must not show.
     for (const Record record : allRecords)
       for (const Part& part : parts) {
-        if (!crowd::isHashed(record, kind.controller)) continue;
+        if (!crowd::isHashed(record, part.kind->controller)) continue;
         records.clear();
         appendRecords(context, part, part.page->of(record),
-                      crowd::infoOf(record).per == crowd::Per::leg ? kind.legs : 0, kAll, records);
+                      crowd::infoOf(record).per == crowd::Per::leg ? part.kind->legs : 0, kAll, records);
         for (const float value : records) {
           hash = (hash ^ std::bit_cast<uint32_t>(value)) * 0x100000001b3ull;
           hash ^= hash >> 32;

@@ -18,6 +18,9 @@ float uniform(uint64_t seed, uint64_t agent, uint64_t purpose) {
   return static_cast<float>(drawn >> 40) * 0x1p-24f;
 }
 
+// Purposes 0 and 1 are the place, 2 is the phase.
+constexpr uint64_t kSizePurpose = 3;
+
 // Below that many a thread costs more than it saves.
 constexpr uint32_t kAgentsAThread = 4096;
 
@@ -48,14 +51,39 @@ class Spawner::Writer {
   float* at_ = records_;
 };
 
-Spawner::Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield& terrain, uint64_t seed)
+SpawnPlaces::SpawnPlaces(const Scene& scene) {
+  for (const skitter::Herd& herd : scene.herds) {
+    Places& places = herds_.emplace_back(herd.agents);
+    const size_t sizes = herd.sizes.size();
+    if (sizes < 2) continue;
+    places.ofSizes.resize(sizes);
+    const uint64_t seed = seedOf(scene, herds_.size() - 1);
+    for (uint32_t place = 0; place < herd.agents; ++place)
+      places.ofSizes[static_cast<size_t>(uniform(seed, place, kSizePurpose) * static_cast<float>(sizes))]
+          .push_back(place);
+  }
+}
+
+std::span<const uint32_t> SpawnPlaces::of(uint32_t herd, size_t size) const {
+  const Places& places = herds_[herd];
+  return places.ofSizes.empty() ? std::span<const uint32_t>() : places.ofSizes[size];
+}
+
+uint32_t SpawnPlaces::count(uint32_t herd, size_t size) const {
+  const Places& places = herds_[herd];
+  return places.ofSizes.empty() ? places.agents : static_cast<uint32_t>(places.ofSizes[size].size());
+}
+
+Spawner::Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield& terrain, uint64_t seed,
+                 std::span<const uint32_t> places)
     : herd_(from),
       rig_(kind.rig),
       clips_(kind.clips),
       keyPoses_(kind.keyPoses),
       terrain_(terrain),
       tuning_(kind.parameters),
-      seed_(seed) {
+      seed_(seed),
+      places_(places) {
   // A block about as deep as wide; closer together only where the terrain has no room.
   const float spacing = from.spawn.spacing;
   const float roomX = terrain.extentX() - 4 * tuning_.edgeMargin;
@@ -82,8 +110,8 @@ void Spawner::pushDirections(size_t leg, Writer& chain) const {
     chain.push(standing[0], standing[1], standing[2], standing[3]);
 }
 
-Spawner::Placement Spawner::place(uint32_t agent) const {
-  const uint32_t row = agent / lanes_, lane = agent % lanes_;
+Spawner::Placement Spawner::place(uint32_t place) const {
+  const uint32_t row = place / lanes_, lane = place % lanes_;
   const auto centred = [](uint32_t i, uint32_t n, float spacing) {
     return (static_cast<float>(i) - 0.5f * static_cast<float>(n - 1)) * spacing;
   };
@@ -96,8 +124,8 @@ Spawner::Placement Spawner::place(uint32_t agent) const {
   const float limitZ = tuning_.halfExtentZ - 1.5f * tuning_.edgeMargin;
   if (spawn.kind == Spawn::Kind::lanes) {
     // Nobody walks in step or in file: every agent is a little off its place.
-    p.x += 0.4f * laneSpacing_ * (uniform(seed_, agent, 0) - 0.5f);
-    p.z = -limitZ + static_cast<float>(row) * rowSpacing_ + 0.5f * rowSpacing_ * uniform(seed_, agent, 1);
+    p.x += 0.4f * laneSpacing_ * (uniform(seed_, place, 0) - 0.5f);
+    p.z = -limitZ + static_cast<float>(row) * rowSpacing_ + 0.5f * rowSpacing_ * uniform(seed_, place, 1);
     p.heading = 0;
   }
   p.x = std::clamp(p.x, -limitX, limitX);
@@ -136,9 +164,10 @@ void Spawner::writeRun(uint32_t first, uint32_t count, uint32_t at, const SpawnR
       chain(records.chain, chainStride(rig_.maxBones())), tip(records.tip, TIP_STRIDE),
       play(records.play, PLAY_STRIDE);
   for (uint32_t i = 0; i < count; ++i) {
-    const uint32_t agent = first + i, record = at + i;
+    const uint32_t record = at + i, spot = places_.empty() ? first + i : places_[first + i];
     for (Writer* each : {&goal, &body, &gait, &play}) each->seek(static_cast<int>(record));
-    const Placement p = place(agent);
+    const Placement p = place(spot);
+    const float phase = herd_.phase ? *herd_.phase - std::floor(*herd_.phase) : uniform(seed_, spot, 2);
     const float kind = herd_.goal.kind == Goal::Kind::cross   ? shared::GOAL_CROSS
                        : herd_.goal.kind == Goal::Kind::point ? shared::GOAL_POINT
                                                               : shared::GOAL_NONE;
@@ -162,12 +191,12 @@ void Spawner::writeRun(uint32_t first, uint32_t count, uint32_t at, const SpawnR
     body.push(heading.x, heading.y, 0, 0);
     body.push(q.x, q.y, q.z, q.w);
     body.push(0, 0, 1, 0);
-    gait.push(uniform(seed_, agent, 2), 0, 0, 1);
+    gait.push(phase, 0, 0, 1);
     gait.push(0, 1, 0, 0);
     if (clips_.clips > 0) {
       const auto clip = static_cast<float>(clips_.standing);
       const float seconds = clips_.heads[static_cast<size_t>(clips_.standing) * 4 + 2];
-      const float time = seconds * uniform(seed_, agent, 2);
+      const float time = seconds * phase;
       play.push(clip, time, clip, time);
       play.push(1, 0, 0, 0);
       const glm::vec2 frame = frameAt(clips_, clips_.standing, time);

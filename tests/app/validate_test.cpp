@@ -110,6 +110,15 @@ TEST_F(Validate, TheGroundMayChangeUnderTheCrowd) {
   }
 }
 
+// Three sizes, and ground that changes when the scene says.
+TEST_F(Validate, SizesAndEventsOfASceneAreReplayed) {
+  const Result result = skitter({"validate", SKITTER_ROOT "/assets/scenes/events.json", "--agents", "40",
+                                 "--frames", "130", "--free-run", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_FALSE(stagesThatAgree(json("v.json")).empty());
+  EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
+}
+
 TEST_F(Validate, NothingToCompareIsAWrongInput) {
   expectRefusal(skitter({"validate", "--frames", "0"}), 2, {"--frames", "0", "1"});
   expectRefusal(skitter({"validate", "--agents", "0"}), 2, {"no agents", "at least one"});

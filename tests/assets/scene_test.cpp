@@ -91,6 +91,43 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(scene.agentCount(), 7u);
 }
 
+TEST(Scene, CamerasThatOrbitAndGoAlongPaths) {
+  const Scene orbit = parseScene(R"({"camera": {"kind": "orbit", "distance": 20, "elevation": -0.5,
+                                                "azimuth": 1, "secondsATurn": -7}})",
+                                 "orbit.json", "");
+  EXPECT_EQ(orbit.camera.kind, Camera::Kind::orbit);
+  EXPECT_EQ(orbit.camera.distance, 20);
+  EXPECT_EQ(orbit.camera.elevation, -0.5f);
+  EXPECT_EQ(orbit.camera.azimuth, 1);
+  EXPECT_EQ(orbit.camera.secondsATurn, -7);
+  EXPECT_FALSE(orbit.camera.about);
+  const Scene about = parseScene(R"({"camera": {"kind": "orbit", "about": [1, 2, 3]}})", "about.json", "");
+  EXPECT_EQ(about.camera.about, glm::vec3(1, 2, 3));
+  const Scene path = parseScene(R"({"camera": {"kind": "path", "keys": [
+                                      {"time": 0.5, "position": [1, 2, 3], "target": [4, 5, 6]},
+                                      {"time": 2, "position": [7, 8, 9], "target": [0, 0, 0]}]}})",
+                                "path.json", "");
+  const std::vector<CameraKey> keys{{.time = 0.5f, .position = {1, 2, 3}, .target = {4, 5, 6}},
+                                    {.time = 2, .position = {7, 8, 9}}};
+  EXPECT_EQ(path.camera.kind, Camera::Kind::path);
+  EXPECT_EQ(path.camera.keys, keys);
+}
+
+TEST(Scene, LooksOfAHerd) {
+  const auto herd = [](const char* keys) {
+    return parseScene(fmt::format(R"({{"herds": [{{{}}}]}})", keys), "looks.json", "").herds.at(0);
+  };
+  EXPECT_EQ(herd(R"("sizes": [0.6, 1, 20])").sizes, (std::vector<float>{0.6f, 1, 20}));
+  EXPECT_FALSE(herd(R"("phase": "random")").phase);
+  EXPECT_EQ(herd(R"("phase": "together")").phase, 0);
+  EXPECT_EQ(herd(R"("phase": 0.25)").phase, 0.25f);
+  EXPECT_EQ(herd(R"("tint": 1)").tint, 1);
+  EXPECT_EQ(herd(R"("colour": [0.1, 0.2, 1])").colour, glm::vec3(0.1f, 0.2f, 1));
+  // sRGB: 0x80 is 0.2158605, 0x0a is below the straight part's end: 10 / 255 / 12.92.
+  const glm::vec3 hex = herd(R"("colour": "#80FF0a")").colour.value();
+  EXPECT_LT(glm::distance(hex, glm::vec3(0.2158605f, 1, 10 / 255.0f / 12.92f)), 1e-6f);
+}
+
 TEST(Scene, WholeNumbersHoweverTheyAreWritten) {
   const std::pair<const char*, uint64_t> cases[] = {{"-0", 0}, {"-0.0", 0}, {"7.0", 7}, {"1e3", 1000}};
   for (const auto& [number, expected] : cases) {
@@ -136,6 +173,40 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"terrain": {"kind": "file", "file": "a.r16", "voidValue": "0"}})", "terrain.voidValue is \"0\""},
       {R"({"camera": {"fieldOfView": 7}})", "camera.fieldOfView is 7"},
       {R"({"camera": {"kind": "fixed"}})", "camera.position equals camera.target"},
+      {R"({"herds": [{"sizes": 2}]})", "herds[0].sizes is 2, expected an array of at most 16 numbers"},
+      {R"({"herds": [{"sizes": [1, 0.04]}]})", "herds[0].sizes[1] is 0.04, expected a number from 0.05"},
+      {R"({"herds": [{"sizes": [20.1]}]})", "herds[0].sizes[0] is 20.1"},
+      {R"({"herds": [{"sizes": [1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1]}]})", "herds[0].sizes is an array of 17"},
+      {R"({"herds": [{"phase": "togeter"}]})",
+       "\"togeter\"; did you mean together? Expected one of \"random\""},
+      {R"({"herds": [{"phase": 1.5}]})", "herds[0].phase is 1.5, expected a number from 0 to 1"},
+      {R"({"herds": [{"tint": -1}]})", "herds[0].tint is -1"},
+      {R"({"herds": [{"colour": "red"}]})", "herds[0].colour is \"red\", expected \"#rrggbb\""},
+      {R"({"herds": [{"colour": "#12345g"}]})", "herds[0].colour is \"#12345g\""},
+      {R"({"herds": [{"colour": [0, 1]}]})", "herds[0].colour is an array of 2"},
+      {R"({"herds": [{"colour": [0, 1, 2]}]})", "herds[0].colour[2] is 2, expected a number from 0 to 1"},
+      {R"({"camera": {"kind": "path"}})", "camera.keys has 0, expected at least 2"},
+      {R"({"camera": {"kind": "path", "keys": [{"position": [0, 1, 0]}]}})", "camera.keys has 1"},
+      {R"({"camera": {"keys": [{"position": [0, 1, 0], "target": [0, 1, 0]}]}})",
+       "camera.keys[0].position equals camera.keys[0].target"},
+      {R"({"camera": {"keys": [{"time": 2, "position": [0, 1, 0]}, {"time": 2, "position": [0, 1, 0]}]}})",
+       "camera.keys[1].time is 2, expected at least 2.015625"},
+      {R"({"camera": {"keys": [{"time": -1, "position": [0, 1, 0]}]}})", "camera.keys[0].time is -1"},
+      {R"({"camera": {"elevation": 1.6}})", "camera.elevation is 1.6"},
+      {R"({"camera": {"about": [0, 1]}})", "camera.about is an array of 2"},
+      {R"({"events": {}})", "events is an object, expected an array of at most 4096 events"},
+      {R"({"events": [{"at": -1, "mound": {}}]})", "events[0].at is -1"},
+      {R"({"events": [{"at": 1}]})", "events[0] has 0 of mound, edit, expected one"},
+      {R"({"events": [{"mound": {}, "edit": {"columns": 1, "rows": 1, "heights": [0]}}]})",
+       "events[0] has 2 of mound, edit"},
+      {R"({"events": [{"mond": {}, "mound": {}}]})", "events[0].mond is no known key; did you mean mound?"},
+      {R"({"events": [{"at": 2, "mound": {}}, {"at": 1, "mound": {}}]})",
+       "events[1].at is 1, expected 2 or later"},
+      {R"({"events": [{"mound": {"radius": 0}}]})", "events[0].mound.radius is 0"},
+      {R"({"events": [{"edit": {"columns": 2, "rows": 2, "heights": [0, 1, 2]}}]})",
+       "events[0].edit.heights has 3 numbers, expected 4"},
+      {R"({"events": [{"edit": {"x": 16384, "columns": 1, "rows": 1, "heights": [0]}}]})",
+       "events[0].edit.x is 16384"},
       {R"({"seed": 1, "seed": 2})", "\"seed\" appears twice"},
       {R"({"seed": NaN})", "line 1"},
       {"", "not valid JSON"},
@@ -201,12 +272,21 @@ class RandomScenes {
 
   Scene scene() {
     Scene made;
-    auto& [name, terrain, herds, camera, seed] = made;
+    auto& [name, terrain, herds, camera, events, seed] = made;
     name = text();
     terrain = coin() ? decltype(Scene::terrain)(noise()) : terrainFile();
     herds.resize(whole(0, 3));
     for (Herd& each : herds) each = herd();
     camera = this->camera();
+    events.resize(whole(0, 3));
+    float last = 0;
+    for (auto& [at, what] : events) {
+      at = last += real(0, 5);
+      if (coin())
+        what = mound();
+      else
+        what = samples();
+    }
     seed = random_();
     return made;
   }
@@ -285,7 +365,8 @@ class RandomScenes {
   }
   Herd herd() {
     Herd made;
-    auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = made;
+    auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal, sizes, phase,
+           colour, tint] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -306,16 +387,52 @@ class RandomScenes {
     goalKind = one({Goal::Kind::cross, Goal::Kind::point, Goal::Kind::none});
     target = place();
     speed = real(0, 10);
+    sizes.resize(whole(0, Herd::maxSizes));
+    for (float& size : sizes) size = real(0.1, 10);
+    maybe(phase, 0, 1);
+    if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
+    maybe(tint, 0, 1);
+    return made;
+  }
+  Mound mound() {
+    Mound made;
+    auto& [centre, radius, height] = made;
+    centre = place();
+    radius = real(0.1, 10);
+    height = real(-3, 3);
+    return made;
+  }
+  HeightSamples samples() {
+    HeightSamples made;
+    auto& [x, z, columns, rows, heights] = made;
+    x = static_cast<uint32_t>(whole(0, 100));
+    z = static_cast<uint32_t>(whole(0, 100));
+    columns = static_cast<uint32_t>(whole(1, 3));
+    rows = static_cast<uint32_t>(whole(1, 3));
+    heights.resize(size_t{columns} * rows);
+    for (float& height : heights) height = real(-3, 3);
     return made;
   }
   Camera camera() {
     Camera made;
-    auto& [kind, position, target, distance, fieldOfView] = made;
-    kind = one({Camera::Kind::follow, Camera::Kind::fixed});
+    auto& [kind, position, target, distance, fieldOfView, about, elevation, azimuth, secondsATurn, keys] =
+        made;
+    kind = one({Camera::Kind::follow, Camera::Kind::fixed, Camera::Kind::orbit, Camera::Kind::path});
     position = point();
     target = point();
     distance = real(0.1, 100);
     fieldOfView = real(0.1, 3);
+    if (coin()) about = point();
+    elevation = real(-1, 1);
+    azimuth = real(-3, 3);
+    secondsATurn = real(-60, 60);
+    keys.resize(kind == Camera::Kind::path || coin() ? whole(2, 4) : 0);
+    float last = 0;
+    for (auto& [time, from, at] : keys) {
+      time = last += real(0.1, 10);
+      from = point();
+      at = point();
+    }
     return made;
   }
 

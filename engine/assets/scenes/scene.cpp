@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -31,6 +32,19 @@ struct Source {
 [[noreturn]] void failIn(const std::string& file, const std::string& path, const nlohmann::json& found,
                          const std::string& expected) {
   throw inputError(fmt::format("{}: {} is {}, expected {}", file, path, describeJson(found), expected));
+}
+
+// The linear RGB of "#rrggbb", which is sRGB (IEC 61966-2-1); none where it is something else.
+std::optional<glm::vec3> linearOf(const std::string& colour) {
+  const auto isDigit = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
+  if (colour.size() != 7 || colour[0] != '#' || !std::all_of(colour.begin() + 1, colour.end(), isDigit))
+    return {};
+  glm::vec3 linear;
+  for (int i = 0; i < 3; ++i) {
+    const double s = std::stoi(colour.substr(1 + 2 * static_cast<size_t>(i), 2), nullptr, 16) / 255.0;
+    linear[i] = static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+  }
+  return linear;
 }
 
 // keysOf(fields, object) lists the keys of each object of a scene, once for both directions: a Reader sets
@@ -111,6 +125,48 @@ class Reader {
           number((*json)[static_cast<size_t>(i)], fmt::format("{}[{}]", pathOf(key), i), -limit, limit));
     }
   }
+  template <int Size>
+  void key(const char* key, std::optional<glm::vec<Size, float>>& value, double limit) {
+    if (find(key)) this->key(key, value.emplace(), limit);
+  }
+  void key(const char* key, std::vector<float>& values, size_t mostValues, double least, double most) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_array() || json->size() > mostValues)
+      fail(pathOf(key), *json, fmt::format("an array of at most {} numbers", mostValues));
+    values.clear();
+    for (const nlohmann::json& item : *json) {
+      const std::string path = fmt::format("{}[{}]", pathOf(key), values.size());
+      values.push_back(static_cast<float>(number(item, path, least, most)));
+    }
+  }
+  // A number from 0 to 1, or "random", which is none, or "together", which is 0.
+  void phase(const char* key, std::optional<float>& value) {
+    const auto* json = find(key);
+    if (!json || *json == "random") return;
+    if (*json == "together")
+      value = 0;
+    else if (json->is_number())
+      this->key(key, value, 0, 1);
+    else
+      failNamed(pathOf(key), *json, {"random", "together"});
+  }
+  // "#rrggbb" in sRGB, or linear RGB.
+  void colour(const char* key, std::optional<glm::vec3>& value) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (json->is_string()) {
+      value = linearOf(json->get<std::string>());
+      if (!value) fail(pathOf(key), *json, "\"#rrggbb\"");
+      return;
+    }
+    if (!json->is_array() || json->size() != 3)
+      fail(pathOf(key), *json, "\"#rrggbb\" or an array of 3 numbers");
+    value.emplace();
+    for (int i = 0; i < 3; ++i)
+      (*value)[i] = static_cast<float>(
+          number((*json)[static_cast<size_t>(i)], fmt::format("{}[{}]", pathOf(key), i), 0, 1));
+  }
   // The index of the key's string among `names`.
   template <typename Kind>
   void kind(const char* key, Kind& value, std::initializer_list<const char*> names) {
@@ -162,6 +218,24 @@ class Reader {
       const std::string path = fmt::format("{}[{}]", pathOf(key), values.size());
       read(item, path, values.emplace_back());
     }
+  }
+
+  // The alternative whose key is there: exactly one is.
+  template <size_t Count, typename... Kinds>
+  void oneOf(const char* const (&keys)[Count], std::variant<Kinds...>& value) {
+    static_assert(Count == sizeof...(Kinds));
+    size_t found = 0, index = 0;
+    const auto readIf = [&]<typename Kind>(Kind made) {
+      const char* key = keys[index++];
+      if (!find(key)) return;
+      ++found;
+      object(key, made);
+      value = std::move(made);
+    };
+    (readIf(Kinds{}), ...);
+    if (found != 1)
+      throw inputError(fmt::format("{}: {} has {} of {}, expected one", source_.file, path_, found,
+                                   fmt::join(keys, ", ")));
   }
 
   // Call last: every key must have been asked for.
@@ -260,6 +334,25 @@ class Writer {
     for (int i = 0; i < Size; ++i)
       array.push_back(number(value[i], fmt::format("{}[{}]", pathOf(key), i), -limit, limit));
   }
+  template <int Size>
+  void key(const char* key, const std::optional<glm::vec<Size, float>>& value, double limit) {
+    if (value) this->key(key, *value, limit);
+  }
+  void key(const char* key, const std::vector<float>& values, size_t mostValues, double least, double most) {
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    if (values.size() > mostValues)
+      throw inputError(
+          fmt::format("{}: {} are {}, expected at most {}", file_, pathOf(key), values.size(), mostValues));
+    for (const float value : values)
+      array.push_back(number(value, fmt::format("{}[{}]", pathOf(key), array.size()), least, most));
+  }
+  void phase(const char* key, const std::optional<float>& value) { this->key(key, value, 0, 1); }
+  void colour(const char* key, const std::optional<glm::vec3>& value) {
+    if (!value) return;
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    for (int i = 0; i < 3; ++i)
+      array.push_back(number((*value)[i], fmt::format("{}[{}]", pathOf(key), i), 0, 1));
+  }
   template <typename Kind>
   void kind(const char* key, const Kind& value, std::initializer_list<const char*> names) {
     json_[key] = names.begin()[static_cast<size_t>(value)];
@@ -280,6 +373,11 @@ class Writer {
     nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
     for (Object& value : values)
       array.push_back(written(fmt::format("{}[{}]", pathOf(key), array.size()), value));
+  }
+
+  template <size_t Count, typename... Kinds>
+  void oneOf(const char* const (&keys)[Count], std::variant<Kinds...>& value) {
+    std::visit([&](auto& each) { object(keys[value.index()], each); }, value);
   }
 
   const nlohmann::ordered_json& json() const { return json_; }
@@ -397,7 +495,8 @@ void keysOf(Fields& fields, Goal& goal) {
 
 template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
-  auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
+  auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal, sizes, phase,
+         colour, tint] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -409,33 +508,102 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.integer("agents", agents, 0, Scene::maxAgents);
   fields.object("spawn", spawn);
   fields.object("goal", goal);
+  fields.key("sizes", sizes, Herd::maxSizes, Herd::minSize, Herd::maxSize);
+  fields.phase("phase", phase);
+  fields.colour("colour", colour);
+  fields.key("tint", tint, 0, 1);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, CameraKey& key) {
+  auto& [time, position, target] = key;
+  fields.key("time", time, 0, Camera::maxPathTime);
+  fields.key("position", position, cameraLimit);
+  fields.key("target", target, cameraLimit);
+}
+void checkKeys(const CameraKey& key, const std::string& file, const std::string& path) {
+  if (key.position == key.target)
+    throw inputError(
+        fmt::format("{}: {}.position equals {}.target, a camera needs a direction", file, path, path));
 }
 
 template <class Fields>
 void keysOf(Fields& fields, Camera& camera) {
-  auto& [kind, position, target, distance, fieldOfView] = camera;
-  fields.kind("kind", kind, {"follow", "fixed"});
+  auto& [kind, position, target, distance, fieldOfView, about, elevation, azimuth, secondsATurn, keys] =
+      camera;
+  fields.kind("kind", kind, {"follow", "fixed", "orbit", "path"});
   fields.key("position", position, cameraLimit);
   fields.key("target", target, cameraLimit);
   fields.key("distance", distance, 0.01, cameraLimit);
   fields.key("fieldOfView", fieldOfView, 0.01, 3.1);
+  fields.key("about", about, cameraLimit);
+  fields.key("elevation", elevation, -1.5, 1.5);
+  fields.key("azimuth", azimuth, -1000, 1000);
+  fields.key("secondsATurn", secondsATurn, -Camera::maxPathTime, Camera::maxPathTime);
+  fields.objects("keys", keys, Camera::maxPathKeys, "objects");
 }
 void checkKeys(const Camera& camera, const std::string& file, const std::string& path) {
   if (camera.kind == Camera::Kind::fixed && camera.position == camera.target)
     throw inputError(
         fmt::format("{}: {}.position equals {}.target, a fixed camera needs a direction", file, path, path));
+  if (camera.kind == Camera::Kind::path && camera.keys.size() < Camera::minPathKeys)
+    throw inputError(fmt::format("{}: {}.keys has {}, expected at least {} for a path", file, path,
+                                 camera.keys.size(), Camera::minPathKeys));
+  for (size_t k = 1; k < camera.keys.size(); ++k) {
+    const float least = camera.keys[k - 1].time + Camera::minPathStep;
+    if (camera.keys[k].time < least)
+      throw inputError(
+          fmt::format("{}: {}.keys[{}].time is {}, expected at least {}, {} s after the key before", file,
+                      path, k, camera.keys[k].time, least, Camera::minPathStep));
+  }
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Mound& mound) {
+  auto& [centre, radius, height] = mound;
+  fields.key("centre", centre, Scene::maxCoordinate);
+  fields.key("radius", radius, 0.01, Scene::maxCoordinate);
+  fields.key("height", height, -maxHeightMagnitude, maxHeightMagnitude);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, HeightSamples& samples) {
+  auto& [x, z, columns, rows, heights] = samples;
+  fields.integer("x", x, 0, maxSamples - 1);
+  fields.integer("z", z, 0, maxSamples - 1);
+  fields.integer("columns", columns, 1, maxSamples);
+  fields.integer("rows", rows, 1, maxSamples);
+  fields.key("heights", heights, Event::maxSamples, -maxHeightMagnitude, maxHeightMagnitude);
+}
+void checkKeys(const HeightSamples& samples, const std::string& file, const std::string& path) {
+  const uint64_t expected = uint64_t{samples.columns} * samples.rows;
+  if (samples.heights.size() != expected)
+    throw inputError(fmt::format("{}: {}.heights has {} numbers, expected {}, columns times rows", file, path,
+                                 samples.heights.size(), expected));
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Event& event) {
+  auto& [at, what] = event;
+  fields.key("at", at, 0, Event::maxTime);
+  fields.oneOf({"mound", "edit"}, what);
 }
 
 template <class Fields>
 void keysOf(Fields& fields, Scene& scene) {
-  auto& [name, terrain, herds, camera, seed] = scene;
+  auto& [name, terrain, herds, camera, events, seed] = scene;
   fields.key("name", name);
   fields.integer("seed", seed, 0, UINT64_MAX);
   fields.object("terrain", terrain);
   fields.objects("herds", herds, Scene::maxHerds, "herds");
   fields.object("camera", camera);
+  fields.objects("events", events, Scene::maxEvents, "events");
 }
 void checkKeys(const Scene& scene, const std::string& file, const std::string&) {
+  for (size_t e = 1; e < scene.events.size(); ++e)
+    if (scene.events[e].at < scene.events[e - 1].at)
+      throw inputError(fmt::format("{}: events[{}].at is {}, expected {} or later, as the event before it",
+                                   file, e, scene.events[e].at, scene.events[e - 1].at));
   if (scene.agentCount() > Scene::maxAgents)
     throw inputError(fmt::format("{}: herds have {} agents in all, expected at most {}", file,
                                  scene.agentCount(), Scene::maxAgents));

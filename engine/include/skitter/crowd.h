@@ -98,7 +98,8 @@ struct HerdState : ForRecords<std::vector<float>> {
   AgentSample sample;       // which of the herd they are
   uint32_t watchEvery = 1;  // measure watches one agent of this many at a time
   // Equal herds take turns as one, the herd's agent g as number watchOffset + g; number n that is being
-  // watched has its records at place n / watchEvery of `watch`, which is of all agents.
+  // watched has its records at place n / watchEvery of `watch`, which is of all agents. Empty for a herd of
+  // several sizes, whose agents do not take turns as one.
   uint32_t watchOffset = 0;
   std::vector<Footfall> footfalls;  // of the last tick and of all agents, by agent and leg
   bool footfallsKept = false;       // they are all here: CrowdOptions::footfalls left room for them
@@ -108,14 +109,15 @@ struct HerdState : ForRecords<std::vector<float>> {
 
 // The touchdowns of the last tick on the device, for shaders of the caller's: FOOTFALL_STRIDE vec4 each
 // (engine/include/skitter/records.h), min(count, room) of them in any order. Equal herds share buffers, and
-// events number agents through all of them. Owned by the crowd, rewritten by each recorded tick; both buffers
-// can be read from as storage buffers.
+// events number agents through all of them; the sizes of a herd do not. Owned by the crowd, rewritten by each
+// recorded tick; both buffers can be read from as storage buffers.
 struct FootfallBuffer {
   VkBuffer events = VK_NULL_HANDLE;
   VkBuffer counters = VK_NULL_HANDLE;  // holds count, a uint32
   uint32_t countOffset = 0;            // bytes
   uint32_t room = 0;
   uint32_t firstAgent = 0, agents = 0;  // the herd's, of those that events number
+  uint32_t firstOfHerd = 0;             // the number in the herd of the first of them
 };
 
 // Device memory of one kind of records, of all of a herd's agents: its share of the pages, where equal herds
@@ -130,9 +132,9 @@ struct StageTime {
   double milliseconds = 0;  // of the last tick that has finished on the device
 };
 
-// The herds on one terrain, living on one device. Herds that are equal but for agents, spawn and goal share
-// pipelines and dispatches, so that any number of them costs what one of as many agents does. Not
-// thread-safe; one crowd may be recorded while another is.
+// The herds on one terrain, living on one device. Herds that are equal but for agents, spawn, goal, sizes and
+// phase share pipelines and dispatches, those of equal size, so that any number of them costs what one of as
+// many agents does. Not thread-safe; one crowd may be recorded while another is.
 class Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
@@ -150,7 +152,8 @@ class Crowd {
   // Records one tick of `dt` seconds into the caller's command buffer (outside a render pass). It begins with
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in
-  // order. Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an
+  // order. What Scene::events has for that time happens first, as if the caller had called editHeights just
+  // before. Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an
   // adaptive herd, below 22 microseconds.
   void record(VkCommandBuffer commandBuffer, float dt);
 
@@ -170,7 +173,10 @@ class Crowd {
   uint64_t agentCount() const;
   uint64_t memoryBytes() const;  // device memory of all records
   std::vector<MemoryUse> memoryUse(uint32_t herd) const;
+  // At the size of the herd's first agents (Herd::sizes), and of any agent.
   const Rig& rig(uint32_t herd) const;
+  const Rig& rig(uint32_t herd, uint32_t agent) const;
+  float size(uint32_t herd, uint32_t agent) const;
 
   // Each of these waits for the device.
   HerdState download(uint32_t herd, const AgentSample& sample = {}) const;

@@ -21,9 +21,11 @@ struct View {
   float fieldOfView = 0.8f;  // radians, vertical
 };
 
-// The scene's camera at a time. `follow` frames the action: one walker and those about it, seen from behind,
-// aside and above, moving as the first herd is commanded to, never below the ground. It needs no readback.
-// `crowd` was made of `scene`.
+// The scene's camera at a time, any number of seconds. `follow` frames the action: one walker and those about
+// it, seen from behind, aside and above, moving as the first herd is commanded to. `orbit` turns about it, or
+// about a point. `path` goes through its keys, and stays at the first before it and at the last after it.
+// None of these is ever below the ground. Needs no readback. `crowd` was made of `scene`. Throws Error(input)
+// for a path of keys that cannot be (Camera::keys).
 View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
 
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.

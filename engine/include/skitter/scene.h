@@ -48,6 +48,8 @@ struct Goal {
 
 struct Herd {
   static constexpr uint32_t minKeys = 2, maxKeys = 8;
+  static constexpr size_t maxSizes = 16;
+  static constexpr float minSize = 0.05f, maxSize = 20;
 
   std::string rig =
       "spider";  // "spider", a model (.glb, .gltf) or a sidecar (.rig.json), relative to the scene
@@ -63,22 +65,78 @@ struct Herd {
   uint32_t agents = 1000;
   Spawn spawn;
   Goal goal;
+  // How large its creatures are, times the rig: each agent has one of these, drawn by the seed, and so legs,
+  // strides and clips of its own. At most maxSizes, each minSize to maxSize; empty: 1. The agents of the
+  // first size have the lowest numbers, then come those of the second, and so on.
+  std::vector<float> sizes = {};
+  // Where in the cycle of its gait or clip each agent begins, 0 to 1; none: drawn by the seed.
+  std::optional<float> phase = {};
+  // What the model's colours are turned into: this, lighter or darker as they are. Linear RGB, 0 to 1; none:
+  // they stay.
+  std::optional<glm::vec3> colour = {};
+  // How much agents differ in colour, by the seed: 0 not at all, 1 by most; none: half, by their numbers.
+  std::optional<float> tint = {};
 
   bool operator==(const Herd&) const = default;
 };
 
-struct Camera {
-  // follow: behind and above the middle of the crowd.  fixed: from `position` at `target`.
-  enum class Kind { follow, fixed } kind = Kind::follow;
+// Where a camera on a path is, and what it looks at, at a time.
+struct CameraKey {
+  float time = 0;  // seconds
   glm::vec3 position{0}, target{0};
-  float distance = 9;        // metres from the crowd's middle, follow only
-  float fieldOfView = 0.8f;  // radians, vertical
+
+  bool operator==(const CameraKey&) const = default;
+};
+struct Camera {
+  static constexpr size_t minPathKeys = 2, maxPathKeys = 1024;
+  static constexpr float maxPathTime = 86400;      // seconds
+  static constexpr float minPathStep = 1.0f / 64;  // seconds from a key to the next
+
+  // follow: behind and above the middle of the crowd.  fixed: from `position` at `target`.
+  // orbit: around the middle of the crowd, or `about`.  path: through `keys`, along a Hermite spline.
+  enum class Kind { follow, fixed, orbit, path } kind = Kind::follow;
+  glm::vec3 position{0}, target{0};  // fixed only
+  float distance = 9;                // metres from what it looks at, follow and orbit only
+  float fieldOfView = 0.8f;          // radians, vertical
+  // Orbit only.
+  std::optional<glm::vec3> about = {};  // none: the middle of the crowd, as follow has it
+  float elevation = 0.3f;               // radians above the horizon of what it looks at
+  float azimuth = 0;                    // radians about +Y from +Z: on which side of it the eye begins
+  float secondsATurn = 30;  // counter-clockwise as seen from above; below 0 clockwise, 0: it stays
+  // Path only: minPathKeys to maxPathKeys, each at least minPathStep after the one before.
+  std::vector<CameraKey> keys = {};
 
   bool operator==(const Camera&) const = default;
 };
 
+// Ground that rises or sinks: a sample at distance d from the centre by height (1 - d^2 / radius^2)^2.
+struct Mound {
+  glm::vec2 centre{0};  // x, z
+  float radius = 1;     // metres, above 0
+  float height = 0.5f;  // metres; below 0: a pit
+
+  bool operator==(const Mound&) const = default;
+};
+// New heights of a rectangle of the terrain's samples, as Crowd::editHeights takes them.
+struct HeightSamples {
+  uint32_t x = 0, z = 0, columns = 0, rows = 0;
+  std::vector<float> heights = {};
+
+  bool operator==(const HeightSamples&) const = default;
+};
+// What happens to a running crowd, just before the first tick that ends at `at` or later.
+struct Event {
+  static constexpr float maxTime = 86400;        // seconds
+  static constexpr size_t maxSamples = 1 << 16;  // of HeightSamples
+
+  float at = 0;  // seconds
+  std::variant<Mound, HeightSamples> what;
+
+  bool operator==(const Event&) const = default;
+};
+
 struct Scene {
-  static constexpr size_t maxHerds = 1024;
+  static constexpr size_t maxHerds = 1024, maxEvents = 4096;
   static constexpr uint32_t maxAgents = 1 << 24;  // of all herds: records hold an agent's index as a float
   static constexpr float maxCoordinate = 4096;  // metres from the origin: feet beyond are placed too coarsely
 
@@ -86,6 +144,7 @@ struct Scene {
   std::variant<TerrainNoise, TerrainFile> terrain;
   std::vector<Herd> herds{Herd{}};
   Camera camera;
+  std::vector<Event> events;  // by time; Crowd::record lets them happen
   uint64_t seed = 1;
 
   Heightfield loadTerrain() const;  // throws Error(input)
