@@ -211,6 +211,16 @@ TEST_F(FidelityTest, FiguresAreWhatTheRunGave) {
   EXPECT_GT(walkers.error(0.999), walkers.error(0.99) * std::exp2(0.25));
 }
 
+TEST_F(FidelityTest, AreZeroBeforeTheFirstTick) {
+  const Crowd crowd(device(), rollingGround(), sceneOf(4));
+  const Fidelity f = crowd.fidelity();
+  EXPECT_EQ(f.agentTicks, 0u);
+  EXPECT_EQ(f.stances, 0u);
+  for (const double figure : {f.slip, f.penetration, f.floating, f.crossing, f.reachErrorP99,
+                              f.reachErrorMost, f.footJerk, f.bodyJerk, f.margin, f.marginLeast, f.unstable})
+    EXPECT_EQ(figure, 0);
+}
+
 // How far each leg's bones are beyond their cones, radians: a direction's (X, Y) is the tangent of half its
 // angle to the rest direction.
 std::vector<double> violationsOf(const HerdState& state, const Rig& rig) {

@@ -140,5 +140,25 @@ TEST(Composition, drawingEndsWhereFogHides) {
   EXPECT_NEAR(distanceOf({.eye = {0, -103, 0}, .target = {0, -103, 1}}), 2.1f * 200, 1e-3f);
 }
 
+// The y axis tells no sideways from there.
+TEST(Composition, looksStraightDownAndUp) {
+  const glm::dvec3 target(4, 1, -7);
+  for (const double away : {30.0, -30.0}) {
+    const Case each{{.eye = glm::vec3(target + glm::dvec3(0, away, 0)),
+                     .target = glm::vec3(target),
+                     .fieldOfView = 0.8f}};
+    const Composition c = composed(each);
+    // In heights of half the picture, from its middle.
+    const auto seen = [&](const glm::dvec3& p) {
+      const glm::dvec4 clip = glm::dmat4(c.block.clipFromPicture[shared::VIEW_CAMERA]) *
+                              glm::dvec4(p.x - c.origin.x, p.y, p.z - c.origin.y, 1);
+      return glm::dvec2(clip.x * each.width / each.height, clip.y) / clip.w;
+    };
+    EXPECT_LT(glm::length(seen(target)), 1e-5);
+    for (const glm::dvec3 aside : {glm::dvec3(1, 0, 0), {0, 0, 1}})
+      EXPECT_NEAR(glm::length(seen(target + aside)), 1 / (30 * std::tan(0.4)), 1e-5);
+  }
+}
+
 }  // namespace
 }  // namespace skitter::render
