@@ -59,7 +59,7 @@ const std::vector<Check> checks = {
     {StageId::footfall, every, checkFootfall},
 };
 
-// Of the stages in `only`; empty: of all.
+// The checks of the stages in `only`, or of all where it is empty.
 std::vector<const Check*> checksOf(Controller controller, const std::vector<StageId>& only = {}) {
   const auto has = [](const auto& list, const auto& value) {
     return std::ranges::find(list, value) != list.end();
