@@ -16,7 +16,7 @@ namespace skitter::app {
 // A share of a leg length. Nobody sees a difference of so little in where an agent stands.
 inline constexpr double freeRunTolerance = 0.01;
 
-// What the validation on one device came to.
+// The result of a validation on one device.
 struct Outcome {
   std::string device = {};
   std::vector<validation::StageResult> stages = {};
@@ -32,10 +32,11 @@ struct Outcome {
 
 void print(const Outcome& outcome, const Scene& scene);
 
-// Of --json: of one device what it came to, of several a list.
+// What --json writes: the result of one device, or a list where several were asked for.
 nlohmann::ordered_json jsonOf(std::span<const Outcome> outcomes, bool several);
 
-// Of --junit: a suite a device, a case a stage, for servers of continuous integration. Throws Error(input).
+// Writes --junit, for servers of continuous integration: a suite a device, a case a stage. Throws
+// Error(input).
 void writeJunit(const std::string& file, std::span<const Outcome> outcomes, const Manifest& manifest);
 
 }  // namespace skitter::app
