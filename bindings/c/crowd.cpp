@@ -125,7 +125,7 @@ skitter_result skitter_crowd_headings(const skitter_crowd* crowd, uint32_t herd,
     const Crowd& asked = crowdOf(crowd);
     given(radians, "radians");
     c::checkRoom("radians", room, bindings::agentsOf(asked, herd));
-    for (const bindings::Body& body : bindings::bodiesOf(asked, herd)) *radians++ = body.heading;
+    for (const BodyState& body : bindings::bodiesOf(asked, herd)) *radians++ = bindings::headingOf(body);
   });
 }
 

@@ -140,7 +140,7 @@ SKITTER_C skitter_result skitter_crowd_tick(const skitter_crowd* crowd, uint64_t
 SKITTER_C skitter_result skitter_crowd_herds(const skitter_crowd* crowd, uint32_t* herds);
 /* Of all herds. */
 SKITTER_C skitter_result skitter_crowd_agent_count(const skitter_crowd* crowd, uint64_t* agents);
-/* Of one herd; its legs; and the bones of its longest leg. */
+/* Places of one herd, which are its agents and its reserve; its legs; and the bones of its longest leg. */
 SKITTER_C skitter_result skitter_crowd_herd_agents(const skitter_crowd* crowd, uint32_t herd,
                                                    uint32_t* agents);
 SKITTER_C skitter_result skitter_crowd_herd_legs(const skitter_crowd* crowd, uint32_t herd, uint32_t* legs);

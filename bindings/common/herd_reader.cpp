@@ -10,6 +10,7 @@
 #include "crowd/herd.h"
 #include "crowd/places.h"
 #include "crowd/readback.h"
+#include "skitter/decode.h"
 #include "skitter/error.h"
 
 namespace skitter::bindings {
@@ -18,6 +19,11 @@ namespace {
 HerdState stateOf(const Crowd& crowd, uint32_t herd, std::span<const Record> records) {
   checkHerd(crowd, herd);
   return crowd::downloadRecords(implOf(crowd), herd, records);
+}
+
+BodyState bodyAt(const HerdState& state, size_t agent) {
+  constexpr size_t floats = 4 * shared::BODY_STRIDE;
+  return bodyOf(std::span(state.body).subspan(agent * floats, floats));
 }
 
 }  // namespace
@@ -29,7 +35,7 @@ void checkHerd(const Crowd& crowd, uint32_t herd) {
 
 uint32_t agentsOf(const Crowd& crowd, uint32_t herd) {
   checkHerd(crowd, herd);
-  return implOf(crowd).herds[herd].agents;
+  return crowd.places(herd);
 }
 
 float dtOf(const Crowd& crowd) { return implOf(crowd).dt; }
@@ -49,23 +55,18 @@ uint32_t bonesOf(const Crowd& crowd, uint32_t herd) {
 std::vector<glm::dvec3> positionsOf(const Crowd& crowd, uint32_t herd) {
   const HerdState state = stateOf(crowd, herd, std::array{Record::body});
   std::vector<glm::dvec3> positions(state.agents);
-  for (size_t agent = 0; agent < positions.size(); ++agent)
-    positions[agent] = crowd::bodyPosition(state, agent);
+  for (size_t agent = 0; agent < positions.size(); ++agent) positions[agent] = bodyAt(state, agent).position;
   return positions;
 }
 
-std::vector<Body> bodiesOf(const Crowd& crowd, uint32_t herd) {
+std::vector<BodyState> bodiesOf(const Crowd& crowd, uint32_t herd) {
   const HerdState state = stateOf(crowd, herd, std::array{Record::body});
-  std::vector<Body> bodies(state.agents);
-  for (size_t agent = 0; agent < bodies.size(); ++agent) {
-    const float* motion = state.body.data() + 4 * (agent * shared::BODY_STRIDE + 1);
-    bodies[agent] = {.position = crowd::bodyPosition(state, agent),
-                     .rotation = crowd::bodyRotation(state, agent),
-                     .heading = std::atan2(motion[0], motion[1]),
-                     .speed = motion[2]};
-  }
+  std::vector<BodyState> bodies(state.agents);
+  for (size_t agent = 0; agent < bodies.size(); ++agent) bodies[agent] = bodyAt(state, agent);
   return bodies;
 }
+
+float headingOf(const BodyState& body) { return std::atan2(body.heading.x, body.heading.y); }
 
 std::vector<glm::dvec3> jointsOf(const Crowd& crowd, uint32_t herd) {
   const HerdState state = stateOf(crowd, herd, std::array{Record::body, Record::pose});
@@ -77,11 +78,11 @@ std::vector<glm::dvec3> jointsOf(const Crowd& crowd, uint32_t herd) {
                                  glm::dvec3(std::numeric_limits<double>::quiet_NaN()));
   auto* chain = joints.data();
   for (size_t agent = 0; agent < state.agents; ++agent) {
-    const glm::dvec3 position = crowd::bodyPosition(state, agent);
+    const glm::dvec3 position = bodyAt(state, agent).position;
     for (size_t leg = 0; leg < legs; ++leg, chain += bones + 1) {
       const size_t own = kind.rig.legs[leg].bones.size();
       for (size_t bone = 0; bone < own; ++bone)
-        chain[bone] = position + glm::dvec3(crowd::placedBone(state, kind, agent, leg, bone).start);
+        chain[bone] = position + glm::dvec3(crowd::placedBone(state, kind, agent, leg, bone).position);
       chain[own] = position + glm::dvec3(crowd::placedTip(state, kind, agent, leg));
     }
   }

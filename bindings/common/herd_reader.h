@@ -2,17 +2,17 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <vector>
 
 #include "skitter/crowd.h"
+#include "skitter/decode.h"
 
 namespace skitter::bindings {
 
 // Throws Error(input) for a herd that the crowd has not.
 void checkHerd(const Crowd& crowd, uint32_t herd);
 
-// Agents of the herd.
+// Places of the herd: its agents and its reserve, in which nobody may be.
 uint32_t agentsOf(const Crowd& crowd, uint32_t herd);
 
 // Seconds of the crowd's first tick; 0 before it.
@@ -26,14 +26,9 @@ HerdState recordsOf(const Crowd& crowd, uint32_t herd);
 // World metres, one an agent.
 std::vector<glm::dvec3> positionsOf(const Crowd& crowd, uint32_t herd);
 
-// Where a body is and how it moves.
-struct Body {
-  glm::dvec3 position{0};          // world metres
-  glm::quat rotation{1, 0, 0, 0};  // world from model
-  float heading = 0;               // radians about +Y, 0 faces +Z, a quarter turn +X
-  float speed = 0;                 // horizontal, along the heading, m/s
-};
-std::vector<Body> bodiesOf(const Crowd& crowd, uint32_t herd);
+std::vector<BodyState> bodiesOf(const Crowd& crowd, uint32_t herd);
+// Radians about +Y: 0 faces +Z, a quarter turn +X.
+float headingOf(const BodyState& body);
 
 // World metres, agent after agent and leg after leg: the starts of its bones and the foot, bonesOf + 1 a leg.
 // NaN fills up the legs with fewer bones. Throws Error(input) for a crowd without poses.

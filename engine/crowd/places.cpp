@@ -1,72 +1,46 @@
 #include "crowd/places.h"
 
+#include <span>
+
 #include "crowd/controller.h"
 #include "skitter/records.h"
 
 namespace skitter::crowd {
 namespace {
 
-using namespace skitter::shared;
-
-// The record at vec4 index `at`.
-const float* vec4(const std::vector<float>& records, size_t at) { return records.data() + 4 * at; }
-
-glm::quat quaternion(const float* xyzw) { return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]}; }
-
-// The rows of the matrix by which a clip's skin moves what hangs on that joint of the leg.
-const float* matrixOf(const HerdState& state, const Kind& kind, size_t agent, size_t leg, size_t joint) {
-  const size_t entry = agent * static_cast<size_t>(kind.clips.joints) + kind.clipSet.legs[leg].joints[joint];
-  return vec4(state.pose, entry * MATRIX_STRIDE);
+// The pose record of an agent.
+std::span<const float> poseOf(const HerdState& state, const Kind& kind, size_t agent) {
+  const int stride = shared::poseStride(kind.legs, kind.bones, kind.clips.joints);
+  const auto floats = static_cast<size_t>(4 * stride);
+  return std::span(state.pose).subspan(agent * floats, floats);
 }
 
-glm::vec3 placedBy(const float* rows, const glm::vec3& point) {
-  glm::vec3 placed;
-  for (int r = 0; r < 3; ++r) {
-    const float* row = rows + 4 * r;
-    placed[r] = row[0] * point.x + row[1] * point.y + row[2] * point.z + row[3];
-  }
-  return placed;
-}
-
-// The matrix's columns may be scaled.
-glm::quat rotationOf(const float* rows) {
-  glm::mat3 turn;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) turn[c][r] = rows[4 * r + c];
+// Where the clips' skin takes the start of a leg's bone, or its foot.
+BonePose placedByClip(std::span<const float> pose, const ClipLeg& leg, size_t joint) {
+  glm::mat4x3 matrix = glm::transpose(jointRowsOf(pose, leg.joints[joint]));
+  BonePose placed;
+  placed.position = matrix * glm::vec4(leg.starts[joint], 1);
+  // Its columns may be scaled.
+  glm::mat3 turn(matrix);
   for (int c = 0; c < 3; ++c) turn[c] = glm::normalize(turn[c]);
-  return glm::normalize(glm::quat_cast(turn));
+  placed.rotation = glm::normalize(glm::quat_cast(turn));
+  return placed;
 }
 
 }  // namespace
 
-glm::dvec3 bodyPosition(const HerdState& state, size_t agent) {
-  const float* body = vec4(state.body, agent * BODY_STRIDE);
-  return {double{tileX(body[3])} * TILE_SIZE + body[0], body[1],
-          double{tileZ(body[3])} * TILE_SIZE + body[2]};
-}
-
-glm::quat bodyRotation(const HerdState& state, size_t agent) {
-  return quaternion(vec4(state.body, agent * BODY_STRIDE + 2));
-}
-
-PlacedBone placedBone(const HerdState& state, const Kind& kind, size_t agent, size_t leg, size_t bone) {
-  if (traitsOf(kind.controller).playsClips) {
-    const float* rows = matrixOf(state, kind, agent, leg, bone);
-    return {placedBy(rows, kind.clipSet.legs[leg].starts[bone]), rotationOf(rows)};
-  }
-  const size_t entry = 1 + leg * static_cast<size_t>(kind.bones) + bone;
-  const float* pose =
-      vec4(state.pose, (agent * static_cast<size_t>(kind.rig.paletteSize()) + entry) * POSE_STRIDE);
-  return {{pose[4], pose[5], pose[6]}, quaternion(pose)};
+BonePose placedBone(const HerdState& state, const Kind& kind, size_t agent, size_t leg, size_t bone) {
+  const std::span<const float> pose = poseOf(state, kind, agent);
+  if (traitsOf(kind.controller).playsClips) return placedByClip(pose, kind.clipSet.legs[leg], bone);
+  return bonePoseOf(pose, static_cast<uint32_t>(1 + leg * static_cast<size_t>(kind.bones) + bone));
 }
 
 glm::vec3 placedTip(const HerdState& state, const Kind& kind, size_t agent, size_t leg) {
   const std::vector<Bone>& bones = kind.rig.legs[leg].bones;
   if (traitsOf(kind.controller).playsClips)
-    return placedBy(matrixOf(state, kind, agent, leg, bones.size()),
-                    kind.clipSet.legs[leg].starts[bones.size()]);
-  const PlacedBone last = placedBone(state, kind, agent, leg, bones.size() - 1);
-  return last.start + last.rotation * (bones.back().length * bones.back().direction);
+    return placedByClip(poseOf(state, kind, agent), kind.clipSet.legs[leg], bones.size()).position;
+  const BonePose last = placedBone(state, kind, agent, leg, bones.size() - 1);
+  return last.position + last.rotation * (bones.back().length * bones.back().direction);
 }
 
 }  // namespace skitter::crowd
