@@ -79,8 +79,9 @@ TEST_F(BuffersTest, HoldWhatIsDownloaded) {
       simulate(device(), same, 1);
       const HerdState state = same.download(herd);
       for (const Record record : allRecords)
-        if (record != Record::watch)
+        if (record != Record::watch) {
           EXPECT_EQ(records[static_cast<size_t>(record)], state.of(record)) << herd;
+        }
       EXPECT_TRUE(crowd.buffers(herd, Record::watch).empty());
       simulate(device(), same, 1);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "crowd/frame.h"
 #include "crowd/herd.h"
 #include "gpu/barrier.h"
 #include "gpu/submit.h"
@@ -128,6 +129,31 @@ std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const 
 void expectAllPass(const std::vector<validation::StageResult>& results) {
   for (const validation::StageResult& stage : results)
     EXPECT_TRUE(stage.pass) << stage.name << ": " << stage.why;
+}
+
+void expectBeganAlike(const Crowd& anew, const Crowd& began) {
+  if (!crowd::solverOf(implOf(began).kindOf(0))) {
+    EXPECT_EQ(anew.stateHash(), began.stateHash());
+    return;
+  }
+  const HerdState ours = anew.download(0), theirs = began.download(0);
+  EXPECT_EQ(ours.goal, theirs.goal);
+  EXPECT_EQ(ours.gait, theirs.gait);
+  const double leg = began.rig(0).legLength;
+  const size_t legs = began.rig(0).legs.size();
+  for (size_t i = 0; i < theirs.agents; ++i) {
+    EXPECT_LT(glm::distance(positionOf(ours, i), positionOf(theirs, i)), 0.01 * leg) << "agent " << i;
+    const float* heading = &theirs.body[4 * (shared::BODY_STRIDE * i + 1)];
+    EXPECT_TRUE(std::equal(heading, heading + 2, &ours.body[4 * (shared::BODY_STRIDE * i + 1)]))
+        << "agent " << i;
+    for (size_t l = 0; l < legs; ++l) {
+      const auto at = static_cast<size_t>(
+          4 * shared::legRecord(static_cast<int>(i), static_cast<int>(l), static_cast<int>(legs)));
+      const glm::vec3 a(ours.tip[at], ours.tip[at + 1], ours.tip[at + 2]);
+      const glm::vec3 b(theirs.tip[at], theirs.tip[at + 1], theirs.tip[at + 2]);
+      EXPECT_LT(glm::distance(a, b), 0.01 * leg) << "agent " << i << ", leg " << l;
+    }
+  }
 }
 
 glm::dvec3 positionOf(const HerdState& state, size_t agent) {

@@ -210,7 +210,9 @@ Results beyondTheLimits(Device& device, Controller controller, const CrowdOption
   Rig rig = spiderRig();
   for (Leg& leg : rig.legs)
     for (Bone& bone : leg.bones) bone.coneHalfAngle = 0.05f;
-  Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), std::vector<Rig>{rig}, options);
+  CrowdOptions stiff = options;
+  stiff.rigs = {rig};
+  Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), stiff);
   return replay(device, crowd, ground, 60);
 }
 

@@ -203,7 +203,7 @@ TEST(AgentIds, HoldWhatTheyAreMadeOf) {
 }
 
 // Before the first tick, to where another crowd's agents begin.
-TEST_P(TeleportTest, GivesTheRecordsOfAnAgentThatBeganThere) {
+TEST_P(TeleportTest, IsAsIfTheAgentHadBegunThere) {
   Scene here = sceneOf(37, 1, 1, GetParam()), there = here;
   here.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
   there.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 3, .centre = {7, -9}, .heading = 2};
@@ -219,7 +219,8 @@ TEST_P(TeleportTest, GivesTheRecordsOfAnAgentThatBeganThere) {
   moved.teleport(places);
   for (int i = 0; i < 3; ++i) {
     for (Crowd* crowd : {&moved, &began}) simulate(device(), *crowd, 1);
-    EXPECT_EQ(moved.stateHash(), began.stateHash()) << i;
+    SCOPED_TRACE(i);
+    expectBeganAlike(moved, began);
   }
 }
 
@@ -249,9 +250,9 @@ TEST_P(TeleportTest, LeavesNoTraceOfTheWay) {
   }
   simulate(device(), crowd, 50);
   const Fidelity after = crowd.fidelity();
-  // Standing feet add nothing to what slides and jerks.
-  EXPECT_LE(after.skating, before.skating);
-  EXPECT_LE(after.bodyJerk, before.bodyJerk);
+  EXPECT_LE(after.skating, before.skating);  // standing feet add nothing
+  // Bodies that lie down on the ground make 88 where they know no feet; a jump of some metres makes 4e7.
+  EXPECT_LT(after.bodyJerk, 1000);
   EXPECT_EQ(after.notFinite, 0u);
 }
 
@@ -280,36 +281,41 @@ TEST_P(TeleportTest, DoesNotTouchOthers) {
 INSTANTIATE_TEST_SUITE_P(, TeleportTest, ::testing::ValuesIn(allControllers),
                          [](const auto& param) { return testNameOf(param.param); });
 
-// On slopes of up to 77 degrees: a foot is set down where it can be, or as near as the leg's limits allow.
+// On slopes of up to 77 degrees, where many a home is beyond what the leg's limits allow: as near as those of
+// agents that begin there.
 TEST_F(SteerInputTest, OnSteepGroundFeetStandAsThoseOfAgentsThatBeginThere) {
   Scene scene = parseScene(
       R"({"terrain": {"kind": "file", "file": "everest_513x513.png", "scale": 0.005426},
           "herds": [{"agents": 1000, "goal": {"kind": "none"}}]})",
       "everest", SKITTER_ROOT "/assets/terrain");
   const Heightfield ground = scene.loadTerrain();
-  const auto worst = [](const HerdState& state) {
-    float most = 0;
-    for (size_t leg = 0; leg < state.tip.size() / 4; ++leg) most = std::max(most, state.tip[4 * leg + 3]);
-    return most;
+  const auto missesOf = [](const Crowd& crowd) {
+    const HerdState state = crowd.download(0);
+    std::vector<float> misses;
+    for (size_t leg = 0; leg < state.tip.size() / 4; ++leg) misses.push_back(state.tip[4 * leg + 3]);
+    std::ranges::sort(misses);
+    return misses;
   };
-  Crowd crowd(device(), ground, scene, CrowdOptions{.feet = true});
-  simulate(device(), crowd, 1);
-  const float began = worst(crowd.download(0));
+  Crowd began(device(), ground, scene, CrowdOptions{.feet = true});
+  const crowd::Spawner spawner(scene.herds[0], implOf(began).kindOf(0), ground, scene.seed);
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.5f};
+  Crowd moved(device(), ground, scene, CrowdOptions{.feet = true});
   std::vector<AgentPlace> places;
   for (uint32_t i = 0; i < 1000; ++i) {
-    const double x = static_cast<double>(i) * 0.6180339887, z = static_cast<double>(i) * 0.7548776662;
-    const double half = 0.45 * double{ground.extentX()};
-    places.push_back({AgentId(0, i),
-                      {{(2 * (x - std::floor(x)) - 1) * half, (2 * (z - std::floor(z)) - 1) * half},
-                       static_cast<float>(i)}});
+    const auto start = spawner.place(i);
+    places.push_back({AgentId(0, i), {{start.x, start.z}, start.heading}});
   }
-  crowd.teleport(places);
-  simulate(device(), crowd, 1);
-  const float moved = worst(crowd.download(0));
-  const float leg = crowd.rig(0).legLength;
-  RecordProperty("began", std::to_string(began / leg));
-  RecordProperty("teleported", std::to_string(moved / leg));
-  EXPECT_LT(moved / leg, 0.01f) << "began: " << began / leg;
+  simulate(device(), moved, 40);
+  moved.teleport(places);
+  for (Crowd* each : {&began, &moved}) simulate(device(), *each, 1);
+  const std::vector<float> ours = missesOf(moved), theirs = missesOf(began);
+  const double leg = began.rig(0).legLength;
+  EXPECT_GT(theirs.back(), 0.1 * leg);  // such ground it is
+  EXPECT_LT(ours.back(), 1.02 * theirs.back());
+  const auto reached = [&](const std::vector<float>& misses) {
+    return std::ranges::count_if(misses, [&](float miss) { return miss < 1e-3 * leg; });
+  };
+  EXPECT_GE(reached(ours), reached(theirs) - 8) << "of " << ours.size() << " legs";
 }
 
 }  // namespace

@@ -187,8 +187,11 @@ TEST_P(PalettesTest, SkinTheMeshAsThePosesDo) {
         }
         // Positions up to 100 m from the origin are rounded to 8e-6 m.
         EXPECT_LT(furthest, 1e-4);
-        for (size_t i = 0; i < floats.size(); ++i)
-          if (!bodies.theirs[i] && !bones.theirs[i]) ASSERT_EQ(floats[i], kUntouched) << i;
+        for (size_t i = 0; i < floats.size(); ++i) {
+          if (!bodies.theirs[i] && !bones.theirs[i]) {
+            ASSERT_EQ(floats[i], kUntouched) << i;
+          }
+        }
       }
     }
   }
@@ -312,7 +315,9 @@ TEST(SkinMeshTest, FacesOutwardInEverySpace) {
       ASSERT_EQ(mesh.levels.size(), 4u);
       EXPECT_EQ(mesh.levels.back().pixels, 0);
       for (size_t l = 0; l < mesh.levels.size(); ++l) {
-        if (l > 0) EXPECT_LT(mesh.levels[l].indexCount, mesh.levels[l - 1].indexCount);
+        if (l > 0) {
+          EXPECT_LT(mesh.levels[l].indexCount, mesh.levels[l - 1].indexCount);
+        }
         size_t outward = 0;
         for (uint32_t i = 0; i < mesh.levels[l].indexCount; i += 3) {
           const auto corner = [&](uint32_t k) -> const SkinVertex& {

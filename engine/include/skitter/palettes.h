@@ -39,9 +39,9 @@ struct TransformRange {
 struct PaletteTarget {
   // A transform an agent: from model space at rest, with its origin on the ground below the body, to the
   // host's space.
-  TransformRange instances;
+  TransformRange instances = {};
   // entries() transforms an agent, for the bones that SkinMesh::vertices name.
-  TransformRange palettes;
+  TransformRange palettes = {};
 };
 
 struct PaletteOptions {
