@@ -55,6 +55,14 @@ class Files {
 };
 
 // Bindings to all members: a new one does not compile until it is looked at here.
+void add(Hash& hash, const Goal& goal) {
+  const auto& [kind, target, speed, velocity] = goal;
+  hash.add(static_cast<uint64_t>(kind));
+  hash.add(target);
+  hash.add(speed);
+  if (kind == Goal::Kind::velocity) hash.add(velocity);
+}
+
 void add(Hash& hash, Files& files, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
                phase, colour, tint] = herd;
@@ -91,28 +99,82 @@ void add(Hash& hash, Files& files, const Herd& herd) {
   hash.add(spacing);
   hash.add(centre);
   hash.add(heading);
-  const auto& [goalKind, target, speed, velocity] = goal;
-  hash.add(static_cast<uint64_t>(goalKind));
-  hash.add(target);
+  add(hash, goal);
+}
+
+void add(Hash& hash, const Mound& mound) {
+  const auto& [centre, radius, height] = mound;
+  hash.add("mound");
+  hash.add(centre);
+  hash.add(radius);
+  hash.add(height);
+}
+
+void add(Hash& hash, const HeightSamples& samples) {
+  const auto& [x, z, columns, rows, heights] = samples;
+  hash.add("edit");
+  for (const uint32_t each : {x, z, columns, rows}) hash.add(uint64_t{each});
+  for (const float height : heights) hash.add(height);
+}
+
+void add(Hash& hash, const Place& place) {
+  const auto& [position, heading] = place;
+  hash.add(position);
+  hash.add(heading);
+}
+
+// What is done to which agents of a herd.
+void add(Hash& hash, std::string_view what, uint32_t herd, const std::vector<uint32_t>& agents) {
+  hash.add(what);
+  hash.add(uint64_t{herd});
+  hash.add(uint64_t{agents.size()});
+  for (const uint32_t agent : agents) hash.add(uint64_t{agent});
+}
+
+void add(Hash& hash, const GoalChange& change) {
+  const auto& [herd, agents, goal] = change;
+  add(hash, "goal", herd, agents);
+  add(hash, goal);
+}
+
+void add(Hash& hash, const SpeedChange& change) {
+  const auto& [herd, agents, speed] = change;
+  add(hash, "speed", herd, agents);
   hash.add(speed);
-  if (goalKind == Goal::Kind::velocity) hash.add(velocity);
+}
+
+void add(Hash& hash, const Teleport& teleport) {
+  const auto& [herd, moves] = teleport;
+  hash.add("teleport");
+  hash.add(uint64_t{herd});
+  hash.add(uint64_t{moves.size()});
+  for (const auto& [agent, place] : moves) {
+    hash.add(uint64_t{agent});
+    add(hash, place);
+  }
+}
+
+void add(Hash& hash, const Addition& addition) {
+  const auto& [herd, arrivals] = addition;
+  hash.add("add");
+  hash.add(uint64_t{herd});
+  hash.add(uint64_t{arrivals.size()});
+  for (const auto& [place, goal] : arrivals) {
+    add(hash, place);
+    hash.add(uint64_t{goal.has_value()});
+    if (goal) add(hash, *goal);
+  }
+}
+
+void add(Hash& hash, const Removal& removal) {
+  const auto& [herd, agents] = removal;
+  add(hash, "remove", herd, agents);
 }
 
 void add(Hash& hash, const Event& event) {
   const auto& [at, what] = event;
   hash.add(at);
-  if (const auto* mound = std::get_if<Mound>(&what)) {
-    const auto& [centre, radius, height] = *mound;
-    hash.add("mound");
-    hash.add(centre);
-    hash.add(radius);
-    hash.add(height);
-  } else {
-    const auto& [x, z, columns, rows, heights] = std::get<HeightSamples>(what);
-    hash.add("edit");
-    for (const uint32_t each : {x, z, columns, rows}) hash.add(uint64_t{each});
-    for (const float height : heights) hash.add(height);
-  }
+  std::visit([&](const auto& each) { add(hash, each); }, what);
 }
 
 }  // namespace

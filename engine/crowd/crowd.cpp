@@ -197,7 +197,6 @@ std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, con
       "heights");
   gpu::uploadImage(context, crowd.heights, terrain.heights, gpu::sampledOn(context));
   crowd.edits = crowd::HeightEdits(context);
-  crowd::checkEvents(scene, terrain);
   crowd.events = scene.events;
   if (options.timestamps) crowd.timer = gpu::StageTimer(context, crowd::Frame::mostStages);
   crowd.watchEvery = crowd::watchEvery(options, scene.capacity());
@@ -223,6 +222,8 @@ void fillAll(Impl& crowd, bool spawn) {
 
 std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
                                 crowd::Kinds kinds, const CrowdOptions& options) {
+  // A state's were checked when its crowd began, with the herds that there were then.
+  crowd::checkEvents(scene, terrain);
   auto made = beginCrowd(device, terrain, scene, options);
   Impl& crowd = *made;
   for (size_t k = 0; k < kinds.rigs.size(); ++k)
@@ -351,8 +352,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   Impl& crowd = *impl_;
   const vk::CommandBuffer cmd(commandBuffer);
   crowd::setTick(crowd, dt);
-  for (const Event& event : crowd::eventsAt(crowd.events, crowd.tick + 1, double{dt}))
-    crowd::happen(event, *this);
+  crowd::letEventsHappen(*this);
   const uint64_t tick = ++crowd.tick;
   crowd.agentsInTick = agentCount();
 

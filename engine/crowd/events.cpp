@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
+#include "crowd/herd.h"
+#include "crowd/steer.h"
 #include "skitter/error.h"
 
 namespace skitter::crowd {
@@ -31,6 +35,10 @@ Rectangle rectangleOf(const Mound& mound, const Heightfield& terrain) {
 Rectangle rectangleOf(const HeightSamples& samples, const Heightfield&) {
   return {samples.x, samples.z, samples.columns, samples.rows};
 }
+template <class AboutAgents>
+Rectangle rectangleOf(const AboutAgents&, const Heightfield&) {
+  return {};
+}
 
 std::vector<float> heightsOf(const Mound& mound, const Rectangle& at, const Heightfield& terrain) {
   std::vector<float> heights;
@@ -55,37 +63,126 @@ uint64_t tickOf(const Event& event, double dt) {
   return static_cast<uint64_t>(std::max(1.0, std::ceil(double{event.at} / dt - 1e-3)));
 }
 
-// As Heightfield::edit will.
-void check(const HeightSamples& edit, const std::string& event, const Heightfield& terrain) {
-  const auto& [x, z, columns, rows, heights] = edit;
-  if (uint64_t{x} + columns > terrain.columns || uint64_t{z} + rows > terrain.rows)
-    throw inputError(fmt::format("{}.edit: {} x {} samples at {}, {}, expected some of the {} x {} of {}",
-                                 event, columns, rows, x, z, terrain.columns, terrain.rows, terrain.name));
-  if (heights.size() != uint64_t{columns} * rows)
-    throw inputError(
-        fmt::format("{}.edit: {} heights, expected {}", event, heights.size(), uint64_t{columns} * rows));
-  if (!std::ranges::all_of(heights, [](float height) { return std::isfinite(height); }))
-    throw inputError(fmt::format("{}.edit: a height is not finite", event));
-}
+// Who would be there as a tick's events happen one after the other: none of them happens where one cannot.
+class Rehearsal {
+ public:
+  explicit Rehearsal(const Crowd::Impl& crowd) : crowd_(crowd) {}
+
+  void play(const Event& event) {
+    const auto number = &event - crowd_.events.data();
+    std::visit(
+        [&](const auto& what) { play(what, fmt::format("{}: events[{}]", crowd_.scene.name, number)); },
+        event.what);
+  }
+
+ private:
+  void play(const Mound&, const std::string&) {}
+  void play(const HeightSamples&, const std::string&) {}
+  // Goals and speeds.
+  template <class Change>
+  void play(const Change& change, const std::string& name) {
+    herdAt(change.herd, name);
+    for (const uint32_t agent : change.agents) expectSomebody(change.herd, agent, name);
+  }
+  void play(const Teleport& teleport, const std::string& name) {
+    for (const Teleport::Move& move : teleport.moves) expectSomebody(teleport.herd, move.agent, name);
+  }
+  void play(const Addition& addition, const std::string& name) {
+    Presence& presence = presenceOf(addition.herd, name);
+    expectItsReserve(addition.herd, name);
+    for (size_t i = 0; i < addition.arrivals.size(); ++i) {
+      const std::optional<uint32_t> empty = presence.lowestEmpty();
+      if (!empty)
+        throw inputError(fmt::format(
+            "{}.add[{}]: all of the {} places of herd {} are taken, expected an empty one: a larger "
+            "reserve has more",
+            name, i, presence.generations.size(), addition.herd));
+      presence.come(*empty);
+    }
+  }
+  void play(const Removal& removal, const std::string& name) {
+    for (const uint32_t agent : removal.agents) {
+      expectSomebody(removal.herd, agent, name);
+      presenceOf(removal.herd, name).leave(agent);
+    }
+    expectItsReserve(removal.herd, name);
+  }
+
+  // The host may have removed the herd, and may have made another one of that number.
+  const Herd& herdAt(uint32_t number, const std::string& name) const {
+    const Herd& herd = crowd_.herdAt(number);
+    if (herd.generation % 2 == 1)
+      throw inputError(fmt::format("{}: herd {} was removed, expected one that is there", name, number));
+    return herd;
+  }
+  Presence& presenceOf(uint32_t herd, const std::string& name) {
+    return presences_.try_emplace(herd, herdAt(herd, name).presence).first->second;
+  }
+  void expectSomebody(uint32_t herd, uint32_t agent, const std::string& name) {
+    const Presence& presence = presenceOf(herd, name);
+    if (agent >= presence.generations.size() || !presence.has(agent))
+      throw inputError(fmt::format("{}: herd {}, agent {}: nobody, expected one of {} agents", name, herd,
+                                   agent, presence.count));
+  }
+  void expectItsReserve(uint32_t herd, const std::string& name) const {
+    expectReserve([&] { return fmt::format("{}: herd {}", name, herd); }, crowd_.kindOf(herd).reserves);
+  }
+
+  const Crowd::Impl& crowd_;
+  std::map<uint32_t, Presence> presences_;  // of the herds that events name
+};
+
+// What the host would call. The rehearsal has found nothing in the way.
+class Happening {
+ public:
+  explicit Happening(Crowd& crowd) : crowd_(crowd) {}
+
+  void operator()(const Mound& mound) const { edit(mound); }
+  void operator()(const HeightSamples& samples) const { edit(samples); }
+  void operator()(const GoalChange& change) const {
+    if (change.agents.empty()) return crowd_.steer(change.herd, change.goal);
+    std::vector<AgentGoal> goals;
+    for (const uint32_t agent : change.agents)
+      goals.push_back({crowd_.agentId(change.herd, agent), change.goal});
+    crowd_.steer(goals);
+  }
+  void operator()(const SpeedChange& change) const {
+    if (change.agents.empty()) return crowd_.setSpeed(change.herd, change.speed);
+    std::vector<AgentSpeed> speeds;
+    for (const uint32_t agent : change.agents)
+      speeds.push_back({crowd_.agentId(change.herd, agent), change.speed});
+    crowd_.setSpeed(speeds);
+  }
+  void operator()(const Teleport& teleport) const {
+    std::vector<AgentPlace> places;
+    for (const auto& [agent, place] : teleport.moves)
+      places.push_back({crowd_.agentId(teleport.herd, agent), place});
+    crowd_.teleport(places);
+  }
+  void operator()(const Addition& addition) const {
+    for (const auto& [place, goal] : addition.arrivals) {
+      if (goal)
+        crowd_.add(addition.herd, place, *goal);
+      else
+        crowd_.add(addition.herd, place);
+    }
+  }
+  void operator()(const Removal& removal) const {
+    for (const uint32_t agent : removal.agents) crowd_.remove(crowd_.agentId(removal.herd, agent));
+  }
+
+ private:
+  template <class Ground>
+  void edit(const Ground& ground) const {
+    const Rectangle at = rectangleOf(ground, crowd_.terrain());
+    if (at.columns == 0) return;
+    crowd_.editHeights(at.x, at.z, at.columns, at.rows, heightsOf(ground, at, crowd_.terrain()));
+  }
+
+  Crowd& crowd_;
+};
 
 }  // namespace
-
-void checkEvents(const Scene& scene, const Heightfield& terrain) {
-  for (size_t e = 0; e < scene.events.size(); ++e) {
-    const Event& event = scene.events[e];
-    const std::string name = fmt::format("{}: events[{}]", scene.name, e);
-    if (!(event.at >= 0 && event.at <= Event::maxTime))
-      throw inputError(fmt::format("{}.at is {}, expected 0 to {} s", name, event.at, Event::maxTime));
-    if (e > 0 && event.at < scene.events[e - 1].at)
-      throw inputError(fmt::format("{}.at is {}, expected {} or later, as the event before it", name,
-                                   event.at, scene.events[e - 1].at));
-    if (const auto* mound = std::get_if<Mound>(&event.what))
-      if (!(mound->radius > 0 && std::isfinite(mound->radius) && std::isfinite(mound->height) &&
-            std::isfinite(mound->centre.x) && std::isfinite(mound->centre.y)))
-        throw inputError(fmt::format("{}.mound: expected a radius above 0, and finite numbers", name));
-    if (const auto* samples = std::get_if<HeightSamples>(&event.what)) check(*samples, name, terrain);
-  }
-}
 
 std::span<const Event> eventsAt(std::span<const Event> events, uint64_t tick, double dt) {
   const auto byTick = [&](const Event& event) { return tickOf(event, dt); };
@@ -97,12 +194,21 @@ Rectangle groundOf(const Event& event, const Heightfield& terrain) {
   return std::visit([&](const auto& what) { return rectangleOf(what, terrain); }, event.what);
 }
 
-void happen(const Event& event, Crowd& crowd) {
-  const Rectangle at = groundOf(event, crowd.terrain());
-  if (at.columns == 0) return;
-  const std::vector<float> heights =
-      std::visit([&](const auto& what) { return heightsOf(what, at, crowd.terrain()); }, event.what);
-  crowd.editHeights(at.x, at.z, at.columns, at.rows, heights);
+bool namesAgents(const Event& event) {
+  if (const auto* change = std::get_if<GoalChange>(&event.what)) return !change->agents.empty();
+  if (const auto* change = std::get_if<SpeedChange>(&event.what)) return !change->agents.empty();
+  return std::holds_alternative<Teleport>(event.what) || std::holds_alternative<Removal>(event.what);
+}
+
+void letEventsHappen(Crowd& crowd) {
+  Crowd::Impl& impl = implOf(crowd);
+  const uint64_t tick = impl.tick + 1;
+  if (impl.happened == tick) return;
+  const std::span<const Event> events = eventsAt(impl.events, tick, double{impl.dt});
+  Rehearsal rehearsal(impl);
+  for (const Event& event : events) rehearsal.play(event);
+  for (const Event& event : events) std::visit(Happening(crowd), event.what);
+  impl.happened = tick;
 }
 
 }  // namespace skitter::crowd

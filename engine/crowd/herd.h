@@ -121,7 +121,8 @@ struct Crowd::Impl {
   uint32_t revision = 0;           // of kinds and herds: a renderer that has seen another looks again
   crowd::HeightEdits edits;
   std::vector<Event> events;  // the scene's, by time
-  uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground; 0: never
+  uint64_t happened = 0;      // the last tick before which events have happened
+  uint64_t watchUntil = 0;    // the last tick in which gait looks at the ground; 0: never
   uint64_t tick = 0;
   uint64_t agentsInTick = 0;  // who were there in it
   float dt = 0;               // of the first tick; 0 before it

@@ -1,64 +1,19 @@
 // What the host says while a crowd runs; engine/crowd/changes.h carries it to the device.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <utility>
-
 #include "crowd/page.h"
 #include "crowd/spawn.h"
+#include "crowd/steer.h"
 #include "skitter/crowd.h"
 #include "skitter/error.h"
 
 namespace skitter {
 namespace {
 
-using crowd::AgentChange;
+using crowd::AgentChange, crowd::expectGoal, crowd::expectPlace, crowd::expectSpeed;
 
-// `agent` says whose it is, where that is known.
+std::string nameOf(uint32_t herd) { return fmt::format("herd {}", herd); }
 std::string nameOf(uint32_t herd, uint32_t agent) { return fmt::format("herd {}, agent {}", herd, agent); }
-
-template <class Name>
-void expectWithin(const Name& name, const char* what, double value, double least, double most,
-                  const char* unit) {
-  if (value >= least && value <= most) return;
-  throw inputError(
-      fmt::format("{}: {} is {:.6g} {}, expected {:.6g} to {:.6g}", name(), what, value, unit, least, most));
-}
-
-template <class Name>
-void expectSpeed(const Name& name, const char* what, float speed) {
-  expectWithin(name, what, double{speed}, 0, double{Goal::maxSpeed}, "m/s");
-}
-
-// Only what the goal's kind reads.
-template <class Name>
-void expectGoal(const Name& name, const Goal& goal) {
-  constexpr double most = Scene::maxCoordinate;
-  switch (goal.kind) {
-    case Goal::Kind::velocity:
-      expectSpeed(name, "the length of goal.velocity", glm::length(goal.velocity));
-      return;
-    case Goal::Kind::point:
-      expectWithin(name, "goal.target x", double{goal.target.x}, -most, most, "m");
-      expectWithin(name, "goal.target z", double{goal.target.y}, -most, most, "m");
-      [[fallthrough]];
-    case Goal::Kind::cross:
-      expectSpeed(name, "goal.speed", goal.speed);
-      return;
-    case Goal::Kind::none:
-      return;
-  }
-  throw inputError(
-      fmt::format("{}: goal.kind is {}, expected one of Goal::Kind", name(), static_cast<int>(goal.kind)));
-}
-
-template <class Name>
-void expectPlace(const Name& name, const Heightfield& terrain, const Place& place) {
-  const double x = double{terrain.extentX()} / 2, z = double{terrain.extentZ()} / 2;
-  expectWithin(name, "x", double{place.position.x}, -x, x, "m");
-  expectWithin(name, "z", double{place.position.y}, -z, z, "m");
-  expectWithin(name, "the heading", double{place.heading}, -1000, 1000, "radians");
-}
 
 void expectOneEach(const crowd::Herd& herd, uint32_t number, size_t found, const char* what) {
   if (found != herd.agents)
@@ -91,9 +46,7 @@ AgentChange& changeOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agen
 }
 
 void expectReserve(const Crowd::Impl& crowd, uint32_t herd) {
-  if (!crowd.kindOf(herd).reserves)
-    throw inputError(
-        fmt::format("herd {}: its reserve is 0, expected at least 1 where agents come and go", herd));
+  crowd::expectReserve([&] { return nameOf(herd); }, crowd.kindOf(herd).reserves);
 }
 
 // Sets goals of a herd's agents.
@@ -123,7 +76,7 @@ void setSpeedOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agent, flo
 
 void Crowd::steer(uint32_t number, const Goal& goal) {
   const crowd::Herd& herd = impl_->herdAt(number);
-  expectGoal([&] { return fmt::format("herd {}", number); }, goal);
+  expectGoal([&] { return nameOf(number); }, goal);
   const Steerer steerer(*impl_, herd);
   forEach(herd, [&](uint32_t agent) { steerer.steer(agent, goal); });
 }
@@ -146,7 +99,7 @@ void Crowd::steer(std::span<const AgentGoal> goals) {
 
 void Crowd::setSpeed(uint32_t number, float speed) {
   const crowd::Herd& herd = impl_->herdAt(number);
-  expectSpeed([&] { return fmt::format("herd {}", number); }, "the speed", speed);
+  expectSpeed([&] { return nameOf(number); }, "the speed", speed);
   forEach(herd, [&](uint32_t agent) { setSpeedOf(*impl_, herd, agent, speed); });
 }
 

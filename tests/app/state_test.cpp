@@ -70,6 +70,11 @@ TEST_F(States, GoOnWithEveryOptionOfTheRun) {
 TEST_F(States, GoOnWithAnotherRigAndSeveralHerds) {
   expectSameWhole({"--agents", "9", "--rig", SKITTER_ROOT "/assets/quadruped.glb"});
   expectSameWhole({SKITTER_ROOT "/assets/scenes/three_herds.json", "--agents", "9", "--obstacle"});
+  // It has an event before, one at the frame that is saved, and some after.
+  write("scene.json", R"({"herds": [{"agents": 9, "reserve": 2}], "events": [
+    {"at": 0.2, "add": [{"position": [1, 2]}]}, {"at": 0.416666667, "remove": [3]},
+    {"at": 0.6, "teleport": [{"agent": 9, "position": [5, 5]}]}, {"at": 0.6, "speed": 2}]})");
+  expectSameWhole({file("scene.json")});
 }
 
 TEST_F(States, NeedNothingBesideThem) {

@@ -118,6 +118,31 @@ TEST(Scene, CamerasThatOrbitAndGoAlongPaths) {
   EXPECT_EQ(path.camera.keys, keys);
 }
 
+TEST(Scene, EventsOfEveryKind) {
+  const Scene scene = parseScene(R"({"events": [
+    {"mound": {"radius": 2}},
+    {"at": 1, "goal": {"kind": "none"}},
+    {"at": 1, "herd": 2, "agents": [3, 1], "goal": {"kind": "point", "target": [5, 6]}},
+    {"at": 2, "herd": 1, "agents": [9], "speed": 0.5},
+    {"at": 3, "herd": 1, "teleport": [{"agent": 4, "position": [1, -2], "heading": 1.5}, {"agent": 0}]},
+    {"at": 4, "herd": 1, "add": [{"position": [7, 8], "heading": -1}, {"goal": {"kind": "none"}}]},
+    {"at": 5, "remove": [2, 7]}
+  ]})",
+                                 "events.json", "");
+  const Goal none{.kind = Goal::Kind::none}, point{.kind = Goal::Kind::point, .target = {5, 6}};
+  const std::vector<Event> expected{
+      {0, Mound{.radius = 2}},
+      {1, GoalChange{.goal = none}},
+      {1, GoalChange{.herd = 2, .agents = {3, 1}, .goal = point}},
+      {2, SpeedChange{.herd = 1, .agents = {9}, .speed = 0.5f}},
+      {3, Teleport{.herd = 1, .moves = {{4, {{1, -2}, 1.5f}}, {0, {}}}}},
+      {4, Addition{.herd = 1, .arrivals = {{.place = {{7, 8}, -1}}, {.goal = none}}}},
+      {5, Removal{.agents = {2, 7}}},
+  };
+  ASSERT_EQ(scene.events.size(), expected.size());
+  for (size_t e = 0; e < expected.size(); ++e) EXPECT_TRUE(scene.events[e] == expected[e]) << e;
+}
+
 TEST(Scene, LooksOfAHerd) {
   const auto herd = [](const char* keys) {
     return parseScene(fmt::format(R"({{"herds": [{{{}}}]}})", keys), "looks.json", "").herds.at(0);
@@ -198,7 +223,8 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"camera": {"about": [0, 1]}})", "camera.about is an array of 2"},
       {R"({"events": {}})", "events is an object, expected an array of at most 4096 events"},
       {R"({"events": [{"at": -1, "mound": {}}]})", "events[0].at is -1"},
-      {R"({"events": [{"at": 1}]})", "events[0] has 0 of mound, edit, expected one"},
+      {R"({"events": [{"at": 1}]})",
+       "events[0] has 0 of mound, edit, goal, speed, teleport, add, remove, expected one"},
       {R"({"events": [{"mound": {}, "edit": {"columns": 1, "rows": 1, "heights": [0]}}]})",
        "events[0] has 2 of mound, edit"},
       {R"({"events": [{"mond": {}, "mound": {}}]})", "events[0].mond is no known key; did you mean mound?"},
@@ -209,6 +235,34 @@ TEST(Scene, FaultsNameFileAndField) {
        "events[0].edit.heights has 3 numbers, expected 4"},
       {R"({"events": [{"edit": {"x": 16384, "columns": 1, "rows": 1, "heights": [0]}}]})",
        "events[0].edit.x is 16384"},
+      {R"({"events": [{"herd": 0, "gaol": {}}]})", "events[0].gaol is no known key; did you mean goal?"},
+      {R"({"events": [{"herd": 0, "mound": {}}]})", "events[0].herd is no known key"},
+      {R"({"events": [{"herd": 0, "goal": {}, "speed": 1}]})", "events[0] has 2 of mound, edit, goal, speed"},
+      {R"({"events": [{"herd": 1024, "speed": 1}]})",
+       "events[0].herd is 1024, expected a whole number from 0 to 1023"},
+      {R"({"events": [{"agents": 3, "speed": 1}]})",
+       "events[0].agents is 3, expected an array of 1 to 65536"},
+      {R"({"events": [{"agents": [], "speed": 1}]})", "events[0].agents is an array of 0"},
+      {R"({"events": [{"agents": [0, 1.5], "speed": 1}]})",
+       "events[0].agents[1] is 1.5, expected a whole number from 0 to 16777215"},
+      {R"({"events": [{"speed": 1001}]})", "events[0].speed is 1001, expected a number from 0 to 1000"},
+      {R"({"events": [{"goal": {"knd": "none"}}]})",
+       "events[0].goal.knd is no known key; did you mean kind?"},
+      {R"({"events": [{"goal": {"velocity": [800, 800]}}]})", "events[0].goal.velocity is 1131.37 m/s long"},
+      {R"({"events": [{"teleport": []}]})", "events[0].teleport is empty, expected at least one agent"},
+      {R"({"events": [{"teleport": [{"position": [1, 2]}]}]})", "events[0].teleport[0].agent is missing"},
+      {R"({"events": [{"teleport": [{"agent": 1, "positon": [1, 2]}]}]})",
+       "events[0].teleport[0].positon is no known key; did you mean position?"},
+      {R"({"events": [{"teleport": [{"agent": 1, "position": [1, 4097]}]}]})",
+       "events[0].teleport[0].position[1] is 4097"},
+      {R"({"events": [{"agents": [1], "teleport": [{"agent": 1}]}]})", "events[0].agents is no known key"},
+      {R"({"events": [{"add": {}}]})",
+       "events[0].add is an object, expected an array of at most 65536 agents"},
+      {R"({"events": [{"add": []}]})", "events[0].add is empty, expected at least one agent"},
+      {R"({"events": [{"add": [{"heading": 1001}]}]})", "events[0].add[0].heading is 1001"},
+      {R"({"events": [{"add": [{"goal": {"speed": -1}}]}]})", "events[0].add[0].goal.speed is -1"},
+      {R"({"events": [{"remove": []}]})", "events[0].remove is an array of 0"},
+      {R"({"events": [{"remove": [0, -1]}]})", "events[0].remove[1] is -1"},
       {R"({"seed": 1, "seed": 2})", "\"seed\" appears twice"},
       {R"({"seed": NaN})", "line 1"},
       {"", "not valid JSON"},
@@ -284,10 +338,7 @@ class RandomScenes {
     float last = 0;
     for (auto& [at, what] : events) {
       at = last += real(0, 5);
-      if (coin())
-        what = mound();
-      else
-        what = samples();
+      what = happening();
     }
     seed = random_();
     return made;
@@ -386,14 +437,81 @@ class RandomScenes {
     centre = place();
     heading = real(-10, 10);
     reserve = static_cast<uint32_t>(whole(0, 1000));
-    auto& [goalKind, target, speed, velocity] = goal;
-    goalKind = one({Goal::Kind::cross, Goal::Kind::point, Goal::Kind::none, Goal::Kind::velocity});
-    velocity = {real(-10, 10), real(-10, 10)};
-    target = place();
-    speed = real(0, 10);
+    goal = this->goal();
     maybe(phase, 0, 1);
     if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
     maybe(tint, 0, 1);
+    return made;
+  }
+  Goal goal() {
+    Goal made;
+    auto& [kind, target, speed, velocity] = made;
+    kind = one({Goal::Kind::cross, Goal::Kind::point, Goal::Kind::none, Goal::Kind::velocity});
+    velocity = {real(-10, 10), real(-10, 10)};
+    target = place();
+    speed = real(0, 10);
+    return made;
+  }
+  decltype(Event::what) happening() {
+    switch (whole(0, 6)) {
+      case 0:
+        return mound();
+      case 1:
+        return samples();
+      case 2: {
+        GoalChange made;
+        auto& [herd, agents, goal] = made;
+        herd = someHerd();
+        agents = numbers(0);
+        goal = this->goal();
+        return made;
+      }
+      case 3: {
+        SpeedChange made;
+        auto& [herd, agents, speed] = made;
+        herd = someHerd();
+        agents = numbers(0);
+        speed = real(0, 10);
+        return made;
+      }
+      case 4: {
+        Teleport made;
+        auto& [herd, moves] = made;
+        herd = someHerd();
+        for (const uint32_t agent : numbers(1)) moves.push_back({agent, standing()});
+        return made;
+      }
+      case 5: {
+        Addition made;
+        auto& [herd, arrivals] = made;
+        herd = someHerd();
+        arrivals.resize(whole(1, 3));
+        for (auto& [place, goal] : arrivals) {
+          place = standing();
+          if (coin()) goal = this->goal();
+        }
+        return made;
+      }
+      default: {
+        Removal made;
+        auto& [herd, agents] = made;
+        herd = someHerd();
+        agents = numbers(1);
+        return made;
+      }
+    }
+  }
+  uint32_t someHerd() { return static_cast<uint32_t>(whole(0, Scene::maxHerds - 1)); }
+  std::vector<uint32_t> numbers(uint64_t least) {
+    std::vector<uint32_t> made(whole(least, 3));
+    for (uint32_t& each : made) each = static_cast<uint32_t>(whole(0, Scene::maxAgents - 1));
+    return made;
+  }
+  Place standing() {
+    Place made;
+    auto& [position, heading] = made;
+    position = place();
+    heading = real(-10, 10);
     return made;
   }
   Mound mound() {
@@ -479,6 +597,22 @@ TEST(Scene, IsNotWrittenWhereItCouldNotBeRead) {
               scene.herds[0].cuts.push_back({"walk", "", 0, 1});
             }),
             "built-in: herds[0].cuts[0].name is missing");
+  const auto faultOfEvent = [&](const decltype(Event::what)& what) {
+    return faultOf([&](Scene& scene) { scene.events.push_back({0, what}); });
+  };
+  EXPECT_EQ(faultOfEvent(Teleport{}), "built-in: events[0].teleport is empty, expected at least one agent");
+  EXPECT_EQ(faultOfEvent(Addition{}), "built-in: events[0].add is empty, expected at least one agent");
+  EXPECT_EQ(faultOfEvent(Removal{}), "built-in: events[0].remove is empty, expected at least one agent");
+  EXPECT_EQ(
+      faultOfEvent(Teleport{.moves = {{}}}),
+      "built-in: events[0].teleport[0].agent is 4294967295, expected a whole number from 0 to 16777215");
+  EXPECT_EQ(faultOfEvent(SpeedChange{.herd = 1024}),
+            "built-in: events[0].herd is 1024, expected a whole number from 0 to 1023");
+  const std::vector<uint32_t> many(Event::maxAgents + 1);
+  EXPECT_EQ(faultOfEvent(GoalChange{.agents = many}),
+            "built-in: events[0].agents are 65537, expected at most 65536");
+  EXPECT_EQ(faultOfEvent(Addition{.arrivals = std::vector<Addition::Arrival>(Event::maxAgents + 1)}),
+            "built-in: events[0].add are 65537, expected at most 65536");
 }
 
 }  // namespace

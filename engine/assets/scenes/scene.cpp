@@ -75,13 +75,7 @@ class Reader {
   }
   template <typename Integer>
   void integer(const char* key, Integer& value, uint64_t least, uint64_t most) {
-    const auto* json = find(key);
-    if (!json) return;
-    const bool whole = json->is_number_unsigned();
-    if (!whole || json->get<uint64_t>() < least || json->get<uint64_t>() > most) {
-      fail(pathOf(key), *json, fmt::format("a whole number from {} to {}", least, most));
-    }
-    value = static_cast<Integer>(json->get<uint64_t>());
+    if (const auto* json = find(key)) value = static_cast<Integer>(whole(*json, pathOf(key), least, most));
   }
   template <typename Integer>
   void integer(const char* key, std::optional<Integer>& value, uint64_t least, uint64_t most) {
@@ -138,6 +132,18 @@ class Reader {
     for (const nlohmann::json& item : *json) {
       const std::string path = fmt::format("{}[{}]", pathOf(key), values.size());
       values.push_back(static_cast<float>(number(item, path, least, most)));
+    }
+  }
+  // Whole numbers from 0 on, at least one: a missing key means something else than none.
+  void integers(const char* key, std::vector<uint32_t>& values, size_t mostValues, uint32_t most) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_array() || json->empty() || json->size() > mostValues)
+      fail(pathOf(key), *json, fmt::format("an array of 1 to {} whole numbers", mostValues));
+    values.clear();
+    for (const nlohmann::json& item : *json) {
+      const std::string path = fmt::format("{}[{}]", pathOf(key), values.size());
+      values.push_back(static_cast<uint32_t>(whole(item, path, 0, most)));
     }
   }
   // A number from 0 to 1, or "random", which is none, or "together", which is 0.
@@ -208,6 +214,10 @@ class Reader {
     if (const auto* json = find(key)) read(*json, pathOf(key), value);
   }
   template <typename Object>
+  void object(const char* key, std::optional<Object>& value) {
+    if (find(key)) object(key, value.emplace());
+  }
+  template <typename Object>
   void objects(const char* key, std::vector<Object>& values, size_t most, const char* what) {
     const auto* json = find(key);
     if (!json) return;
@@ -220,7 +230,7 @@ class Reader {
     }
   }
 
-  // The alternative whose key is there: exactly one is.
+  // The alternative whose key is there: exactly one is. It may have more keys in this object.
   template <size_t Count, typename... Kinds>
   void oneOf(const char* const (&keys)[Count], std::variant<Kinds...>& value) {
     static_assert(Count == sizeof...(Kinds));
@@ -229,10 +239,17 @@ class Reader {
       const char* key = keys[index++];
       if (!find(key)) return;
       ++found;
-      object(key, made);
+      keysOf(*this, key, made);
       value = std::move(made);
     };
     (readIf(Kinds{}), ...);
+    if (found == 0) {
+      // A misspelt key says more than a missing one. The keys of every alternative are known by then.
+      index = 0;
+      const auto know = [&]<typename Kind>(Kind none) { keysOf(*this, keys[index++], none); };
+      (know(Kinds{}), ...);
+      finish();
+    }
     if (found != 1)
       throw inputError(fmt::format("{}: {} has {} of {}, expected one", source_.file, path_, found,
                                    fmt::join(keys, ", ")));
@@ -280,6 +297,11 @@ class Reader {
     }
     return json.get<double>();
   }
+  uint64_t whole(const nlohmann::json& json, const std::string& path, uint64_t least, uint64_t most) const {
+    if (!json.is_number_unsigned() || json.get<uint64_t>() < least || json.get<uint64_t>() > most)
+      fail(path, json, fmt::format("a whole number from {} to {}", least, most));
+    return json.get<uint64_t>();
+  }
 
   const nlohmann::json& json_;
   const Source& source_;
@@ -307,10 +329,7 @@ class Writer {
   }
   template <typename Integer>
   void integer(const char* key, const Integer& value, uint64_t least, uint64_t most) {
-    const auto whole = static_cast<uint64_t>(value);
-    if (whole < least || whole > most)
-      failIn(file_, pathOf(key), value, fmt::format("a whole number from {} to {}", least, most));
-    json_[key] = whole;
+    json_[key] = whole(static_cast<uint64_t>(value), pathOf(key), least, most);
   }
   template <typename Integer>
   void integer(const char* key, const std::optional<Integer>& value, uint64_t least, uint64_t most) {
@@ -340,11 +359,16 @@ class Writer {
   }
   void key(const char* key, const std::vector<float>& values, size_t mostValues, double least, double most) {
     nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
-    if (values.size() > mostValues)
-      throw inputError(
-          fmt::format("{}: {} are {}, expected at most {}", file_, pathOf(key), values.size(), mostValues));
+    expectAtMost(mostValues, values.size(), key);
     for (const float value : values)
       array.push_back(number(value, fmt::format("{}[{}]", pathOf(key), array.size()), least, most));
+  }
+  void integers(const char* key, const std::vector<uint32_t>& values, size_t mostValues, uint32_t most) {
+    if (values.empty()) return;
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    expectAtMost(mostValues, values.size(), key);
+    for (const uint32_t value : values)
+      array.push_back(whole(value, fmt::format("{}[{}]", pathOf(key), array.size()), 0, most));
   }
   void phase(const char* key, const std::optional<float>& value) { this->key(key, value, 0, 1); }
   void colour(const char* key, const std::optional<glm::vec3>& value) {
@@ -369,15 +393,20 @@ class Writer {
     json_[key] = written(pathOf(key), value);
   }
   template <typename Object>
-  void objects(const char* key, std::vector<Object>& values, size_t, const char*) {
+  void object(const char* key, std::optional<Object>& value) {
+    if (value) object(key, *value);
+  }
+  template <typename Object>
+  void objects(const char* key, std::vector<Object>& values, size_t most, const char*) {
     nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    expectAtMost(most, values.size(), key);
     for (Object& value : values)
       array.push_back(written(fmt::format("{}[{}]", pathOf(key), array.size()), value));
   }
 
   template <size_t Count, typename... Kinds>
   void oneOf(const char* const (&keys)[Count], std::variant<Kinds...>& value) {
-    std::visit([&](auto& each) { object(keys[value.index()], each); }, value);
+    std::visit([&](auto& each) { keysOf(*this, keys[value.index()], each); }, value);
   }
 
   const nlohmann::ordered_json& json() const { return json_; }
@@ -390,6 +419,15 @@ class Writer {
   [[noreturn]] void failRange(const std::string& path, double found, double least, double most) const {
     throw inputError(
         fmt::format("{}: {} is {}, expected a number from {} to {}", file_, path, found, least, most));
+  }
+  void expectAtMost(size_t most, size_t found, const char* key) const {
+    if (found > most)
+      throw inputError(fmt::format("{}: {} are {}, expected at most {}", file_, pathOf(key), found, most));
+  }
+  uint64_t whole(uint64_t value, const std::string& path, uint64_t least, uint64_t most) const {
+    if (value < least || value > most)
+      failIn(file_, path, value, fmt::format("a whole number from {} to {}", least, most));
+    return value;
   }
   // The shortest decimals that are read as this float.
   double number(float value, const std::string& path, double least, double most) const {
@@ -589,10 +627,86 @@ void checkKeys(const HeightSamples& samples, const std::string& file, const std:
 }
 
 template <class Fields>
+void keysOf(Fields& fields, Place& place) {
+  auto& [position, heading] = place;
+  fields.key("position", position, Scene::maxCoordinate);
+  fields.key("heading", heading, -1000, 1000);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Teleport::Move& move) {
+  auto& [agent, place] = move;
+  fields.integer("agent", agent, 0, Scene::maxAgents - 1);
+  keysOf(fields, place);
+}
+void checkKeys(const Teleport::Move& move, const std::string& file, const std::string& path) {
+  if (move.agent == Teleport::Move{}.agent)
+    throw inputError(fmt::format("{}: {}.agent is missing", file, path));
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Addition::Arrival& arrival) {
+  auto& [place, goal] = arrival;
+  keysOf(fields, place);
+  fields.object("goal", goal);
+}
+
+// The keys of what an event does, of which `key` says that it does that.
+template <class Fields>
+void keysOf(Fields& fields, const char* key, Mound& mound) {
+  fields.object(key, mound);
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, HeightSamples& samples) {
+  fields.object(key, samples);
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, GoalChange& change) {
+  auto& [herd, agents, goal] = change;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+  fields.object(key, goal);
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, SpeedChange& change) {
+  auto& [herd, agents, speed] = change;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+  fields.key(key, speed, 0, double{Goal::maxSpeed});
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, Teleport& teleport) {
+  auto& [herd, moves] = teleport;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.objects(key, moves, Event::maxAgents, "agents");
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, Addition& addition) {
+  auto& [herd, arrivals] = addition;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.objects(key, arrivals, Event::maxAgents, "agents");
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, Removal& removal) {
+  auto& [herd, agents] = removal;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers(key, agents, Event::maxAgents, Scene::maxAgents - 1);
+}
+
+template <class Fields>
 void keysOf(Fields& fields, Event& event) {
   auto& [at, what] = event;
   fields.key("at", at, 0, Event::maxTime);
-  fields.oneOf({"mound", "edit"}, what);
+  fields.oneOf({"mound", "edit", "goal", "speed", "teleport", "add", "remove"}, what);
+}
+void checkKeys(const Event& event, const std::string& file, const std::string& path) {
+  const auto expectSome = [&](const char* key, const auto& list) {
+    if (list.empty())
+      throw inputError(fmt::format("{}: {}.{} is empty, expected at least one agent", file, path, key));
+  };
+  if (const auto* teleport = std::get_if<Teleport>(&event.what)) expectSome("teleport", teleport->moves);
+  if (const auto* addition = std::get_if<Addition>(&event.what)) expectSome("add", addition->arrivals);
+  if (const auto* removal = std::get_if<Removal>(&event.what)) expectSome("remove", removal->agents);
 }
 
 template <class Fields>

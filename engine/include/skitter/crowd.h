@@ -147,8 +147,8 @@ class SKITTER_API Crowd {
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
   // cannot be (an unknown rig or controller, a count of rigs that is not that of herds, tuning out of its
   // range, more than 100 herds that differ, legs of an adaptive herd above 100 m, a terrain that reaches
-  // beyond 4 km from the origin) and, before any agent is made, Error(device) when memory does not suffice
-  // (as DeviceLimits::availableBytes, but now).
+  // beyond 4 km from the origin, an event that names nobody) and, before any agent is made, Error(device)
+  // when memory does not suffice (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // As it was when it was saved; on another device and in other pages, too: every record has the bits that it
   // had. What the state's options ask for and the state lacks (poses, feet, footfalls) follows from it.
@@ -162,9 +162,11 @@ class SKITTER_API Crowd {
   // Records one tick of `dt` seconds into the caller's command buffer (outside a render pass). It begins with
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in
-  // order. What Scene::events has for that time happens first, as if the caller had called editHeights just
-  // before. Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an
-  // adaptive herd, below 22 microseconds.
+  // order. What Scene::events has for that time happens first, as if the caller had called editHeights,
+  // steer, setSpeed, teleport, add or remove just before. Throws Error(input) where dt is not what it was
+  // before, for steps are timed in ticks, or, of an adaptive herd, below 22 microseconds; and where an event
+  // cannot happen, because an agent is not there or no place is left: then none of the tick's events has, and
+  // the tick can be recorded again.
   void record(VkCommandBuffer commandBuffer, float dt);
 
   // Replaces a rectangle of the terrain's samples while the crowd walks: columns [x0, x0 + columns), rows

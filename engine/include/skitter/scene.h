@@ -123,13 +123,72 @@ struct HeightSamples {
 
   bool operator==(const HeightSamples&) const = default;
 };
+
+// Where an agent is put, its feet on the ground around.
+struct Place {
+  glm::vec2 position{0};  // x, z, world metres, on the terrain
+  float heading = 0;      // radians about +Y, 0 faces +Z, -1000 to 1000
+
+  bool operator==(const Place&) const = default;
+};
+// What a scene says to agents, as Crowd::steer, setSpeed, teleport, add and remove do. Herds are named by
+// their number in the scene and agents by that of their place in the herd, below its agents and reserve:
+// whoever is there then.
+struct GoalChange {
+  uint32_t herd = 0;
+  std::vector<uint32_t> agents = {};  // empty: all who are there
+  Goal goal = {};
+
+  bool operator==(const GoalChange&) const = default;
+};
+struct SpeedChange {
+  uint32_t herd = 0;
+  std::vector<uint32_t> agents = {};  // empty: all who are there
+  float speed = 0;                    // metres a second, 0 to Goal::maxSpeed
+
+  bool operator==(const SpeedChange&) const = default;
+};
+struct Teleport {
+  struct Move {
+    uint32_t agent = UINT32_MAX;  // none
+    Place place = {};
+
+    bool operator==(const Move&) const = default;
+  };
+  uint32_t herd = 0;
+  std::vector<Move> moves = {};  // at least one
+
+  bool operator==(const Teleport&) const = default;
+};
+// To the lowest empty places of a herd with a reserve.
+struct Addition {
+  struct Arrival {
+    Place place = {};
+    std::optional<Goal> goal = {};  // none: the herd's
+
+    bool operator==(const Arrival&) const = default;
+  };
+  uint32_t herd = 0;
+  std::vector<Arrival> arrivals = {};  // at least one
+
+  bool operator==(const Addition&) const = default;
+};
+// From a herd with a reserve.
+struct Removal {
+  uint32_t herd = 0;
+  std::vector<uint32_t> agents = {};  // at least one, none twice
+
+  bool operator==(const Removal&) const = default;
+};
+
 // What happens to a running crowd, just before the first tick that ends at `at` or later.
 struct Event {
   static constexpr float maxTime = 86400;        // seconds
   static constexpr size_t maxSamples = 1 << 16;  // of HeightSamples
+  static constexpr size_t maxAgents = 1 << 16;   // that one event names, moves or adds
 
   float at = 0;  // seconds
-  std::variant<Mound, HeightSamples> what;
+  std::variant<Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal> what;
 
   bool operator==(const Event&) const = default;
 };

@@ -3,7 +3,6 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
-#include <glm/glm.hpp>
 
 #include "skitter/scene.h"
 
@@ -39,12 +38,6 @@ class AgentId {
 struct HerdId {
   uint32_t index = UINT32_MAX, generation = 0;
   constexpr bool operator==(const HerdId&) const = default;
-};
-
-// Where an agent is put, its feet on the ground around.
-struct Place {
-  glm::vec2 position{0};  // x, z, world metres, on the terrain
-  float heading = 0;      // radians about +Y, 0 faces +Z, -1000 to 1000
 };
 
 struct AgentGoal {
