@@ -17,8 +17,10 @@
 #include "app/common/values.h"
 #include "app/validate/ground_edits.h"
 #include "app/validate/outcome.h"
+#include "crowd/changes.h"
 #include "crowd/events.h"
 #include "crowd/herd.h"
+#include "crowd/setup.h"
 #include "gpu/submit.h"
 #include "skitter/error.h"
 #include "validation/free_run.h"
@@ -54,14 +56,17 @@ class FreeRuns {
       runs_.push_back(std::make_unique<validation::FreeRun>(
           validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), first[h]));
   }
+  void follow(const std::vector<HerdState>& before, const std::vector<HerdState>& after) {
+    for (size_t h = 0; h < runs_.size(); ++h) runs_[h]->follow(before[h], after[h]);
+  }
   void tick(const std::vector<HerdState>& device) {
     for (size_t h = 0; h < runs_.size(); ++h) runs_[h]->tick(device[h].watched);
   }
-  double shareWithin(const std::vector<HerdState>& device) const {
+  double shareWithin(const Crowd& crowd, const std::vector<HerdState>& device) const {
     double agents = 0, within = 0;
-    for (size_t h = 0; h < runs_.size(); ++h) {
-      agents += device[h].agents;
-      within += runs_[h]->shareWithin(device[h], freeRunTolerance) * device[h].agents;
+    for (uint32_t h = 0; h < runs_.size(); ++h) {
+      agents += crowd.agentCount(h);
+      within += runs_[h]->shareWithin(device[h], freeRunTolerance) * crowd.agentCount(h);
     }
     return agents > 0 ? within / agents : 1;
   }
@@ -78,11 +83,11 @@ std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd, const std::ve
   return replays;
 }
 
-// What tick n compares of every herd.
-std::vector<AgentSample> samplesAt(uint64_t n, const Scene& scene) {
+// What the next tick compares of every herd.
+std::vector<AgentSample> samplesOf(const Crowd& crowd, uint64_t seed) {
   std::vector<AgentSample> samples;
-  for (const Herd& herd : scene.herds)
-    samples.push_back(validation::sampleAt(scene.seed, n, herd.agents, agentsATick));
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h)
+    samples.push_back(validation::sampleAt(seed, crowd.tick() + 1, crowd.places(h), agentsATick));
   return samples;
 }
 
@@ -96,10 +101,14 @@ std::vector<HerdState> download(const Crowd& crowd) {
   return download(crowd, std::vector<AgentSample>(crowd.herdCount()));
 }
 
-// The ground that the scene's events have changed just before the last tick.
-void tellOfEvents(const Crowd& crowd, double dt, const std::vector<std::unique_ptr<Replay>>& replays) {
+// What the scene has for the next tick happens now: the states before the tick then show what agents were
+// told, and the reference begins with it as the tick does.
+void letEventsHappen(Crowd& crowd, const std::vector<std::unique_ptr<Replay>>& replays,
+                     std::optional<FreeRuns>& freeRuns) {
+  Crowd::Impl& impl = implOf(crowd);
+  crowd::letEventsHappen(crowd);
   const Heightfield& ground = crowd.terrain();
-  for (const Event& event : crowd::eventsAt(implOf(crowd).events, crowd.tick(), static_cast<float>(dt))) {
+  for (const Event& event : crowd::eventsAt(impl.events, crowd.tick() + 1, double{impl.dt})) {
     const crowd::Rectangle at = crowd::groundOf(event, ground);
     std::vector<float> heights;
     for (uint32_t row = at.z; row < at.z + at.rows; ++row) {
@@ -108,6 +117,11 @@ void tellOfEvents(const Crowd& crowd, double dt, const std::vector<std::unique_p
     }
     for (const auto& replay : replays) replay->edit(at.x, at.z, at.columns, at.rows, heights);
   }
+  if (!crowd::changesWait(impl)) return;
+  std::vector<HerdState> before;
+  if (freeRuns) before = download(crowd);
+  crowd::applyChanges(impl);
+  if (freeRuns) freeRuns->follow(before, download(crowd));
 }
 
 void add(const StageResult& result, StageResult& sum) {
@@ -124,14 +138,14 @@ void add(const StageResult& result, StageResult& sum) {
   if (!result.pass) sum.why += (sum.why.empty() ? "" : "; ") + result.why;
 }
 
-// Adds up the results of all herds that have agents, by stage; the worst herd gives a stage's error.
+// Adds up the results of all herds that have places, by stage; the worst herd gives a stage's error.
 std::vector<StageResult> merge(const Scene& scene, const std::vector<std::unique_ptr<Replay>>& replays) {
   std::vector<StageResult> all;
   for (const crowd::StageId stage : crowd::allStages) {
     const char* name = nameOf(stage);
     StageResult* sum = nullptr;
     for (size_t h = 0; h < replays.size(); ++h) {
-      if (scene.herds[h].agents == 0) continue;
+      if (scene.herds[h].agents == 0 && scene.herds[h].reserve == 0) continue;
       for (StageResult result : replays[h]->results()) {
         if (result.name != name) continue;
         if (replays.size() > 1) {
@@ -179,8 +193,11 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
   TickTimes times;
   Outcome outcome{.device = device.report().name, .wanted = options.frames};
   const auto began = std::chrono::steady_clock::now();
-  std::vector<std::unique_ptr<Replay>> replays;
+  const auto dt = static_cast<float>(options.scene.dt);
+  crowd::setTick(implOf(crowd), dt);  // which herds' parameters depend on
+  const std::vector<std::unique_ptr<Replay>> replays = replaysOf(crowd, options.stages);
   std::optional<FreeRuns> freeRuns;
+  if (options.freeRun) freeRuns.emplace(crowd, download(crowd));
   std::optional<GroundEdits> edits;
   if (options.edits) {
     edits.emplace(crowd, scene.seed, options.scene.dt);
@@ -188,33 +205,26 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
   }
   Progress progress("ticks", options.frames, options.quiet);
   while (crowd.tick() < options.frames && !stopRequested()) {
-    const std::vector<AgentSample> samples = samplesAt(crowd.tick() + 1, scene);
+    letEventsHappen(crowd, replays, freeRuns);
+    const std::vector<AgentSample> samples = samplesOf(crowd, scene.seed);
     const std::vector<HerdState> before = download(crowd, samples);
-    std::vector<HerdState> first;
-    if (options.freeRun && !freeRuns) first = download(crowd);
-    // Before the first tick there is nobody to tell of an edit.
-    if (edits && !replays.empty()) {
+    if (edits) {
       for (const HeightEdit& e : edits->before(crowd.tick(), before)) {
         crowd.editHeights(e.x, e.z, e.columns, e.rows, e.heights);
         for (const auto& replay : replays) replay->edit(e.x, e.z, e.columns, e.rows, e.heights);
         ++*outcome.edits;
       }
     }
-    runTick(ring, crowd, static_cast<float>(options.scene.dt), times);
-    // A herd's parameters are complete only once the length of a tick is known.
-    if (replays.empty()) replays = replaysOf(crowd, options.stages);
-    if (options.freeRun && !freeRuns) freeRuns.emplace(crowd, first);
-    tellOfEvents(crowd, options.scene.dt, replays);
+    runTick(ring, crowd, dt, times);
     const std::vector<HerdState> after = download(crowd, samples);
     if (freeRuns) freeRuns->tick(after);
     for (size_t h = 0; h < replays.size(); ++h) replays[h]->tick(crowd.tick(), before[h], after[h]);
     validation.done = crowd.tick();
     progress.update(validation.done);
   }
-  if (replays.empty()) replays = replaysOf(crowd, options.stages);
   outcome.stages = merge(scene, replays);
   outcome.ticks = crowd.tick();
-  if (freeRuns) outcome.freeShare = freeRuns->shareWithin(download(crowd));
+  if (freeRuns) outcome.freeShare = freeRuns->shareWithin(crowd, download(crowd));
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return outcome;
 }
@@ -252,15 +262,29 @@ void checkStages(const std::vector<crowd::StageId>& stages, const Scene& scene) 
       throw inputError(fmt::format("--stages: no herd of {} has {} compared", scene.name, nameOf(stage)));
 }
 
+// As the user wants it, otherwise with few agents; but all of a scene whose events name some by number.
+Scene sceneOf(SceneOptions options) {
+  Scene scene = options.load();
+  if (options.agents || std::ranges::any_of(scene.events, crowd::namesAgents)) return scene;
+  options.agents = defaultAgents;
+  return options.load();
+}
+
+bool hasAgents(const Scene& scene) {
+  return scene.agentCount() > 0 || std::ranges::any_of(scene.events, [](const Event& event) {
+           return std::holds_alternative<Addition>(event.what);
+         });
+}
+
 int validate(const ValidateOptions& options) {
   if (options.timeout) stopAfter(*options.timeout);
   Files files;
   files.writes("--json", options.json);
   files.writes("--junit", options.junit);
-  const Scene scene = options.scene.load();
+  const Scene scene = sceneOf(options.scene);
   options.scene.declare(files, scene);
   files.check();
-  if (scene.agentCount() == 0)
+  if (!hasAgents(scene))
     throw inputError(fmt::format("{} has no agents, expected at least one to compare", scene.name));
   checkStages(options.stages, scene);
   Validation validation{.options = options,
@@ -297,10 +321,10 @@ int validate(const ValidateOptions& options) {
 
 void addValidate(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<ValidateOptions>();
-  options->scene.agents = defaultAgents;
   CLI::App* command = app.add_subcommand(
       "validate", "Replay a scene in lock-step: every stage, every tick, against the CPU reference");
-  options->scene.addTo(*command, fmt::format("{}", defaultAgents).c_str());
+  options->scene.addTo(*command,
+                       fmt::format("{}; the scene's, where its events name agents", defaultAgents).c_str());
   command
       ->add_option_function<std::string>(
           "--frames",

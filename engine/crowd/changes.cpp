@@ -13,6 +13,7 @@
 #include "crowd/spawn.h"
 #include "crowd/watch.h"
 #include "gpu/barrier.h"
+#include "gpu/submit.h"
 
 namespace skitter::crowd {
 
@@ -207,8 +208,12 @@ void settle(const Crowd::Impl& crowd, const std::vector<Stood>& stood, vk::Comma
 
 }  // namespace
 
+bool changesWait(const Crowd::Impl& crowd) {
+  return std::ranges::any_of(crowd.kinds, [](const Kind& kind) { return !kind.changes.empty(); });
+}
+
 void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
-  if (std::ranges::all_of(crowd.kinds, [](const Kind& kind) { return kind.changes.empty(); })) return;
+  if (!changesWait(crowd)) return;
   Writes writes(cmd, crowd.edits.staging());
   std::vector<Stood> stood;
   for (Kind& kind : crowd.kinds) {
@@ -238,6 +243,17 @@ void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
   for (const Stood& each : stood) list(*each.kind, *each.page, each.agents, writes);
   writes.flush();
   if (!stood.empty()) settle(crowd, stood, cmd);
+}
+
+void applyChanges(Crowd::Impl& crowd) {
+  if (!changesWait(crowd)) return;
+  ++crowd.tick;  // the one that would carry them
+  gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
+    gpu::allToAll(cmd);
+    recordChanges(crowd, cmd);
+    gpu::allToAll(cmd);
+  });
+  --crowd.tick;
 }
 
 void beginWatch(const Crowd::Impl& crowd, const Kind& kind, vk::CommandBuffer cmd) {

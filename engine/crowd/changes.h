@@ -41,6 +41,11 @@ class AgentChanges {
 // Writes what waits, of all kinds, between two barriers from and to transfers. Nothing of the host needs to
 // outlive the call.
 void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd);
+bool changesWait(const Crowd::Impl& crowd);
+
+// Writes what waits at once, to the bits that the next tick would have begun with: so a reference can begin
+// with them, too. Waits for the device.
+void applyChanges(Crowd::Impl& crowd);
 
 // So that measure sees no jump in the next tick, of any of the kind's agents, who all began this moment.
 void beginWatch(const Crowd::Impl& crowd, const Kind& kind, vk::CommandBuffer cmd);

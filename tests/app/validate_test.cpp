@@ -95,9 +95,47 @@ TEST_F(Validate, EventsOfASceneAreReplayed) {
   EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
 }
 
+// Agents that are steered, moved, added and removed when the scene says, with every controller.
+TEST_F(Validate, EventsAboutAgentsAreReplayed) {
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    const Result result =
+        skitter({"validate", SKITTER_ROOT "/assets/scenes/steered.json", "--controller", nameOf(controller),
+                 "--dt", "0.05", "--frames", "45", "--free-run", "--json", file("v.json")});
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({nameOf(controller)}));
+    EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
+  }
+}
+
+// The usual number of agents does not suit a scene that names some, whatever it is.
+TEST_F(Validate, AgentsThatEventsNameAreThere) {
+  write("named.json", R"({"herds": [{"agents": 70}], "events": [{"at": 0.1, "agents": [69], "speed": 2}]})");
+  const Result result = skitter({"validate", file("named.json"), "--frames", "10"});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find(": 70 agents, 10 ticks"), std::string::npos) << result.out;
+  expectRefusal(skitter({"validate", file("named.json"), "--agents", "69"}), 2,
+                {"named: events[0].agents[0] is 69, expected less than 69"});
+  write("gone.json", R"({"herds": [{"agents": 3, "reserve": 1}],
+                         "events": [{"at": 0.1, "remove": [1]}, {"at": 0.2, "remove": [1]}]})");
+  expectRefusal(skitter({"validate", file("gone.json"), "--quiet"}), 2,
+                {"gone: events[1]: herd 0, agent 1: nobody, expected one of 2 agents"});
+}
+
+TEST_F(Validate, WhoComesLaterIsCompared) {
+  write("empty.json", R"({"herds": [{"agents": 0, "reserve": 4}],
+                          "events": [{"at": 0.1, "add": [{"position": [1, 2]}, {"position": [5, 2]}]}]})");
+  const Result result =
+      skitter({"validate", file("empty.json"), "--agents", "0", "--frames", "60", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({"adaptive"}));
+}
+
 TEST_F(Validate, NothingToCompareIsAWrongInput) {
   expectRefusal(skitter({"validate", "--frames", "0"}), 2, {"--frames", "0", "1"});
   expectRefusal(skitter({"validate", "--agents", "0"}), 2, {"no agents", "at least one"});
+  write("empty.json", R"({"herds": [{"agents": 0, "reserve": 4}]})");
+  expectRefusal(skitter({"validate", file("empty.json"), "--agents", "0"}), 2, {"no agents", "at least one"});
 }
 
 // Foothold must leave the steps of legs that never step as they are.

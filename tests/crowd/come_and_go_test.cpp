@@ -86,7 +86,7 @@ TEST_P(ComeAndGoTest, TheReferenceFollows) {
       for (int i = 0; i < tick / 8 % 3; ++i)
         here.push_back(crowd.add(0, {{static_cast<float>(tick - 20), static_cast<float>(3 * i)}, 1.0f},
                                  {.kind = Goal::Kind::velocity, .velocity = {0.5f, 0.5f}}));
-      applyChanges(device(), crowd);
+      crowd::applyChanges(implOf(crowd));
     }
     const HerdState before = crowd.download(0);
     simulate(device(), crowd, 1);

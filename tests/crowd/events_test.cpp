@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "crowd/herd.h"
 #include "crowd/simulation.h"
 #include "skitter/error.h"
 #include "skitter/state.h"
@@ -162,6 +163,31 @@ TEST_F(EventsTest, HappenOneAfterTheOther) {
                                      : i == 6 ? shared::GOAL_CROSS
                                               : shared::GOAL_NONE)
         << i;
+}
+
+// As `skitter validate` has it, for a reference that begins with the state before the tick.
+TEST_F(EventsTest, GiveTheSameBitsWhereTheyAreWrittenBeforeTheTick) {
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    Scene scene = twoHerds();
+    for (Herd& herd : scene.herds) herd.controller = controller;
+    scene.events = {{0.1f, Mound{.centre = {5, -5}, .radius = 6}},
+                    {0.1f, GoalChange{.agents = {2, 3}, .goal = pointAt(6, -3)}},
+                    {0.1f, SpeedChange{.herd = 1, .speed = 2}},
+                    {0.1f, Teleport{.herd = 1, .moves = {{4, {{5, -5}, 1}}}}},
+                    {0.1f, Addition{.arrivals = {{.place = {{3, 3}, 0}}}}},
+                    {0.1f, Removal{.agents = {7}}}};
+    Crowd crowd(device(), rollingGround(), scene), early(device(), rollingGround(), scene);
+    for (Crowd* each : {&crowd, &early}) simulate(device(), *each, 5);
+    crowd::letEventsHappen(early);
+    crowd::applyChanges(implOf(early));
+    EXPECT_NE(early.stateHash(), crowd.stateHash());
+    for (const int ticks : {1, 20}) {
+      for (Crowd* each : {&crowd, &early}) simulate(device(), *each, ticks);
+      EXPECT_EQ(early.stateHash(), crowd.stateHash());
+      EXPECT_EQ(early.agentCount(), 40u);
+    }
+  }
 }
 
 TEST_F(EventsTest, WhereOneCannotHappenNoneDoes) {

@@ -5,7 +5,6 @@
 
 #include "crowd/frame.h"
 #include "crowd/herd.h"
-#include "gpu/barrier.h"
 #include "gpu/submit.h"
 #include "validation/herd_facts.h"
 
@@ -72,16 +71,6 @@ void simulate(Device& device, Crowd& crowd, int ticks, float dt) {
     ring.submit();
   }
   ring.waitAll();
-}
-
-void applyChanges(Device& device, Crowd& crowd) {
-  ++implOf(crowd).tick;
-  gpu::submitAndWait(device.context(), [&](vk::CommandBuffer cmd) {
-    gpu::allToAll(cmd);
-    crowd::recordChanges(implOf(crowd), cmd);
-    gpu::allToAll(cmd);
-  });
-  --implOf(crowd).tick;
 }
 
 std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const validation::HerdFacts& facts,

@@ -32,9 +32,6 @@ std::string testNameOf(Controller controller);
 // Submits `ticks` ticks and waits.
 void simulate(Device& device, Crowd& crowd, int ticks, float dt = kTick);
 
-// Writes what the host has said for the next tick, so that a state from before that tick can be had.
-void applyChanges(Device& device, Crowd& crowd);
-
 // Runs `ticks` ticks in lock step with the reference, from the crowd's present state on; of the first herd.
 std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
                                             int ticks, float dt = kTick);

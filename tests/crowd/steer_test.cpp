@@ -85,7 +85,7 @@ TEST_P(SteerTest, TheReferenceFollowsEveryChange) {
         if (kind == 1) crowd.setSpeed({&slow, 1});
         if (kind == 2) crowd.teleport(id, {{3 * way / 10, way - 80}, way});
       }
-      applyChanges(device(), crowd);
+      crowd::applyChanges(implOf(crowd));
     }
     const HerdState before = crowd.download(0);
     simulate(device(), crowd, 1);
