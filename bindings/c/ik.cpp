@@ -1,4 +1,5 @@
 #include "bindings/c/handles.h"
+#include "bindings/common/names.h"
 
 using namespace skitter;
 using c::given;
@@ -38,13 +39,8 @@ ik::Chain chainOf(const skitter_ik_bone* bones, uint32_t count) {
 
 ik::Options optionsOf(const skitter_ik_options& asked) {
   ik::Options options;
-  if (asked.solver != nullptr) {
-    const std::optional<Solver> named = solverNamed(asked.solver);
-    if (!named)
-      throw inputError(
-          fmt::format("options->solver is \"{}\", expected one of {}", asked.solver, namesOf(allSolvers)));
-    options.solver = *named;
-  }
+  if (asked.solver != nullptr)
+    options.solver = bindings::namedOf(allSolvers, "options->solver", asked.solver);
   options.iterations = asked.iterations;
   if (asked.tolerance != 0) options.tolerance = asked.tolerance;
   if (asked.continues != 0) options.start = ik::Start::previous;

@@ -19,9 +19,9 @@
 #include <utility>
 #include <vector>
 
+#include "bindings/common/names.h"
 #include "skitter/crowd.h"
 #include "skitter/device.h"
-#include "skitter/enum_names.h"
 #include "skitter/error.h"
 #include "skitter/scene.h"
 
@@ -141,12 +141,12 @@ void defineNamed(Class& bound, const char* name, Enum Object::*member,
       text);
 }
 
-// The enumerator of that name.
+// Their names, in that order.
 template <typename Enum, size_t Count>
-Enum namedOf(const std::array<Enum, Count>& all, const char* what, const std::string& name) {
-  const std::optional<Enum> found = enumNamed(all, name);
-  if (!found) throw inputError(fmt::format("{} is \"{}\", expected one of {}", what, name, namesOf(all)));
-  return *found;
+py::tuple namesTuple(const std::array<Enum, Count>& all) {
+  py::tuple names(Count);
+  for (size_t i = 0; i < Count; ++i) names[i] = nameOf(all[i]);
+  return names;
 }
 
 // A member whose enumeration has names (skitter/enum_names.h).
@@ -155,7 +155,8 @@ void defineNamed(Class& bound, const char* name, Enum Object::*member, const std
                  const char* text) {
   bound.def_property(
       name, [=](const Object& object) { return nameOf(object.*member); },
-      [=](Object& object, const std::string& value) { object.*member = namedOf(all, name, value); }, text);
+      [=](Object& object, const std::string& value) { object.*member = bindings::namedOf(all, name, value); },
+      text);
 }
 
 }  // namespace skitter::python

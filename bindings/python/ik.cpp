@@ -162,9 +162,7 @@ void bindIk(py::module_& parent) {
   PYBIND11_NUMPY_DTYPE(ReportRow, error, iterations, stop);
   module.attr("stop_names") =
       py::tuple(py::cast(std::vector<std::string>(ik::stopNames.begin(), ik::stopNames.end())));
-  py::list solvers;
-  for (const Solver solver : allSolvers) solvers.append(nameOf(solver));
-  module.attr("solvers") = py::tuple(solvers);
+  module.attr("solvers") = namesTuple(allSolvers);
 
   py::class_<PythonBatch>(module, "Batch", "Chains of one kind on a device.")
       .def(py::init([](const std::shared_ptr<SharedDevice>& device, const ik::Chain& chain, uint32_t chains,
@@ -172,7 +170,7 @@ void bindIk(py::module_& parent) {
                        uint32_t iterations, bool restarts, std::optional<float> restPull, bool bases,
                        bool keepRotations) {
              ik::Options options;
-             options.solver = namedOf(allSolvers, "solver", solver);
+             options.solver = bindings::namedOf(allSolvers, "solver", solver);
              if (start != starts[0] && start != starts[1])
                throw inputError(
                    fmt::format("start is \"{}\", expected one of {}", start, fmt::join(starts, ", ")));

@@ -7,18 +7,10 @@ namespace {
 
 using namespace py::literals;
 
-constexpr std::array rules{"given",    "catmullRom", "finiteDifference", "cardinal", "kochanekBartels",
-                           "monotone", "zero"};
-static_assert(rules.size() == static_cast<size_t>(SplineRule::zero) + 1);
-constexpr std::array states{"idle", "moving", "finished", "refused"};
-
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 SplineTangents tangentsOf(const std::string& rule, float tension, float continuity, float bias) {
-  const auto found = std::find(rules.begin(), rules.end(), rule);
-  if (found == rules.end())
-    throw inputError(fmt::format("rule is \"{}\", expected one of {}", rule, fmt::join(rules, ", ")));
-  return {static_cast<SplineRule>(found - rules.begin()), tension, continuity, bias};
+  return {bindings::namedOf(allSplineRules, "rule", rule), tension, continuity, bias};
 }
 
 std::vector<float> numbersOf(const std::optional<Floats>& array) {
@@ -133,8 +125,8 @@ py::array_t<float> lengths(PythonSplines& self) {
 
 void bindSplines(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(MotionRow, position, velocity, travelled, state);
-  module.attr("spline_rules") = py::tuple(py::cast(std::vector<std::string>(rules.begin(), rules.end())));
-  module.attr("spline_states") = py::tuple(py::cast(std::vector<std::string>(states.begin(), states.end())));
+  module.attr("spline_rules") = namesTuple(allSplineRules);
+  module.attr("spline_states") = namesTuple(allSplineStates);
   py::class_<Spline>(module, "Spline",
                      "A cubic Hermite spline on the host, computed in double (docs/spline.md).")
       .def(py::init(&makeSpline), "points"_a, "knots"_a = py::none(), py::kw_only(), "closed"_a = false,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "skitter/device.h"
+#include "skitter/enum_names.h"
 #include "skitter/export.h"
 
 // Cubic Hermite splines: chains of points that something travels along. docs/spline.md states the equations
@@ -27,6 +28,19 @@ enum class SplineRule : uint32_t {
   monotone,          // Fritsch-Carlson: no coordinate overshoots
   zero,              // rests at every point
 };
+inline constexpr std::array allSplineRules = {
+    SplineRule::given,    SplineRule::catmullRom,      SplineRule::finiteDifference,
+    SplineRule::cardinal, SplineRule::kochanekBartels, SplineRule::monotone,
+    SplineRule::zero};
+constexpr const char* nameOf(SplineRule rule) {
+  constexpr std::array names = {"given",    "catmullRom", "finiteDifference", "cardinal", "kochanekBartels",
+                                "monotone", "zero"};
+  static_assert(names.size() == allSplineRules.size());
+  return names[static_cast<size_t>(rule)];
+}
+constexpr std::optional<SplineRule> splineRuleNamed(std::string_view name) {
+  return enumNamed(allSplineRules, name);
+}
 struct SplineTangents {
   SplineRule rule = SplineRule::catmullRom;
   float tension = 0;               // cardinal: 0 to 1; kochanekBartels: -1 to 1
@@ -56,6 +70,13 @@ enum class SplineState : uint32_t {
   finished,  // at the end; a closed spline never is
   refused,   // device only: its records there hold what may not be
 };
+inline constexpr std::array allSplineStates = {SplineState::idle, SplineState::moving, SplineState::finished,
+                                               SplineState::refused};
+constexpr const char* nameOf(SplineState state) {
+  constexpr std::array names = {"idle", "moving", "finished", "refused"};
+  static_assert(names.size() == allSplineStates.size());
+  return names[static_cast<size_t>(state)];
+}
 
 // When one travels along a spline. A value: batches take arrays of them.
 struct SKITTER_API SplineClock {
