@@ -22,9 +22,30 @@ skitter_result tell(const skitter_crowd* crowd, Value* value, const char* name, 
   });
 }
 
-void copyPlaces(const std::vector<glm::dvec3>& places, double* xyz) {
-  for (const glm::dvec3& place : places)
-    for (int k = 0; k < 3; ++k) *xyz++ = place[k];
+CrowdOptions optionsOf(const skitter_crowd_options& asked) {
+  CrowdOptions options;
+  options.pose = asked.no_poses == 0;
+  options.measure = asked.no_figures == 0;
+  options.watchEvery = asked.watch_every;
+  options.footfalls = asked.footfalls;
+  options.sleep = asked.sleep != 0;
+  return options;
+}
+
+glm::dvec3 vectorOf(const double* xyz, const char* name) {
+  given(xyz, name);
+  return {xyz[0], xyz[1], xyz[2]};
+}
+
+// Writes the agent that `ask` finds, if any.
+template <typename Ask>
+void tellOf(skitter_picked* picked, int* found, Ask ask) {
+  given(picked, "picked");
+  given(found, "found");
+  const std::optional<Picked> agent = ask();
+  *found = agent ? 1 : 0;
+  if (agent)
+    *picked = {agent->herd, agent->agent, agent->distance, {agent->place.x, agent->place.y, agent->place.z}};
 }
 
 skitter_fidelity convert(const Fidelity& f) {
@@ -61,14 +82,24 @@ skitter_result skitter_crowd_create(skitter_device* device, const skitter_scene*
     const std::shared_ptr<Device>& on = given(device, "device").device;
     const Scene& from = given(scene, "scene").scene;
     given(crowd, "crowd");
-    const skitter_crowd_options asked = options != nullptr ? *options : skitter_crowd_options{};
-    CrowdOptions made;
-    made.pose = asked.no_poses == 0;
-    made.measure = asked.no_figures == 0;
-    made.watchEvery = asked.watch_every;
-    made.footfalls = asked.footfalls;
-    made.sleep = asked.sleep != 0;
+    const CrowdOptions made = options != nullptr ? optionsOf(*options) : CrowdOptions{};
     *crowd = new skitter_crowd{on, Crowd(*on, from.loadTerrain(), from, made), bindings::Walk(*on)};
+  });
+}
+
+skitter_result skitter_crowd_resume(skitter_device* device, const skitter_state* state,
+                                    const skitter_crowd_options* options, skitter_crowd** crowd) {
+  return guarded([&] {
+    const std::shared_ptr<Device>& on = given(device, "device").device;
+    State from = given(state, "state").state;
+    given(crowd, "crowd");
+    if (options != nullptr) {
+      const CrowdOptions asked = optionsOf(*options);
+      from.options.pose = asked.pose;
+      from.options.footfalls = asked.footfalls;
+      from.options.sleep = asked.sleep;
+    }
+    *crowd = new skitter_crowd{on, Crowd(*on, from), bindings::Walk(*on)};
   });
 }
 
@@ -86,6 +117,14 @@ skitter_result skitter_crowd_step(skitter_crowd* crowd, uint64_t ticks, float dt
   });
 }
 
+skitter_result skitter_crowd_edit_heights(skitter_crowd* crowd, uint32_t x, uint32_t z, uint32_t columns,
+                                          uint32_t rows, const float* heights) {
+  return guarded([&] {
+    Crowd& edited = given(crowd, "crowd").crowd;
+    edited.editHeights(x, z, columns, rows, c::listOf(heights, size_t{columns} * rows, "heights"));
+  });
+}
+
 skitter_result skitter_crowd_tick(const skitter_crowd* crowd, uint64_t* tick) {
   return tell(crowd, tick, "tick", [](const Crowd& c) { return c.tick(); });
 }
@@ -99,7 +138,11 @@ skitter_result skitter_crowd_agent_count(const skitter_crowd* crowd, uint64_t* a
 }
 
 skitter_result skitter_crowd_herd_agents(const skitter_crowd* crowd, uint32_t herd, uint32_t* agents) {
-  return tell(crowd, agents, "agents", [&](const Crowd& c) { return bindings::agentsOf(c, herd); });
+  return tell(crowd, agents, "agents", [&](const Crowd& c) { return c.agentCount(herd); });
+}
+
+skitter_result skitter_crowd_herd_places(const skitter_crowd* crowd, uint32_t herd, uint32_t* places) {
+  return tell(crowd, places, "places", [&](const Crowd& c) { return c.places(herd); });
 }
 
 skitter_result skitter_crowd_herd_legs(const skitter_crowd* crowd, uint32_t herd, uint32_t* legs) {
@@ -114,8 +157,8 @@ skitter_result skitter_crowd_positions(const skitter_crowd* crowd, uint32_t herd
   return guarded([&] {
     const Crowd& asked = crowdOf(crowd);
     given(xyz, "xyz");
-    c::checkRoom("xyz", room, bindings::agentsOf(asked, herd));
-    copyPlaces(bindings::positionsOf(asked, herd), xyz);
+    c::checkRoom("xyz", room, asked.places(herd));
+    c::copyVectors(bindings::positionsOf(asked, herd), xyz);
   });
 }
 
@@ -124,7 +167,7 @@ skitter_result skitter_crowd_headings(const skitter_crowd* crowd, uint32_t herd,
   return guarded([&] {
     const Crowd& asked = crowdOf(crowd);
     given(radians, "radians");
-    c::checkRoom("radians", room, bindings::agentsOf(asked, herd));
+    c::checkRoom("radians", room, asked.places(herd));
     for (const BodyState& body : bindings::bodiesOf(asked, herd)) *radians++ = bindings::headingOf(body);
   });
 }
@@ -133,10 +176,10 @@ skitter_result skitter_crowd_joints(const skitter_crowd* crowd, uint32_t herd, d
   return guarded([&] {
     const Crowd& asked = crowdOf(crowd);
     given(xyz, "xyz");
-    c::checkRoom("xyz", room,
-                 size_t{bindings::agentsOf(asked, herd)} * bindings::legsOf(asked, herd) *
-                     (bindings::bonesOf(asked, herd) + 1));
-    copyPlaces(bindings::jointsOf(asked, herd), xyz);
+    c::checkRoom(
+        "xyz", room,
+        size_t{asked.places(herd)} * bindings::legsOf(asked, herd) * (bindings::bonesOf(asked, herd) + 1));
+    c::copyVectors(bindings::jointsOf(asked, herd), xyz);
   });
 }
 
@@ -146,9 +189,7 @@ skitter_result skitter_crowd_state_hash(const skitter_crowd* crowd, uint64_t* ha
 
 skitter_result skitter_crowd_fidelity(const skitter_crowd* crowd, uint32_t herd, skitter_fidelity* fidelity) {
   return tell(crowd, fidelity, "fidelity", [&](const Crowd& c) {
-    if (herd == SKITTER_ALL_HERDS) return convert(c.fidelity());
-    bindings::checkHerd(c, herd);
-    return convert(c.fidelity(herd));
+    return convert(herd == SKITTER_ALL_HERDS ? c.fidelity() : c.fidelity(herd));
   });
 }
 
@@ -158,7 +199,6 @@ skitter_result skitter_crowd_footfalls(const skitter_crowd* crowd, uint32_t herd
     const Crowd& asked = crowdOf(crowd);
     given(count, "count");
     if (room > 0) given(footfalls, "footfalls");
-    bindings::checkHerd(asked, herd);
     const std::vector<Footfall> all = asked.footfalls(herd);
     for (size_t i = 0; i < all.size() && i < room; ++i)
       footfalls[i] = {all[i].tick,
@@ -167,6 +207,25 @@ skitter_result skitter_crowd_footfalls(const skitter_crowd* crowd, uint32_t herd
                       {all[i].place.x, all[i].place.y, all[i].place.z},
                       all[i].speed};
     *count = all.size();
+  });
+}
+
+skitter_result skitter_crowd_pick(const skitter_crowd* crowd, const double start[3],
+                                  const double direction[3], double length, skitter_picked* picked,
+                                  int* found) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    const glm::dvec3 from = vectorOf(start, "start"), along = vectorOf(direction, "direction");
+    tellOf(picked, found, [&] { return bindings::pick(asked, from, along, length); });
+  });
+}
+
+skitter_result skitter_crowd_nearest(const skitter_crowd* crowd, const double point[3],
+                                     skitter_picked* picked, int* found) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    const glm::dvec3 to = vectorOf(point, "point");
+    tellOf(picked, found, [&] { return bindings::nearest(asked, to); });
   });
 }
 

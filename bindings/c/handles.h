@@ -4,15 +4,20 @@
 
 #include <concepts>
 #include <exception>
+#include <glm/glm.hpp>
 #include <memory>
 #include <new>
+#include <span>
 #include <type_traits>
+#include <vector>
 
 #include "bindings/c/skitter.h"
 #include "bindings/common/walk.h"
 #include "skitter/crowd.h"
 #include "skitter/error.h"
 #include "skitter/ik.h"
+#include "skitter/spline.h"
+#include "skitter/state.h"
 
 // What is behind the handles. Members are destroyed last first: what is made on a device before its share of
 // it.
@@ -31,9 +36,18 @@ struct skitter_crowd {
   skitter::bindings::Walk walk;
 };
 
+struct skitter_state {
+  skitter::State state;
+};
+
 struct skitter_ik_batch {
   std::shared_ptr<skitter::Device> device;
   skitter::ik::Batch batch;
+};
+
+struct skitter_spline_batch {
+  std::shared_ptr<skitter::Device> device;
+  skitter::SplineBatch batch;
 };
 
 namespace skitter::c {
@@ -67,6 +81,35 @@ template <typename Pointee>
 Pointee& given(Pointee* pointer, const char* name) {
   if (pointer == nullptr) throw inputError(fmt::format("{} is NULL", name));
   return *pointer;
+}
+
+// A list of the caller's. Throws Error(input) for one of NULL that has something in it.
+template <typename Element>
+std::span<const Element> listOf(const Element* first, size_t count, const char* name) {
+  if (count > 0) given(first, name);
+  return {first, count};
+}
+
+// x, y, z of each.
+inline std::vector<glm::vec3> vectorsOf(const float* xyz, size_t count, const char* name) {
+  std::vector<glm::vec3> vectors;
+  vectors.reserve(count);
+  const std::span<const float> numbers = listOf(xyz, 3 * count, name);
+  for (size_t i = 0; i < numbers.size(); i += 3)
+    vectors.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  return vectors;
+}
+template <typename Number>
+void copyVectors(const std::vector<glm::vec<3, Number>>& vectors, Number* xyz) {
+  for (const auto& vector : vectors)
+    for (int k = 0; k < 3; ++k) *xyz++ = vector[k];
+}
+
+template <typename SceneOrConst>
+auto& herdOf(SceneOrConst& scene, uint32_t herd) {
+  if (herd >= scene.herds.size())
+    throw inputError(fmt::format("herd {}: the scene has {}, counted from 0", herd, scene.herds.size()));
+  return scene.herds[herd];
 }
 
 // Throws Error(input) where `room` is not enough for `needed` things.

@@ -69,9 +69,7 @@ skitter_result skitter_ik_batch_set_targets(skitter_ik_batch* batch, const float
     given(xyz, "xyz");
     if (chains != made.chains())
       throw inputError(fmt::format("{} targets, expected {}, one a chain", chains, made.chains()));
-    std::vector<glm::vec3> targets(chains);
-    for (size_t i = 0; i < chains; ++i) targets[i] = {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]};
-    made.setTargets(targets);
+    made.setTargets(c::vectorsOf(xyz, chains, "xyz"));
   });
 }
 
@@ -92,8 +90,7 @@ skitter_result skitter_ik_batch_joints(const skitter_ik_batch* batch, float* xyz
     const ik::Batch& made = given(batch, "batch").batch;
     given(xyz, "xyz");
     c::checkRoom("xyz", room, size_t{made.chains()} * made.joints());
-    for (const glm::vec3& joint : made.downloadJoints())
-      for (int k = 0; k < 3; ++k) *xyz++ = joint[k];
+    c::copyVectors(made.downloadJoints(), xyz);
   });
 }
 

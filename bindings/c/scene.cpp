@@ -3,17 +3,7 @@
 using namespace skitter;
 using c::given;
 using c::guarded;
-
-namespace {
-
-template <typename Scenes>
-auto& herdOf(Scenes& scene, uint32_t herd) {
-  if (herd >= scene.herds.size())
-    throw inputError(fmt::format("herd {}: the scene has {}, counted from 0", herd, scene.herds.size()));
-  return scene.herds[herd];
-}
-
-}  // namespace
+using c::herdOf;
 
 skitter_result skitter_scene_builtin(skitter_scene** scene) {
   return guarded([&] {

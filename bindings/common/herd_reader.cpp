@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string>
 
 #include "crowd/herd.h"
 #include "crowd/places.h"
@@ -17,7 +18,6 @@ namespace skitter::bindings {
 namespace {
 
 HerdState stateOf(const Crowd& crowd, uint32_t herd, std::span<const Record> records) {
-  checkHerd(crowd, herd);
   return crowd::downloadRecords(implOf(crowd), herd, records);
 }
 
@@ -26,31 +26,49 @@ BodyState bodyAt(const HerdState& state, size_t agent) {
   return bodyOf(std::span(state.body).subspan(agent * floats, floats));
 }
 
+std::string textOf(const glm::dvec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
+
+void expectFinite(const char* name, const glm::dvec3& vector) {
+  if (!std::isfinite(glm::dot(vector, vector)))
+    throw inputError(fmt::format("{} is {}, expected finite numbers", name, textOf(vector)));
+}
+
 }  // namespace
-
-void checkHerd(const Crowd& crowd, uint32_t herd) {
-  if (herd < crowd.herdCount()) return;
-  throw inputError(fmt::format("herd {}: the crowd has {}, counted from 0", herd, crowd.herdCount()));
-}
-
-uint32_t agentsOf(const Crowd& crowd, uint32_t herd) {
-  checkHerd(crowd, herd);
-  return crowd.places(herd);
-}
 
 float dtOf(const Crowd& crowd) { return implOf(crowd).dt; }
 
-HerdState recordsOf(const Crowd& crowd, uint32_t herd) { return stateOf(crowd, herd, allRecords); }
-
 uint32_t legsOf(const Crowd& crowd, uint32_t herd) {
-  checkHerd(crowd, herd);
   return static_cast<uint32_t>(crowd.rig(herd).legCount());
 }
 
 uint32_t bonesOf(const Crowd& crowd, uint32_t herd) {
-  checkHerd(crowd, herd);
   return static_cast<uint32_t>(crowd.rig(herd).maxBones());
 }
+
+std::vector<uint64_t> agentIdsOf(const Crowd& crowd, uint32_t herd) {
+  std::vector<uint64_t> ids(crowd.places(herd), AgentId().bits());
+  const crowd::Presence& presence = implOf(crowd).herdAt(herd).presence;
+  for (uint32_t agent = 0; agent < ids.size(); ++agent)
+    if (presence.has(agent)) ids[agent] = AgentId(herd, agent, presence.generations[agent]).bits();
+  return ids;
+}
+
+std::optional<Picked> pick(const Crowd& crowd, const glm::dvec3& start, const glm::dvec3& direction,
+                           double length) {
+  expectFinite("start", start);
+  expectFinite("direction", direction);
+  if (!(glm::length(direction) > 0))
+    throw inputError(fmt::format("direction is {}, expected any length but 0", textOf(direction)));
+  if (!(length >= 0)) throw inputError(fmt::format("length is {:g}, expected at least 0", length));
+  return crowd.pick({start, direction, length});
+}
+
+std::optional<Picked> nearest(const Crowd& crowd, const glm::dvec3& point) {
+  expectFinite("point", point);
+  return crowd.nearest(point);
+}
+
+HerdState recordsOf(const Crowd& crowd, uint32_t herd) { return stateOf(crowd, herd, allRecords); }
 
 std::vector<glm::dvec3> positionsOf(const Crowd& crowd, uint32_t herd) {
   const HerdState state = stateOf(crowd, herd, std::array{Record::body});

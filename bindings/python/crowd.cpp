@@ -112,10 +112,7 @@ struct FootfallRow {
 };
 
 py::array_t<FootfallRow> footfalls(PythonCrowd& self, uint32_t herd) {
-  const std::vector<Footfall> events = self.told([&](const Crowd& crowd) {
-    bindings::checkHerd(crowd, herd);
-    return crowd.footfalls(herd);
-  });
+  const std::vector<Footfall> events = self.told([&](const Crowd& crowd) { return crowd.footfalls(herd); });
   std::vector<FootfallRow> rows;
   rows.reserve(events.size());
   for (const Footfall& e : events)
@@ -155,10 +152,7 @@ void editHeights(PythonCrowd& self, uint32_t x, uint32_t z, const Floats& height
 }
 
 py::dict memoryUse(PythonCrowd& self, uint32_t herd) {
-  const auto uses = self.told([&](const Crowd& crowd) {
-    bindings::checkHerd(crowd, herd);
-    return crowd.memoryUse(herd);
-  });
+  const auto uses = self.told([&](const Crowd& crowd) { return crowd.memoryUse(herd); });
   py::dict bytes;
   for (const MemoryUse& use : uses) bytes[use.name.c_str()] = use.bytes;
   return bytes;
@@ -256,10 +250,7 @@ template <typename Make>
 void steerEach(PythonCrowd& self, const std::vector<glm::vec2>& pairs, uint32_t herd, Make make) {
   std::vector<Goal> goals;
   for (const glm::vec2& pair : pairs) goals.push_back(make(pair));
-  self.told([&](Crowd& crowd) {
-    bindings::checkHerd(crowd, herd);
-    crowd.steer(herd, goals);
-  });
+  self.told([&](Crowd& crowd) { crowd.steer(herd, goals); });
 }
 
 void bindSteering(Bound& bound) {
@@ -267,10 +258,7 @@ void bindSteering(Bound& bound) {
       .def(
           "steer",
           [](PythonCrowd& self, const Goal& goal, uint32_t herd) {
-            self.told([&](Crowd& crowd) {
-              bindings::checkHerd(crowd, herd);
-              crowd.steer(herd, goal);
-            });
+            self.told([&](Crowd& crowd) { crowd.steer(herd, goal); });
           },
           "goal"_a, "herd"_a = 0, "Gives all agents of the herd a goal, from the next tick on.")
       .def(
@@ -292,19 +280,13 @@ void bindSteering(Bound& bound) {
       .def(
           "set_speed",
           [](PythonCrowd& self, float speed, uint32_t herd) {
-            self.told([&](Crowd& crowd) {
-              bindings::checkHerd(crowd, herd);
-              crowd.setSpeed(herd, speed);
-            });
+            self.told([&](Crowd& crowd) { crowd.setSpeed(herd, speed); });
           },
           "speed"_a, "herd"_a = 0, "Metres a second, of all agents of the herd.")
       .def(
           "agent_id",
           [](PythonCrowd& self, uint32_t agent, uint32_t herd) {
-            return self.told([&](Crowd& crowd) {
-              bindings::checkHerd(crowd, herd);
-              return crowd.agentId(herd, agent).bits();
-            });
+            return self.told([&](Crowd& crowd) { return crowd.agentId(herd, agent).bits(); });
           },
           "agent"_a, "herd"_a = 0, "The handle of an agent, which never means another one.")
       .def(
@@ -320,10 +302,7 @@ void bindSteering(Bound& bound) {
       .def(
           "add",
           [](PythonCrowd& self, const glm::vec2& position, float heading, uint32_t herd) {
-            return self.told([&](Crowd& crowd) {
-              bindings::checkHerd(crowd, herd);
-              return crowd.add(herd, Place{position, heading}).bits();
-            });
+            return self.told([&](Crowd& crowd) { return crowd.add(herd, Place{position, heading}).bits(); });
           },
           "position"_a, "heading"_a = 0.0f, "herd"_a = 0,
           "Adds an agent at x and z, metres, to a herd with a reserve, and returns its handle.")
@@ -353,17 +332,14 @@ void bindFacts(Bound& bound) {
       .def(
           "agents",
           [](PythonCrowd& self, uint32_t herd) {
-            return self.told([&](const Crowd& c) { return bindings::agentsOf(c, herd); });
+            return self.told([&](const Crowd& c) { return c.places(herd); });
           },
           "herd"_a = 0,
           "Places of the herd: its agents and its reserve. Arrays have a row for each, also where nobody is.")
       .def(
           "rig",
           [](PythonCrowd& self, uint32_t herd) {
-            return self.told([&](const Crowd& c) {
-              bindings::checkHerd(c, herd);
-              return std::make_shared<Rig>(c.rig(herd));
-            });
+            return self.told([&](const Crowd& c) { return std::make_shared<Rig>(c.rig(herd)); });
           },
           "herd"_a = 0, "The herd's rig.")
       .def_property_readonly(
@@ -444,7 +420,7 @@ void bindPlaces(Bound& bound) {
             uint32_t agents = 0, legs = 0, bones = 0;
             self.told([&](const Crowd& c) {
               joints = bindings::jointsOf(c, herd);
-              agents = bindings::agentsOf(c, herd);
+              agents = c.places(herd);
               legs = bindings::legsOf(c, herd);
               bones = bindings::bonesOf(c, herd);
             });
@@ -461,10 +437,7 @@ void bindPlaces(Bound& bound) {
       .def(
           "dropped_footfalls",
           [](PythonCrowd& self, uint32_t herd) {
-            return self.told([&](const Crowd& c) {
-              bindings::checkHerd(c, herd);
-              return c.droppedFootfalls(herd);
-            });
+            return self.told([&](const Crowd& c) { return c.droppedFootfalls(herd); });
           },
           "herd"_a = 0, "Touchdowns that there was no room for, since the start.");
 }
@@ -476,7 +449,6 @@ void bindRecords(Bound& bound) {
           [](PythonCrowd& self, std::optional<uint32_t> herd) {
             return figuresOf(self.told([&](const Crowd& c) {
               if (!herd) return c.fidelity();
-              bindings::checkHerd(c, *herd);
               return c.fidelity(*herd);
             }));
           },
@@ -489,10 +461,7 @@ void bindRecords(Bound& bound) {
       .def(
           "agent_fidelity",
           [](PythonCrowd& self, uint32_t herd) {
-            return agentFiguresOf(self.told([&](const Crowd& c) {
-              bindings::checkHerd(c, herd);
-              return c.agentFidelity(herd);
-            }));
+            return agentFiguresOf(self.told([&](const Crowd& c) { return c.agentFidelity(herd); }));
           },
           "herd"_a = 0,
           "The same agent by agent: a dict of float64 arrays of shape (agents,); NaN stands for None.")

@@ -119,10 +119,10 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
 
 std::vector<Footfall> Crowd::footfalls(uint32_t herdIndex) const {
   const gpu::Context& context = *impl_->context;
+  const crowd::Herd& herd = impl_->herdAt(herdIndex);
   context.waitIdle();
   std::vector<Footfall> all;
   if (impl_->options.footfalls == 0) return all;
-  const crowd::Herd& herd = impl_->herdAt(herdIndex);
   for (const Part& part : crowd::partsOf(*impl_, herdIndex)) {
     const Page& page = *part.page;
     const uint32_t count = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_FOOTFALLS];

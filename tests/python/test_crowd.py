@@ -102,7 +102,7 @@ def test_herds_that_are_not_there_are_refused(device, scene):
         crowd.footfalls, crowd.dropped_footfalls, crowd.fidelity, crowd.agent_fidelity, crowd.records,
         crowd.memory_use,
     ):  # fmt: skip
-        with pytest.raises(skitter.InputError, match="herd 2: the crowd has 2, counted from 0"):
+        with pytest.raises(skitter.InputError, match="herd 2: expected one of the crowd's 2 herds"):
             ask(2)
 
 
