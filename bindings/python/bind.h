@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <concepts>
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <memory>
@@ -37,6 +39,7 @@ void bindScene(py::module_& module);
 void bindCrowd(py::module_& module);
 void bindIk(py::module_& module);
 void bindSplines(py::module_& module);
+void bindValidation(py::module_& module);
 
 // A device is shared by what is made on it, and used by one thread at a time.
 struct SharedDevice {
@@ -84,23 +87,42 @@ struct PythonScene {
   Scene scene() const;
 };
 
-// An array that takes the values over.
+// An array over the memory of a list, which it keeps: nothing is copied.
+template <typename Value, typename Element>
+py::array_t<Value> arrayOver(std::vector<Element> elements, std::vector<py::ssize_t> shape) {
+  auto* const kept = new std::vector<Element>(std::move(elements));
+  const py::capsule owner(kept, [](void* pointer) { delete static_cast<std::vector<Element>*>(pointer); });
+  return py::array_t<Value>(std::move(shape), reinterpret_cast<const Value*>(kept->data()), owner);
+}
 template <typename Value>
 py::array_t<Value> arrayOf(std::vector<Value> values, std::vector<py::ssize_t> shape) {
-  auto* kept = new std::vector<Value>(std::move(values));
-  const py::capsule owner(kept, [](void* pointer) { delete static_cast<std::vector<Value>*>(pointer); });
-  return py::array_t<Value>(std::move(shape), kept->data(), owner);
+  return arrayOver<Value>(std::move(values), std::move(shape));
+}
+// One value a thing.
+template <typename Value>
+py::array_t<Value> listOf(std::vector<Value> values) {
+  const auto count = static_cast<py::ssize_t>(values.size());
+  return arrayOf(std::move(values), {count});
 }
 
 // Vectors as rows of an array.
 template <int Size, typename Value>
-py::array_t<Value> rowsOf(const std::vector<glm::vec<Size, Value>>& vectors, std::vector<py::ssize_t> shape) {
+py::array_t<Value> rowsOf(std::vector<glm::vec<Size, Value>> vectors, std::vector<py::ssize_t> shape) {
+  static_assert(sizeof(glm::vec<Size, Value>) == Size * sizeof(Value));
   shape.push_back(Size);
-  py::array_t<Value> array(std::move(shape));
-  Value* at = array.mutable_data();
-  for (const auto& vector : vectors)
-    for (int k = 0; k < Size; ++k) *at++ = vector[k];
-  return array;
+  return arrayOver<Value>(std::move(vectors), std::move(shape));
+}
+// x, y, z, w.
+inline py::array_t<float> rowsOf(std::vector<glm::quat> rotations, std::vector<py::ssize_t> shape) {
+  static_assert(sizeof(glm::quat) == 4 * sizeof(float) && offsetof(glm::quat, w) == 3 * sizeof(float));
+  shape.push_back(4);
+  return arrayOver<float>(std::move(rotations), std::move(shape));
+}
+// One row a thing.
+template <typename Vector>
+auto rowsOf(std::vector<Vector> vectors) {
+  const auto count = static_cast<py::ssize_t>(vectors.size());
+  return rowsOf(std::move(vectors), {count});
 }
 
 // What float32 arrays are passed in as; others are converted.
@@ -112,18 +134,38 @@ inline std::string shapeOf(const py::array& array) {
                      array.ndim() == 1 ? "," : "");
 }
 
-// The rows of an array of shape (..., 3) in order.
-inline std::vector<glm::vec3> pointsOf(const Floats& array, const char* name) {
-  if (array.ndim() < 1 || array.shape(array.ndim() - 1) != 3)
-    throw inputError(fmt::format("{} has shape {}, expected (..., 3)", name, shapeOf(array)));
-  std::vector<glm::vec3> points(static_cast<size_t>(array.size() / 3));
+// The rows of an array in order. Its last axis has `Size` numbers; `shape` says so in a message.
+template <int Size>
+std::vector<glm::vec<Size, float>> vectorsOf(const Floats& array, const char* name, const char* shape) {
+  if (array.ndim() < 1 || array.shape(array.ndim() - 1) != Size)
+    throw inputError(fmt::format("{} has shape {}, expected {}", name, shapeOf(array), shape));
+  std::vector<glm::vec<Size, float>> vectors(static_cast<size_t>(array.size() / Size));
   const float* at = array.data();
-  for (glm::vec3& point : points) {
-    point = {at[0], at[1], at[2]};
-    at += 3;
-  }
-  return points;
+  for (auto& vector : vectors)
+    for (int k = 0; k < Size; ++k) vector[k] = *at++;
+  return vectors;
 }
+inline std::vector<glm::vec3> pointsOf(const Floats& array, const char* name) {
+  return vectorsOf<3>(array, name, "(..., 3)");
+}
+
+// Numbers of a caller: one for each of `count` things, or one for all of them.
+template <typename Number>
+class Each {
+ public:
+  Each(const py::array_t<Number, py::array::c_style | py::array::forcecast>& array, const char* name,
+       size_t count)
+      : numbers_(array.data()), one_(array.size() == 1) {
+    if (!one_ && static_cast<size_t>(array.size()) != count)
+      throw inputError(
+          fmt::format("{} has shape {}, expected one number or ({},)", name, shapeOf(array), count));
+  }
+  Number operator[](size_t i) const { return numbers_[one_ ? 0 : i]; }
+
+ private:
+  const Number* numbers_;  // in the array
+  bool one_;
+};
 
 // A member that Python sees as one of a few names, as scene files have them.
 template <typename Class, typename Object, typename Enum, size_t Count>
@@ -164,9 +206,9 @@ void defineNamed(Class& bound, const char* name, Enum Object::*member, const std
 namespace pybind11::detail {
 
 // Vectors are tuples in Python, and any sequence of as many numbers is taken for one.
-template <int Size>
-struct type_caster<glm::vec<Size, float>> {
-  using Vector = glm::vec<Size, float>;
+template <int Size, std::floating_point Number>
+struct type_caster<glm::vec<Size, Number>> {
+  using Vector = glm::vec<Size, Number>;
   PYBIND11_TYPE_CASTER(Vector, const_name("Sequence[float]"));
 
   bool load(handle from, bool) {
@@ -182,7 +224,7 @@ struct type_caster<glm::vec<Size, float>> {
         PyErr_Clear();
         return false;
       }
-      value[k] = static_cast<float>(number);
+      value[k] = static_cast<Number>(number);
     }
     return true;
   }

@@ -1,43 +1,14 @@
+#include "bindings/python/crowd.h"
+
 #include <limits>
 
-#include "bindings/common/herd_reader.h"
-#include "bindings/common/walk.h"
-#include "bindings/python/bind.h"
 #include "crowd/figures.h"
 #include "crowd/record.h"
-#include "skitter/renderer.h"
-#include "skitter/steering.h"
 
 namespace skitter::python {
 namespace {
 
 using namespace py::literals;
-
-constexpr float usualTick = 1.0f / 60;  // seconds
-
-// A crowd with what it takes to make its ticks and pictures. Members are destroyed last first.
-struct PythonCrowd {
-  std::shared_ptr<SharedDevice> device;
-  Scene scene;
-  Crowd crowd;
-  bindings::Walk walk;
-  std::optional<Renderer> renderer = {};  // of the last picture
-
-  PythonCrowd(std::shared_ptr<SharedDevice> on, Scene from, const Heightfield& terrain,
-              const CrowdOptions& options)
-      : device(std::move(on)),
-        scene(std::move(from)),
-        crowd(device->device, terrain, scene, options),
-        walk(device->device) {}
-
-  float dt() const { return bindings::dtOf(crowd); }  // of the first tick; 0 before it
-  // What `ask` says of the crowd, in this call's turn.
-  template <typename Ask>
-  auto told(Ask ask) {
-    const Turn turn(*device);
-    return ask(crowd);
-  }
-};
 
 std::unique_ptr<PythonCrowd> makeCrowd(const std::shared_ptr<SharedDevice>& device, const PythonScene& from,
                                        const std::shared_ptr<Heightfield>& terrain,
@@ -98,8 +69,7 @@ py::dict agentFiguresOf(const std::vector<Fidelity>& agents) {
     });
   }
   py::dict figures;
-  for (size_t i = 0; i < names.size(); ++i)
-    figures[names[i]] = arrayOf(std::move(columns[i]), {static_cast<py::ssize_t>(agents.size())});
+  for (size_t i = 0; i < names.size(); ++i) figures[names[i]] = listOf(std::move(columns[i]));
   return figures;
 }
 
@@ -117,8 +87,7 @@ py::array_t<FootfallRow> footfalls(PythonCrowd& self, uint32_t herd) {
   rows.reserve(events.size());
   for (const Footfall& e : events)
     rows.push_back({e.agent, e.leg, e.tick, e.seconds, {e.place.x, e.place.y, e.place.z}, e.speed});
-  const auto count = static_cast<py::ssize_t>(rows.size());
-  return arrayOf(std::move(rows), {count});
+  return listOf(std::move(rows));
 }
 
 bool isOfLegs(Record record) { return crowd::infoOf(record).per == crowd::Per::leg; }
@@ -168,9 +137,7 @@ auto eachBody(PythonCrowd& self, uint32_t herd, Take take) {
   return values;
 }
 
-using Bound = py::class_<PythonCrowd, std::shared_ptr<PythonCrowd>>;
-
-void bindMaking(Bound& bound) {
+void bindMaking(CrowdClass& bound) {
   bound.def(py::init([](const std::shared_ptr<SharedDevice>& device, const PythonScene& scene,
                         const std::shared_ptr<Heightfield>& terrain, bool pose, bool measure,
                         uint32_t watchEvery, bool feet, uint32_t footfallRoom, bool sleep, bool fuse,
@@ -199,7 +166,7 @@ still for seconds are passed over. fuse: stages that are quicker at once are mad
 stage. page_agents: most agents of a page of records; 0: as many as the device allows.)");
 }
 
-void bindTicks(Bound& bound) {
+void bindTicks(CrowdClass& bound) {
   bound
       .def(
           "step", &step, "ticks"_a = 1, "dt"_a = py::none(),
@@ -222,105 +189,7 @@ void bindTicks(Bound& bound) {
           "A copy of the ground as edited.");
 }
 
-std::vector<glm::vec2> pairsOf(const Floats& array, const char* name) {
-  if (array.ndim() != 2 || array.shape(1) != 2)
-    throw inputError(fmt::format("{} has shape {}, expected (agents, 2)", name, shapeOf(array)));
-  std::vector<glm::vec2> pairs;
-  for (const float* at = array.data(); at != array.data() + array.size(); at += 2)
-    pairs.push_back({at[0], at[1]});
-  return pairs;
-}
-
-Goal goalTo(const glm::vec2& target, float speed) {
-  Goal goal;
-  goal.kind = Goal::Kind::point;
-  goal.target = target;
-  goal.speed = speed;
-  return goal;
-}
-
-Goal goalBy(const glm::vec2& velocity) {
-  Goal goal;
-  goal.kind = Goal::Kind::velocity;
-  goal.velocity = velocity;
-  return goal;
-}
-
-template <typename Make>
-void steerEach(PythonCrowd& self, const std::vector<glm::vec2>& pairs, uint32_t herd, Make make) {
-  std::vector<Goal> goals;
-  for (const glm::vec2& pair : pairs) goals.push_back(make(pair));
-  self.told([&](Crowd& crowd) { crowd.steer(herd, goals); });
-}
-
-void bindSteering(Bound& bound) {
-  bound
-      .def(
-          "steer",
-          [](PythonCrowd& self, const Goal& goal, uint32_t herd) {
-            self.told([&](Crowd& crowd) { crowd.steer(herd, goal); });
-          },
-          "goal"_a, "herd"_a = 0, "Gives all agents of the herd a goal, from the next tick on.")
-      .def(
-          "steer_to",
-          [](PythonCrowd& self, const Floats& targets, float speed, uint32_t herd) {
-            steerEach(self, pairsOf(targets, "targets"), herd,
-                      [speed](const glm::vec2& target) { return goalTo(target, speed); });
-          },
-          "targets"_a, "speed"_a = 1.0f, "herd"_a = 0,
-          "Sends each agent to a point of its own: x and z in metres, shape (agents, 2); `speed` in metres a "
-          "second.")
-      .def(
-          "steer_by",
-          [](PythonCrowd& self, const Floats& velocities, uint32_t herd) {
-            steerEach(self, pairsOf(velocities, "velocities"), herd, goalBy);
-          },
-          "velocities"_a, "herd"_a = 0,
-          "Gives each agent a velocity: x and z in metres a second, shape (agents, 2).")
-      .def(
-          "set_speed",
-          [](PythonCrowd& self, float speed, uint32_t herd) {
-            self.told([&](Crowd& crowd) { crowd.setSpeed(herd, speed); });
-          },
-          "speed"_a, "herd"_a = 0, "Metres a second, of all agents of the herd.")
-      .def(
-          "agent_id",
-          [](PythonCrowd& self, uint32_t agent, uint32_t herd) {
-            return self.told([&](Crowd& crowd) { return crowd.agentId(herd, agent).bits(); });
-          },
-          "agent"_a, "herd"_a = 0, "The handle of an agent, which never means another one.")
-      .def(
-          "teleport",
-          [](PythonCrowd& self, uint64_t agent, const glm::vec2& position, float heading) {
-            self.told([&](Crowd& crowd) {
-              crowd.teleport(AgentId::ofBits(agent), Place{position, heading});
-            });
-          },
-          "agent"_a, "position"_a, "heading"_a = 0.0f,
-          "Puts the agent of that handle at x and z, metres, with its feet on the ground; `heading` as "
-          "headings().")
-      .def(
-          "add",
-          [](PythonCrowd& self, const glm::vec2& position, float heading, uint32_t herd) {
-            return self.told([&](Crowd& crowd) { return crowd.add(herd, Place{position, heading}).bits(); });
-          },
-          "position"_a, "heading"_a = 0.0f, "herd"_a = 0,
-          "Adds an agent at x and z, metres, to a herd with a reserve, and returns its handle.")
-      .def(
-          "remove",
-          [](PythonCrowd& self, uint64_t agent) {
-            self.told([&](Crowd& crowd) { crowd.remove(AgentId::ofBits(agent)); });
-          },
-          "agent"_a, "Removes the agent of that handle.")
-      .def(
-          "has",
-          [](PythonCrowd& self, uint64_t agent) {
-            return self.told([&](Crowd& crowd) { return crowd.has(AgentId::ofBits(agent)); });
-          },
-          "agent"_a, "Whether the agent of that handle is there.");
-}
-
-void bindFacts(Bound& bound) {
+void bindFacts(CrowdClass& bound) {
   bound
       .def_property_readonly(
           "herd_count",
@@ -328,9 +197,15 @@ void bindFacts(Bound& bound) {
       .def_property_readonly(
           "agent_count",
           [](PythonCrowd& self) { return self.told([](const Crowd& c) { return c.agentCount(); }); },
-          "Agents of all herds.")
+          "Agents that are there, of all herds.")
       .def(
           "agents",
+          [](PythonCrowd& self, uint32_t herd) {
+            return self.told([&](const Crowd& c) { return c.agentCount(herd); });
+          },
+          "herd"_a = 0, "Agents of the herd that are there.")
+      .def(
+          "places",
           [](PythonCrowd& self, uint32_t herd) {
             return self.told([&](const Crowd& c) { return c.places(herd); });
           },
@@ -376,55 +251,47 @@ void bindFacts(Bound& bound) {
       });
 }
 
-void bindPlaces(Bound& bound) {
+void bindPlaces(CrowdClass& bound) {
   bound
       .def(
           "positions",
           [](PythonCrowd& self, uint32_t herd) {
-            const auto places = self.told([&](const Crowd& c) { return bindings::positionsOf(c, herd); });
-            return rowsOf(places, {static_cast<py::ssize_t>(places.size())});
+            return rowsOf(self.told([&](const Crowd& c) { return bindings::positionsOf(c, herd); }));
           },
           "herd"_a = 0, "Where bodies are, world metres: float64 of shape (agents, 3).")
       .def(
           "headings",
           [](PythonCrowd& self, uint32_t herd) {
-            auto values =
-                eachBody(self, herd, [](const BodyState& body) { return bindings::headingOf(body); });
-            const auto count = static_cast<py::ssize_t>(values.size());
-            return arrayOf(std::move(values), {count});
+            return listOf(
+                eachBody(self, herd, [](const BodyState& body) { return bindings::headingOf(body); }));
           },
           "herd"_a = 0,
           "Where bodies look, radians about +Y: 0 is +Z, a quarter turn +X. float32 of shape (agents,).")
       .def(
           "speeds",
           [](PythonCrowd& self, uint32_t herd) {
-            auto values =
-                eachBody(self, herd, [](const BodyState& body) { return glm::length(body.velocity); });
-            const auto count = static_cast<py::ssize_t>(values.size());
-            return arrayOf(std::move(values), {count});
+            return listOf(
+                eachBody(self, herd, [](const BodyState& body) { return glm::length(body.velocity); }));
           },
           "herd"_a = 0, "Horizontal, along the heading, metres a second: float32 of shape (agents,).")
       .def(
           "rotations",
           [](PythonCrowd& self, uint32_t herd) {
-            const auto values = eachBody(self, herd, [](const BodyState& body) {
-              return glm::vec4(body.rotation.x, body.rotation.y, body.rotation.z, body.rotation.w);
-            });
-            return rowsOf(values, {static_cast<py::ssize_t>(values.size())});
+            return rowsOf(eachBody(self, herd, [](const BodyState& body) { return body.rotation; }));
           },
           "herd"_a = 0, "Of bodies, world from model, quaternions x, y, z, w: float32 of shape (agents, 4).")
       .def(
           "joints",
           [](PythonCrowd& self, uint32_t herd) {
             std::vector<glm::dvec3> joints;
-            uint32_t agents = 0, legs = 0, bones = 0;
+            uint32_t places = 0, legs = 0, bones = 0;
             self.told([&](const Crowd& c) {
               joints = bindings::jointsOf(c, herd);
-              agents = c.places(herd);
+              places = c.places(herd);
               legs = bindings::legsOf(c, herd);
               bones = bindings::bonesOf(c, herd);
             });
-            return rowsOf(joints, {agents, legs, bones + 1});
+            return rowsOf(std::move(joints), {places, legs, bones + 1});
           },
           "herd"_a = 0,
           "Joints of the legs from root to foot, world metres: float64 of shape (agents, legs, bones + 1, "
@@ -442,7 +309,7 @@ void bindPlaces(Bound& bound) {
           "herd"_a = 0, "Touchdowns that there was no room for, since the start.");
 }
 
-void bindRecords(Bound& bound) {
+void bindRecords(CrowdClass& bound) {
   bound
       .def(
           "fidelity",
@@ -466,7 +333,7 @@ void bindRecords(Bound& bound) {
           "herd"_a = 0,
           "The same agent by agent: a dict of float64 arrays of shape (agents,); NaN stands for None.")
       .def("records", &records, "herd"_a = 0,
-           "Copies of the herd's records by name (skitter/records.h has the layouts): float32 of shape "
+           "The herd's records by name (skitter/records.h has the layouts): float32 of shape "
            "(agents, "
            "numbers), or (agents, legs, numbers) for records of legs.");
 }
@@ -483,15 +350,17 @@ void bindCrowd(py::module_& module) {
       .def_readwrite("eye", &View::eye, "World metres.")
       .def_readwrite("target", &View::target, "World metres.")
       .def_readwrite("fieldOfView", &View::fieldOfView, "Radians, vertical.");
-  Bound bound(
+  CrowdClass bound(
       module, "Crowd",
       "The herds of a scene on one terrain, living on one device. Herds and agents are numbered from 0.");
   bindMaking(bound);
   bindTicks(bound);
   bindSteering(bound);
+  bindPicking(module, bound);
   bindFacts(bound);
   bindPlaces(bound);
   bindRecords(bound);
+  bindStates(module, bound);
   bound.def("render", &render, "width"_a = 1280, "height"_a = 720, "view"_a = py::none(),
             "A picture of the crowd and its ground, by the scene's camera or from a View: RGBA8 sRGB, uint8 "
             "of shape "

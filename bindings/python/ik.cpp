@@ -36,8 +36,8 @@ struct ReportRow {
 };
 
 py::array_t<float> joints(PythonBatch& self) {
-  const auto all = self.told([](const ik::Batch& batch) { return batch.downloadJoints(); });
-  return rowsOf(all, {self.batch.chains(), self.batch.joints()});
+  auto all = self.told([](const ik::Batch& batch) { return batch.downloadJoints(); });
+  return rowsOf(std::move(all), {self.batch.chains(), self.batch.joints()});
 }
 
 py::array_t<float> solve(PythonBatch& self, const std::optional<Floats>& targets) {
@@ -57,8 +57,7 @@ py::array_t<ReportRow> reports(PythonBatch& self) {
   std::vector<ReportRow> rows;
   for (const ik::Report& report : self.told([](const ik::Batch& batch) { return batch.downloadReports(); }))
     rows.push_back({report.error, report.iterations, static_cast<uint32_t>(report.stop)});
-  const auto count = static_cast<py::ssize_t>(rows.size());
-  return arrayOf(std::move(rows), {count});
+  return listOf(std::move(rows));
 }
 
 void setBases(PythonBatch& self, const Floats& positions, const std::optional<Floats>& rotations) {
@@ -81,10 +80,8 @@ void setBases(PythonBatch& self, const Floats& positions, const std::optional<Fl
 }
 
 py::array_t<float> rotations(PythonBatch& self) {
-  std::vector<glm::vec4> all;
-  for (const glm::quat& q : self.told([](const ik::Batch& batch) { return batch.downloadRotations(); }))
-    all.push_back({q.x, q.y, q.z, q.w});
-  return rowsOf(all, {self.batch.chains(), self.batch.joints() - 1});
+  auto all = self.told([](const ik::Batch& batch) { return batch.downloadRotations(); });
+  return rowsOf(std::move(all), {self.batch.chains(), self.batch.joints() - 1});
 }
 
 void bindChains(py::module_& module) {
@@ -145,11 +142,7 @@ void bindChains(py::module_& module) {
           "bones", [](const ik::Chain& self) { return py::tuple(py::cast(self.bones)); }, "From the base on.")
       .def_property_readonly("reach", &ik::Chain::reach, "The sum of the lengths.")
       .def(
-          "rest",
-          [](const ik::Chain& self) {
-            const std::vector<glm::vec3> all = self.rest();
-            return rowsOf(all, {static_cast<py::ssize_t>(all.size())});
-          },
+          "rest", [](const ik::Chain& self) { return rowsOf(self.rest()); },
           "Its joints at rest, base first: float32 of shape (joints, 3).");
 }
 

@@ -23,6 +23,7 @@ PYBIND11_MODULE(skitter, module) {
   using namespace skitter::python;
   module.doc() = text;
   module.attr("__version__") = SKITTER_VERSION;
+  module.attr("no_agent") = skitter::AgentId().bits();
   bindErrors(module);
   bindDevice(module);
   bindTuning(module);
@@ -30,4 +31,5 @@ PYBIND11_MODULE(skitter, module) {
   bindCrowd(module);
   bindIk(module);
   bindSplines(module);
+  bindValidation(module);
 }

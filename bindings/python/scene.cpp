@@ -11,7 +11,7 @@ using namespace py::literals;
 // As scene files name them.
 constexpr std::array spawnKinds{"lanes", "grid"};
 constexpr std::array goalKinds{"cross", "point", "none", "velocity"};
-constexpr std::array cameraKinds{"follow", "fixed"};
+constexpr std::array cameraKinds{"follow", "fixed", "orbit", "path"};
 
 PythonScene parse(const py::object& json, const std::filesystem::path& folder) {
   const auto text = py::isinstance<py::str>(json) ? json : py::module_::import("json").attr("dumps")(json);
@@ -69,6 +69,11 @@ void bindHerd(py::module_& module) {
       .def_readwrite("reserve", &Herd::reserve, "Places for more, who come and go while the crowd runs.")
       .def_readwrite("spawn", &Herd::spawn, "Where they start.")
       .def_readwrite("goal", &Herd::goal, "Where they go.")
+      .def_readwrite("phase", &Herd::phase,
+                     "Where in its gait or clip each agent begins, 0 to 1; None: drawn by the seed.")
+      .def_readwrite("colour", &Herd::colour, "Linear red, green and blue, 0 to 1; None: the model's.")
+      .def_readwrite("tint", &Herd::tint,
+                     "How much agents differ in colour, 0 to 1; None: half, by their numbers.")
       .def("__repr__", [](const Herd& self) {
         return fmt::format("<skitter.Herd of {} agents, {}, {}>", self.agents, self.rig,
                            nameOf(self.controller));
@@ -197,6 +202,37 @@ void bindRig(py::module_& module) {
       .def_readonly("bodyRadius", &Rig::bodyRadius, "Half of the body's length, metres.");
 }
 
+void bindCameras(py::module_& module) {
+  py::class_<CameraKey>(module, "CameraKey", "Where a camera on a path is at a time.")
+      .def(py::init([](float time, const glm::vec3& position, const glm::vec3& target) {
+             return CameraKey{time, position, target};
+           }),
+           "time"_a, "position"_a, "target"_a)
+      .def_readwrite("time", &CameraKey::time, "Seconds.")
+      .def_readwrite("position", &CameraKey::position, "World metres.")
+      .def_readwrite("target", &CameraKey::target, "What it looks at, world metres.");
+  py::class_<Camera> camera(module, "Camera", "Where pictures are taken from (docs/scene.md).");
+  camera.def(py::init<>());
+  defineNamed(camera, "kind", &Camera::kind, cameraKinds,
+              "\"follow\": behind and above the middle of the crowd. \"fixed\": from `position` at `target`. "
+              "\"orbit\": around the middle of the crowd, or `about`. \"path\": through `keys`.");
+  camera.def_readwrite("position", &Camera::position, "World metres, of \"fixed\".")
+      .def_readwrite("target", &Camera::target, "World metres, of \"fixed\".")
+      .def_readwrite("distance", &Camera::distance,
+                     "Metres from what it looks at, of \"follow\" and \"orbit\".")
+      .def_readwrite("fieldOfView", &Camera::fieldOfView, "Radians, vertical.")
+      .def_readwrite("about", &Camera::about, "World metres, of \"orbit\"; None: the middle of the crowd.")
+      .def_readwrite("elevation", &Camera::elevation, "Radians above the horizon, of \"orbit\".")
+      .def_readwrite("azimuth", &Camera::azimuth, "Radians about +Y from +Z: on which side \"orbit\" begins.")
+      .def_readwrite(
+          "secondsATurn", &Camera::secondsATurn,
+          "Seconds a turn of \"orbit\", counter-clockwise from above; below 0 clockwise; 0: it stays.")
+      .def_property(
+          "keys", [](const Camera& self) { return py::tuple(py::cast(self.keys)); },
+          [](Camera& self, std::vector<CameraKey> keys) { self.keys = std::move(keys); },
+          "2 to 1024 CameraKey, of \"path\".");
+}
+
 }  // namespace
 
 PythonScene::PythonScene(const Scene& scene) : rest(scene) {
@@ -230,16 +266,7 @@ void bindScene(py::module_& module) {
   bindHerd(module);
   bindTerrain(module);
   bindRig(module);
-
-  py::class_<Camera> camera(module, "Camera", "Where pictures are taken from.");
-  camera.def(py::init<>());
-  defineNamed(
-      camera, "kind", &Camera::kind, cameraKinds,
-      "\"follow\": behind and above the middle of the crowd. \"fixed\": from `position` at `target`.");
-  camera.def_readwrite("position", &Camera::position, "World metres.")
-      .def_readwrite("target", &Camera::target, "World metres.")
-      .def_readwrite("distance", &Camera::distance, "Metres from the crowd's middle, of \"follow\".")
-      .def_readwrite("fieldOfView", &Camera::fieldOfView, "Radians, vertical.");
+  bindCameras(module);
 
   py::class_<PythonScene>(module, "Scene", "Terrain, herds, camera and seed: what a crowd is made of.")
       .def(py::init([] { return PythonScene(Scene{}); }), "1,000 spiders on generated ground.")

@@ -39,7 +39,7 @@ template <typename Ask>
 py::array_t<float> vectorsAt(const Doubles& times, Ask ask) {
   std::vector<glm::vec3> values;
   for (py::ssize_t i = 0; i < times.size(); ++i) values.push_back(ask(times.data()[i]));
-  return rowsOf(values, {times.shape(), times.shape() + times.ndim()});
+  return rowsOf(std::move(values), {times.shape(), times.shape() + times.ndim()});
 }
 
 struct MotionRow {
@@ -83,19 +83,11 @@ std::unique_ptr<PythonSplines> makeSplines(const std::shared_ptr<SharedDevice>& 
 }
 
 void setClocks(PythonSplines& self, const Doubles& start, const Doubles& duration) {
-  const py::ssize_t count = self.batch.splines();
-  const auto checkSize = [&](const Doubles& array, const char* name) {
-    if (array.size() != 1 && array.size() != count)
-      throw inputError(
-          fmt::format("{} has shape {}, expected one number or ({},)", name, shapeOf(array), count));
-  };
-  checkSize(start, "start");
-  checkSize(duration, "duration");
+  const size_t count = self.batch.splines();
+  const Each<double> starts(start, "start", count), durations(duration, "duration", count);
   std::vector<SplineClock> clocks;
-  for (py::ssize_t i = 0; i < count; ++i)
-    clocks.push_back({.start = start.data()[start.size() == 1 ? 0 : i],
-                      .duration = duration.data()[duration.size() == 1 ? 0 : i],
-                      .active = true});
+  for (size_t i = 0; i < count; ++i)
+    clocks.push_back({.start = starts[i], .duration = durations[i], .active = true});
   const Turn turn(*self.device);
   self.batch.setClocks(clocks);
 }
@@ -107,8 +99,7 @@ py::array_t<MotionRow> travel(PythonSplines& self, double now) {
     self.batch.travel(now);
     for (const SplineMotion& motion : self.batch.downloadMotions()) rows.push_back(rowOf(motion));
   }
-  const auto count = static_cast<py::ssize_t>(rows.size());
-  return arrayOf(std::move(rows), {count});
+  return listOf(std::move(rows));
 }
 
 py::array_t<float> lengths(PythonSplines& self) {
@@ -117,8 +108,7 @@ py::array_t<float> lengths(PythonSplines& self) {
     const Turn turn(*self.device);
     all = self.batch.downloadLengths();
   }
-  const auto count = static_cast<py::ssize_t>(all.size());
-  return arrayOf(std::move(all), {count});
+  return listOf(std::move(all));
 }
 
 }  // namespace

@@ -8,6 +8,13 @@ SCENE = {
 }
 
 
+# Four who stand and look along +z, in the middle of ground that is flat.
+STANDING = {
+    "terrain": {"columns": 65, "rows": 65, "amplitude": 0},
+    "herds": [{"agents": 4, "reserve": 2, "spawn": {"kind": "grid"}, "goal": {"kind": "none"}}],
+}
+
+
 @pytest.fixture(scope="session")
 def device():
     return skitter.Device()
@@ -16,3 +23,8 @@ def device():
 @pytest.fixture
 def scene():
     return skitter.Scene.parse(SCENE)
+
+
+@pytest.fixture
+def standing():
+    return skitter.Scene.parse(STANDING)

@@ -46,6 +46,12 @@ def test_bases_and_rotations_are_the_worlds(device):
     assert np.linalg.norm(rotations, axis=2) == pytest.approx(np.ones((2, 3)), abs=1e-4)
 
 
+def test_a_straight_chain_is_not_rotated(device):
+    batch = ik.Batch(device, arm(), 1, rotations=True)
+    batch.solve([[3, 0, 0]])
+    assert batch.rotations()[0] == pytest.approx(np.tile([0, 0, 0, 1], (3, 1)), abs=0.1)
+
+
 def test_what_cannot_be_is_refused(device):
     batch = ik.Batch(device, arm(), 2)
     for call, what in (

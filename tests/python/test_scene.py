@@ -36,12 +36,15 @@ def test_what_is_set_is_what_a_crowd_is_made_of(scene):
     herd.spawn.spacing = 2
     herd.spawn.heading = 0.25
     herd.tuning.stepHeight = 0.25
+    assert (herd.phase, herd.colour, herd.tint) == (None, None, None)
+    herd.phase, herd.colour, herd.tint = 0.5, (1, 0.5, 0), 0.75
     again = scene.herds[0]
     assert (again.agents, again.controller, again.solver, again.stepping, again.keys) == (5, "loop", "ccd", "reach", 3)
     assert again.clips == ("walk",) and len(again.cuts) == 1
     assert (again.goal.kind, again.goal.target, again.goal.speed) == ("point", (1, 2), 0.5)
     assert (again.spawn.kind, again.spawn.centre, again.spawn.heading) == ("grid", (3, 4), 0.25)
     assert again.tuning.stepHeight == 0.25
+    assert (again.phase, again.colour, again.tint) == (0.5, (1, 0.5, 0), 0.75)
     scene.herds.append(skitter.Herd(7))
     assert scene.agent_count == 5 + 3 + 7
     scene.name, scene.seed = "mine", 5
@@ -50,6 +53,23 @@ def test_what_is_set_is_what_a_crowd_is_made_of(scene):
     scene.camera.fieldOfView, scene.camera.distance = 1, 5
     assert (scene.name, scene.seed, scene.camera.kind, scene.camera.position) == ("mine", 5, "fixed", (0, 5, -5))
     assert "mine" in repr(scene)
+
+
+def test_a_camera_orbits_or_follows_a_path(device, scene):
+    camera = scene.camera
+    camera.kind = "orbit"
+    assert camera.about is None and camera.secondsATurn == 30
+    camera.about, camera.elevation, camera.azimuth, camera.secondsATurn = (1, 2, 3), 0.5, 1, -10
+    assert scene.camera.kind == "orbit" and scene.camera.about == (1, 2, 3)
+    again = skitter.Scene.parse(scene.to_json()).camera
+    assert (again.elevation, again.azimuth, again.secondsATurn) == (0.5, 1, -10)
+    orbiting = skitter.Crowd(device, scene).render(64, 36)
+    camera.kind = "path"
+    camera.keys = [skitter.CameraKey(0, (0, 9, -9), (0, 0, 0)), skitter.CameraKey(2, (9, 9, 0), (0, 1, 0))]
+    keys = skitter.Scene.parse(scene.to_json()).camera.keys
+    assert [(key.time, key.position, key.target) for key in keys] == [
+        (0, (0, 9, -9), (0, 0, 0)), (2, (9, 9, 0), (0, 1, 0))]  # fmt: skip
+    assert not np.array_equal(skitter.Crowd(device, scene).render(64, 36), orbiting)
 
 
 def test_a_scene_is_written_as_it_is_read(scene):
