@@ -25,7 +25,7 @@ std::vector<StageResult> replay(SharedDevice& device, const Scene& scene, const 
   Signals signals;
   Crowd crowd(device.device, terrain, scene, options);
   bindings::Walk walk(device.device);
-  validation::Lockstep lockstep(crowd, scene, stages);
+  validation::Lockstep lockstep(crowd, scene, dt, stages);
   while (crowd.tick() < ticks) {
     signals.check();
     lockstep.begin();
