@@ -1,5 +1,5 @@
-// Random calls over many ticks: the same calls give the same bits, memory stays as it is, and everybody who
-// is there walks soundly.
+// Random calls over many ticks: the same calls give the same bits, also where the crowd is saved and loaded
+// in between, memory stays as it is, and everybody who is there walks soundly.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -10,15 +10,18 @@
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
 #include "gpu/submit.h"
+#include "skitter/state.h"
 
 namespace skitter::test {
 namespace {
 
 using SoakTest = GpuTest;
 
-// Calls for each tick, and every so many ticks a herd that comes or goes.
+// Calls for each tick, every so many ticks a herd that comes or goes, and one call in so many that saves the
+// crowd and goes on with one that is made of its state.
 constexpr int kCallsATick = 5;
 constexpr int kHerdEvery = 500;
+constexpr size_t kSaveOneIn = 500;
 
 // SKITTER_SOAK_TICKS; 20,000 are 100,000 calls and take some minutes.
 int ticksToSoak() {
@@ -42,8 +45,10 @@ struct Soaked {
 // A small crowd, and whoever calls it.
 class Soak {
  public:
-  Soak(Device& device, Controller other)
-      : device_(device), crowd_(device, rollingGround(), sceneFor(other), CrowdOptions{.sleep = true}) {
+  Soak(Device& device, Controller other, bool saves)
+      : device_(device),
+        crowd_(device, rollingGround(), sceneFor(other), CrowdOptions{.sleep = true}),
+        saves_(saves) {
     for (uint32_t h = 0; h < crowd_.herdCount(); ++h)
       for (uint32_t i = 0; i < crowd_.agentCount(h); ++i) here_.push_back(crowd_.agentId(h, i));
   }
@@ -98,6 +103,7 @@ class Soak {
 
   void callAny() {
     ++calls_;
+    if (below(kSaveOneIn) == 0) return saveAndLoad();
     const auto herd = static_cast<uint32_t>(below(2));
     if (here_.empty()) return come(herd);
     const size_t who = below(here_.size());
@@ -119,6 +125,9 @@ class Soak {
         return crowd_.steer({&goal, 1});
       }
     }
+  }
+  void saveAndLoad() {
+    if (saves_) crowd_ = Crowd(device_, parseState(crowd_.saveToMemory(), "the soak's state"));
   }
   void come(uint32_t herd) {
     if (crowd_.agentCount(herd) == crowd_.places(herd)) return;
@@ -157,6 +166,7 @@ class Soak {
   Device& device_;
   Heightfield ground_ = rollingGround();
   Crowd crowd_;
+  bool saves_;
   std::mt19937_64 random_{7};
   std::vector<AgentId> here_, gone_;
   std::optional<HerdId> guest_;
@@ -165,8 +175,8 @@ class Soak {
 
 TEST_F(SoakTest, RandomCallsRepeatAndLeaveNothingBehind) {
   const int ticks = ticksToSoak();
-  const Soaked first = Soak(device(), Controller::clip).run(ticks);
-  const Soaked again = Soak(device(), Controller::clip).run(ticks);
+  const Soaked first = Soak(device(), Controller::clip, false).run(ticks);
+  const Soaked again = Soak(device(), Controller::clip, true).run(ticks);
   EXPECT_EQ(first.hash, again.hash);
   EXPECT_EQ(first.calls, static_cast<uint64_t>(ticks) * kCallsATick);
   EXPECT_EQ(first.bytes, again.bytes);
