@@ -38,6 +38,7 @@ std::span<const std::byte> bytesOf(const T& value) {
 }  // namespace
 
 uint32_t checksum(std::span<const std::byte> bytes, uint32_t before) {
+  if (bytes.empty()) return before;  // zlib begins anew where there is no buffer
   return static_cast<uint32_t>(crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 

@@ -73,7 +73,7 @@ Scene sceneOf(const Options& options) {
   Scene scene;
   scene.terrain = TerrainNoise{.columns = 257, .rows = 257, .amplitude = 5};
   scene.herds[0].agents = options.agents;
-  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1.5f};
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1.2f};
   scene.herds.push_back(scene.herds[0]);
   scene.herds[1].agents = options.agents / 6;
   scene.herds[1].controller = Controller::clip;

