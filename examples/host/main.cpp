@@ -130,7 +130,7 @@ struct Camera {
   Camera(double seconds, const Heightfield& ground, VkExtent2D extent) {
     const double angle = 0.6 + 0.05 * seconds;
     target = {0, double{ground.at(0, 0)} - 2, 0};
-    eye = target + glm::dvec3(34 * std::sin(angle), 15, -34 * std::cos(angle));
+    eye = target + glm::dvec3(24 * std::sin(angle), 9, -24 * std::cos(angle));
     const auto width = static_cast<float>(extent.width), height = static_cast<float>(extent.height);
     constexpr float fieldOfView = 0.8f;
     glm::mat4 projection = glm::perspectiveRH_ZO(fieldOfView, width / height, 0.1f, 400.0f);

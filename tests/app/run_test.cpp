@@ -24,8 +24,10 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   EXPECT_EQ(keysOf(run),
             (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
                                    "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity", "herds",
-                                   "sleeping", "stateHash", "ticksWanted", "interrupted", "manifest"}));
+                                   "sleeping", "stateHash", "ticksWanted", "interrupted", "manifest",
+                                   "resumedAt"}));
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
+  EXPECT_TRUE(run.at("resumedAt").is_null()) << "it began at the start";
   EXPECT_EQ(run.at("agents"), 20);
   EXPECT_EQ(run.at("ticks"), 30);
   EXPECT_EQ(run.at("ticksWanted"), 30);

@@ -6,6 +6,6 @@ vec3 lit(vec3 colour, vec3 normal) {
 
 // Through haze, for a plain attachment.
 vec3 seen(vec3 colour, float away) {
-  vec3 hazed = mix(vec3(0.62, 0.71, 0.82), colour, exp(-away * away * 1.6e-4));
+  vec3 hazed = mix(vec3(0.62, 0.71, 0.82), colour, exp(-away * away * 6e-5));
   return pow(min(hazed, vec3(1.0)), vec3(1.0 / 2.2));
 }
