@@ -16,7 +16,7 @@
 #include "app/commands.h"
 #include "app/common/manifest.h"
 #include "app/common/signals.h"
-#include "render/partial_file.h"
+#include "assets/files/partial_file.h"
 #include "skitter/error.h"
 
 namespace {
@@ -60,7 +60,7 @@ void fillStandardStreams() {
 // The error is 0 where it was lost on the way.
 int unprintable(int error) {
   return fail(2, fmt::format("standard output: cannot be written: {}",
-                             error != 0 ? skitter::render::writeFault(error) : "the disk may be full"));
+                             error != 0 ? skitter::writeFault(error) : "the disk may be full"));
 }
 
 // Text counts as written only once it has left the buffer.

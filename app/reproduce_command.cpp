@@ -7,13 +7,14 @@
 
 #include "app/commands.h"
 #include "app/common/files.h"
+#include "app/common/manifest.h"
 #include "app/common/progress.h"
 #include "app/common/signals.h"
 #include "app/common/staged_folder.h"
 #include "app/common/values.h"
+#include "assets/files/partial_file.h"
 #include "experiments/other_work.h"
 #include "experiments/report.h"
-#include "render/partial_file.h"
 #include "skitter/error.h"
 
 namespace skitter::app {
@@ -103,8 +104,13 @@ int reproduce(const ReproduceOptions& options) {
   const std::vector<ReportFile> files = reportOf(results, settings, setup);
   deadline.reset();
   if (stopRequested()) throw app::Interrupted(StopDeadline::nothingWritten());
+  Manifest manifest{.seed = settings.seed};
+  manifest.add(device.report());
   StagedFolder out(options.out);
-  for (const ReportFile& file : files) render::writeText(out.add(file.name), file.bytes);
+  for (const ReportFile& file : files) {
+    const std::string before = file.name.ends_with(".csv") ? manifest.csvComment() : "";
+    writeText(out.add(file.name), before + file.bytes);
+  }
   out.commit();
 
   for (const Conclusion& c : conclusionsOf(results))

@@ -8,6 +8,8 @@ function(skitter_embed target name file)
 .balign 16
 .global skitter_embedded_@name@_begin
 .global skitter_embedded_@name@_end
+.hidden skitter_embedded_@name@_begin
+.hidden skitter_embedded_@name@_end
 skitter_embedded_@name@_begin:
 .incbin \"@file@\"
 skitter_embedded_@name@_end:

@@ -2,9 +2,9 @@
 # embeds it in the target (skitter_embed), `ik.comp` as `ik_comp`. With LOAD_VARIANTS each file is built twice, with
 # LOAD4_TEXEL=1 as `ik_comp_texel` and with LOAD4_TEXEL=0 as `ik_comp_storage` (shaders/lib/load4.glsl).
 # Includes are found from shaders/ and beside the file. DEFINES <name[=value]>... are passed on.
-skitter_require_program(GLSLANG glslang-tools glslangValidator glslang)
-skitter_require_program(SPIRV_OPT spirv-tools spirv-opt)
-skitter_require_program(SPIRV_VAL spirv-tools spirv-val)
+skitter_require_program(SKITTER_GLSLANG glslang-tools glslangValidator glslang)
+skitter_require_program(SKITTER_SPIRV_OPT spirv-tools spirv-opt)
+skitter_require_program(SKITTER_SPIRV_VAL spirv-tools spirv-val)
 
 function(skitter_add_shaders target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LOAD_VARIANTS" "" "SOURCES;DEFINES")
@@ -31,12 +31,12 @@ function(skitter_add_shader target source name)
   list(TRANSFORM ARGN PREPEND -D OUTPUT_VARIABLE defines)
   # --quiet would also silence warnings, so the file name that glslang prints is what a clean compile says.
   add_custom_command(OUTPUT ${dir}/${name}.raw.spv
-    COMMAND ${GLSLANG} -V --target-env vulkan1.3 -I${shaders} -I${shaders}/../engine/include ${defines}
+    COMMAND ${SKITTER_GLSLANG} -V --target-env vulkan1.3 -I${shaders} -I${shaders}/../engine/include ${defines}
             --depfile ${dir}/${name}.d -o ${dir}/${name}.raw.spv ${source}
     DEPENDS ${source} DEPFILE ${dir}/${name}.d COMMENT "GLSL ${name}" VERBATIM)
   add_custom_command(OUTPUT ${dir}/${name}.spv
-    COMMAND ${SPIRV_OPT} --target-env=vulkan1.3 -O ${dir}/${name}.raw.spv -o ${dir}/${name}.spv
-    COMMAND ${SPIRV_VAL} --target-env vulkan1.3 ${dir}/${name}.spv
+    COMMAND ${SKITTER_SPIRV_OPT} --target-env=vulkan1.3 -O ${dir}/${name}.raw.spv -o ${dir}/${name}.spv
+    COMMAND ${SKITTER_SPIRV_VAL} --target-env vulkan1.3 ${dir}/${name}.spv
     DEPENDS ${dir}/${name}.raw.spv COMMENT "SPIR-V ${name}" VERBATIM)
   target_sources(${target} PRIVATE ${dir}/${name}.spv)
   skitter_embed(${target} ${name} ${dir}/${name}.spv)

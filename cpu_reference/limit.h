@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <limits>
 
 // How far a bone may turn from rest (docs/ik.md, Limits), in the form in which poses are kept: the swing as
 // (X, Y) = (d.x, d.y) / (1 + d.z) of its direction d in its frame, so that |(X, Y)| = tan(angle / 2), and
@@ -31,11 +32,22 @@ Limit ellipseLimit(double positiveX, double positiveY, double negativeX, double 
 Limit hingeLimit(double low, double high);
 Limit withTwist(Limit limit, double low, double high);
 
-// The ellipse's half-angles in the quadrant of h.
-glm::dvec2 ellipseAxes(const Limit& limit, const glm::dvec2& h);
-
 // The nearest legal swing along the same way from rest, and the nearest legal twist.
 glm::dvec2 clampSwing(const Limit& limit, const glm::dvec2& xy);
 double clampTwist(const Limit& limit, double tanHalfTwist);
+
+// The greatest angle from rest that a ball's limit allows anywhere.
+double greatestAngle(const Limit& limit);
+
+// How far a bone may still turn: the tangents of the angles left, as a step of x turns by atan(x). Infinite
+// where the limit is too far to matter.
+struct Room {
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  glm::dvec2 way{1, 0};  // of a ball: which way, as shares of away from rest and around it
+};
+// d: where the bone points; s: the sine of its angle from rest; h: the way in which it is turned, a unit
+// vector.
+Room swingRoom(const Limit& limit, const glm::dvec3& d, double s, const glm::dvec2& h);
+Room twistRoom(const Limit& limit, double tanHalfTwist);
 
 }  // namespace skitter::reference

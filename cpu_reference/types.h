@@ -73,10 +73,10 @@ struct Creature {
   int groups = 0;
 };
 
-enum class GoalKind { none, point, cross };
+enum class GoalKind { none, point, cross, velocity };
 
 struct Goal {
-  glm::dvec2 target{0}, otherEnd{0};  // world x, z
+  glm::dvec2 target{0}, otherEnd{0};  // world x, z; of kind velocity the target is the desired velocity
   double speed = 0, arrivalRadius = 0;
   GoalKind kind = GoalKind::none;
 };
@@ -91,6 +91,7 @@ struct AgentBody {
   double still = 0;         // seconds
   double follow = 1;        // follow factor
   double surfaceSpeed = 0;  // m/s along the ground
+  bool absent = false;      // nobody is in this place
 
   glm::dvec2 world() const { return {tileX * tileSize + localX, tileZ * tileSize + localZ}; }
   // v_e: how fast the feet must go, turning included.

@@ -142,6 +142,133 @@ void compareUnwatched(const Moment& moment, Judge& judge) {
   judge.add(moment.n, moment.number(), -1, sample);
 }
 
+// How far the sums of one tick may be off, and which decisions are close.
+struct Bounds {
+  double footJerk = 0, footPath = 0, bodyJerk = 0, bodyPath = 0;
+  double lengths = 0, vertical = 0, deepest = 0;
+  double skates = 0, violations = 0, crossings = 0;
+  std::vector<CloseWindow> closeBody, closeFeet;
+};
+
+// An agent's legs after the tick.
+struct Legs {
+  reference::AgentBody body;
+  std::vector<reference::Foot> feet;
+  std::vector<reference::Chain> chains;
+};
+Legs legsOf(const Setting& setting, const Moment& moment) {
+  Legs legs{bodyOf(moment.after, moment.agent), {}, {}};
+  const size_t count = static_cast<size_t>(setting.legs);
+  for (size_t l = 0; l < count; ++l) {
+    legs.feet.push_back(footOf(moment.after, moment.agent * count + l));
+    legs.chains.push_back(chainOf(moment.after, moment.agent * count + l, setting.bones));
+  }
+  return legs;
+}
+
+// Adds what one leg adds to the bounds; compares its trail.
+void addLeg(const Setting& setting, const Legs& legs, const reference::Measured& expected,
+            const reference::Watched& got, size_t l, Bounds& bounds, Sample& sample) {
+  const double unit = setting.tuning.legLength, ticks = setting.tuning.jerkTicks;
+  const reference::AgentBody& body = legs.body;
+  const reference::Limb& limb = setting.creature.limbs[l];
+  const reference::Chain& chain = legs.chains[l];
+  const reference::TipTrail& trail = expected.watched.tips[l];
+  const reference::LegDecisions& leg = expected.legs[l];
+  // Adding a tip to its body rounds once, in x and z below 32 m, in y with the height.
+  const double height = 6 * tolerance::roundoff * (std::abs(body.y) + limb.reach);
+  const TrailBounds bound = compareTrail(trail, got.tips[l], tolerance::relative + height, unit, sample);
+  sample.compare("slip of the stance / leg length", std::abs(trail.slip - got.tips[l].slip) / unit,
+                 (2 * tolerance::relative + 4 * tolerance::roundoff * std::abs(trail.slip)) / unit,
+                 {trail.slip, 0, 0, 0}, {got.tips[l].slip, 0, 0, 0});
+
+  const glm::dvec2 world = body.world();
+  const auto relief = reference::reliefNear(setting.heights, world.x + chain.tip.x, world.y + chain.tip.z);
+  bounds.vertical += tolerance::height(relief, setting.extent, 2 * tolerance::roundoff * limb.reach) + height;
+
+  const double length = limb.reach + glm::length(limb.root);
+  const double joint = tolerance::bonePosition(setting.bones) * length;
+  double steepest = 0;
+  for (const glm::dvec3& p : reference::jointsOf(limb, chain.directions)) {
+    const glm::dvec3 q = body.orientation * p;
+    const auto below = reference::reliefNear(setting.heights, world.x + q.x, world.y + q.z);
+    steepest =
+        std::max(steepest, tolerance::height(below, setting.extent, joint + tolerance::rotated(length)));
+  }
+  const double depth = steepest + joint + tolerance::rotated(length) + height;
+  bounds.lengths += depth;
+  bounds.deepest = std::max(bounds.deepest, depth);
+
+  if (leg.stays && std::abs(leg.slide) <= 2 * bound.first) ++bounds.skates;
+  if (std::abs(leg.violation) <= tolerance::violation) ++bounds.violations;
+  if (leg.paired && std::abs(leg.crossing) <= 4 * joint + 4 * tolerance::roundoff * length)
+    ++bounds.crossings;
+  if (!leg.closes || leg.path < -2 * bound.first) return;
+  if (leg.path <= 2 * bound.first) bounds.closeFeet.push_back(closeWindow(trail, leg.path, ticks));
+  bounds.footJerk += jerkBound(trail, bound, ticks);
+  bounds.footPath += pathBound(trail, bound);
+}
+
+// Compares trails; what follows for the sums.
+Bounds compareTrails(const Setting& setting, const Legs& legs, const reference::Measured& expected,
+                     const reference::Watched& got, Sample& sample) {
+  Bounds bounds;
+  const double ticks = setting.tuning.jerkTicks;
+  const reference::Trail& body = expected.watched.body;
+  const TrailBounds bound = compareTrail(body, got.body, 0, setting.tuning.legLength, sample);
+  if (expected.closes) {
+    bounds.bodyJerk = jerkBound(body, bound, ticks);
+    bounds.bodyPath = pathBound(body, bound);
+    if (std::abs(expected.bodyPath) <= 2 * bound.first)
+      bounds.closeBody.push_back(closeWindow(body, expected.bodyPath, ticks));
+  }
+  for (size_t l = 0; l < legs.feet.size(); ++l) addLeg(setting, legs, expected, got, l, bounds, sample);
+  return bounds;
+}
+
+// Whether something was decided the other way.
+bool compareSums(const Setting& setting, const Legs& legs, const reference::Measured& expected,
+                 const Metric& got, const Bounds& bounds, Sample& sample) {
+  const double unit = setting.tuning.legLength;
+  Metric want = expected.metric;
+  Comparison metric(sample, want, got, unit, static_cast<double>(legs.feet.size()));
+  metric.count("ticks", &Metric::ticks);
+  metric.count("planted leg-ticks", &Metric::planted);
+  metric.count("leg-ticks planted twice", &Metric::stays);
+  metric.count("skating leg-ticks", &Metric::skates, bounds.skates);
+  metric.count("finished stances", &Metric::stances);
+  metric.length("slip over finished stances / leg length", &Metric::slip, 0);
+  metric.length("largest reach error / leg length", &Metric::largestError, 0);
+  metric.number("largest limit violation, rad", &Metric::largestViolation, tolerance::violation);
+  metric.count("leg-ticks beyond a limit", &Metric::violations, bounds.violations);
+  metric.length("penetration / leg length", &Metric::penetration, bounds.vertical);
+  metric.length("penetration beyond the dead zone / leg length", &Metric::penetrationBeyond, bounds.vertical);
+  metric.length("float / leg length", &Metric::floating, bounds.vertical);
+  metric.length("float beyond the dead zone / leg length", &Metric::floatingBeyond, bounds.vertical);
+  metric.length("segment penetration / leg length", &Metric::depth, bounds.lengths);
+  metric.length("largest segment penetration / leg length", &Metric::deepest, bounds.deepest);
+  metric.count("pair-ticks", &Metric::pairs);
+  metric.count("crossings", &Metric::crossings, bounds.crossings);
+
+  const double turned = nearestPair(legs.feet, legs.chains, 2 * unit);
+  const double margin = 16 * tolerance::roundoff * 2 * unit * (1 + 2 * unit / turned);
+  metric.count("ticks with a support", &Metric::supported);
+  metric.count("unstable ticks", &Metric::unstable,
+               expected.supported && std::abs(expected.margin) <= margin ? 1 : 0);
+  metric.length("stability margin / leg length", &Metric::margin, margin);
+  metric.length("least stability margin / leg length", &Metric::leastMargin, margin);
+
+  const bool footTie = decideWindows(metric, want, {&Metric::footJerk, bounds.footJerk},
+                                     {&Metric::footPath, bounds.footPath}, bounds.closeFeet);
+  const bool bodyTie = decideWindows(metric, want, {&Metric::bodyJerk, bounds.bodyJerk},
+                                     {&Metric::bodyPath, bounds.bodyPath}, bounds.closeBody);
+  metric.number("jerk of the feet", &Metric::footJerk, bounds.footJerk);
+  metric.number("squared path of the feet", &Metric::footPath, bounds.footPath);
+  metric.number("jerk of the body", &Metric::bodyJerk, bounds.bodyJerk);
+  metric.number("squared path of the body", &Metric::bodyPath, bounds.bodyPath);
+  return metric.ties() || footTie || bodyTie;
+}
+
 }  // namespace
 
 void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
@@ -150,109 +277,19 @@ void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge) {
   const uint64_t number = moment.after.watchOffset + moment.number();
   if (number % every != turn.turn) return compareUnwatched(moment, judge);
 
-  const reference::Tuning& tuning = setting.tuning;
-  const reference::AgentBody body = bodyOf(moment.after, moment.agent);
-  const size_t legs = static_cast<size_t>(setting.legs), slot = number / every;
-  const double unit = tuning.legLength;
-  std::vector<reference::Foot> feet;
-  std::vector<reference::Chain> chains;
-  for (size_t l = 0; l < legs; ++l) {
-    feet.push_back(footOf(moment.after, moment.agent * legs + l));
-    chains.push_back(chainOf(moment.after, moment.agent * legs + l, setting.bones));
-  }
-  const reference::Measured expected =
-      reference::measure(tuning, setting.heights, setting.creature, body, feet, chains, turn.watched,
-                         watchedOf(moment.before, slot, setting.legs), metricOf(moment.before, moment.agent));
-  const Metric got = metricOf(moment.after, moment.agent);
-  const reference::Watched watched = watchedOf(moment.after, slot, setting.legs);
+  const Legs legs = legsOf(setting, moment);
+  const size_t slot = number / every;
+  const reference::Measured expected = reference::measure(
+      setting.tuning, setting.heights, setting.creature, legs.body, legs.feet, legs.chains, turn.watched,
+      watchedOf(moment.before, slot, setting.legs), metricOf(moment.before, moment.agent));
 
   Sample sample;
   sample.finite("metric", records(moment.after.metric, moment.agent, shared::METRIC_STRIDE));
   sample.finite("watch", records(moment.after.watch, slot, shared::watchStride(setting.legs)));
-
-  // Adding a tip to its body rounds once, in x and z below 32 m, in y with the height.
-  TrailBounds bound = compareTrail(expected.watched.body, watched.body, 0, unit, sample);
-  const double bodyJerk = expected.closes ? jerkBound(expected.watched.body, bound, tuning.jerkTicks) : 0;
-  const double bodyPath = expected.closes ? pathBound(expected.watched.body, bound) : 0;
-  std::vector<CloseWindow> closeBody, closeFeet;
-  if (expected.closes && std::abs(expected.bodyPath) <= 2 * bound.first)
-    closeBody.push_back(closeWindow(expected.watched.body, expected.bodyPath, tuning.jerkTicks));
-  double footJerk = 0, footPath = 0, lengths = 0, vertical = 0, deepest = 0;
-  double skates = 0, violations = 0, crossings = 0;
-  for (size_t l = 0; l < legs; ++l) {
-    const reference::Limb& limb = setting.creature.limbs[l];
-    const reference::TipTrail& trail = expected.watched.tips[l];
-    const reference::LegDecisions& leg = expected.legs[l];
-    const double height = 6 * tolerance::roundoff * (std::abs(body.y) + limb.reach);
-    bound = compareTrail(trail, watched.tips[l], tolerance::relative + height, unit, sample);
-    sample.compare("slip of the stance / leg length", std::abs(trail.slip - watched.tips[l].slip) / unit,
-                   (2 * tolerance::relative + 4 * tolerance::roundoff * std::abs(trail.slip)) / unit,
-                   {trail.slip, 0, 0, 0}, {watched.tips[l].slip, 0, 0, 0});
-
-    const glm::dvec2 world = body.world();
-    const auto relief =
-        reference::reliefNear(setting.heights, world.x + chains[l].tip.x, world.y + chains[l].tip.z);
-    vertical += tolerance::height(relief, setting.extent, 2 * tolerance::roundoff * limb.reach) + height;
-
-    const double length = limb.reach + glm::length(limb.root);
-    const double joint = tolerance::bonePosition(setting.bones) * length;
-    double steepest = 0;
-    for (const glm::dvec3& p : reference::jointsOf(limb, chains[l].directions)) {
-      const glm::dvec3 q = body.orientation * p;
-      const auto below = reference::reliefNear(setting.heights, world.x + q.x, world.y + q.z);
-      steepest =
-          std::max(steepest, tolerance::height(below, setting.extent, joint + tolerance::rotated(length)));
-    }
-    const double depth = steepest + joint + tolerance::rotated(length) + height;
-    lengths += depth;
-    deepest = std::max(deepest, depth);
-
-    if (leg.stays && std::abs(leg.slide) <= 2 * bound.first) ++skates;
-    if (std::abs(leg.violation) <= tolerance::violation) ++violations;
-    if (leg.paired && std::abs(leg.crossing) <= 4 * joint + 4 * tolerance::roundoff * length) ++crossings;
-    if (!leg.closes || leg.path < -2 * bound.first) continue;
-    if (leg.path <= 2 * bound.first) closeFeet.push_back(closeWindow(trail, leg.path, tuning.jerkTicks));
-    footJerk += jerkBound(trail, bound, tuning.jerkTicks);
-    footPath += pathBound(trail, bound);
-  }
-
-  Metric want = expected.metric;
-  Comparison metric(sample, want, got, unit, static_cast<double>(legs));
-  metric.count("ticks", &Metric::ticks);
-  metric.count("planted leg-ticks", &Metric::planted);
-  metric.count("leg-ticks planted twice", &Metric::stays);
-  metric.count("skating leg-ticks", &Metric::skates, skates);
-  metric.count("finished stances", &Metric::stances);
-  metric.length("slip over finished stances / leg length", &Metric::slip, 0);
-  metric.length("largest reach error / leg length", &Metric::largestError, 0);
-  metric.number("largest limit violation, rad", &Metric::largestViolation, tolerance::violation);
-  metric.count("leg-ticks beyond a limit", &Metric::violations, violations);
-  metric.length("penetration / leg length", &Metric::penetration, vertical);
-  metric.length("penetration beyond the dead zone / leg length", &Metric::penetrationBeyond, vertical);
-  metric.length("float / leg length", &Metric::floating, vertical);
-  metric.length("float beyond the dead zone / leg length", &Metric::floatingBeyond, vertical);
-  metric.length("segment penetration / leg length", &Metric::depth, lengths);
-  metric.length("largest segment penetration / leg length", &Metric::deepest, deepest);
-  metric.count("pair-ticks", &Metric::pairs);
-  metric.count("crossings", &Metric::crossings, crossings);
-
-  const double turned = nearestPair(feet, chains, 2 * unit);
-  const double margin = 16 * tolerance::roundoff * 2 * unit * (1 + 2 * unit / turned);
-  metric.count("ticks with a support", &Metric::supported);
-  metric.count("unstable ticks", &Metric::unstable,
-               expected.supported && std::abs(expected.margin) <= margin ? 1 : 0);
-  metric.length("stability margin / leg length", &Metric::margin, margin);
-  metric.length("least stability margin / leg length", &Metric::leastMargin, margin);
-
-  const bool footTie =
-      decideWindows(metric, want, {&Metric::footJerk, footJerk}, {&Metric::footPath, footPath}, closeFeet);
-  const bool bodyTie =
-      decideWindows(metric, want, {&Metric::bodyJerk, bodyJerk}, {&Metric::bodyPath, bodyPath}, closeBody);
-  metric.number("jerk of the feet", &Metric::footJerk, footJerk);
-  metric.number("squared path of the feet", &Metric::footPath, footPath);
-  metric.number("jerk of the body", &Metric::bodyJerk, bodyJerk);
-  metric.number("squared path of the body", &Metric::bodyPath, bodyPath);
-  judge.add(moment.n, moment.number(), -1, sample, metric.ties() || footTie || bodyTie);
+  const reference::Watched watched = watchedOf(moment.after, slot, setting.legs);
+  const Bounds bounds = compareTrails(setting, legs, expected, watched, sample);
+  const bool tie = compareSums(setting, legs, expected, metricOf(moment.after, moment.agent), bounds, sample);
+  judge.add(moment.n, moment.number(), -1, sample, tie);
 }
 
 }  // namespace skitter::validation

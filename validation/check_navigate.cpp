@@ -23,11 +23,13 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
   sample.same("goal speed", expected.goal.speed, got.speed);
   sample.same("goal arrival radius", expected.goal.arrivalRadius, got.arrivalRadius);
   sample.same("goal kind", static_cast<double>(expected.goal.kind), static_cast<double>(got.kind));
-  const double speed = std::max(expected.goal.speed, 1e-6);
+  const bool given = expected.goal.kind == reference::GoalKind::velocity;
+  const double speed = std::max(given ? glm::length(expected.desired) : expected.goal.speed, 1e-6);
   const double distance = glm::length(expected.goal.target - body.world());
   sample.same("asleep", expected.asleep, records(moment.after.steer, moment.agent, shared::STEER_STRIDE)[2]);
   sample.compare("desired velocity / speed", glm::length(desired - expected.desired) / speed,
-                 tolerance::desiredVelocity(setting.extent, distance, setting.tuning.slowRadius),
+                 given ? 8 * tolerance::roundoff
+                       : tolerance::desiredVelocity(setting.extent, distance, setting.tuning.slowRadius),
                  {expected.desired, 0, 0}, {desired, 0, 0});
   return sample;
 }

@@ -2,7 +2,7 @@
 
 #include "validation/replay.h"
 
-// One check a stage and what it can be; each adds a sample an agent or a leg to its judge.
+// What the check of each stage, in check_X.cpp, is given, and the table of them all (checks.cpp).
 namespace skitter::validation {
 
 // The two states around tick n, and the agent to look at.
@@ -17,27 +17,19 @@ struct Moment {
 // A sleeper's records must be those of before the tick, bit for bit; adds what is not.
 void checkKept(const Setting& setting, const Moment& moment, Record record, Judge& judge);
 
-void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge);
-void checkBody(const Setting& setting, const Moment& moment, Judge& judge);
-void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge);
-void checkClip(const Setting& setting, const Moment& moment, Judge& judge);
-void checkGait(const Setting& setting, const Moment& moment, Judge& judge);
-void checkLoopGait(const Setting& setting, const Moment& moment, Judge& judge);
-void checkKeyPoseGait(const Setting& setting, const Moment& moment, Judge& judge);
-void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge);
-void checkSwing(const Setting& setting, const Moment& moment, Judge& judge);
-void checkLoopSwing(const Setting& setting, const Moment& moment, Judge& judge);
-void checkClipSwing(const Setting& setting, const Moment& moment, Judge& judge);
-void checkPlantedSwing(const Setting& setting, const Moment& moment, Judge& judge);
-void checkKeyPoseSwing(const Setting& setting, const Moment& moment, Judge& judge);
-void checkIk(const Setting& setting, const Moment& moment, Judge& judge);
-void checkPlantedIk(const Setting& setting, const Moment& moment, Judge& judge);
-void checkPose(const Setting& setting, const Moment& moment, Judge& judge);
-// A sample a joint, in place of a leg.
-void checkClipPose(const Setting& setting, const Moment& moment, Judge& judge);
-void checkPlantedPose(const Setting& setting, const Moment& moment, Judge& judge);
-void checkMeasure(const Setting& setting, const Moment& moment, Judge& judge);
-void checkFootfall(const Setting& setting, const Moment& moment, Judge& judge);
+// What holds a stage of some controllers against the reference: adds a sample an agent, a leg or, for clips,
+// a joint to its judge.
+struct Check {
+  crowd::StageId stage;
+  std::vector<Controller> of;
+  void (*check)(const Setting& setting, const Moment& moment, Judge& judge);
+  std::vector<Record> writes = {};  // that a sleeper keeps; none: it takes part in the stage as ever
+};
+// The checks of a controller's stages, in the order in which a tick makes them; of those in `only` unless that
+// is empty.
+std::vector<const Check*> checksOf(Controller controller, std::span<const crowd::StageId> only = {});
+// Whether the states lack what the stage writes, since nobody asked for it.
+bool isLeftOut(crowd::StageId stage, const HerdState& before, const HerdState& after);
 
 // `count` records of `stride` vec4 beginning with record `index`.
 inline std::span<const float> records(const std::vector<float>& buffer, size_t index, int stride,

@@ -1,8 +1,10 @@
 #include "validation/convert.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "skitter/records.h"
+#include "validation/fields.h"
 #include "validation/vec4s.h"
 
 namespace skitter::validation {
@@ -11,7 +13,6 @@ namespace {
 // A mask of legs; nonsense, which cannot be converted, reads as none.
 uint32_t mask(double value) { return value >= 0 && value < 0x1p32 ? static_cast<uint32_t>(value) : 0; }
 
-glm::dquat quaternion(const glm::dvec4& v) { return {v.w, v.x, v.y, v.z}; }
 // The directions of pairs of bones, from that vec4 on.
 std::vector<glm::dvec2> pairsOf(const std::vector<float>& records, size_t base, int bones) {
   std::vector<glm::dvec2> pairs;
@@ -22,7 +23,34 @@ std::vector<glm::dvec2> pairsOf(const std::vector<float>& records, size_t base, 
   return pairs;
 }
 
-glm::dvec4 components(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
+// The fields of a record (engine/include/skitter/records.h), by the reference's types.
+void read(double& to, const float* from) { to = from[0]; }
+void read(uint32_t& to, const float* from) { to = mask(from[0]); }
+template <int N>
+void read(glm::vec<N, double>& to, const float* from) {
+  for (int i = 0; i < N; ++i) to[i] = from[i];
+}
+void read(glm::dquat& to, const float* from) { to = glm::dquat(from[3], from[0], from[1], from[2]); }
+
+void write(float* to, double from) { to[0] = static_cast<float>(from); }
+template <int N>
+void write(float* to, const glm::vec<N, double>& from) {
+  for (int i = 0; i < N; ++i) to[i] = static_cast<float>(from[i]);
+}
+void write(float* to, const glm::dquat& q) { write(to, glm::dvec4(q.x, q.y, q.z, q.w)); }
+
+#define READ(name, first) read(to.name, record + (first));
+#define WRITE(name, first) write(record + (first), from.name);
+
+const float* recordAt(const std::vector<float>& records, size_t index, int stride) {
+  return records.data() + 4 * at(index, stride);
+}
+// Set to zeros, as unused fields are.
+float* clearedAt(std::vector<float>& records, size_t index, int stride) {
+  float* record = records.data() + 4 * at(index, stride);
+  std::fill_n(record, 4 * stride, 0.0f);
+  return record;
+}
 
 void set(double& to, float from) { to = from; }
 void set(bool& to, float from) { to = from != 0; }
@@ -114,21 +142,23 @@ reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones
 }
 
 reference::Goal goalOf(const HerdState& state, size_t agent) {
-  const size_t base = at(agent, shared::GOAL_STRIDE);
-  const glm::dvec4 ends = load(state.goal, base), how = load(state.goal, base + 1);
-  const auto kind = how.z == shared::GOAL_CROSS   ? reference::GoalKind::cross
-                    : how.z == shared::GOAL_POINT ? reference::GoalKind::point
-                                                  : reference::GoalKind::none;
-  return {{ends.x, ends.y}, {ends.z, ends.w}, how.x, how.y, kind};
+  const float* record = recordAt(state.goal, agent, shared::GOAL_STRIDE);
+  reference::Goal to;
+  SKITTER_GOAL_FIELDS(READ)
+  to.kind = record[6] == shared::GOAL_CROSS      ? reference::GoalKind::cross
+            : record[6] == shared::GOAL_POINT    ? reference::GoalKind::point
+            : record[6] == shared::GOAL_VELOCITY ? reference::GoalKind::velocity
+                                                 : reference::GoalKind::none;
+  return to;
 }
 
-void putGoal(HerdState& state, size_t agent, const reference::Goal& goal) {
-  const size_t base = at(agent, shared::GOAL_STRIDE);
-  const float kind = goal.kind == reference::GoalKind::cross   ? shared::GOAL_CROSS
-                     : goal.kind == reference::GoalKind::point ? shared::GOAL_POINT
-                                                               : shared::GOAL_NONE;
-  store(state.goal, base, {goal.target, goal.otherEnd});
-  store(state.goal, base + 1, {goal.speed, goal.arrivalRadius, kind, 0});
+void putGoal(HerdState& state, size_t agent, const reference::Goal& from) {
+  float* record = clearedAt(state.goal, agent, shared::GOAL_STRIDE);
+  SKITTER_GOAL_FIELDS(WRITE)
+  record[6] = from.kind == reference::GoalKind::cross      ? shared::GOAL_CROSS
+              : from.kind == reference::GoalKind::point    ? shared::GOAL_POINT
+              : from.kind == reference::GoalKind::velocity ? shared::GOAL_VELOCITY
+                                                           : shared::GOAL_NONE;
 }
 
 glm::dvec2 desiredOf(const HerdState& state, size_t agent) {
@@ -144,99 +174,85 @@ void putSteer(HerdState& state, size_t agent, const glm::dvec2& desired, bool as
 }
 
 reference::AgentBody bodyOf(const HerdState& state, size_t agent) {
-  const size_t base = at(agent, shared::BODY_STRIDE);
-  const glm::dvec4 local = load(state.body, base), way = load(state.body, base + 1);
-  const glm::dvec4 rates = load(state.body, base + 3);
-  reference::AgentBody body;
-  body.localX = local.x;
-  body.y = local.y;
-  body.localZ = local.z;
-  const auto tile = static_cast<float>(local.w);
-  body.tileX = shared::tileX(tile);
-  body.tileZ = shared::tileZ(tile);
-  body.heading = way;
-  body.speed = way.z;
-  body.orientation = quaternion(load(state.body, base + 2));
-  body.turnRate = rates.x;
-  body.still = rates.y;
-  body.follow = rates.z;
-  body.surfaceSpeed = rates.w;
-  return body;
+  const float* record = recordAt(state.body, agent, shared::BODY_STRIDE);
+  reference::AgentBody to;
+  SKITTER_BODY_FIELDS(READ)
+  to.tileX = shared::tileX(record[3]);
+  to.tileZ = shared::tileZ(record[3]);
+  to.absent = record[7] == 1;
+  return to;
 }
 
-void putBody(HerdState& state, size_t agent, const reference::AgentBody& body) {
-  const size_t base = at(agent, shared::BODY_STRIDE);
-  store(state.body, base, {body.localX, body.y, body.localZ, shared::TILES * body.tileX + body.tileZ});
-  store(state.body, base + 1, {body.heading, body.speed, 0});
-  store(state.body, base + 2, components(body.orientation));
-  store(state.body, base + 3, {body.turnRate, body.still, body.follow, body.surfaceSpeed});
+void putBody(HerdState& state, size_t agent, const reference::AgentBody& from) {
+  float* record = clearedAt(state.body, agent, shared::BODY_STRIDE);
+  SKITTER_BODY_FIELDS(WRITE)
+  write(record + 3, shared::TILES * from.tileX + from.tileZ);
+  record[7] = from.absent ? 1 : 0;
 }
 
 reference::Gait gaitOf(const HerdState& state, size_t agent) {
-  const size_t base = at(agent, shared::GAIT_STRIDE);
-  const glm::dvec4 a = load(state.gait, base), b = load(state.gait, base + 1);
-  return {a.x, mask(a.y), mask(a.z), a.w, b.x, b.y, mask(b.z)};
+  const float* record = recordAt(state.gait, agent, shared::GAIT_STRIDE);
+  reference::Gait to;
+  SKITTER_GAIT_FIELDS(READ)
+  return to;
 }
 
-void putGait(HerdState& state, size_t agent, const reference::Gait& gait) {
-  const size_t base = at(agent, shared::GAIT_STRIDE);
-  store(state.gait, base, {gait.phase, gait.lift, gait.reaim, gait.duration});
-  store(state.gait, base + 1, {gait.halfStride, gait.cycle, gait.air, 0});
+void putGait(HerdState& state, size_t agent, const reference::Gait& from) {
+  float* record = clearedAt(state.gait, agent, shared::GAIT_STRIDE);
+  SKITTER_GAIT_FIELDS(WRITE)
 }
 
 reference::Step stepOf(const HerdState& state, size_t leg) {
-  const size_t base = at(leg, shared::STEP_STRIDE), arc = at(leg, shared::ARC_STRIDE);
-  const glm::dvec4 landing = load(state.step, base), liftOff = load(state.step, base + 1);
-  const auto packed = static_cast<float>(liftOff.w);
-  const float body = bodyTileOf(state, leg), x = shared::tileX(body), z = shared::tileZ(body);
+  const float* record = recordAt(state.step, leg, shared::STEP_STRIDE);
+  reference::Step to;
+  SKITTER_STEP_FIELDS(READ)
+  const float packed = record[7], body = bodyTileOf(state, leg);
+  const float x = shared::tileX(body), z = shared::tileZ(body);
   const float apart = shared::tilesApart(shared::tileOfTicks(packed), shared::stepTile(x, z));
-  reference::Step step;
-  step.tileX = x + shared::apartX(apart);
-  step.tileZ = z + shared::apartZ(apart);
-  step.landing = landing;
-  step.liftOff = liftOff;
-  step.firstTick = landing.w;
-  step.duration = std::copysign(shared::ticksOf(packed), packed);
-  if (state.arc.empty()) return step;
-  step.lift = load(state.arc, arc);
-  step.startTangent = load(state.arc, arc + 1);
-  return step;
+  to.tileX = x + shared::apartX(apart);
+  to.tileZ = z + shared::apartZ(apart);
+  to.duration = std::copysign(shared::ticksOf(packed), packed);
+  if (state.arc.empty()) return to;
+  record = recordAt(state.arc, leg, shared::ARC_STRIDE);
+  SKITTER_ARC_FIELDS(READ)
+  return to;
 }
 
-void putStep(HerdState& state, size_t leg, const reference::Step& step) {
-  const size_t base = at(leg, shared::STEP_STRIDE), arc = at(leg, shared::ARC_STRIDE);
-  const float tile = shared::stepTile(static_cast<float>(step.tileX), static_cast<float>(step.tileZ));
-  const float packed = shared::packedTicks(static_cast<float>(step.duration), tile);
-  store(state.step, base, {step.landing, step.firstTick});
-  store(state.step, base + 1, {step.liftOff, packed});
-  store(state.arc, arc, {step.lift, 0});
-  store(state.arc, arc + 1, {step.startTangent, 0});
+void putStep(HerdState& state, size_t leg, const reference::Step& from) {
+  float* record = clearedAt(state.step, leg, shared::STEP_STRIDE);
+  SKITTER_STEP_FIELDS(WRITE)
+  const float tile = shared::stepTile(static_cast<float>(from.tileX), static_cast<float>(from.tileZ));
+  record[7] = shared::packedTicks(static_cast<float>(from.duration), tile);
+  record = clearedAt(state.arc, leg, shared::ARC_STRIDE);
+  SKITTER_ARC_FIELDS(WRITE)
 }
 
 reference::Foot footOf(const HerdState& state, size_t leg) {
-  const glm::dvec4 foot = load(state.foot, at(leg, shared::FOOT_STRIDE));
-  return {foot, foot.w};
+  const float* record = recordAt(state.foot, leg, shared::FOOT_STRIDE);
+  reference::Foot to;
+  SKITTER_FOOT_FIELDS(READ)
+  return to;
 }
 
-void putFoot(HerdState& state, size_t leg, const reference::Foot& foot) {
-  store(state.foot, at(leg, shared::FOOT_STRIDE), {foot.target, foot.progress});
+void putFoot(HerdState& state, size_t leg, const reference::Foot& from) {
+  float* record = clearedAt(state.foot, leg, shared::FOOT_STRIDE);
+  SKITTER_FOOT_FIELDS(WRITE)
 }
 
 reference::Chain chainOf(const HerdState& state, size_t leg, int bones) {
-  const size_t base = at(leg, shared::chainStride(bones));
-  reference::Chain chain;
-  chain.directions = pairsOf(state.chain, base, bones);
-  if (!state.tip.empty()) {
-    const glm::dvec4 tip = load(state.tip, at(leg, shared::TIP_STRIDE));
-    chain.tip = tip;
-    chain.reachError = tip.w;
-  }
-  return chain;
+  reference::Chain to;
+  to.directions = pairsOf(state.chain, at(leg, shared::chainStride(bones)), bones);
+  if (state.tip.empty()) return to;
+  const float* record = recordAt(state.tip, leg, shared::TIP_STRIDE);
+  SKITTER_TIP_FIELDS(READ)
+  return to;
 }
 
-void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& chain) {
-  storePairs(state.chain, at(leg, shared::chainStride(bones)), chain.directions);
-  if (!state.tip.empty()) store(state.tip, at(leg, shared::TIP_STRIDE), {chain.tip, chain.reachError});
+void putChain(HerdState& state, size_t leg, int bones, const reference::Chain& from) {
+  storePairs(state.chain, at(leg, shared::chainStride(bones)), from.directions);
+  if (state.tip.empty()) return;
+  float* record = clearedAt(state.tip, leg, shared::TIP_STRIDE);
+  SKITTER_TIP_FIELDS(WRITE)
 }
 
 namespace {
@@ -270,87 +286,67 @@ reference::KeyPoses::Directions springOf(const HerdState& state, size_t leg, int
 }
 
 reference::BonePose boneOf(const HerdState& state, size_t entry) {
-  const size_t base = at(entry, shared::POSE_STRIDE);
-  return {quaternion(load(state.pose, base)), load(state.pose, base + 1)};
+  const float* record = recordAt(state.pose, entry, shared::POSE_STRIDE);
+  reference::BonePose to;
+  SKITTER_POSE_FIELDS(READ)
+  return to;
 }
 
-void putBone(HerdState& state, size_t entry, const reference::BonePose& bone) {
-  const size_t base = at(entry, shared::POSE_STRIDE);
-  store(state.pose, base, components(bone.rotation));
-  store(state.pose, base + 1, {bone.position, 0});
+void putBone(HerdState& state, size_t entry, const reference::BonePose& from) {
+  float* record = clearedAt(state.pose, entry, shared::POSE_STRIDE);
+  SKITTER_POSE_FIELDS(WRITE)
 }
 
 namespace {
 
-reference::Trail trailOf(const std::vector<float>& watch, size_t base) {
-  const glm::dvec4 first = load(watch, base + 1), second = load(watch, base + 2);
-  return {load(watch, base), first, second, first.w, second.w};
+// The number of an agent's first trail.
+size_t trailAt(size_t slot, size_t legs) { return slot * (1 + legs); }
+
+reference::Trail trailOf(const HerdState& state, size_t trail) {
+  const float* record = recordAt(state.watch, trail, shared::WATCH_TRAIL_STRIDE);
+  reference::Trail to;
+  SKITTER_TRAIL_FIELDS(READ)
+  return to;
 }
 
-void putTrail(std::vector<float>& watch, size_t base, const reference::Trail& trail, double slip) {
-  store(watch, base, {trail.at, slip});
-  store(watch, base + 1, {trail.first, trail.path});
-  store(watch, base + 2, {trail.second, trail.jerk});
+void putTrail(HerdState& state, size_t trail, const reference::Trail& from, double slip) {
+  float* record = clearedAt(state.watch, trail, shared::WATCH_TRAIL_STRIDE);
+  SKITTER_TRAIL_FIELDS(WRITE)
+  write(record + 3, slip);
 }
 
 }  // namespace
 
 reference::Watched watchedOf(const HerdState& state, size_t slot, int legs) {
-  size_t base = at(slot, shared::watchStride(legs));
+  size_t trail = trailAt(slot, static_cast<size_t>(legs));
   reference::Watched watched;
-  watched.body = trailOf(state.watch, base);
+  watched.body = trailOf(state, trail);
   for (int leg = 0; leg < legs; ++leg) {
-    base += shared::WATCH_TRAIL_STRIDE;
-    watched.tips.push_back({trailOf(state.watch, base), load(state.watch, base).w});
+    ++trail;
+    watched.tips.push_back(
+        {trailOf(state, trail), recordAt(state.watch, trail, shared::WATCH_TRAIL_STRIDE)[3]});
   }
   return watched;
 }
 
 void putWatched(HerdState& state, size_t slot, const reference::Watched& watched) {
-  size_t base = at(slot, shared::watchStride(static_cast<int>(watched.tips.size())));
-  putTrail(state.watch, base, watched.body, 0);
-  for (const reference::TipTrail& tip : watched.tips)
-    putTrail(state.watch, base += shared::WATCH_TRAIL_STRIDE, tip, tip.slip);
+  size_t trail = trailAt(slot, watched.tips.size());
+  putTrail(state, trail, watched.body, 0);
+  for (const reference::TipTrail& tip : watched.tips) putTrail(state, ++trail, tip, tip.slip);
 }
 
 reference::Metric metricOf(const HerdState& state, size_t agent) {
-  const float* m = state.metric.data() + 4 * at(agent, shared::METRIC_STRIDE);
-  return {.ticks = m[0],
-          .planted = m[1],
-          .stays = m[2],
-          .skates = m[3],
-          .slip = m[4],
-          .stances = m[5],
-          .largestError = m[6],
-          .largestViolation = 2 * std::atan(double{m[7]}),
-          .penetration = m[8],
-          .penetrationBeyond = m[9],
-          .floating = m[10],
-          .floatingBeyond = m[11],
-          .depth = m[12],
-          .deepest = m[13],
-          .violations = m[14],
-          .pairs = m[16],
-          .crossings = m[17],
-          .supported = m[18],
-          .unstable = m[19],
-          .margin = m[20],
-          .leastMargin = m[21],
-          .footJerk = m[24],
-          .footPath = m[25],
-          .bodyJerk = m[26],
-          .bodyPath = m[27]};
+  const float* record = recordAt(state.metric, agent, shared::METRIC_STRIDE);
+  reference::Metric to;
+  SKITTER_METRIC_FIELDS(READ)
+  to.largestViolation = 2 * std::atan(double{record[7]});
+  return to;
 }
 
-void putMetric(HerdState& state, size_t agent, const reference::Metric& m) {
-  const size_t base = at(agent, shared::METRIC_STRIDE);
-  store(state.metric, base, {m.ticks, m.planted, m.stays, m.skates});
-  store(state.metric, base + 1, {m.slip, m.stances, m.largestError, std::tan(m.largestViolation / 2)});
-  store(state.metric, base + 2, {m.penetration, m.penetrationBeyond, m.floating, m.floatingBeyond});
-  store(state.metric, base + 3, {m.depth, m.deepest, m.violations, 0});
-  store(state.metric, base + 4, {m.pairs, m.crossings, m.supported, m.unstable});
-  store(state.metric, base + 5, {m.margin, m.leastMargin, 0, 0});
-  store(state.metric, base + 6, {m.footJerk, m.footPath, m.bodyJerk, m.bodyPath});
+void putMetric(HerdState& state, size_t agent, const reference::Metric& from) {
+  float* record = clearedAt(state.metric, agent, shared::METRIC_STRIDE);
+  SKITTER_METRIC_FIELDS(WRITE)
+  write(record + 7, std::tan(from.largestViolation / 2));
 }
 
 }  // namespace skitter::validation

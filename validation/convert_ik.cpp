@@ -7,28 +7,11 @@
 namespace skitter::validation {
 namespace {
 
-struct LimitOf {
-  reference::Limit operator()(const ik::Free&) const { return reference::freeLimit(); }
-  reference::Limit operator()(const ik::Cone& cone) const { return reference::coneLimit(cone.halfAngle); }
-  reference::Limit operator()(const ik::Ellipse& e) const {
-    return reference::ellipseLimit(e.px, e.py, e.nx, e.ny);
-  }
-  reference::Limit operator()(const ik::Hinge& h) const { return reference::hingeLimit(h.min, h.max); }
-};
-
-struct JudgedLimit {
-  using Limit = decltype(IkJudge::Bone::limit);
-  Limit operator()(const ik::Free&) const { return IkJudge::Free{}; }
-  Limit operator()(const ik::Cone& cone) const { return IkJudge::Cone{cone.halfAngle}; }
-  Limit operator()(const ik::Ellipse& e) const { return IkJudge::Ellipse{e.px, e.py, e.nx, e.ny}; }
-  Limit operator()(const ik::Hinge& h) const { return IkJudge::Hinge{h.axis, h.min, h.max}; }
-};
-
 reference::IkBone boneOf(const ik::Bone& given) {
   reference::IkBone bone;
   bone.length = given.length;
   bone.direction = given.direction;
-  bone.limit = std::visit(LimitOf{}, given.limit);
+  bone.limit = referenceLimit(given.limit);
   if (const auto* hinge = std::get_if<ik::Hinge>(&given.limit)) bone.hingeAxis = hinge->axis;
   if (given.twistMin != 0 || given.twistMax != 0)
     bone.limit = reference::withTwist(bone.limit, given.twistMin, given.twistMax);
@@ -71,8 +54,7 @@ reference::IkSolver referenceOf(ik::Solver solver) {
 IkJudge judgeOf(const ik::Chain& chain) {
   std::vector<IkJudge::Bone> bones;
   for (const ik::Bone& bone : chain.bones) {
-    bones.push_back(
-        {bone.length, bone.direction, std::visit(JudgedLimit{}, bone.limit), bone.twistMin, bone.twistMax});
+    bones.push_back({bone.length, bone.direction, judgedLimit(bone.limit), bone.twistMin, bone.twistMax});
   }
   return IkJudge(bones);
 }

@@ -1,6 +1,8 @@
 #include "validation/free_run.h"
 
+#include <algorithm>
 #include <glm/geometric.hpp>
+#include <span>
 #include <utility>
 
 #include "cpu_reference/stages/body.h"
@@ -17,6 +19,7 @@
 #include "cpu_reference/stages/swing_clip.h"
 #include "cpu_reference/stages/swing_loop.h"
 #include "cpu_reference/stages/swing_planted.h"
+#include "crowd/record.h"
 #include "validation/convert.h"
 #include "validation/convert_clip.h"
 
@@ -222,12 +225,33 @@ void FreeRun::tick(bool watched) {
   for (size_t agent = 0; agent < state_.agents; ++agent) walkAgent(setting_, state_.tick, agent, state_);
 }
 
+void FreeRun::follow(const HerdState& before, const HerdState& after) {
+  for (size_t agent = 0; agent < state_.agents; ++agent) {
+    const auto recordOf = [&](auto& state, Record record) {
+      auto& all = state.of(record);
+      const size_t floats = all.size() / state_.agents;
+      return std::span(all).subspan(agent * floats, floats);
+    };
+    const auto differs = [&](Record record) {
+      return !std::ranges::equal(recordOf(before, record), recordOf(after, record));
+    };
+    const bool isElsewhere = differs(Record::body);
+    for (const Record record : allRecords) {
+      if (crowd::infoOf(record).per == crowd::Per::watched) continue;
+      if (isElsewhere || differs(record))
+        std::ranges::copy(recordOf(after, record), recordOf(state_, record).begin());
+    }
+  }
+}
+
 double FreeRun::shareWithin(const HerdState& device, double tolerance) const {
   const double most = tolerance * setting_.tuning.legLength;
   const size_t legs = static_cast<size_t>(setting_.legs);
-  size_t within = 0;
+  size_t within = 0, present = 0;
   for (size_t agent = 0; agent < state_.agents; ++agent) {
     const reference::AgentBody here = bodyOf(state_, agent), there = bodyOf(device, agent);
+    if (there.absent) continue;
+    ++present;
     const glm::dvec2 apart = there.world() - here.world();
     const glm::dvec3 moved(apart.x, there.y - here.y, apart.y);
     bool close = glm::length(moved) <= most;
@@ -235,7 +259,7 @@ double FreeRun::shareWithin(const HerdState& device, double tolerance) const {
       close = close && glm::length(footOf(device, l).target + moved - footOf(state_, l).target) <= most;
     within += close ? 1 : 0;
   }
-  return state_.agents > 0 ? static_cast<double>(within) / static_cast<double>(state_.agents) : 1;
+  return present > 0 ? static_cast<double>(within) / static_cast<double>(present) : 1;
 }
 
 }  // namespace skitter::validation

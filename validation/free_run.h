@@ -21,8 +21,11 @@ class FreeRun {
 
   // `watched`: the terrain was edited lately, as HerdState has it.
   void tick(bool watched);
-  // The share of agents whose body and feet are all at most `tolerance` leg lengths from where `device` has
-  // them.
+  // Takes over what the host has changed between two ticks, of which `before` and `after` are the device's
+  // states: an agent's goal, or all of an agent that was put elsewhere, has come or is gone.
+  void follow(const HerdState& before, const HerdState& after);
+  // The share of agents that are there whose body and feet are all at most `tolerance` leg lengths from where
+  // `device` has them.
   double shareWithin(const HerdState& device, double tolerance) const;
 
  private:

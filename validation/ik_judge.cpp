@@ -13,8 +13,6 @@ using glm::dquat;
 using glm::dvec3;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double pi = 3.14159265358979323846;
-constexpr double largestAngle = 3.1;  // of any limit
 // Shorter than this, a bone has no direction that could be measured.
 constexpr double noLength = 1e-12;
 
@@ -46,44 +44,11 @@ dmat3 hingeFrame(const dvec3& rest, const dvec3& axis) {
 
 dmat3 frameOf(const IkJudge::Bone& bone) {
   const dvec3 rest = glm::normalize(bone.rest);
-  const auto* hinge = std::get_if<IkJudge::Hinge>(&bone.limit);
+  const auto* hinge = std::get_if<judged::Hinge>(&bone.limit);
   return hinge ? hingeFrame(rest, glm::normalize(hinge->axis)) : ballFrame(rest);
 }
 
-// How far `angle` is from a range, on the circle: 190 degrees are 10 beyond 180, not 370 before it.
-double outside(double angle, double low, double high) {
-  if (angle >= low && angle <= high) return 0;
-  const auto around = [](double difference) { return std::abs(std::remainder(difference, 2 * pi)); };
-  return std::min(around(angle - low), around(angle - high));
-}
-
-// The polar angle of a swing and what the ellipse allows in that direction.
-double beyondEllipse(const IkJudge::Ellipse& ellipse, const dvec3& d) {
-  const double sine = std::hypot(d.x, d.y);
-  const double hx = sine > 0 ? d.x / sine : 1, hy = sine > 0 ? d.y / sine : 0;
-  const double ax = hx >= 0 ? ellipse.px : ellipse.nx, ay = hy >= 0 ? ellipse.py : ellipse.ny;
-  const double allowed = 1 / std::hypot(hx / std::min(ax, largestAngle), hy / std::min(ay, largestAngle));
-  return std::max(0.0, std::atan2(sine, d.z) - allowed);
-}
-
-struct SwingViolation {
-  const dvec3& d;  // the bone's direction in the frame that the bones before it carry
-  const dvec3& rest;
-
-  double operator()(const IkJudge::Free&) const { return 0; }
-  double operator()(const IkJudge::Cone& cone) const {
-    return std::max(0.0, std::atan2(std::hypot(d.x, d.y), d.z) - std::min(cone.halfAngle, largestAngle));
-  }
-  double operator()(const IkJudge::Ellipse& ellipse) const { return beyondEllipse(ellipse, d); }
-  // A hinged bone stays as steep to its axis as it is at rest, and its turn within the range.
-  double operator()(const IkJudge::Hinge& hinge) const {
-    const auto steepness = [](const dvec3& v) { return std::atan2(v.x, std::hypot(v.y, v.z)); };
-    return std::max(std::abs(steepness(d) - steepness(rest)),
-                    outside(std::atan2(-d.y, d.z), hinge.min, hinge.max));
-  }
-};
-
-bool isHinge(const auto& bone) { return std::holds_alternative<IkJudge::Hinge>(bone.limit); }
+bool isHinge(const auto& bone) { return std::holds_alternative<judged::Hinge>(bone.limit); }
 
 // The bone's own turn from its frame at rest to where `d` shows it, without twist.
 dmat3 turnOf(const auto& bone, const dvec3& d) {
@@ -105,7 +70,7 @@ IkJudge::IkJudge(std::vector<Bone> bones) {
     bones_.push_back(
         {bone.length, glm::normalize(bone.rest), frameOf(bone), bone.limit, bone.twistMin, bone.twistMax});
     length_ += bone.length;
-    free_ = free_ && std::holds_alternative<Free>(bone.limit) && !hasTwist(bone);
+    free_ = free_ && std::holds_alternative<judged::Free>(bone.limit) && !hasTwist(bone);
   }
   if (!(length_ > 0)) throw std::invalid_argument("a chain to be judged has no length");
 }
@@ -125,7 +90,7 @@ double IkJudge::worstLimit(std::span<const dvec3> joints) const {
     const dmat3 frame = carried * bone.frame;
     const dvec3 d = glm::transpose(frame) * (along / measured);
     const dvec3 rest = glm::transpose(bone.frame) * bone.direction;
-    worst = std::max(worst, std::visit(SwingViolation{d, rest}, bone.limit));
+    worst = std::max(worst, judged::beyond(bone.limit, d, rest));
     carried = frame * turnOf(bone, d) * glm::transpose(bone.frame);
   }
   return worst;
@@ -146,9 +111,9 @@ double IkJudge::worstLimit(std::span<const dvec3> joints, std::span<const dquat>
     }
     if (free_) continue;
     const dvec3 rest = glm::transpose(bone.frame) * bone.direction;
-    worst = std::max(worst, std::visit(SwingViolation{turned * rest, rest}, bone.limit));
+    worst = std::max(worst, judged::beyond(bone.limit, turned * rest, rest));
     worst = std::max(worst, isHinge(bone) ? angleBetween(turned[0], {1, 0, 0})
-                                          : outside(twistOf(turned), bone.twistMin, bone.twistMax));
+                                          : judged::outside(twistOf(turned), bone.twistMin, bone.twistMax));
   }
   return worst;
 }

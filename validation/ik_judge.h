@@ -3,8 +3,9 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <span>
-#include <variant>
 #include <vector>
+
+#include "validation/limits.h"
 
 // What a pose is worth, from where its joints are and nothing else: docs/ik.md (Chain) once more, in double
 // and sharing no code with those who solve. Radians; angles are measured by atan2, so that they are exact
@@ -13,21 +14,10 @@ namespace skitter::validation {
 
 class IkJudge {
  public:
-  struct Free {};
-  struct Cone {
-    double halfAngle;
-  };
-  struct Ellipse {
-    double px, py, nx, ny;
-  };
-  struct Hinge {
-    glm::dvec3 axis;  // at rest, any length but 0
-    double min, max;
-  };
   struct Bone {
     double length = 0;
     glm::dvec3 rest{0, 1, 0};  // any length but 0
-    std::variant<Free, Cone, Ellipse, Hinge> limit = Free{};
+    judged::Limit limit = judged::Free{};
     double twistMin = 0, twistMax = 0;
   };
   struct Verdict {
@@ -52,7 +42,7 @@ class IkJudge {
     double length;
     glm::dvec3 direction;
     glm::dmat3 frame;
-    std::variant<Free, Cone, Ellipse, Hinge> limit;
+    judged::Limit limit;
     double twistMin, twistMax;
   };
   double worstLimit(std::span<const glm::dvec3> joints) const;

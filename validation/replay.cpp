@@ -7,7 +7,6 @@
 #include "base/split_mix.h"
 #include "crowd/controller.h"
 #include "crowd/record.h"
-#include "crowd/stage_id.h"
 #include "shared/ik_batch.h"
 #include "skitter/error.h"
 #include "skitter/records.h"
@@ -17,73 +16,6 @@
 
 namespace skitter::validation {
 namespace {
-
-using crowd::StageId;
-using enum Controller;
-
-// What holds a stage of some controllers against the reference.
-struct Check {
-  StageId stage;
-  std::vector<Controller> of;
-  void (*check)(const Setting&, const Moment&, Judge&);
-  std::vector<Record> writes = {};  // that a sleeper keeps; none: it takes part in the stage as ever
-};
-
-const std::vector<Controller> every(allControllers.begin(), allControllers.end());
-const std::vector<Controller> blind = {loop, clip, planted, Controller::keyPoses};
-
-// In the order in which a tick makes them.
-const std::vector<Check> checks = {
-    {StageId::navigate, every, checkNavigate},
-    {StageId::body, {adaptive}, checkBody, {Record::body}},
-    {StageId::body, blind, checkBlindBody, {Record::body}},
-    {StageId::clip, {clip, planted}, checkClip, {Record::play}},
-    {StageId::gait, {adaptive}, checkGait, {Record::gait}},
-    {StageId::gait, {loop}, checkLoopGait, {Record::gait}},
-    {StageId::gait, {Controller::keyPoses}, checkKeyPoseGait, {Record::gait}},
-    {StageId::foothold, {adaptive}, checkFoothold, {Record::step, Record::arc}},
-    {StageId::swing, {adaptive}, checkSwing, {Record::foot}},
-    {StageId::swing, {loop}, checkLoopSwing, {Record::foot}},
-    {StageId::swing, {clip}, checkClipSwing, {Record::foot, Record::chain, Record::tip}},
-    {StageId::swing, {planted}, checkPlantedSwing, {Record::step, Record::foot, Record::start}},
-    {StageId::swing,
-     {Controller::keyPoses},
-     checkKeyPoseSwing,
-     {Record::foot, Record::chain, Record::tip, Record::spring}},
-    {StageId::ik, {adaptive, loop}, checkIk, {Record::chain, Record::tip, Record::miss}},
-    {StageId::ik, {planted}, checkPlantedIk, {Record::chain, Record::tip, Record::fix}},
-    {StageId::pose, {adaptive, loop, Controller::keyPoses}, checkPose, {Record::pose}},
-    {StageId::pose, {clip}, checkClipPose, {Record::pose}},
-    {StageId::pose, {planted}, checkPlantedPose, {Record::pose}},
-    {StageId::measure, every, checkMeasure},
-    {StageId::footfall, every, checkFootfall},
-};
-
-// The checks of the stages in `only`, or of all where it is empty.
-std::vector<const Check*> checksOf(Controller controller, const std::vector<StageId>& only = {}) {
-  const auto has = [](const auto& list, const auto& value) {
-    return std::ranges::find(list, value) != list.end();
-  };
-  std::vector<const Check*> found;
-  for (const Check& check : checks)
-    if (has(check.of, controller) && (only.empty() || has(only, check.stage))) found.push_back(&check);
-  return found;
-}
-
-bool leavesOut(StageId stage, const HerdState& before, const HerdState& after) {
-  switch (stage) {
-    case StageId::swing:
-      return after.foot.empty();
-    case StageId::pose:
-      return after.pose.empty();
-    case StageId::measure:
-      return before.metric.empty() || after.metric.empty();
-    case StageId::footfall:
-      return !after.footfallsKept;
-    default:
-      return false;
-  }
-}
 
 void expectSize(const char* what, size_t found, size_t expected) {
   if (found == expected) return;
@@ -165,7 +97,7 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   return setting;
 }
 
-Replay::Replay(const HerdFacts& herd, std::vector<StageId> only)
+Replay::Replay(const HerdFacts& herd, std::vector<crowd::StageId> only)
     : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)), only_(std::move(only)) {
   for (const Check* check : checksOf(herd.controller, only_)) judges_.emplace_back(nameOf(check->stage));
 }
@@ -181,7 +113,7 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
   if (leftOut_.empty()) leftOut_.assign(checks.size(), true);
   for (size_t c = 0; c < checks.size(); ++c) {
     const Check& check = *checks[c];
-    if (leavesOut(check.stage, before, after)) continue;
+    if (isLeftOut(check.stage, before, after)) continue;
     leftOut_[c] = false;
     for (const Record record : check.writes)
       if (after.agents > 0 && crowd::infoOf(record).kept == crowd::Kept::bound && after.of(record).empty())
@@ -189,6 +121,11 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
     for (size_t agent = 0; agent < before.agents; ++agent) {
       const Moment moment{n, before, after, agent};
       const bool asleep = asleepOf(after, agent);
+      // Nobody is there: measure adds nothing.
+      if (check.stage == crowd::StageId::measure && bodyOf(after, agent).absent) {
+        checkKept(setting_, moment, Record::metric, judges_[c]);
+        continue;
+      }
       if (!asleep || check.writes.empty()) check.check(setting_, moment, judges_[c]);
       for (const Record record : check.writes)
         if (asleep) checkKept(setting_, moment, record, judges_[c]);

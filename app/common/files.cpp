@@ -12,7 +12,7 @@
 
 #include "app/common/staged_folder.h"
 #include "assets/files/file.h"
-#include "render/partial_file.h"
+#include "assets/files/partial_file.h"
 #include "skitter/error.h"
 
 namespace skitter::app {
@@ -30,7 +30,7 @@ fs::path existingPartOf(const fs::path& path) {
 }
 
 // The one path to a file or folder, which need not exist: without links, "." and "..".
-fs::path placeOf(const fs::path& path) { return fs::weakly_canonical(fs::absolute(render::followed(path))); }
+fs::path placeOf(const fs::path& path) { return fs::weakly_canonical(fs::absolute(followed(path))); }
 
 // Equal for two names of one file: hard links and mounts have one inode under several paths.
 using Identity = std::tuple<dev_t, ino_t, fs::path>;
@@ -87,6 +87,11 @@ void Files::writes(const std::string& option, const fs::path& file) {
   if (!file.empty()) uses_.push_back({Kind::file, option, file, {}});
 }
 
+void Files::replaces(const std::string& option, const fs::path& file, const fs::path& input) {
+  writes(option, file);
+  if (!file.empty()) uses_.back().replaced = input;
+}
+
 void Files::fills(const std::string& option, const fs::path& folder, Claims claims, bool force) {
   if (!folder.empty()) uses_.push_back({Kind::folder, option, folder, std::move(claims), force});
 }
@@ -105,7 +110,7 @@ void Files::checkFile(const Use& use) {
   // The finished file takes the name over: a device of that name would be gone.
   if (fs::exists(use.path, error) && !fs::is_regular_file(use.path, error))
     throw inputError(fmt::format("{}: is no regular file, which is all that can be written", what));
-  const fs::path target = render::followed(use.path);
+  const fs::path target = followed(use.path);
   const fs::path folder = target.parent_path().empty() ? fs::path(".") : target.parent_path();
   if (!fs::is_directory(folder, error))
     throw inputError(fmt::format("{}: there is no directory {}", what, folder.string()));
@@ -115,7 +120,7 @@ void Files::checkFile(const Use& use) {
     throw inputError(
         fmt::format("{}: is where standard output goes, and would replace it; give it another name", what));
   try {
-    render::checkPart(use.path);
+    checkPart(use.path);
   } catch (const Error& fault) {
     throw inputError(fmt::format("{} {}", use.option, fault.what()));
   }
@@ -145,13 +150,15 @@ void Files::checkPair(const Use& output, const Use& other) {
   const std::string one = fmt::format("{} {}", output.option, output.path.string()),
                     two = fmt::format("{} {}", other.option, other.path.string());
   if (identityOf(output.path) == identityOf(other.path)) {
+    if (other.kind == Kind::input && !output.replaced.empty() &&
+        identityOf(output.replaced) == identityOf(other.path))
+      return;
     if (other.kind == Kind::input)
       throw inputError(fmt::format("{}: is the file that {} reads; give it another name", one, two));
     throw inputError(fmt::format("{} and {} name the same {}; give each its own", one, two,
                                  output.kind == Kind::folder ? "folder" : "file"));
   }
-  if (output.kind == Kind::file &&
-      identityOf(render::partOf(render::followed(output.path))) == identityOf(other.path))
+  if (output.kind == Kind::file && identityOf(partOf(followed(output.path))) == identityOf(other.path))
     throw inputError(
         fmt::format("{}: is the name that {} has while it is written; give it another name", two, one));
   if (output.kind != Kind::folder) return;

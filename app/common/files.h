@@ -18,6 +18,9 @@ class Files {
 
   void reads(const std::string& option, const std::filesystem::path& file);
   void writes(const std::string& option, const std::filesystem::path& file);
+  // The same of a file that may be the one that `input` names: it has been read when it is replaced.
+  void replaces(const std::string& option, const std::filesystem::path& file,
+                const std::filesystem::path& input);
   // A folder that is not empty must be one that an earlier run wrote (staged_folder.h), unless `force`.
   void fills(const std::string& option, const std::filesystem::path& folder, Claims claims, bool force);
   // The outputs of an option will take this much room, as far as it is known beforehand.
@@ -35,6 +38,7 @@ class Files {
     Claims claims;
     bool force = false;
     double bytes = 64 << 10;
+    std::filesystem::path replaced = {};
   };
 
   static void checkFile(const Use& use);

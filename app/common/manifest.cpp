@@ -5,8 +5,9 @@
 #include <fstream>
 
 #include "app/common/scene_hash.h"
+#include "assets/files/partial_file.h"
 #include "commit.h"
-#include "render/partial_file.h"
+#include "skitter/version.h"
 
 namespace skitter::app {
 namespace {
@@ -61,6 +62,10 @@ nlohmann::ordered_json Manifest::json() const {
   return json;
 }
 
+std::string Manifest::csvComment() const {
+  return "# manifest: " + json().dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 std::string describe(const Heightfield& terrain) {
   return fmt::format("{}, {} x {} samples, {:.6g} x {:.6g} m", terrain.name, terrain.columns, terrain.rows,
                      terrain.extentX(), terrain.extentZ());
@@ -69,8 +74,7 @@ std::string describe(const Heightfield& terrain) {
 void writeJson(const std::filesystem::path& file, nlohmann::ordered_json object, const Manifest& manifest) {
   object["manifest"] = manifest.json();
   // Names of files are bytes, and not all bytes are UTF-8.
-  render::writeText(file,
-                    object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  writeText(file, object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace skitter::app

@@ -27,6 +27,8 @@ struct Manifest {
   void add(const DeviceReport& report);
   // Beside that: version, commit and build of the program, and the command as a shell reads it.
   nlohmann::ordered_json json() const;
+  // "# manifest: {...}\n": the first line of a CSV file.
+  std::string csvComment() const;
 };
 
 // "rolling, 513 x 513 samples, 256 x 256 m".

@@ -55,10 +55,19 @@ class Files {
 };
 
 // Bindings to all members: a new one does not compile until it is looked at here.
+void add(Hash& hash, const Goal& goal) {
+  const auto& [kind, target, speed, velocity] = goal;
+  hash.add(static_cast<uint64_t>(kind));
+  hash.add(target);
+  hash.add(speed);
+  if (kind == Goal::Kind::velocity) hash.add(velocity);
+}
+
 void add(Hash& hash, Files& files, const Herd& herd) {
-  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
-  hash.add(rig);
+  const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
+               phase, colour, tint] = herd;
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
+  hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
     hash.add(files.hashOf(rig));
     hash.add(files.hashOf(sidecarOf(rig)));
@@ -73,22 +82,99 @@ void add(Hash& hash, Files& files, const Herd& herd) {
     hash.add(to);
   }
   hash.add(uint64_t{keys});
-  // A parameter that is new to the engine must not change the hash of a scene that does not set it.
+  // What is new to the engine must not change the hash of a scene that does not set it.
+  if (phase) {
+    hash.add("phase");
+    hash.add(*phase);
+  }
   for (const TuningInfo& info : allTunings)
     if (tuning.*info.member != info.usual) {
       hash.add(info.name);
       hash.add(tuning.*info.member);
     }
   hash.add(uint64_t{agents});
+  if (reserve > 0) hash.add(uint64_t{reserve});
   const auto& [spawnKind, spacing, centre, heading] = spawn;
   hash.add(static_cast<uint64_t>(spawnKind));
   hash.add(spacing);
   hash.add(centre);
   hash.add(heading);
-  const auto& [goalKind, target, speed] = goal;
-  hash.add(static_cast<uint64_t>(goalKind));
-  hash.add(target);
+  add(hash, goal);
+}
+
+void add(Hash& hash, const Mound& mound) {
+  const auto& [centre, radius, height] = mound;
+  hash.add("mound");
+  hash.add(centre);
+  hash.add(radius);
+  hash.add(height);
+}
+
+void add(Hash& hash, const HeightSamples& samples) {
+  const auto& [x, z, columns, rows, heights] = samples;
+  hash.add("edit");
+  for (const uint32_t each : {x, z, columns, rows}) hash.add(uint64_t{each});
+  for (const float height : heights) hash.add(height);
+}
+
+void add(Hash& hash, const Place& place) {
+  const auto& [position, heading] = place;
+  hash.add(position);
+  hash.add(heading);
+}
+
+// What is done to which agents of a herd.
+void add(Hash& hash, std::string_view what, uint32_t herd, const std::vector<uint32_t>& agents) {
+  hash.add(what);
+  hash.add(uint64_t{herd});
+  hash.add(uint64_t{agents.size()});
+  for (const uint32_t agent : agents) hash.add(uint64_t{agent});
+}
+
+void add(Hash& hash, const GoalChange& change) {
+  const auto& [herd, agents, goal] = change;
+  add(hash, "goal", herd, agents);
+  add(hash, goal);
+}
+
+void add(Hash& hash, const SpeedChange& change) {
+  const auto& [herd, agents, speed] = change;
+  add(hash, "speed", herd, agents);
   hash.add(speed);
+}
+
+void add(Hash& hash, const Teleport& teleport) {
+  const auto& [herd, moves] = teleport;
+  hash.add("teleport");
+  hash.add(uint64_t{herd});
+  hash.add(uint64_t{moves.size()});
+  for (const auto& [agent, place] : moves) {
+    hash.add(uint64_t{agent});
+    add(hash, place);
+  }
+}
+
+void add(Hash& hash, const Addition& addition) {
+  const auto& [herd, arrivals] = addition;
+  hash.add("add");
+  hash.add(uint64_t{herd});
+  hash.add(uint64_t{arrivals.size()});
+  for (const auto& [place, goal] : arrivals) {
+    add(hash, place);
+    hash.add(uint64_t{goal.has_value()});
+    if (goal) add(hash, *goal);
+  }
+}
+
+void add(Hash& hash, const Removal& removal) {
+  const auto& [herd, agents] = removal;
+  add(hash, "remove", herd, agents);
+}
+
+void add(Hash& hash, const Event& event) {
+  const auto& [at, what] = event;
+  hash.add(at);
+  std::visit([&](const auto& each) { add(hash, each); }, what);
 }
 
 }  // namespace
@@ -96,10 +182,11 @@ void add(Hash& hash, Files& files, const Herd& herd) {
 uint64_t sceneHash(const Scene& scene, const Heightfield& terrain) {
   Hash hash;
   Files files;
-  const auto& [name, source, herds, camera, seed] = scene;
+  const auto& [name, source, herds, camera, events, seed] = scene;
   hash.add(seed);
   hash.add(uint64_t{herds.size()});
   for (const Herd& herd : herds) add(hash, files, herd);
+  for (const Event& event : events) add(hash, event);
   hash.add(uint64_t{terrain.columns});
   hash.add(terrain.spacingX);
   hash.add(terrain.spacingZ);

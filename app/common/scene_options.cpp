@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/common/noise_option.h"
@@ -157,43 +158,64 @@ void SceneOptions::addTerrainTo(CLI::App& command) {
       ->type_name("V");
 }
 
-void SceneOptions::applyTerrain(Scene& result) const {
-  if (!terrain.empty()) {
-    if (isNoise(terrain)) {
-      result.terrain = parseNoise("--terrain", terrain);
-    } else {
-      result.terrain = TerrainFile{terrain, {}};
-    }
-  }
-  const std::pair<const char*, bool> given[] = {
-      {"--terrain-size", terrainSize.has_value()},  {"--spacing", spacing.has_value()},
-      {"--heights", heights.has_value()},           {"--scale", scale.has_value()},
-      {"--exaggeration", exaggeration.has_value()}, {"--void-value", voidValue.has_value()}};
-  const auto first =
-      std::find_if(std::begin(given), std::end(given), [](const auto& flag) { return flag.second; });
-  if (first == std::end(given)) return;
-
-  auto* file = std::get_if<TerrainFile>(&result.terrain);
-  if (!file) {
-    throw inputError(fmt::format("{}: {} generates its terrain, so this needs --terrain FILE", first->first,
-                                 terrain.empty() ? result.name : terrain));
-  }
-  HeightfieldUnits& units = file->units;
-  if (terrainSize) {
+std::vector<SceneOptions::Change> SceneOptions::changes() const {
+  std::vector<Change> all;
+  const auto ofEveryHerd = [&](const char* option, const auto& given, auto Herd::*member) {
+    if (!given) return;
+    all.push_back({fmt::format("{} {}", option, nameOf(*given)), [&given, member](Scene& result) {
+                     for (Herd& herd : result.herds) herd.*member = *given;
+                   }});
+  };
+  if (agents)
+    all.push_back(
+        {fmt::format("--agents {}", *agents), [this](Scene& result) { scaleHerds(result, *agents); }});
+  if (!rig.empty())
+    all.push_back({fmt::format("--rig {}", rig), [this](Scene& result) {
+                     if (result.herds.empty())
+                       throw inputError(fmt::format("--rig: {} has no herds", result.name));
+                     result.herds.front().rig = rig;
+                   }});
+  ofEveryHerd("--controller", controller, &Herd::controller);
+  ofEveryHerd("--solver", solver, &Herd::solver);
+  ofEveryHerd("--stepping", stepping, &Herd::stepping);
+  if (seed) all.push_back({fmt::format("--seed {}", *seed), [this](Scene& result) { result.seed = *seed; }});
+  if (!terrain.empty())
+    all.push_back({fmt::format("--terrain {}", terrain), [this](Scene& result) {
+                     if (isNoise(terrain))
+                       result.terrain = parseNoise("--terrain", terrain);
+                     else
+                       result.terrain = TerrainFile{terrain, {}};
+                   }});
+  const auto ofUnits = [&](const char* option, bool given, std::function<void(HeightfieldUnits&)> set) {
+    if (!given) return;
+    all.push_back({option, [this, option, set = std::move(set)](Scene& result) {
+                     auto* file = std::get_if<TerrainFile>(&result.terrain);
+                     if (!file)
+                       throw inputError(
+                           fmt::format("{}: {} generates its terrain, so this needs --terrain FILE", option,
+                                       terrain.empty() ? result.name : terrain));
+                     set(file->units);
+                   }});
+  };
+  ofUnits("--terrain-size", terrainSize.has_value(), [this](HeightfieldUnits& units) {
     units.columns = terrainSize->width;
     units.rows = terrainSize->height;
-  }
-  if (spacing) {
+  });
+  ofUnits("--spacing", spacing.has_value(), [this](HeightfieldUnits& units) {
     units.spacingX = static_cast<float>(spacing->first);
     units.spacingZ = static_cast<float>(spacing->second);
-  }
-  if (heights) {
+  });
+  ofUnits("--heights", heights.has_value(), [this](HeightfieldUnits& units) {
     units.minHeight = static_cast<float>(heights->first);
     units.maxHeight = static_cast<float>(heights->second);
-  }
-  if (scale) units.scale = static_cast<float>(*scale);
-  if (exaggeration) units.exaggeration = static_cast<float>(*exaggeration);
-  if (voidValue) units.voidValue = *voidValue;
+  });
+  ofUnits("--scale", scale.has_value(),
+          [this](HeightfieldUnits& units) { units.scale = static_cast<float>(*scale); });
+  ofUnits("--exaggeration", exaggeration.has_value(),
+          [this](HeightfieldUnits& units) { units.exaggeration = static_cast<float>(*exaggeration); });
+  ofUnits("--void-value", voidValue.has_value(),
+          [this](HeightfieldUnits& units) { units.voidValue = *voidValue; });
+  return all;
 }
 
 std::vector<std::string> SceneOptions::devices() const {
@@ -207,20 +229,37 @@ std::vector<std::string> SceneOptions::devices() const {
 
 Scene SceneOptions::load() const {
   Scene result = scene.empty() ? builtinScene() : loadScene(scene);
-  if (agents) scaleHerds(result, *agents);
-  if (!rig.empty()) {
-    if (result.herds.empty()) throw inputError(fmt::format("--rig: {} has no herds", result.name));
-    result.herds.front().rig = rig;
-  }
-  if (controller)
-    for (Herd& herd : result.herds) herd.controller = *controller;
-  if (solver)
-    for (Herd& herd : result.herds) herd.solver = *solver;
-  if (stepping)
-    for (Herd& herd : result.herds) herd.stepping = *stepping;
-  if (seed) result.seed = *seed;
-  applyTerrain(result);
+  for (const Change& change : changes()) change.make(result);
   return result;
+}
+
+void SceneOptions::refuseOthersThan(const Scene& saved, const std::string& state) const {
+  const auto jsonOf = [&](Scene each) {
+    each.camera = saved.camera;
+    each.name = saved.name;
+    return nlohmann::json::parse(sceneJson(each));
+  };
+  const nlohmann::json expected = jsonOf(saved);
+  const auto compare = [&](const std::string& option, const Scene& found) {
+    const nlohmann::json other = jsonOf(found), differences = nlohmann::json::diff(expected, other);
+    if (differences.empty()) return;
+    const nlohmann::json::json_pointer place(differences[0].at("path").get<std::string>());
+    const auto valueIn = [&](const nlohmann::json& json) {
+      return json.contains(place) ? json.at(place).dump() : "none";
+    };
+    throw inputError(fmt::format("{}: {} was saved with {} {}, not {}", option, state,
+                                 place.to_string().substr(1), valueIn(expected), valueIn(other)));
+  };
+  for (const Change& change : changes()) {
+    Scene changed = saved;
+    change.make(changed);
+    // --terrain begins with no units; those that are given have a change of their own.
+    const auto* before = std::get_if<TerrainFile>(&saved.terrain);
+    auto* file = std::get_if<TerrainFile>(&changed.terrain);
+    if (before && file && file->units == HeightfieldUnits{}) file->units = before->units;
+    compare(change.option, changed);
+  }
+  if (!scene.empty()) compare(fmt::format("SCENE {}", scene), load());
 }
 
 void SceneOptions::declare(Files& files, const Scene& loaded) const {

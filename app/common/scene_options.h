@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,13 +41,21 @@ struct SceneOptions {
   void addTo(CLI::App& command, const char* agentsHelp);
   // The scene as the flags leave it. Throws Error(input).
   Scene load() const;
+  // Throws Error(input) that names the first option that makes another scene of `saved`, which the file
+  // `state` holds. The camera and the scene's name do not count.
+  void refuseOthersThan(const Scene& saved, const std::string& state) const;
   // What the scene that was loaded is read from.
   void declare(Files& files, const Scene& loaded) const;
 
  private:
+  // What an option that was given changes in a scene.
+  struct Change {
+    std::string option;  // "--agents 50"
+    std::function<void(Scene& scene)> make;
+  };
+  std::vector<Change> changes() const;
   void addCountTo(CLI::App& command, const char* agentsHelp);
   void addTerrainTo(CLI::App& command);
-  void applyTerrain(Scene& scene) const;
 };
 
 }  // namespace skitter::app

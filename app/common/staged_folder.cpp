@@ -9,7 +9,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "render/partial_file.h"
+#include "assets/files/partial_file.h"
 #include "skitter/error.h"
 
 namespace skitter::app {
@@ -36,17 +36,17 @@ std::set<std::string> listed(const fs::path& folder) {
 void writeMark(const fs::path& folder, const std::set<std::string>& names) {
   std::string text = fmt::format("{}\n", markHead);
   for (const std::string& name : names) text += name + "\n";
-  render::writeText(folder / StagedFolder::markName, text);
+  writeText(folder / StagedFolder::markName, text);
 }
 
 // Through a link at the place, which may lead to another disk.
 void moveTo(const fs::path& from, const fs::path& place) {
-  const fs::path target = render::followed(place);
+  const fs::path target = followed(place);
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   fs::rename(from, target, error);
   if (error == std::errc::cross_device_link) {
-    render::PartialFile copy(target);
+    PartialFile copy(target);
     if (fs::copy_file(from, copy.part(), fs::copy_options::overwrite_existing, error)) copy.keep();
   }
   if (error) throw inputError(fmt::format("{}: cannot be written: {}", place.string(), error.message()));

@@ -20,7 +20,7 @@
 #include "app/ik/machine.h"
 #include "app/ik/summary.h"
 #include "app/ik/targets.h"
-#include "render/partial_file.h"
+#include "assets/files/partial_file.h"
 #include "skitter/error.h"
 
 namespace skitter::app {
@@ -94,7 +94,7 @@ class FloatFile {
   void discard() { file_.reset(); }
 
  private:
-  std::optional<render::PartialFile> file_;
+  std::optional<PartialFile> file_;
 };
 
 // Where the solves go. Without a lot there is nothing but the figures' file.

@@ -12,9 +12,11 @@
 #include "app/common/signals.h"
 #include "app/common/values.h"
 #include "app/rig/rig_picture.h"
+#include "app/run/state_report.h"
 #include "skitter/clip.h"
 #include "skitter/error.h"
 #include "skitter/rig_setup.h"
+#include "skitter/state.h"
 
 namespace skitter::app {
 namespace {
@@ -175,6 +177,14 @@ nlohmann::ordered_json describe(const std::string& file, const Inspection& inspe
           {"rigFault", inspection.rigFault}};
 }
 
+int inspectState(const InspectOptions& options) {
+  if (!options.out.empty())
+    throw inputError(fmt::format("--out {}: {} is a state, expected a model", options.out, options.file));
+  printState(options.file);
+  if (!options.json.empty()) writeJson(options.json, describeState(options.file), {});
+  return 0;
+}
+
 int inspect(const InspectOptions& options) {
   if (!options.out.empty() && std::filesystem::path(options.out).extension() != ".png")
     throw inputError(fmt::format("--out is {}, expected a name that ends in .png", options.out));
@@ -184,6 +194,7 @@ int inspect(const InspectOptions& options) {
   files.writes("--out", options.out);
   files.expect("--out", 3.0 * options.size.width * options.size.height);
   files.check();
+  if (isState(options.file)) return inspectState(options);
   std::optional<StopDeadline> deadline(std::in_place);
   const Inspection inspection = look(options.file);
   files.check();
@@ -208,8 +219,11 @@ int inspect(const InspectOptions& options) {
 void addInspect(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<InspectOptions>();
   CLI::App* command = app.add_subcommand(
-      "inspect", "What a glTF model holds, what is odd about it, and what it would take to walk");
-  command->add_option("file", options->file, "a .glb or .gltf")->type_name("FILE")->required();
+      "inspect",
+      "What a glTF model holds, what is odd about it, and what it would take to walk; or what a state holds");
+  command->add_option("file", options->file, "a .glb or .gltf, or a state of skitter run --save")
+      ->type_name("FILE")
+      ->required();
   command->add_option("--json", options->json, "write all of it to a file")->type_name("FILE");
   command
       ->add_option("--out", options->out,

@@ -9,7 +9,7 @@
 #include "app/common/files.h"
 #include "app/common/signals.h"
 #include "app/common/values.h"
-#include "render/partial_file.h"
+#include "assets/files/partial_file.h"
 #include "skitter/error.h"
 #include "skitter/rig_setup.h"
 
@@ -64,7 +64,7 @@ int propose(const RigOptions& options) {
   files.check();
   deadline.reset();
   if (stopRequested()) throw Interrupted(StopDeadline::nothingWritten());
-  render::writeText(out, text);
+  writeText(out, text);
   print(proposal, rig, out);
   return 0;
 }

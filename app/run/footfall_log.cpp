@@ -16,8 +16,8 @@ double footfallBytes(const Crowd& crowd, const Scene& scene, double dt, uint64_t
   return lineBytes * stepsASecond * legs * dt * static_cast<double>(ticks);
 }
 
-FootfallLog::FootfallLog(const std::filesystem::path& file) : file_(file) {
-  file_.write(std::string("herd,agent,leg,tick,seconds,x,y,z,speed\n"));
+FootfallLog::FootfallLog(const std::filesystem::path& file, const Manifest& manifest) : file_(file) {
+  file_.write(manifest.csvComment() + std::string("herd,agent,leg,tick,seconds,x,y,z,speed\n"));
 }
 
 void FootfallLog::append(const Crowd& crowd) {

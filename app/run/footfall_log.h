@@ -2,7 +2,8 @@
 
 #include <filesystem>
 
-#include "render/partial_file.h"
+#include "app/common/manifest.h"
+#include "assets/files/partial_file.h"
 #include "skitter/crowd.h"
 
 namespace skitter::app {
@@ -10,17 +11,18 @@ namespace skitter::app {
 // About what the touchdowns of so many ticks take.
 double footfallBytes(const Crowd& crowd, const Scene& scene, double dt, uint64_t ticks);
 
-// Every touchdown of a run as a line of CSV: herd, agent, leg, tick, seconds, x, y, z, speed.
+// Every touchdown of a run as a line of CSV: herd, agent, leg, tick, seconds, x, y, z, speed. The manifest is
+// in front of them.
 class FootfallLog {
  public:
-  explicit FootfallLog(const std::filesystem::path& file);
+  FootfallLog(const std::filesystem::path& file, const Manifest& manifest);
 
   void append(const Crowd& crowd);  // of the last tick
   void finish() { file_.keep(); }
   uint64_t count() const { return count_; }
 
  private:
-  render::PartialFile file_;
+  PartialFile file_;
   uint64_t count_ = 0;
 };
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render/partial_file.h"
+#include "assets/files/partial_file.h"
 
 namespace skitter::app {
 
@@ -27,7 +27,7 @@ class NpyWriter {
  private:
   std::string header(uint64_t entries) const;
 
-  render::PartialFile file_;
+  PartialFile file_;
   std::string type_;
   std::vector<uint64_t> shape_;
 };

@@ -32,6 +32,39 @@ Obstacle::Obstacle(const Crowd& crowd) : ground_(crowd.terrain()) {
   width_ = std::max(4 * length, 0.7f * std::sqrt(static_cast<float>(std::max(1u, herd.agents))) * length);
 }
 
+Obstacle::Obstacle(const Crowd& crowd, const nlohmann::ordered_json& saved) : ground_(crowd.terrain()) {
+  saved.at("startX").get_to(start_.x);
+  saved.at("startZ").get_to(start_.y);
+  saved.at("radius").get_to(radius_);
+  saved.at("height").get_to(height_);
+  saved.at("width").get_to(width_);
+  const auto& covered = saved.at("covered");
+  covered.at("x").get_to(covered_.x);
+  covered.at("z").get_to(covered_.z);
+  covered.at("columns").get_to(covered_.columns);
+  covered.at("rows").get_to(covered_.rows);
+  ground_.edit(covered_.x, covered_.z, covered_.columns, covered_.rows,
+               saved.at("ground").get<std::vector<float>>());
+}
+
+// The rest of the ground is as the crowd has it.
+nlohmann::ordered_json Obstacle::json() const {
+  std::vector<float> heights;
+  for (uint32_t z = covered_.z; z < covered_.z + covered_.rows; ++z) {
+    const auto first =
+        ground_.heights.begin() + static_cast<std::ptrdiff_t>(z) * ground_.columns + covered_.x;
+    heights.insert(heights.end(), first, first + covered_.columns);
+  }
+  return {{"startX", start_.x},
+          {"startZ", start_.y},
+          {"radius", radius_},
+          {"height", height_},
+          {"width", width_},
+          {"covered",
+           {{"x", covered_.x}, {"z", covered_.z}, {"columns", covered_.columns}, {"rows", covered_.rows}}},
+          {"ground", heights}};
+}
+
 void Obstacle::move(Crowd& crowd, double seconds) {
   const float speed = kSpeed * crowd.rig(0).legLength;
   const glm::vec2 centre = start_ + glm::vec2(width_ * static_cast<float>(std::sin(speed / width_ * seconds)),

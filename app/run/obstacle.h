@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
 
 #include "skitter/crowd.h"
 
@@ -10,17 +12,21 @@ namespace skitter::app {
 class Obstacle {
  public:
   explicit Obstacle(const Crowd& crowd);
+  // As it was in a run that was saved; `crowd` is the state's, and `saved` what json() gave.
+  Obstacle(const Crowd& crowd, const nlohmann::ordered_json& saved);
 
   // To where it is in the next tick, `seconds` after the start.
   void move(Crowd& crowd, double seconds);
+  const Heightfield& groundWithout() const { return ground_; }
+  nlohmann::ordered_json json() const;
 
  private:
   Heightfield ground_;  // as it was
   glm::vec2 start_;     // world x, z
   float radius_, height_, width_;
-  struct {
+  struct Rectangle {
     uint32_t x = 0, z = 0, columns = 0, rows = 0;
-  } covered_;
+  } covered_;  // samples
 };
 
 }  // namespace skitter::app

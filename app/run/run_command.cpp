@@ -5,14 +5,17 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "app/commands.h"
 #include "app/common/manifest.h"
 #include "app/common/signals.h"
 #include "app/run/obstacle.h"
 #include "app/run/offscreen.h"
+#include "app/run/run_note.h"
 #include "app/run/run_options.h"
 #include "app/run/run_outputs.h"
 #include "app/run/summary.h"
@@ -21,6 +24,7 @@
 #include "base/clock.h"
 #include "skitter/crowd.h"
 #include "skitter/error.h"
+#include "skitter/state.h"
 
 namespace skitter::app {
 namespace {
@@ -50,8 +54,8 @@ void failOnValidation(const Device& device) {
 // From the options to the files: start, simulate, finish.
 class Run {
  public:
-  // Reads and checks what needs no device. The options must outlive it.
-  explicit Run(const RunOptions& options);
+  // Reads and checks what needs no device.
+  explicit Run(RunOptions options);
 
   void start();
   void simulate();
@@ -62,13 +66,14 @@ class Run {
 
   void raiseObstacle();
   void afterTick();
+  void save();
   void restart(std::optional<Controller> controller);
   void runWindow();
   std::string stopped() const;
   nlohmann::ordered_json unfinished() const;
 
   const Clock::time_point began_ = Clock::now();
-  const RunOptions& options_;
+  RunOptions options_;
   const OutTarget target_;
   const bool windowed_;
   Scene scene_;
@@ -77,7 +82,10 @@ class Run {
   Summary summary_;
   // Declared before and gone after what they are written from: a deadline may find them until the end.
   RunOutputs outputs_;
-  std::atomic<uint64_t> done_ = 0;  // ticks
+  std::atomic<uint64_t> done_ = 0;     // ticks
+  std::atomic<int64_t> savedAt_ = -1;  // the tick of the state that lies in its file; -1: none does
+  std::optional<State> state_;         // that the run goes on from
+  RunNote note_;                       // its note
   Manifest manifest_;
   Heightfield terrain_;
   std::optional<Window> window_;
@@ -87,25 +95,34 @@ class Run {
   std::optional<Obstacle> obstacle_;
 };
 
-Run::Run(const RunOptions& options)
-    : options_(options),
-      target_(parseOut(options.out)),
-      windowed_(options.windowed(target_)),
-      outputs_(options) {
-  options.check(target_, windowed_);
-  scene_ = options.load();
-  files_ = options.files(target_, scene_);
+Run::Run(RunOptions options)
+    : options_(std::move(options)),
+      target_(parseOut(options_.out)),
+      windowed_(options_.windowed(target_)),
+      outputs_(options_) {
+  if (!options_.resume.empty()) {
+    state_ = loadState(options_.resume);
+    note_ = RunNote::of(*state_, options_.resume);
+    options_.adopt(*state_, note_, windowed_);
+    summary_.resumedAt = state_->tick;
+  }
+  options_.check(target_, windowed_);
+  scene_ = options_.load(state_ ? &state_->scene : nullptr);
+  files_ = options_.files(target_, scene_);
   files_.check();
-  if (!windowed_ || options.frames) ticks_ = options.framesWithoutWindow() * options.ticksPerFrame;
+  if (!windowed_ || options_.frames) ticks_ = options_.framesWithoutWindow() * options_.ticksPerFrame;
   summary_.seed = scene_.seed;
   summary_.wantedTicks = ticks_;
   summary_.agents = scene_.agentCount();
-  manifest_ = {.scene = &scene_, .dt = options.scene.dt};
+  manifest_ = {.scene = &scene_, .dt = options_.scene.dt};
 }
 
 std::string Run::stopped() const {
-  return ticks_ ? interruptedAfter(done_, *ticks_, "ticks")
-                : fmt::format("interrupted after {} ticks", done_.load());
+  const std::string text = ticks_ ? interruptedAfter(done_, *ticks_, "ticks")
+                                  : fmt::format("interrupted after {} ticks", done_.load());
+  const auto saved = savedAt_.load();
+  if (options_.save.empty() || saved == static_cast<int64_t>(done_.load())) return text;
+  return text + (saved < 0 ? "; no state is saved" : fmt::format("; the state is of tick {}", saved));
 }
 
 // Without figures: the device, which has them, is at work.
@@ -122,7 +139,7 @@ void Run::start() {
     if (!options_.json.empty()) writeJson(options_.json, unfinished(), manifest);
     return stopped();
   });
-  terrain_ = scene_.loadTerrain();
+  terrain_ = state_ ? state_->terrain : scene_.loadTerrain();
   DeviceRequest request = options_.deviceRequest();
   if (windowed_) {
     window_.emplace(options_.size);
@@ -130,18 +147,29 @@ void Run::start() {
     request.instanceExtensions = window_->instanceExtensions();
   }
   device_ = Device::create(request);
-  crowd_.emplace(*device_, terrain_, scene_, options_.crowdOptions(target_, windowed_));
+  const CrowdOptions crowdOptions = options_.crowdOptions(target_, windowed_);
+  if (state_) {
+    state_->options = crowdOptions;
+    state_->scene = scene_;
+    crowd_.emplace(*device_, *state_);
+    done_ = state_->tick;
+    state_->source.reset();  // which keeps the file open
+    if (options_.obstacle) obstacle_.emplace(*crowd_, note_.obstacle);
+    if (obstacle_) terrain_ = obstacle_->groundWithout();
+  } else {
+    crowd_.emplace(*device_, terrain_, scene_, crowdOptions);
+    raiseObstacle();
+  }
   starting.reset();
   manifest_.terrain = &terrain_;
   manifest_.add(device_->report());
 
   outputs_.expect(files_, target_, *crowd_, scene_, terrain_, ticks_);
-  outputs_.open(target_, *crowd_, scene_);
+  outputs_.open(target_, *crowd_, scene_, manifest_);
   leave_ = [this] {
     outputs_.finish(*crowd_, terrain_, done_, unfinished(), manifest_);
     return stopped();
   };
-  raiseObstacle();
 
   summary_.startSeconds = std::chrono::duration<double>(Clock::now() - began_).count();
   summary_.startCpuSeconds = base::processSeconds();
@@ -159,6 +187,21 @@ void Run::afterTick() {
   outputs_.append(*crowd_);
   if (obstacle_) obstacle_->move(*crowd_, static_cast<double>(crowd_->tick()) * options_.scene.dt);
   done_ = crowd_->tick();
+  if (options_.saveEvery && crowd_->tick() % (*options_.saveEvery * options_.ticksPerFrame) == 0) save();
+}
+
+// As it is between two ticks, the obstacle already where the next one finds it.
+void Run::save() {
+  const auto tick = static_cast<int64_t>(crowd_->tick());
+  if (options_.save.empty() || savedAt_ == tick) return;
+  RunNote note;
+  note.dt = options_.scene.dt;
+  note.ticksPerFrame = options_.ticksPerFrame;
+  note.manifest = manifest_.json();
+  if (ticks_) note.frames = *ticks_ / options_.ticksPerFrame;
+  if (obstacle_) note.obstacle = obstacle_->json();
+  crowd_->save(options_.save, note.text());
+  savedAt_ = tick;
 }
 
 void Run::restart(std::optional<Controller> controller) {
@@ -167,6 +210,8 @@ void Run::restart(std::optional<Controller> controller) {
     if (controller) herd.controller = *controller;
   *crowd_ = Crowd(*device_, terrain_, next, options_.crowdOptions(target_, windowed_));
   scene_ = std::move(next);
+  savedAt_ = -1;
+  summary_.resumedAt.reset();
   raiseObstacle();
 }
 
@@ -194,6 +239,14 @@ void Run::simulate() {
 }
 
 void Run::finish() {
+  // First, and without a deadline: a state is worth the wait. Where it fails, the other files are still
+  // written.
+  std::exception_ptr fault;
+  try {
+    save();
+  } catch (const Error&) {
+    fault = std::current_exception();
+  }
   {
     const StopDeadline deadline(leave_);
     summary_.ticks = crowd_->tick();
@@ -207,7 +260,10 @@ void Run::finish() {
     summary_.memory = memoryOf(*crowd_);
   }
   summary_.files = outputs_.finish(*crowd_, terrain_, summary_.ticks, summary_.json(), manifest_);
+  if (savedAt_ >= 0)
+    summary_.files.push_back(fmt::format("{}: the state at tick {}", options_.save, savedAt_.load()));
   summary_.print();
+  if (fault) std::rethrow_exception(fault);
   failOnValidation(*device_);
   if (summary_.interrupted) throw Interrupted(stopped());
 }

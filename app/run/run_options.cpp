@@ -97,12 +97,40 @@ bool RunOptions::windowed(const OutTarget& target) const {
 
 void RunOptions::check(const OutTarget& target, bool inWindow) const {
   checkVideo(*this, target);
+  if (saveEvery && save.empty()) throw inputError("--save-every needs --save FILE");
   if (inWindow && !trace.empty() && !frames)
     throw inputError("--trace needs --frames where a window runs until it is closed");
 }
 
-Scene RunOptions::load() const {
-  Scene loaded = scene.load();
+bool RunOptions::isGiven(const char* option) const { return command_ && command_->count(option) > 0; }
+
+void RunOptions::adopt(const State& state, const RunNote& note, bool inWindow) {
+  const auto decide = [&](const char* option, auto& value, const auto& saved, const std::string& text) {
+    if (isGiven(option) && value != saved)
+      throw inputError(fmt::format("{}: {} was saved {}", option, resume, text));
+    value = saved;
+  };
+  scene.refuseOthersThan(state.scene, resume);
+  if (state.dt > 0 && isGiven("--dt") && static_cast<float>(scene.dt) == state.dt) scene.dt = note.dt;
+  if (state.dt > 0) decide("--dt", scene.dt, note.dt, fmt::format("with --dt {}", note.dt));
+  decide("--ticks-per-frame", ticksPerFrame, note.ticksPerFrame,
+         fmt::format("with --ticks-per-frame {}", note.ticksPerFrame));
+  decide("--watch-every", watchEvery, state.options.watchEvery,
+         fmt::format("with --watch-every {}", state.options.watchEvery));
+  decide("--sleep", sleep, state.options.sleep, "without it");
+  decide("--no-measure", unmeasured, !state.options.measure, "without it");
+  decide("--obstacle", obstacle, !note.obstacle.is_null(), "without it");
+  if (inWindow && !frames) return;
+  if (!frames) frames = note.frames;
+  const uint64_t wanted = framesWithoutWindow() * ticksPerFrame;
+  if (wanted < state.tick)
+    throw inputError(
+        fmt::format("--frames {}: {} is of frame {} already, and frames count from the run's start",
+                    framesWithoutWindow(), resume, state.tick / ticksPerFrame));
+}
+
+Scene RunOptions::load(const Scene* saved) const {
+  Scene loaded = saved ? *saved : scene.load();
   loaded.camera = cameraOf(*this, loaded.camera);
   return loaded;
 }
@@ -117,6 +145,8 @@ Files RunOptions::files(const OutTarget& target, const Scene& of) const {
   all.fills("--trace", trace, Trace::claims, force);
   all.writes("--footfalls", footfalls);
   all.writes("--json", json);
+  all.reads("--resume", resume);
+  all.replaces("--save", save, resume);
   return all;
 }
 
@@ -133,6 +163,7 @@ CrowdOptions RunOptions::crowdOptions(const OutTarget& target, bool inWindow) co
   crowd.measure = !unmeasured;
   crowd.watchEvery = watchEvery;
   crowd.sleep = sleep;
+  crowd.pageAgents = pageAgents;
   crowd.feet = !trace.empty() || inWindow;
   if (!footfalls.empty()) crowd.footfalls = UINT32_MAX;  // all that can be
   crowd.pose = poses || inWindow || target.kind != OutTarget::Kind::none || !trace.empty();
@@ -140,6 +171,7 @@ CrowdOptions RunOptions::crowdOptions(const OutTarget& target, bool inWindow) co
 }
 
 void RunOptions::addTo(CLI::App& command) {
+  command_ = &command;
   scene.addTo(command, "the scene's");
   addNumbers(command, *this);
   command.add_option("--view", view, "follow the crowd from here instead of the scene's camera")
@@ -161,6 +193,28 @@ void RunOptions::addTo(CLI::App& command) {
       .add_option("--footfalls", footfalls,
                   "write every touchdown: herd, agent, leg, tick, seconds, place, speed of the foot")
       ->type_name("FILE.csv");
+  command.add_option("--save", save, "write the run's state at its end, to go on with later (docs/state.md)")
+      ->type_name("FILE");
+  command
+      .add_option_function<std::string>(
+          "--save-every",
+          [this](const std::string& text) { saveEvery = parseWhole("--save-every", text, 1, maxFrames); },
+          "and after every N frames")
+      ->type_name("N");
+  command
+      .add_option("--resume", resume,
+                  "go on from a state, which has scene, terrain and options; --frames counts from the first "
+                  "run's start [as many as that run wanted]")
+      ->type_name("FILE");
+  command
+      .add_option_function<std::string>(
+          "--page-agents",
+          [this](const std::string& text) {
+            pageAgents = static_cast<uint32_t>(parseWhole("--page-agents", text, 1, Scene::maxAgents));
+          },
+          "most agents a page of device memory, which changes no result [as many as the device's limits "
+          "allow]")
+      ->type_name("N");
   command.add_flag("--obstacle", obstacle,
                    "a mound wanders across the crowd's way: the terrain is edited in every tick");
   command.add_flag(
@@ -183,7 +237,9 @@ void RunOptions::addTo(CLI::App& command) {
       "  skitter run\n"
       "  skitter run --headless --agents 10000 --frames 600 --json figures.json\n"
       "  skitter run --terrain everest.png --spacing 0.5 --heights 0,40 --out walk.mp4\n"
-      "  skitter run scene.json --frames 120 --out frames --trace trace");
+      "  skitter run scene.json --frames 120 --out frames --trace trace\n"
+      "  skitter run --headless --frames 36000 --save hour.state --save-every 3600\n"
+      "  skitter run --resume hour.state --frames 36300 --out end.mp4");
 }
 
 }  // namespace skitter::app

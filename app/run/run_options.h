@@ -8,6 +8,7 @@
 #include "app/common/scene_options.h"
 #include "app/common/values.h"
 #include "app/run/pictures.h"
+#include "app/run/run_note.h"
 #include "skitter/crowd.h"
 #include "skitter/device.h"
 #include "skitter/scene.h"
@@ -27,6 +28,9 @@ struct RunOptions {
   std::optional<double> fps, slow;  // of a video
   Size size{1280, 720};
   std::string view, out, json, trace, footfalls;
+  std::string save, resume;           // state files
+  std::optional<uint64_t> saveEvery;  // frames
+  uint32_t pageAgents = 0;
   bool poses = false, unmeasured = false;
   bool headless = false, force = false, large = false, obstacle = false, timings = false, validation = false,
        quiet = false, sleep = false, paused = false;
@@ -40,8 +44,11 @@ struct RunOptions {
   // Throws Error(input) where there is no video to play as asked for, none with a frame, or a trace without
   // an end.
   void check(const OutTarget& target, bool inWindow) const;
-  // The scene that they name, with its camera as they want it.
-  Scene load() const;
+  // The scene that they name, with its camera as they want it; `saved` takes its place in a run that goes on.
+  Scene load(const Scene* saved = nullptr) const;
+  // Takes over what a state and its note decide. Throws Error(input) that names an option which says
+  // otherwise, or where the state is beyond the frames that are wanted.
+  void adopt(const State& state, const RunNote& note, bool inWindow);
   // What is read and written.
   Files files(const OutTarget& target, const Scene& scene) const;
   DeviceRequest deviceRequest() const;
@@ -52,6 +59,11 @@ struct RunOptions {
 
   static constexpr uint64_t defaultFrames = 300;
   static constexpr double defaultFps = 60;
+
+ private:
+  bool isGiven(const char* option) const;
+
+  const CLI::App* command_ = nullptr;  // outlives the run
 };
 
 }  // namespace skitter::app

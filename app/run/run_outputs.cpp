@@ -23,18 +23,22 @@ double traceBytes(const RunOptions& options, const Crowd& crowd, const Scene& sc
 
 void RunOutputs::expect(Files& files, const OutTarget& target, const Crowd& crowd, const Scene& scene,
                         const Heightfield& terrain, std::optional<uint64_t> ticks) const {
+  const uint64_t done = crowd.tick();
   files.expect("--out", pictureBytes(target, options_.size.width, options_.size.height,
-                                     options_.framesWithoutWindow()));
+                                     options_.framesWithoutWindow() - done / options_.ticksPerFrame));
   if (!options_.trace.empty())
-    files.expect("--trace", traceBytes(options_, crowd, scene, terrain, ticks.value()));
-  if (ticks) files.expect("--footfalls", footfallBytes(crowd, scene, options_.scene.dt, *ticks));
+    files.expect("--trace", traceBytes(options_, crowd, scene, terrain, ticks.value() - done));
+  if (ticks) files.expect("--footfalls", footfallBytes(crowd, scene, options_.scene.dt, *ticks - done));
+  // An older state stays until a newer one is whole.
+  files.expect("--save", static_cast<double>(crowd.stateBytes()) * (options_.saveEvery ? 2 : 1));
   files.check();
 }
 
-void RunOutputs::open(const OutTarget& target, const Crowd& crowd, const Scene& scene) {
+void RunOutputs::open(const OutTarget& target, const Crowd& crowd, const Scene& scene,
+                      const Manifest& manifest) {
   if (!options_.trace.empty())
     trace_.emplace(options_.trace, crowd, scene, static_cast<float>(options_.scene.dt));
-  if (!options_.footfalls.empty()) footfalls_.emplace(options_.footfalls);
+  if (!options_.footfalls.empty()) footfalls_.emplace(options_.footfalls, manifest);
   if (target.kind != OutTarget::Kind::none)
     pictures_.emplace(target, options_.size.width, options_.size.height, options_.videoFps(),
                       1 / (options_.secondsAFrame() * options_.slow.value_or(1)));

@@ -21,7 +21,7 @@ class RunOutputs {
   // So much will be written. Throws Error(input) where so much was probably not meant, or has no room.
   void expect(Files& files, const OutTarget& target, const Crowd& crowd, const Scene& scene,
               const Heightfield& terrain, std::optional<uint64_t> ticks) const;
-  void open(const OutTarget& target, const Crowd& crowd, const Scene& scene);
+  void open(const OutTarget& target, const Crowd& crowd, const Scene& scene, const Manifest& manifest);
 
   void append(const Crowd& crowd);
   Pictures* pictures() { return pictures_ ? &*pictures_ : nullptr; }

@@ -20,9 +20,9 @@ std::optional<Spread> spreadOf(std::vector<double> values) {
 }
 
 std::optional<double> cpuMicroseconds(const Summary& summary) {
-  if (!summary.cpuTold || summary.agents == 0 || summary.ticks == 0) return {};
-  return 1e6 * summary.times.cpuSeconds /
-         (static_cast<double>(summary.agents) * static_cast<double>(summary.ticks));
+  const auto ticks = static_cast<double>(summary.times.milliseconds.size());
+  if (!summary.cpuTold || summary.agents == 0 || ticks == 0) return {};
+  return 1e6 * summary.times.cpuSeconds / (static_cast<double>(summary.agents) * ticks);
 }
 
 void printRow(const char* name, const std::string& value) { fmt::print("{:<12}{}\n", name, value); }
@@ -101,9 +101,10 @@ void Summary::print() const {
   printRow("device", device);
   printRow("terrain", filledVoids > 0 ? fmt::format("{}, voids filled: {}", terrain, filledVoids) : terrain);
   printRow("agents", fmt::format("{}", agents));
-  printRow("ticks",
-           fmt::format("{}{}{}", ticks, interrupted && wantedTicks ? fmt::format(" of {}", *wantedTicks) : "",
-                       interrupted ? ", interrupted" : ""));
+  printRow("ticks", fmt::format("{}{}{}{}", ticks,
+                                interrupted && wantedTicks ? fmt::format(" of {}", *wantedTicks) : "",
+                                resumedAt ? fmt::format(", of which {} before this run", *resumedAt) : "",
+                                interrupted ? ", interrupted" : ""));
   if (sleeping) printRow("asleep", fmt::format("{} agents at the end", *sleeping));
   if (frames > 0) printRow("frames", fmt::format("{}", frames));
   if (const auto tick = spreadOf(times.milliseconds)) {
@@ -112,7 +113,7 @@ void Summary::print() const {
   }
   if (const auto cpu = cpuMicroseconds(*this))
     printRow("CPU", fmt::format("{:.3f} us an agent and tick", *cpu));
-  printStages(times.stages, ticks, "tick");
+  printStages(times.stages, times.milliseconds.size(), "tick");
   printStages(drawing, frames, "frame");
   if (!times.stages.empty()) {
     printRow("start", fmt::format("{:.3f} s, {:.3f} s of CPU", startSeconds, startCpuSeconds));
@@ -142,6 +143,7 @@ nlohmann::ordered_json Summary::json() const {
           {"sleeping", orNull(sleeping)},
           {"ticks", ticks},
           {"ticksWanted", orNull(wantedTicks)},
+          {"resumedAt", orNull(resumedAt)},
           {"interrupted", interrupted},
           {"seed", seed},
           {"tickMilliseconds", milliseconds},

@@ -29,6 +29,7 @@ struct Summary {
   std::string terrain;  // name, samples and metres
   uint64_t filledVoids = 0;
   uint64_t agents = 0, ticks = 0, frames = 0, seed = 0;
+  std::optional<uint64_t> resumedAt;    // the tick of the state that the run went on from
   std::optional<uint64_t> wantedTicks;  // none where a window runs until it is closed
   bool interrupted = false;
   TickTimes times;

@@ -83,6 +83,13 @@ void appendAgent(const HerdState& state, const crowd::Kind& kind, size_t agent, 
   const auto legs = static_cast<size_t>(rig.legCount()), bones = static_cast<size_t>(rig.maxBones());
 
   const float* body = vec4(state.body, agent * BODY_STRIDE);
+  if (body[7] != 0) {  // nobody is there
+    values.body.insert(values.body.end(), 7, nan);
+    values.joints.insert(values.joints.end(), 3 * legs * (bones + 1), nan);
+    values.rotations.insert(values.rotations.end(), 4 * legs * bones, nan);
+    values.stance.insert(values.stance.end(), legs, 0);
+    return;
+  }
   const double position[3] = {double{tileX(body[3])} * TILE_SIZE + body[0], body[1],
                               double{tileZ(body[3])} * TILE_SIZE + body[2]};
   for (double coordinate : position) values.body.push_back(static_cast<float>(coordinate));
@@ -136,11 +143,11 @@ nlohmann::ordered_json describe(const Rig& rig, uint32_t agents) {
 }  // namespace
 
 Trace::Trace(const fs::path& folder, const Crowd& crowd, const Scene& scene, double dt)
-    : folder_(folder), dt_(dt) {
+    : folder_(folder), dt_(dt), firstTick_(crowd.tick() + 1) {
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
     const auto file = [&](const char* name) { return folder_.add(fmt::format("herd{}/{}", h, name)); };
     const Rig& rig = crowd.rig(h);
-    const uint32_t agents = scene.herds[h].agents;
+    const uint32_t agents = scene.herds[h].agents + scene.herds[h].reserve;
     const uint64_t legs = static_cast<uint64_t>(rig.legCount()),
                    bones = static_cast<uint64_t>(rig.maxBones());
     herds_.push_back({agents, NpyWriter(file("joints.npy"), "<f4", {agents, legs, bones + 1, 3}),
@@ -153,7 +160,7 @@ Trace::Trace(const fs::path& folder, const Crowd& crowd, const Scene& scene, dou
 double Trace::bytes(const Crowd& crowd, const Scene& scene, const Heightfield& terrain, uint64_t ticks) {
   uint64_t aTick = 0;
   for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-    aTick += scene.herds[h].agents * EntrySizes(crowd.rig(h)).bytes();
+    aTick += (uint64_t{scene.herds[h].agents} + scene.herds[h].reserve) * EntrySizes(crowd.rig(h)).bytes();
   return static_cast<double>(aTick) * static_cast<double>(ticks) +
          static_cast<double>(terrain.heights.size() * sizeof(float));
 }
@@ -192,6 +199,7 @@ size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manif
     herds.push_back(describe(crowd.rig(h), herds_[h].agents));
   }
   const nlohmann::ordered_json json = {{"dt", dt_},
+                                       {"firstTick", firstTick_},
                                        {"ticks", entries_},
                                        {"herds", herds},
                                        {"terrain",

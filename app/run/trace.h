@@ -33,7 +33,7 @@ class Trace {
   };
   StagedFolder folder_;
   double dt_;
-  uint64_t entries_ = 0;
+  uint64_t firstTick_ = 1, entries_ = 0;
   std::vector<HerdFiles> herds_;
 };
 

@@ -3,7 +3,7 @@
 
 #include "app/common/signals.h"
 #include "app/validate/outcome.h"
-#include "render/partial_file.h"
+#include "assets/files/partial_file.h"
 
 namespace skitter::app {
 namespace {
@@ -67,7 +67,7 @@ void writeJunit(const std::string& file, std::span<const Outcome> outcomes, cons
   for (const Outcome& outcome : outcomes) addSuite(*suites, outcome, manifest.json());
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
-  render::writeText(file, printer.CStr());
+  writeText(file, printer.CStr());
 }
 
 }  // namespace skitter::app

@@ -17,23 +17,21 @@
 #include "app/common/values.h"
 #include "app/validate/ground_edits.h"
 #include "app/validate/outcome.h"
+#include "crowd/events.h"
 #include "crowd/herd.h"
 #include "gpu/submit.h"
 #include "skitter/error.h"
 #include "validation/free_run.h"
 #include "validation/herd_facts.h"
+#include "validation/lockstep/lockstep.h"
 
 namespace skitter::app {
 namespace {
 
-using validation::Replay;
-using validation::StageResult;
+using validation::Lockstep;
 
 constexpr uint64_t defaultAgents = 64, defaultFrames = 120, maxFrames = 1000000;
 constexpr double longestTimeout = 1e6;  // seconds
-// The reference takes about a millisecond for one of them; of larger herds every so many-th agent is
-// compared, others in each tick.
-constexpr uint32_t agentsATick = 1024;
 
 struct ValidateOptions {
   SceneOptions scene;
@@ -53,14 +51,17 @@ class FreeRuns {
       runs_.push_back(std::make_unique<validation::FreeRun>(
           validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), first[h]));
   }
+  void follow(const std::vector<HerdState>& before, const std::vector<HerdState>& after) {
+    for (size_t h = 0; h < runs_.size(); ++h) runs_[h]->follow(before[h], after[h]);
+  }
   void tick(const std::vector<HerdState>& device) {
     for (size_t h = 0; h < runs_.size(); ++h) runs_[h]->tick(device[h].watched);
   }
-  double shareWithin(const std::vector<HerdState>& device) const {
+  double shareWithin(const Crowd& crowd, const std::vector<HerdState>& device) const {
     double agents = 0, within = 0;
-    for (size_t h = 0; h < runs_.size(); ++h) {
-      agents += device[h].agents;
-      within += runs_[h]->shareWithin(device[h], freeRunTolerance) * device[h].agents;
+    for (uint32_t h = 0; h < runs_.size(); ++h) {
+      agents += crowd.agentCount(h);
+      within += runs_[h]->shareWithin(device[h], freeRunTolerance) * crowd.agentCount(h);
     }
     return agents > 0 ? within / agents : 1;
   }
@@ -69,68 +70,11 @@ class FreeRuns {
   std::vector<std::unique_ptr<validation::FreeRun>> runs_;
 };
 
-std::vector<std::unique_ptr<Replay>> replaysOf(const Crowd& crowd, const std::vector<crowd::StageId>& only) {
-  std::vector<std::unique_ptr<Replay>> replays;
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-    replays.push_back(std::make_unique<Replay>(
-        validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), only));
-  return replays;
-}
-
-// What tick n compares of every herd.
-std::vector<AgentSample> samplesAt(uint64_t n, const Scene& scene) {
-  std::vector<AgentSample> samples;
-  for (const Herd& herd : scene.herds)
-    samples.push_back(validation::sampleAt(scene.seed, n, herd.agents, agentsATick));
-  return samples;
-}
-
-std::vector<HerdState> download(const Crowd& crowd, const std::vector<AgentSample>& samples) {
-  std::vector<HerdState> states;
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h) states.push_back(crowd.download(h, samples[h]));
-  return states;
-}
-
+// Everybody who is there.
 std::vector<HerdState> download(const Crowd& crowd) {
-  return download(crowd, std::vector<AgentSample>(crowd.herdCount()));
-}
-
-void add(const StageResult& result, StageResult& sum) {
-  const bool worse = result.pass == sum.pass ? result.ratio() > sum.ratio() : !result.pass;
-  if (worse) {
-    sum.maxError = result.maxError;
-    sum.tolerance = result.tolerance;
-    sum.worst = result.worst;
-  }
-  sum.samples += result.samples;
-  sum.kept += result.kept;
-  sum.ties += result.ties;
-  sum.pass = sum.pass && result.pass;
-  if (!result.pass) sum.why += (sum.why.empty() ? "" : "; ") + result.why;
-}
-
-// Adds up the results of all herds that have agents, by stage; the worst herd gives a stage's error.
-std::vector<StageResult> merge(const Scene& scene, const std::vector<std::unique_ptr<Replay>>& replays) {
-  std::vector<StageResult> all;
-  for (const crowd::StageId stage : crowd::allStages) {
-    const char* name = nameOf(stage);
-    StageResult* sum = nullptr;
-    for (size_t h = 0; h < replays.size(); ++h) {
-      if (scene.herds[h].agents == 0) continue;
-      for (StageResult result : replays[h]->results()) {
-        if (result.name != name) continue;
-        if (replays.size() > 1) {
-          result.worst = fmt::format("herd {}: {}", h, result.worst);
-          if (!result.pass) result.why = fmt::format("herd {}: {}", h, result.why);
-        }
-        if (sum != nullptr)
-          add(result, *sum);
-        else
-          sum = &all.emplace_back(result);
-      }
-    }
-  }
-  return all;
+  std::vector<HerdState> states;
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) states.push_back(crowd.download(h));
+  return states;
 }
 
 // A validation under way: what may be told when it is ended from another thread.
@@ -164,8 +108,10 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
   TickTimes times;
   Outcome outcome{.device = device.report().name, .wanted = options.frames};
   const auto began = std::chrono::steady_clock::now();
-  std::vector<std::unique_ptr<Replay>> replays;
+  const auto dt = static_cast<float>(options.scene.dt);
+  Lockstep lockstep(crowd, scene, dt, options.stages);
   std::optional<FreeRuns> freeRuns;
+  if (options.freeRun) freeRuns.emplace(crowd, download(crowd));
   std::optional<GroundEdits> edits;
   if (options.edits) {
     edits.emplace(crowd, scene.seed, options.scene.dt);
@@ -173,32 +119,25 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
   }
   Progress progress("ticks", options.frames, options.quiet);
   while (crowd.tick() < options.frames && !stopRequested()) {
-    const std::vector<AgentSample> samples = samplesAt(crowd.tick() + 1, scene);
-    const std::vector<HerdState> before = download(crowd, samples);
-    std::vector<HerdState> first;
-    if (options.freeRun && !freeRuns) first = download(crowd);
-    // Before the first tick there is nobody to tell of an edit.
-    if (edits && !replays.empty()) {
+    std::vector<HerdState> untold;
+    if (freeRuns && !scene.events.empty()) untold = download(crowd);
+    const std::vector<HerdState>& before = lockstep.begin();
+    if (!untold.empty()) freeRuns->follow(untold, download(crowd));
+    if (edits) {
       for (const HeightEdit& e : edits->before(crowd.tick(), before)) {
-        crowd.editHeights(e.x, e.z, e.columns, e.rows, e.heights);
-        for (const auto& replay : replays) replay->edit(e.x, e.z, e.columns, e.rows, e.heights);
+        lockstep.edit(e.x, e.z, e.columns, e.rows, e.heights);
         ++*outcome.edits;
       }
     }
-    runTick(ring, crowd, static_cast<float>(options.scene.dt), times);
-    // A herd's parameters are complete only once the length of a tick is known.
-    if (replays.empty()) replays = replaysOf(crowd, options.stages);
-    if (options.freeRun && !freeRuns) freeRuns.emplace(crowd, first);
-    const std::vector<HerdState> after = download(crowd, samples);
+    runTick(ring, crowd, dt, times);
+    const std::vector<HerdState>& after = lockstep.end();
     if (freeRuns) freeRuns->tick(after);
-    for (size_t h = 0; h < replays.size(); ++h) replays[h]->tick(crowd.tick(), before[h], after[h]);
     validation.done = crowd.tick();
     progress.update(validation.done);
   }
-  if (replays.empty()) replays = replaysOf(crowd, options.stages);
-  outcome.stages = merge(scene, replays);
+  outcome.stages = lockstep.results();
   outcome.ticks = crowd.tick();
-  if (freeRuns) outcome.freeShare = freeRuns->shareWithin(download(crowd));
+  if (freeRuns) outcome.freeShare = freeRuns->shareWithin(crowd, download(crowd));
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return outcome;
 }
@@ -224,16 +163,12 @@ Outcome validateOn(const std::string& name, Validation& validation, Files& files
   return replay(validation, device, crowd);
 }
 
-// Every stage that is asked for is one that some herd has compared.
-void checkStages(const std::vector<crowd::StageId>& stages, const Scene& scene) {
-  std::vector<crowd::StageId> compared;
-  for (const crowd::StageId stage : crowd::allStages)
-    for (const Herd& herd : scene.herds)
-      for (const validation::CheckedStage& checked : validation::checkedStages(herd.controller))
-        if (checked.stage == stage) compared.push_back(stage);
-  for (const crowd::StageId stage : stages)
-    if (std::ranges::find(compared, stage) == compared.end())
-      throw inputError(fmt::format("--stages: no herd of {} has {} compared", scene.name, nameOf(stage)));
+// As the user wants it, otherwise with few agents; but all of a scene whose events name some by number.
+Scene sceneOf(SceneOptions options) {
+  Scene scene = options.load();
+  if (options.agents || std::ranges::any_of(scene.events, crowd::namesAgents)) return scene;
+  options.agents = defaultAgents;
+  return options.load();
 }
 
 int validate(const ValidateOptions& options) {
@@ -241,12 +176,10 @@ int validate(const ValidateOptions& options) {
   Files files;
   files.writes("--json", options.json);
   files.writes("--junit", options.junit);
-  const Scene scene = options.scene.load();
+  const Scene scene = sceneOf(options.scene);
   options.scene.declare(files, scene);
   files.check();
-  if (scene.agentCount() == 0)
-    throw inputError(fmt::format("{} has no agents, expected at least one to compare", scene.name));
-  checkStages(options.stages, scene);
+  validation::expectComparable(scene, options.stages, "--stages");
   Validation validation{.options = options,
                         .scene = scene,
                         .several = options.scene.device == "all",
@@ -281,10 +214,10 @@ int validate(const ValidateOptions& options) {
 
 void addValidate(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<ValidateOptions>();
-  options->scene.agents = defaultAgents;
   CLI::App* command = app.add_subcommand(
       "validate", "Replay a scene in lock-step: every stage, every tick, against the CPU reference");
-  options->scene.addTo(*command, fmt::format("{}", defaultAgents).c_str());
+  options->scene.addTo(*command,
+                       fmt::format("{}; the scene's, where its events name agents", defaultAgents).c_str());
   command
       ->add_option_function<std::string>(
           "--frames",
@@ -350,7 +283,7 @@ void addValidate(CLI::App& app, Command& chosen) {
       "  skitter validate --edits --controller planted\n"
       "  skitter validate scene.json --agents 256 --frames 600 --json validation.json\n"
       "  skitter validate --device all --stages foothold,ik --junit report.xml --timeout 300",
-      agentsATick));
+      Lockstep::agentsATick));
   command->callback([options, &chosen] { chosen = [options] { return validate(*options); }; });
 }
 

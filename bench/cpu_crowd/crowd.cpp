@@ -32,6 +32,10 @@ void check(const validation::HerdFacts& facts, const HerdState& start, const Opt
   expectSize("steer", start.steer, agents, shared::STEER_STRIDE);
   expectSize("body", start.body, agents, shared::BODY_STRIDE);
   expectSize("gait", start.gait, agents, shared::GAIT_STRIDE);
+  for (size_t agent = 0; agent < agents; ++agent)
+    if (start.body[4 * shared::BODY_STRIDE * agent + 7] != 0)
+      throw inputError("CPU crowd: nobody is in place " + std::to_string(agent) +
+                       "; set the herd's reserve to 0");
   if (clips) return expectSize("play", start.play, agents, shared::PLAY_STRIDE);
   expectSize("step", start.step, agents * legs, shared::STEP_STRIDE);
   expectSize("arc", start.arc, agents * legs, shared::ARC_STRIDE);

@@ -7,62 +7,25 @@
 namespace skitter::reference {
 namespace {
 
-constexpr double chordError = 0.1;        // beyond it chord steps would only stir a chain that cannot arrive
-constexpr double leastDenominator = 0.1;  // of a room's tangent; below it, the limit is too far to matter
+constexpr double chordError = 0.1;  // beyond it chord steps would only stir a chain that cannot arrive
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// Room is the tangent of the angle left, as a step of x radians along the tangent turns by atan(x).
-void coneRoom(const Limit& limit, JointColumns& joint) {
-  const double t = limit.tanHalfCone, sine = 2 * t / (1 + t * t), cosine = (1 - t * t) / (1 + t * t);
-  const double denominator = cosine * joint.d.z + sine * joint.s;
-  if (denominator >= leastDenominator) {
-    joint.columns[0].high = (sine * joint.d.z - cosine * joint.s) / denominator;
-  }
-}
-
-// Turns the two columns across and along the level line of E = sqrt((v.x / a_x)^2 + (v.y / a_y)^2), v = theta
-// h, on which the joint is: only the way across it is limited, by E = 1.
-void ellipseRoom(const Limit& limit, JointColumns& joint) {
-  const double theta = 2 * std::atan(joint.s / std::max(1 + joint.d.z, 1e-12));
-  if (theta < 1e-3) return;
-  const glm::dvec2 axes = ellipseAxes(limit, joint.h), around{-joint.h.y, joint.h.x};
-  const glm::dvec2 v = theta * joint.h, n = v / (axes * axes);
-  const double level = std::sqrt(glm::dot(v, n));
-  // Gradient of E by (radial, tangential) steps, times E.
-  const glm::dvec2 gradient{glm::dot(n, joint.h), glm::dot(n, around) * theta / joint.s};
-  joint.way = normalized(gradient);
-  Column &across = joint.columns[0], &along = joint.columns[1];
-  const glm::dvec3 radial = across.movement, tangential = along.movement;
-  across.movement = joint.way.x * radial + joint.way.y * tangential;
-  along.movement = joint.way.x * tangential - joint.way.y * radial;
-  across.high = (1 - level) * level / glm::length(gradient);
-}
-
-// tan(end - q) from tan(end / 2) and the hinge's d = (0, -sin q, cos q).
-double hingeEnd(double tanHalf, const glm::dvec3& d, double otherwise) {
-  const double scale = 1 / (1 + tanHalf * tanHalf);
-  const double sine = 2 * tanHalf * scale, cosine = (1 - tanHalf * tanHalf) * scale;
-  const double denominator = cosine * d.z - sine * d.y;
-  return denominator < leastDenominator ? otherwise : (sine * d.z + cosine * d.y) / denominator;
-}
-
-// 2 tan((end - tau) / 2).
-double twistEnd(double tanHalf, double twist, double otherwise) {
-  const double denominator = 1 + tanHalf * twist;
-  return denominator < leastDenominator ? otherwise : 2 * (tanHalf - twist) / denominator;
-}
-
+// Gives the columns their room. A ball's two are turned the way in which it is limited and across it.
 void giveRoom(const Limit& limit, JointColumns& joint) {
   if (joint.columns.empty()) return;
-  if (limit.kind == LimitKind::hinge) {
-    joint.columns[0].low = hingeEnd(limit.tanHalfLow, joint.d, -unlimited);
-    joint.columns[0].high = hingeEnd(limit.tanHalfHigh, joint.d, unlimited);
-    return;
+  const Room room = swingRoom(limit, joint.d, joint.s, joint.h);
+  joint.columns[0].low = room.low;
+  joint.columns[0].high = room.high;
+  joint.way = room.way;
+  if (joint.columns.size() > 1) {
+    const glm::dvec3 radial = joint.columns[0].movement, tangential = joint.columns[1].movement;
+    joint.columns[0].movement = room.way.x * radial + room.way.y * tangential;
+    joint.columns[1].movement = room.way.x * tangential - room.way.y * radial;
   }
-  limit.kind == LimitKind::ellipse ? ellipseRoom(limit, joint) : coneRoom(limit, joint);
   if (joint.columns.size() == 3) {
-    joint.columns[2].low = twistEnd(limit.tanHalfTwistLow, joint.twist, -unlimited);
-    joint.columns[2].high = twistEnd(limit.tanHalfTwistHigh, joint.twist, unlimited);
+    const Room twist = twistRoom(limit, joint.twist);
+    joint.columns[2].low = twist.low;
+    joint.columns[2].high = twist.high;
   }
 }
 

@@ -23,15 +23,12 @@ glm::dvec2 randomSwing(const Limit& limit, IkRandom& random) {
   if (limit.kind == LimitKind::hinge) {
     return {0, -uniformAngle(random, limit.tanHalfLow, limit.tanHalfHigh)};
   }
-  const glm::dvec4& e = limit.ellipse;
-  const double widest = limit.kind == LimitKind::ellipse ? std::max(std::max(e.x, e.y), std::max(e.z, e.w))
-                                                         : 2 * std::atan(limit.tanHalfCone);
-  for (;;) {  // ends: an ellipse has a share of its cap
-    const double z = uniform(random, std::cos(widest), 1), around = uniform(random, 0, glm::two_pi<double>());
+  for (;;) {  // ends: a limit has a share of its cap
+    const double z = uniform(random, std::cos(greatestAngle(limit)), 1);
+    const double around = uniform(random, 0, glm::two_pi<double>());
     const double s = std::sqrt(std::max(1 - z * z, 0.0));
     const glm::dvec2 xy = stereographic({s * std::cos(around), s * std::sin(around), z});
-    const glm::dvec2 legal = clampSwing(limit, xy);
-    if (limit.kind != LimitKind::ellipse || legal == xy) return legal;
+    if (clampSwing(limit, xy) == xy) return xy;
   }
 }
 

@@ -93,6 +93,66 @@ double crossingOf(const std::vector<glm::dvec3>& one, const std::vector<glm::dve
   return most;
 }
 
+// The stance of a tip whose trail is this tick's.
+void addStance(const Tuning& tuning, const Place& place, bool planted, TipTrail& trail,
+               LegDecisions& decisions, Metric& metric) {
+  const double slide = std::hypot(trail.first.x, trail.first.z);
+  const double slip = trail.slip;
+  if (place.watched == 0) {
+    trail.slip = planted ? TipTrail::unseen : TipTrail::air;
+  } else if (!planted) {
+    if (slip >= 0) {
+      metric.slip += slip;
+      metric.stances += 1;
+    }
+    trail.slip = TipTrail::air;
+  } else if (slip == TipTrail::air) {
+    trail.slip = 0;
+  } else {
+    decisions.stays = true;
+    decisions.slide = slide - tuning.skateSpeed * tuning.dt;
+    metric.stays += 1;
+    if (decisions.slide > 0) metric.skates += 1;
+    if (slip >= 0) trail.slip += slide;
+  }
+}
+
+// A tip so high above the ground.
+void addHeight(const Tuning& tuning, double above, bool planted, Metric& metric) {
+  metric.penetration += std::max(0.0, -above);
+  metric.penetrationBeyond += std::max(0.0, -above - tuning.deadZone);
+  if (!planted) return;
+  metric.floating += std::max(0.0, above);
+  metric.floatingBeyond += std::max(0.0, above - tuning.deadZone);
+}
+
+// What closes a trail's window: its path beyond the least that counts.
+double addWindow(const Tuning& tuning, const Trail& trail, double& jerk, double& path) {
+  const double beyond = trail.path - tuning.jerkPath;
+  if (beyond > 0) {
+    jerk += scaledJerk(trail, tuning.jerkTicks);
+    path += std::pow(trail.path, 2);
+  }
+  return beyond;
+}
+
+// The planted tips as seen from above, about the body.
+void addSupport(const Tuning& tuning, const AgentBody& body, const std::vector<glm::dvec2>& support,
+                Measured& result) {
+  Metric& metric = result.metric;
+  result.supported = !support.empty();
+  if (!result.supported) {
+    metric.unstable += 1;
+    return;
+  }
+  const glm::dvec3 centre = body.orientation * glm::dvec3(0, tuning.bodyHeight, 0);
+  result.margin = stabilityMargin(support, {centre.x, centre.z});
+  metric.leastMargin = metric.supported > 0 ? std::min(metric.leastMargin, result.margin) : result.margin;
+  metric.supported += 1;
+  metric.margin += result.margin;
+  if (result.margin < 0) metric.unstable += 1;
+}
+
 }  // namespace
 
 WatchTurn watchTurn(uint64_t n, uint64_t every) {
@@ -160,19 +220,15 @@ Measured measure(const Tuning& tuning, const Heights& heights, const Creature& c
   Metric& metric = result.metric;
   const Place place(ticks, tuning);
   const glm::dvec3 local(body.localX, body.y, body.localZ);
+  const glm::dvec2 world = body.world();
   const size_t legs = creature.limbs.size();
   result.watched.tips.resize(legs);
   result.closes = place.closes();
   metric.ticks += 1;
 
   advance(result.watched.body, local, place);
-  if (result.closes) {
-    result.bodyPath = result.watched.body.path - tuning.jerkPath;
-    if (result.bodyPath > 0) {
-      metric.bodyJerk += scaledJerk(result.watched.body, tuning.jerkTicks);
-      metric.bodyPath += std::pow(result.watched.body.path, 2);
-    }
-  }
+  if (result.closes)
+    result.bodyPath = addWindow(tuning, result.watched.body, metric.bodyJerk, metric.bodyPath);
 
   std::vector<std::vector<glm::dvec3>> joints;
   for (size_t l = 0; l < legs; ++l) joints.push_back(jointsOf(creature.limbs[l], chains[l].directions));
@@ -188,42 +244,12 @@ Measured measure(const Tuning& tuning, const Heights& heights, const Creature& c
 
     TipTrail& trail = result.watched.tips[l];
     advance(trail, tip + local, place);
-    const double slide = std::hypot(trail.first.x, trail.first.z);
-    const double slip = trail.slip;
-    if (place.watched == 0) {
-      trail.slip = planted ? TipTrail::unseen : TipTrail::air;
-    } else if (!planted) {
-      if (slip >= 0) {
-        metric.slip += slip;
-        metric.stances += 1;
-      }
-      trail.slip = TipTrail::air;
-    } else if (slip == TipTrail::air) {
-      trail.slip = 0;
-    } else {
-      decisions.stays = true;
-      decisions.slide = slide - tuning.skateSpeed * tuning.dt;
-      metric.stays += 1;
-      if (decisions.slide > 0) metric.skates += 1;
-      if (slip >= 0) trail.slip += slide;
-    }
+    addStance(tuning, place, planted, trail, decisions, metric);
     decisions.closes = result.closes;
-    if (result.closes) {
-      decisions.path = trail.path - tuning.jerkPath;
-      if (decisions.path > 0) {
-        metric.footJerk += scaledJerk(trail, tuning.jerkTicks);
-        metric.footPath += std::pow(trail.path, 2);
-      }
-    }
+    if (result.closes) decisions.path = addWindow(tuning, trail, metric.footJerk, metric.footPath);
 
-    const glm::dvec2 world = body.world();
     const double above = body.y + tip.y - heightAt(heights, world.x + tip.x, world.y + tip.z);
-    metric.penetration += std::max(0.0, -above);
-    metric.penetrationBeyond += std::max(0.0, -above - tuning.deadZone);
-    if (planted) {
-      metric.floating += std::max(0.0, above);
-      metric.floatingBeyond += std::max(0.0, above - tuning.deadZone);
-    }
+    addHeight(tuning, above, planted, metric);
     const double depth = depthOf(heights, body, joints[l]);
     metric.depth += depth;
     metric.deepest = std::max(metric.deepest, depth);
@@ -243,18 +269,7 @@ Measured measure(const Tuning& tuning, const Heights& heights, const Creature& c
     }
     result.legs.push_back(decisions);
   }
-
-  result.supported = !support.empty();
-  if (!result.supported) {
-    metric.unstable += 1;
-    return result;
-  }
-  const glm::dvec3 centre = body.orientation * glm::dvec3(0, tuning.bodyHeight, 0);
-  result.margin = stabilityMargin(support, {centre.x, centre.z});
-  metric.leastMargin = metric.supported > 0 ? std::min(metric.leastMargin, result.margin) : result.margin;
-  metric.supported += 1;
-  metric.margin += result.margin;
-  if (result.margin < 0) metric.unstable += 1;
+  addSupport(tuning, body, support, result);
   return result;
 }
 

@@ -11,11 +11,30 @@ constexpr double never = std::numeric_limits<double>::infinity();
 // `choice`, 0 or 1, instead of the rule.
 bool decided(bool rule, int choice) { return choice >= 0 ? choice == 1 : rule; }
 
+// At the edge of the map.
+void turnBack(const Tuning& tuning, const glm::dvec2& position, const NavigateChoices& choices,
+              NavigateResult& result) {
+  const glm::dvec2 halfExtent{tuning.halfExtentX, tuning.halfExtentZ};
+  for (int axis = 0; axis < 2; ++axis) {
+    const double beyond = std::abs(position[axis]) - (halfExtent[axis] - tuning.edgeMargin);
+    result.edgeMargin[axis] = std::abs(beyond);
+    const bool outward = result.desired[axis] * position[axis] > 0;
+    if (decided(beyond > 0 && outward, choices.turnedBack[axis]))
+      result.desired[axis] = -result.desired[axis];
+  }
+}
+
 void steer(const Tuning& tuning, const AgentBody& body, const Goal& goal, const NavigateChoices& choices,
            NavigateResult& result) {
   if (goal.kind == GoalKind::none) return;
 
   const glm::dvec2 position = body.world();
+  if (goal.kind == GoalKind::velocity) {
+    // Continuous where it begins to be cut, so no decision.
+    const double wanted = glm::length(goal.target);
+    result.desired = goal.target * (wanted > goal.speed ? goal.speed / wanted : 1.0);
+    return turnBack(tuning, position, choices, result);
+  }
   glm::dvec2 delta = goal.target - position;
   result.arrivalMargin = std::abs(glm::length(delta) - goal.arrivalRadius);
   const bool arrived = decided(glm::length(delta) < goal.arrivalRadius, choices.arrived);
@@ -29,15 +48,7 @@ void steer(const Tuning& tuning, const AgentBody& body, const Goal& goal, const 
   } else {
     result.desired = goal.speed * normalized(delta);
   }
-
-  const glm::dvec2 halfExtent{tuning.halfExtentX, tuning.halfExtentZ};
-  for (int axis = 0; axis < 2; ++axis) {
-    const double beyond = std::abs(position[axis]) - (halfExtent[axis] - tuning.edgeMargin);
-    result.edgeMargin[axis] = std::abs(beyond);
-    const bool outward = result.desired[axis] * position[axis] > 0;
-    if (decided(beyond > 0 && outward, choices.turnedBack[axis]))
-      result.desired[axis] = -result.desired[axis];
-  }
+  turnBack(tuning, position, choices, result);
 }
 
 void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const NavigateChoices& choices,
@@ -62,7 +73,8 @@ void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const 
 
 NavigateResult navigate(const Tuning& tuning, const AgentBody& body, const Goal& goal, const Rest& rest,
                         const NavigateChoices& choices) {
-  NavigateResult result{goal, glm::dvec2(0), false, never, glm::dvec2(never), never, never};
+  NavigateResult result{goal, glm::dvec2(0), body.absent, never, glm::dvec2(never), never, never};
+  if (body.absent) return result;
   steer(tuning, body, goal, choices, result);
   sleep(tuning, body, rest, choices, result);
   return result;

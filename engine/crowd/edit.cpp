@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "crowd/herd.h"
-#include "gpu/barrier.h"
 
 namespace skitter {
 namespace crowd {
@@ -21,8 +20,9 @@ HeightEdits::HeightEdits(const gpu::Context& context)
   packed_.reserve(kMostSamples);
 }
 
-void HeightEdits::record(vk::CommandBuffer cmd, const Heightfield& terrain, const gpu::Image& image) {
-  gpu::transition(cmd, image, gpu::ImageState::sampled, gpu::ImageState::transferDst);
+void HeightEdits::record(vk::CommandBuffer cmd, const Heightfield& terrain, const gpu::Image& image,
+                         gpu::ImageState between) {
+  gpu::transition(cmd, image, between, gpu::ImageState::transferDst);
   for (const Rectangle& r : pending_) {
     const uint32_t most = kMostSamples / r.columns;
     for (uint32_t row = 0; row < r.rows; row += most) {
@@ -41,7 +41,7 @@ void HeightEdits::record(vk::CommandBuffer cmd, const Heightfield& terrain, cons
                                                 .imageExtent = {r.columns, rows, 1}});
     }
   }
-  gpu::transition(cmd, image, gpu::ImageState::transferDst, gpu::ImageState::sampled);
+  gpu::transition(cmd, image, gpu::ImageState::transferDst, between);
   pending_.clear();
 }
 

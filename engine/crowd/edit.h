@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gpu/barrier.h"
 #include "gpu/buffer.h"
 #include "gpu/image.h"
 #include "skitter/heightfield.h"
@@ -20,8 +21,11 @@ class HeightEdits {
     pending_.push_back({x0, z0, columns, rows});
   }
   bool empty() const { return pending_.empty(); }
-  // Copies the pending rectangles from `terrain` to the image, which is in state sampled before and after.
-  void record(vk::CommandBuffer cmd, const Heightfield& terrain, const gpu::Image& image);
+  // Of kMostSamples floats: for whatever else a tick's command buffer carries, too.
+  const gpu::Buffer& staging() const { return staging_; }
+  // Copies the pending rectangles from `terrain` to the image, which is in state `between` before and after.
+  void record(vk::CommandBuffer cmd, const Heightfield& terrain, const gpu::Image& image,
+              gpu::ImageState between);
 
  private:
   struct Rectangle {

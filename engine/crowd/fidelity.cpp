@@ -143,7 +143,10 @@ Fidelity figuresOf(const Crowd::Impl& crowd, uint32_t first, uint32_t end) {
 
 Fidelity Crowd::fidelity() const { return figuresOf(*impl_, 0, herdCount()); }
 
-Fidelity Crowd::fidelity(uint32_t herd) const { return figuresOf(*impl_, herd, herd + 1); }
+Fidelity Crowd::fidelity(uint32_t herd) const {
+  impl_->herdAt(herd);  // none of them all would be no error
+  return figuresOf(*impl_, herd, herd + 1);
+}
 
 std::vector<Fidelity> Crowd::agentFidelity(uint32_t herd) const {
   impl_->context->waitIdle();

@@ -1,5 +1,6 @@
 #include "crowd/frame.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -54,7 +55,8 @@ shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, co
           1,
           0,
           page.footfallRoom,
-          watchesGround(crowd) ? std::numeric_limits<float>::infinity() : kind.parameters.sleepTime};
+          !crowd.options.sleep || watchesGround(crowd) ? std::numeric_limits<float>::infinity()
+                                                       : kind.parameters.sleepTime};
 }
 
 // The counters of a page in front of its herds' rows, as a tick begins: nobody is listed.
@@ -85,24 +87,36 @@ static_assert(isCounter(sizeof(Lists) + sizeof(Awake), shared::COUNTER_ROWS));
 
 }  // namespace
 
-void clearLists(const Crowd::Impl& crowd, vk::CommandBuffer cmd) {
+void clearLists(std::span<const Kind> kinds, vk::CommandBuffer cmd) {
   const Lists none;
-  for (const Kind& kind : crowd.kinds)
+  for (const Kind& kind : kinds)
     for (const Page& page : kind.pages) cmd.updateBuffer(page.counters.handle(), 0, sizeof none, &none);
 }
 
-void clearAwake(const Crowd::Impl& crowd, vk::CommandBuffer cmd) {
-  if (!crowd.options.sleep) return;
+void clearAwake(const Crowd::Impl& crowd, std::span<const Kind> kinds, vk::CommandBuffer cmd) {
   const Awake none;
-  for (const Kind& kind : crowd.kinds)
+  for (const Kind& kind : kinds) {
+    if (!kind.rests(crowd.options)) continue;
     for (const Page& page : kind.pages) {
       cmd.updateBuffer(page.counters.handle(), sizeof(Lists), sizeof none, &none);
       cmd.fillBuffer(page.awake.handle(), 0, VK_WHOLE_SIZE, 0);
     }
+  }
+}
+
+std::optional<size_t> solverOf(const Kind& kind) {
+  for (size_t i = 0; i < kind.stages.size(); ++i) {
+    const ReadyStage& stage = kind.stages[i];
+    const bool goesOn = std::ranges::any_of(stage.bindings, [](const gpu::BindingDecl& declared) {
+      return declared.binding == shared::BINDING_CHAIN;
+    });
+    if (stage.makes.has(StageId::ik) && stage.listed && goesOn) return i;
+  }
+  return {};
 }
 
 const char* Frame::nameOf(StageSet made) const {
-  for (const Kind& kind : crowd_.kinds)
+  for (const Kind& kind : kinds_)
     for (const ReadyStage& stage : kind.stages)
       if (stage.makes == made) return stage.first.name().c_str();
   return nullptr;
@@ -110,7 +124,7 @@ const char* Frame::nameOf(StageSet made) const {
 
 void Frame::record(StageSet made) const {
   const auto eachPage = [&](const auto& record) {
-    for (const Kind& kind : crowd_.kinds)
+    for (const Kind& kind : kinds_)
       for (size_t i = 0; i < kind.stages.size(); ++i)
         if (kind.stages[i].makes == made)
           for (const Page& page : kind.pages) record(kind, page, i);
@@ -132,11 +146,15 @@ void Frame::dispatch(const Kind& kind, const Page& page, size_t index) const {
   const auto push = gpu::bytesOf(constants);
   if (stage.over == Stage::Over::listed)
     kernel.dispatchIndirect(cmd_, page.bindings[index], push, page.counters);
-  else if (crowd_.options.sleep && stage.isOfTheAwake())
+  else if (kind.rests(crowd_.options) && stage.isOfTheAwake())
     kernel.dispatchIndirect(cmd_, page.bindings[index], push, page.counters, awakeArguments(stage.over));
   else
     kernel.dispatch(cmd_, page.bindings[index], push,
                     gpu::groupsFor(invocations(kind, page, stage.over), shared::WORK_GROUP));
+}
+
+void Frame::solveListed(const Kind& kind, const Page& page) const {
+  if (const std::optional<size_t> ik = solverOf(kind)) dispatchListed(kind, page, *ik);
 }
 
 void Frame::dispatchListed(const Kind& kind, const Page& page, size_t index) const {

@@ -2,9 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "crowd/changes.h"
 #include "crowd/clip_records.h"
 #include "crowd/edit.h"
 #include "crowd/key_poses.h"
@@ -32,6 +35,7 @@ struct Page : ForRecords<gpu::Buffer> {
   gpu::Buffer list;                     // legs that begin a step this tick
   gpu::Buffer counters;                 // indirect arguments and counts
   gpu::Buffer histogram;                // of reach errors
+  gpu::Buffer tint;                     // of each agent, where its kind is tinted; only pictures read it
   std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
@@ -39,8 +43,9 @@ struct Page : ForRecords<gpu::Buffer> {
 // dispatches do not grow with their number.
 struct Kind {
   std::vector<uint64_t> firstAgents;  // the first agent of each of its herds
-  uint64_t agents = 0;
-  int herdSteps = 0;  // 2 to their power is at least the number of herds in a page
+  uint64_t agents = 0;                // places for them
+  bool reserves = false;              // places may be empty
+  int herdSteps = 0;                  // 2 to their power is at least the number of herds in a page
   Rig rig;
   Controller controller = Controller::adaptive;
   int legs = 0, bones = 0, groups = 0;  // bones of the longest chain
@@ -52,22 +57,52 @@ struct Kind {
   KeyPoses keyPoses;  // of controller key-poses
   gpu::Buffer keyBuffer;
   bool reachTriggered = false;  // legs step when out of reach, without a rhythm
+  bool tinted = false;          // some herd of it has a colour or a tint of its own
   shared::Parameters parameters{};
   gpu::HostBuffer parameterBlock;  // Parameters; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
   gpu::Buffer rigBuffer;
   std::vector<ReadyStage> stages;  // of the controller, those that were asked for
   std::vector<Page> pages;
+  AgentChanges changes;  // for the next tick
 
   // The place among the kind's herds of the one that an agent is of.
   uint32_t herdOf(uint64_t agent) const;
+  // Whether stages from body to pose pass over some: sleepers, or empty places.
+  bool rests(const CrowdOptions& options) const { return options.sleep || reserves; }
+};
+
+// Who is in a herd's places, as the host has said.
+struct Presence {
+  // How often somebody has come to a place or left it: even where somebody is there.
+  std::vector<uint32_t> generations;
+  uint32_t count = 0;  // who are there
+
+  // Places for so many agents, of whom the first are there; `generation` is even.
+  Presence(uint32_t agents, uint32_t places, uint32_t generation = 0);
+  Presence() = default;
+  bool has(uint32_t place) const { return generations[place] % 2 == 0; }
+  // The lowest empty place, none where all are taken.
+  std::optional<uint32_t> lowestEmpty() const;
+  void come(uint32_t place);
+  void leave(uint32_t place);
+  // An even one that no handle has.
+  uint32_t nextGeneration() const;
+
+ private:
+  uint32_t firstEmpty_ = 0;  // no lower place is empty
 };
 
 // A herd of the scene: a run of its kind's agents.
 struct Herd {
-  uint32_t kind = 0;   // which of the crowd's
-  uint32_t place = 0;  // among the kind's herds
-  uint32_t firstAgent = 0, agents = 0;
+  uint32_t kind = 0;                    // which of the crowd's
+  uint32_t place = 0;                   // among the kind's herds
+  uint32_t firstAgent = 0, agents = 0;  // its places
+  Presence presence;
+  skitter::Herd from;  // as in the scene
+  uint64_t seed = 0;   // its own
+  // How often its number was freed: even while there is a herd.
+  uint32_t generation = 0;
 };
 
 }  // namespace skitter::crowd
@@ -82,14 +117,24 @@ struct Crowd::Impl {
   std::vector<crowd::Kind> kinds;
   std::vector<crowd::Herd> herds;  // as in the scene
   uint32_t watchEvery = 1;         // measure watches one agent of this many
+  uint64_t seed = 0;               // of the scene
+  uint32_t revision = 0;           // of kinds and herds: a renderer that has seen another looks again
   crowd::HeightEdits edits;
-  uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground; 0: never
+  std::vector<Event> events;  // the scene's, by time
+  uint64_t happened = 0;      // the last tick before which events have happened
+  uint64_t watchUntil = 0;    // the last tick in which gait looks at the ground; 0: never
   uint64_t tick = 0;
-  float dt = 0;  // of the first tick; 0 before it
+  uint64_t agentsInTick = 0;  // who were there in it
+  float dt = 0;               // of the first tick; 0 before it
   gpu::StageTimer timer;
+  Scene scene;                  // that it was made of
+  bool rigsAreCallers = false;  // not those that the scene names
 
-  crowd::Kind& kindOf(uint32_t herd) { return kinds[herds.at(herd).kind]; }
-  const crowd::Kind& kindOf(uint32_t herd) const { return kinds[herds.at(herd).kind]; }
+  // Throws Error(input) where there is no such herd.
+  const crowd::Herd& herdAt(uint32_t herd) const;
+  crowd::Herd& herdAt(uint32_t herd) { return const_cast<crowd::Herd&>(std::as_const(*this).herdAt(herd)); }
+  crowd::Kind& kindOf(uint32_t herd) { return kinds[herdAt(herd).kind]; }
+  const crowd::Kind& kindOf(uint32_t herd) const { return kinds[herdAt(herd).kind]; }
 };
 
 inline Crowd::Impl& implOf(Crowd& crowd) { return *crowd.impl_; }

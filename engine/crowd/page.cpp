@@ -104,7 +104,8 @@ void uploadHerds(const gpu::Context& context, const Kind& kind, const Page& page
                    bytesOfCounters(shared::counterHerd(0, rows)));
 }
 
-// What is spawned is written once, to where the device copies it from; all else begins as zeros.
+// What is spawned is written once, to where the device copies it from; all else begins as zeros, and so does
+// everything without spawners.
 void spawn(const gpu::Context& context, const std::vector<PageBuffer>& buffers, const Kind& kind,
            std::span<const Spawner> spawners, const gpu::HostBuffer& staging, const Page& page) {
   SpawnRecords records;
@@ -112,7 +113,7 @@ void spawn(const gpu::Context& context, const std::vector<PageBuffer>& buffers, 
     uint64_t end = 0;
     for (const PageBuffer& each : buffers) {
       const gpu::Buffer& buffer = each.in(page);
-      if (!each.spawned) {
+      if (!each.spawned || spawners.empty()) {
         cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 0);
         continue;
       }
@@ -180,10 +181,11 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Kind& kind) 
                        .bytes = legs * FOOTFALL_STRIDE * 16,
                        .buffer = &Page::footfall,
                        .most = uint64_t{options.footfalls} * FOOTFALL_STRIDE * 16});
+  if (kind.tinted) buffers.push_back({.name = "tint", .bytes = 16, .buffer = &Page::tint});
   // The last work group reads on after the list's end.
   constexpr uint64_t anEntry = AWAKE_STRIDE * 16;
   PageBuffer awake{.name = "awake", .bytes = anEntry, .buffer = &Page::awake, .agents = BLOCK};
-  if (options.sleep)
+  if (kind.rests(options))
     awake.more = WORK_GROUP * anEntry;
   else
     awake.most = anEntry;
@@ -264,6 +266,7 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::spa
 std::vector<Part> partsOf(const Crowd::Impl& crowd, uint32_t herd) {
   const Kind& kind = crowd.kindOf(herd);
   std::vector<Part> parts;
+  if (crowd.herds[herd].agents == 0) return parts;
   for (const Page& page : kind.pages)
     if (const Part part = partOf(kind, crowd.herds[herd].place, page); part.agents > 0) parts.push_back(part);
   return parts;

@@ -62,7 +62,7 @@ int herdStepsOf(const Crowd::Impl& crowd, const Kind& kind);
 uint64_t bytesOf(const Crowd::Impl& crowd, const Kind& kind);
 
 // All agents of the kind: buffers, the records that they begin with, and a descriptor set a stage. `spawners`
-// are those of its herds.
+// are those of its herds; without them all records begin as zeros.
 std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::span<const Spawner> spawners);
 
 // A herd's agents that are in one page.

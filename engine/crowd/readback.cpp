@@ -1,4 +1,6 @@
 // What the host asks of a crowd after the fact; each waits for the device.
+#include "crowd/readback.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -11,6 +13,7 @@
 #include "gpu/context.h"
 #include "gpu/transfer.h"
 #include "skitter/crowd.h"
+#include "skitter/decode.h"
 
 namespace skitter {
 namespace {
@@ -77,28 +80,38 @@ void appendWatch(const Crowd::Impl& crowd, const crowd::Kind& kind, const Part& 
 
 }  // namespace
 
-HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
+namespace crowd {
+
+HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<const Record> records,
+                          const AgentSample& sample) {
   assert(sample.stride > 0);
-  impl_->context->waitIdle();
+  crowd.context->waitIdle();
   HerdState state;
-  state.tick = impl_->tick;
+  state.tick = crowd.tick;
   state.sample = sample;
+  const Kind& kind = crowd.kindOf(herd);
+  for (const Part& part : partsOf(crowd, herd)) {
+    state.agents += sampleOf(part.firstAgent, part.agents, sample).count;
+    for (const Record record : records) {
+      const Per per = infoOf(record).per;
+      if (per == Per::watched || !keeps(kind, crowd.options, record)) continue;
+      appendRecords(*crowd.context, part, part.page->of(record), per == Per::leg ? kind.legs : 0, sample,
+                    state.of(record));
+    }
+  }
+  return state;
+}
+
+}  // namespace crowd
+
+HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
+  HerdState state = crowd::downloadRecords(*impl_, herdIndex, allRecords, sample);
   state.watchEvery = impl_->watchEvery;
   state.sleep = impl_->options.sleep;
   state.watched = impl_->tick > 0 && impl_->tick <= impl_->watchUntil;
-  const crowd::Kind& kind = impl_->kindOf(herdIndex);
   state.watchOffset = impl_->herds[herdIndex].firstAgent % impl_->watchEvery;
-  for (const Part& part : crowd::partsOf(*impl_, herdIndex)) {
-    const Page& page = *part.page;
-    state.agents += crowd::sampleOf(part.firstAgent, part.agents, sample).count;
-    for (const Record record : allRecords) {
-      const crowd::Per per = crowd::infoOf(record).per;
-      if (per == crowd::Per::watched || !crowd::keeps(kind, impl_->options, record)) continue;
-      appendRecords(*impl_->context, part, page.of(record), per == crowd::Per::leg ? kind.legs : 0, sample,
-                    state.of(record));
-    }
-    if (page.watch) appendWatch(*impl_, kind, part, state.watchOffset, state.watch);
-  }
+  for (const Part& part : crowd::partsOf(*impl_, herdIndex))
+    if (part.page->watch) appendWatch(*impl_, impl_->kindOf(herdIndex), part, state.watchOffset, state.watch);
   state.footfallsKept = impl_->options.footfalls > 0 && droppedFootfalls(herdIndex) == 0;
   if (state.footfallsKept) state.footfalls = footfalls(herdIndex);
   return state;
@@ -106,21 +119,19 @@ HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
 
 std::vector<Footfall> Crowd::footfalls(uint32_t herdIndex) const {
   const gpu::Context& context = *impl_->context;
+  const crowd::Herd& herd = impl_->herdAt(herdIndex);
   context.waitIdle();
   std::vector<Footfall> all;
   if (impl_->options.footfalls == 0) return all;
-  const crowd::Herd& herd = impl_->herds.at(herdIndex);
   for (const Part& part : crowd::partsOf(*impl_, herdIndex)) {
     const Page& page = *part.page;
     const uint32_t count = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_FOOTFALLS];
     std::vector<float> events(size_t{std::min(count, page.footfallRoom)} * 4 * shared::FOOTFALL_STRIDE);
     gpu::downloadBytes(context, page.footfall, std::as_writable_bytes(std::span(events)));
     for (size_t i = 0; i < std::min(count, page.footfallRoom); ++i) {
-      const float* e = events.data() + i * 4 * shared::FOOTFALL_STRIDE;
-      const auto agent = static_cast<uint32_t>(e[4]) - herd.firstAgent;
-      if (agent >= herd.agents) continue;
-      all.push_back({agent, static_cast<uint32_t>(e[5]), static_cast<uint64_t>(e[6]),
-                     double{e[6]} * impl_->dt, glm::vec3(e[0], e[1], e[2]), e[3]});
+      const Footfall footfall =
+          footfallOf(std::span(events).subspan(i * 4 * shared::FOOTFALL_STRIDE), herd.firstAgent, impl_->dt);
+      if (footfall.agent < herd.agents) all.push_back(footfall);
     }
   }
   // The device appends them in any order.
@@ -139,7 +150,7 @@ uint64_t Crowd::droppedFootfalls(uint32_t herd) const {
 }
 
 std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herdIndex) const {
-  const crowd::Herd& herd = impl_->herds.at(herdIndex);
+  const crowd::Herd& herd = impl_->herdAt(herdIndex);
   std::vector<FootfallBuffer> buffers;
   for (const Part& part : crowd::partsOf(*impl_, herdIndex))
     buffers.push_back({part.page->footfall.handle(), part.page->counters.handle(),
@@ -150,7 +161,7 @@ std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herdIndex) const {
 uint64_t Crowd::sleeping() const {
   impl_->context->waitIdle();
   if (!impl_->options.sleep || impl_->tick == 0) return 0;
-  uint64_t sleeping = agentCount();
+  uint64_t sleeping = impl_->agentsInTick;
   for (const crowd::Kind& kind : impl_->kinds)
     for (const Page& page : kind.pages)
       sleeping -= gpu::download<uint32_t>(*impl_->context, page.counters)[shared::COUNTER_AWAKE];

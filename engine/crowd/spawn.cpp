@@ -30,7 +30,25 @@ glm::vec2 frameAt(const ClipRecords& clips, int clip, float time) {
   return {static_cast<float>(frame), (time - clips.times[frame * 4]) * clips.times[frame * 4 + 1]};
 }
 
+float kindOf(const Goal& goal) {
+  switch (goal.kind) {
+    case Goal::Kind::cross:
+      return shared::GOAL_CROSS;
+    case Goal::Kind::point:
+      return shared::GOAL_POINT;
+    case Goal::Kind::velocity:
+      return shared::GOAL_VELOCITY;
+    case Goal::Kind::none:
+      break;
+  }
+  return shared::GOAL_NONE;
+}
+
 }  // namespace
+
+BodyRecord absentBody() {
+  return {0, shared::ABSENT_HEIGHT, 0, shared::packedTile(0, 0), 0, 1, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0};
+}
 
 // Writes one vec4 after another, from a record's first one.
 class Spawner::Writer {
@@ -66,6 +84,8 @@ Spawner::Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield&
   lanes_ = std::min(side, std::max(widest, static_cast<uint32_t>(std::sqrt(agents * roomX / roomZ))));
   rows_ = (agents + lanes_ - 1) / lanes_;
   laneSpacing_ = std::min(spacing, roomX / static_cast<float>(std::max(1u, lanes_ - 1)));
+  limitX_ = tuning_.halfExtentX - 1.5f * tuning_.edgeMargin;
+  limitZ_ = tuning_.halfExtentZ - 1.5f * tuning_.edgeMargin;
   rowSpacing_ = std::min(1.2f * spacing, 0.9f * roomZ / static_cast<float>(std::max(1u, rows_ - 1)));
 }
 
@@ -82,36 +102,48 @@ void Spawner::pushDirections(size_t leg, Writer& chain) const {
     chain.push(standing[0], standing[1], standing[2], standing[3]);
 }
 
-Spawner::Placement Spawner::place(uint32_t agent) const {
+Place Spawner::startOf(uint32_t agent) const {
   const uint32_t row = agent / lanes_, lane = agent % lanes_;
   const auto centred = [](uint32_t i, uint32_t n, float spacing) {
     return (static_cast<float>(i) - 0.5f * static_cast<float>(n - 1)) * spacing;
   };
   const Spawn& spawn = herd_.spawn;
-  Placement p{};
-  p.heading = spawn.heading;
-  p.x = spawn.centre.x + centred(lane, lanes_, laneSpacing_);
-  p.z = spawn.centre.y + centred(row, rows_, rowSpacing_);
-  const float limitX = tuning_.halfExtentX - 1.5f * tuning_.edgeMargin;
-  const float limitZ = tuning_.halfExtentZ - 1.5f * tuning_.edgeMargin;
+  float x = spawn.centre.x + centred(lane, lanes_, laneSpacing_);
+  float z = spawn.centre.y + centred(row, rows_, rowSpacing_);
   if (spawn.kind == Spawn::Kind::lanes) {
     // Nobody walks in step or in file: every agent is a little off its place.
-    p.x += 0.4f * laneSpacing_ * (uniform(seed_, agent, 0) - 0.5f);
-    p.z = -limitZ + static_cast<float>(row) * rowSpacing_ + 0.5f * rowSpacing_ * uniform(seed_, agent, 1);
-    p.heading = 0;
+    x += 0.4f * laneSpacing_ * (uniform(seed_, agent, 0) - 0.5f);
+    z = -limitZ_ + static_cast<float>(row) * rowSpacing_ + 0.5f * rowSpacing_ * uniform(seed_, agent, 1);
   }
-  p.x = std::clamp(p.x, -limitX, limitX);
-  p.z = std::clamp(p.z, -limitZ, limitZ);
-  if (herd_.goal.kind == Goal::Kind::point) {
-    p.targetX = p.otherX = std::clamp(herd_.goal.target.x, -limitX, limitX);
-    p.targetZ = p.otherZ = std::clamp(herd_.goal.target.y, -limitZ, limitZ);
-  } else {
-    p.targetX = p.x;
-    p.targetZ = limitZ;
-    p.otherX = std::min(p.x + 0.5f * laneSpacing_, limitX);
-    p.otherZ = -limitZ;
+  return {{std::clamp(x, -limitX_, limitX_), std::clamp(z, -limitZ_, limitZ_)},
+          spawn.kind == Spawn::Kind::lanes ? 0 : spawn.heading};
+}
+
+glm::vec4 Spawner::endsOf(const Goal& goal, float lane) const {
+  if (goal.kind == Goal::Kind::velocity) return {goal.velocity, 0, 0};
+  if (goal.kind == Goal::Kind::point) {
+    const glm::vec2 target(std::clamp(goal.target.x, -limitX_, limitX_),
+                           std::clamp(goal.target.y, -limitZ_, limitZ_));
+    return {target, target};
   }
-  return p;
+  return {lane, limitZ_, std::min(lane + 0.5f * laneSpacing_, limitX_), -limitZ_};
+}
+
+Spawner::Placement Spawner::place(uint32_t agent) const {
+  const Place start = startOf(agent);
+  const glm::vec4 ends = endsOf(herd_.goal, start.position.x);
+  return {start.position.x, start.position.y, start.heading, ends.x, ends.y, ends.z, ends.w};
+}
+
+GoalRecord Spawner::goalRecord(uint32_t agent, const Goal& goal) const {
+  const bool hasLane = goal.kind == Goal::Kind::cross || goal.kind == Goal::Kind::none;
+  return goalRecord(hasLane ? startOf(agent).position.x : 0.0f, goal);
+}
+
+GoalRecord Spawner::goalRecord(float x, const Goal& goal) const {
+  const glm::vec4 ends = endsOf(goal, x);
+  const float speed = goal.kind == Goal::Kind::velocity ? Goal::maxSpeed : goal.speed;
+  return {ends.x, ends.y, ends.z, ends.w, speed, 0.5f * rig_.legLength, kindOf(goal), 0};
 }
 
 void Spawner::write(uint32_t first, uint32_t count, uint32_t at, const SpawnRecords& records) const {
@@ -130,67 +162,71 @@ void Spawner::write(uint32_t first, uint32_t count, uint32_t at, const SpawnReco
 }
 
 void Spawner::writeRun(uint32_t first, uint32_t count, uint32_t at, const SpawnRecords& records) const {
-  using namespace shared;
-  Writer goal(records.goal, GOAL_STRIDE), body(records.body, BODY_STRIDE), gait(records.gait, GAIT_STRIDE),
-      step(records.step, STEP_STRIDE), foot(records.foot, FOOT_STRIDE),
-      chain(records.chain, chainStride(rig_.maxBones())), tip(records.tip, TIP_STRIDE),
-      play(records.play, PLAY_STRIDE);
   for (uint32_t i = 0; i < count; ++i) {
-    const uint32_t agent = first + i, record = at + i;
-    for (Writer* each : {&goal, &body, &gait, &play}) each->seek(static_cast<int>(record));
-    const Placement p = place(agent);
-    const float kind = herd_.goal.kind == Goal::Kind::cross   ? shared::GOAL_CROSS
-                       : herd_.goal.kind == Goal::Kind::point ? shared::GOAL_POINT
-                                                              : shared::GOAL_NONE;
-    goal.push(p.targetX, p.targetZ, p.otherX, p.otherZ);
-    goal.push(herd_.goal.speed, 0.5f * rig_.legLength, kind, 0);
+    const GoalRecord goal = goalRecord(first + i, herd_.goal);
+    std::ranges::copy(goal, records.goal.begin() + static_cast<ptrdiff_t>(goal.size()) * (at + i));
+    stand(first + i, startOf(first + i), at + i, records);
+    if (first + i < herd_.agents) continue;
+    const BodyRecord absent = absentBody();
+    std::ranges::copy(absent, records.body.begin() + static_cast<ptrdiff_t>(absent.size()) * (at + i));
+  }
+}
 
-    // Standing on the plane through the ground a leg length around.
-    const float reach = rig_.legLength;
-    const float left = terrain_.at(p.x - reach, p.z), right = terrain_.at(p.x + reach, p.z);
-    const float back = terrain_.at(p.x, p.z - reach), ahead = terrain_.at(p.x, p.z + reach);
-    const glm::vec3 normal =
-        glm::normalize(glm::vec3((left - right) / (2 * reach), 1, (back - ahead) / (2 * reach)));
-    const float height = (left + right + back + ahead) / 4;
-    const glm::vec2 heading(std::sin(p.heading), std::cos(p.heading));
-    const glm::vec3 forward = glm::normalize(
-        glm::vec3(heading.x, -(normal.x * heading.x + normal.z * heading.y) / normal.y, heading.y));
-    const glm::quat q = glm::quat_cast(glm::mat3(glm::cross(normal, forward), normal, forward));
-    const float tileX = std::floor(p.x / shared::TILE_SIZE), tileZ = std::floor(p.z / shared::TILE_SIZE);
-    const float localX = p.x - tileX * shared::TILE_SIZE, localZ = p.z - tileZ * shared::TILE_SIZE;
-    body.push(localX, height, localZ, packedTile(tileX, tileZ));
-    body.push(heading.x, heading.y, 0, 0);
-    body.push(q.x, q.y, q.z, q.w);
-    body.push(0, 0, 1, 0);
-    gait.push(uniform(seed_, agent, 2), 0, 0, 1);
-    gait.push(0, 1, 0, 0);
+void Spawner::stand(uint32_t agent, const Place& place, uint32_t at, const SpawnRecords& records) const {
+  using namespace shared;
+  const auto record = static_cast<int>(at);
+  Writer body(records.body, BODY_STRIDE), gait(records.gait, GAIT_STRIDE), step(records.step, STEP_STRIDE),
+      foot(records.foot, FOOT_STRIDE), chain(records.chain, chainStride(rig_.maxBones())),
+      tip(records.tip, TIP_STRIDE), play(records.play, PLAY_STRIDE);
+  for (Writer* each : {&body, &gait, &play}) each->seek(record);
+  const float phase = herd_.phase ? *herd_.phase - std::floor(*herd_.phase) : uniform(seed_, agent, 2);
+
+  // Standing on the plane through the ground a leg length around.
+  const glm::vec2 p = place.position;
+  const float reach = rig_.legLength;
+  const float left = terrain_.at(p.x - reach, p.y), right = terrain_.at(p.x + reach, p.y);
+  const float back = terrain_.at(p.x, p.y - reach), ahead = terrain_.at(p.x, p.y + reach);
+  const glm::vec3 normal =
+      glm::normalize(glm::vec3((left - right) / (2 * reach), 1, (back - ahead) / (2 * reach)));
+  const float height = (left + right + back + ahead) / 4;
+  const glm::vec2 heading(std::sin(place.heading), std::cos(place.heading));
+  const glm::vec3 forward = glm::normalize(
+      glm::vec3(heading.x, -(normal.x * heading.x + normal.z * heading.y) / normal.y, heading.y));
+  const glm::quat q = glm::quat_cast(glm::mat3(glm::cross(normal, forward), normal, forward));
+  const float tileX = std::floor(p.x / TILE_SIZE), tileZ = std::floor(p.y / TILE_SIZE);
+  const float localX = p.x - tileX * TILE_SIZE, localZ = p.y - tileZ * TILE_SIZE;
+  body.push(localX, height, localZ, packedTile(tileX, tileZ));
+  body.push(heading.x, heading.y, 0, 0);
+  body.push(q.x, q.y, q.z, q.w);
+  body.push(0, 0, 1, 0);
+  gait.push(phase, 0, 0, 1);
+  gait.push(0, 1, 0, 0);
+  if (clips_.clips > 0) {
+    const auto clip = static_cast<float>(clips_.standing);
+    const float seconds = clips_.heads[static_cast<size_t>(clips_.standing) * 4 + 2];
+    const float time = seconds * phase;
+    play.push(clip, time, clip, time);
+    play.push(1, 0, 0, 0);
+    const glm::vec2 frame = frameAt(clips_, clips_.standing, time);
+    play.push(frame.x, frame.y, frame.x, frame.y);
+  }
+
+  for (size_t l = 0; l < rig_.legs.size(); ++l) {
+    for (Writer* each : {&step, &foot, &chain, &tip})
+      each->seek(legRecord(record, static_cast<int>(l), rig_.legCount()));
+    const Leg& leg = rig_.legs[l];
+    const glm::vec3 home = q * leg.home;
+    const glm::vec3 landing(localX + home.x, terrain_.at(p.x + home.x, p.y + home.z), localZ + home.z);
     if (clips_.clips > 0) {
-      const auto clip = static_cast<float>(clips_.standing);
-      const float seconds = clips_.heads[static_cast<size_t>(clips_.standing) * 4 + 2];
-      const float time = seconds * uniform(seed_, agent, 2);
-      play.push(clip, time, clip, time);
-      play.push(1, 0, 0, 0);
-      const glm::vec2 frame = frameAt(clips_, clips_.standing, time);
-      play.push(frame.x, frame.y, frame.x, frame.y);
+      step.push(landing.x, landing.y, landing.z, packedTile(tileX, tileZ));
+      step.push(0, 0, 0, 0);
+    } else {
+      step.push(landing.x, landing.y, landing.z, -1000);
+      step.push(landing.x, landing.y, landing.z, packedTicks(1, stepTile(tileX, tileZ)));
     }
-
-    for (size_t l = 0; l < rig_.legs.size(); ++l) {
-      for (Writer* each : {&step, &foot, &chain, &tip})
-        each->seek(legRecord(static_cast<int>(record), static_cast<int>(l), rig_.legCount()));
-      const Leg& leg = rig_.legs[l];
-      const glm::vec3 home = q * leg.home;
-      const glm::vec3 landing(localX + home.x, terrain_.at(p.x + home.x, p.z + home.z), localZ + home.z);
-      if (clips_.clips > 0) {
-        step.push(landing.x, landing.y, landing.z, packedTile(tileX, tileZ));
-        step.push(0, 0, 0, 0);
-      } else {
-        step.push(landing.x, landing.y, landing.z, -1000);
-        step.push(landing.x, landing.y, landing.z, packedTicks(1, stepTile(tileX, tileZ)));
-      }
-      if (!records.foot.empty()) foot.push(home.x, landing.y - height, home.z, 1);
-      pushDirections(l, chain);
-      if (!records.tip.empty()) tip.push(home.x, landing.y - height, home.z, 0);
-    }
+    if (!records.foot.empty()) foot.push(home.x, landing.y - height, home.z, 1);
+    pushDirections(l, chain);
+    if (!records.tip.empty()) tip.push(home.x, landing.y - height, home.z, 0);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -12,9 +13,14 @@ namespace skitter::crowd {
 // Where the records go that a page's agents begin with; empty where the page keeps none or they begin as
 // zeros.
 using SpawnRecords = ForRecords<std::span<float>>;
+using GoalRecord = std::array<float, 4 * shared::GOAL_STRIDE>;
+using BodyRecord = std::array<float, 4 * shared::BODY_STRIDE>;
+
+// Of an empty place.
+BodyRecord absentBody();
 
 // Where agent i of n starts: the herd's spawn, goal and seed decide alone, so neither pages nor threads ever
-// change a crowd.
+// change a crowd. And what an agent's records are where it stands.
 class Spawner {
  public:
   Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield& terrain, uint64_t seed);
@@ -24,15 +30,23 @@ class Spawner {
     float targetX, targetZ, otherX, otherZ;  // of the goal, world metres
   };
   Placement place(uint32_t agent) const;
+  // With the lane in which the agent starts, where the goal is to cross, or through x.
+  GoalRecord goalRecord(uint32_t agent, const Goal& goal) const;
+  GoalRecord goalRecord(float x, const Goal& goal) const;
   // Agents side by side: agent i starts in row i / lanes(), in lane i % lanes().
   uint32_t lanes() const { return lanes_; }
 
-  // Agents [first, first + count), standing at home, feet on the ground, into a page's records from the
-  // at-th on; on all cores where there are many.
+  // Places [first, first + count), into a page's records from the at-th on: the herd's agents, standing at
+  // home, feet on the ground, and then its reserve. On all cores where there are many.
   void write(uint32_t first, uint32_t count, uint32_t at, const SpawnRecords& records) const;
+  // The agent, standing at home in a place, feet on the ground: the at-th of all records but its goal.
+  void stand(uint32_t agent, const Place& place, uint32_t at, const SpawnRecords& records) const;
 
  private:
   class Writer;
+  Place startOf(uint32_t agent) const;
+  // Its target and its other end, x and z, in the lane through `lane`.
+  glm::vec4 endsOf(const Goal& goal, float lane) const;
   void pushDirections(size_t leg, Writer& chain) const;
   // Agents [first, first + count), on this core.
   void writeRun(uint32_t first, uint32_t count, uint32_t at, const SpawnRecords& records) const;
@@ -46,6 +60,7 @@ class Spawner {
   uint64_t seed_;
   uint32_t lanes_ = 1, rows_ = 1;
   float laneSpacing_ = 1, rowSpacing_ = 1;
+  float limitX_ = 0, limitZ_ = 0;  // how far from the middle agents start and goals lie
 };
 
 }  // namespace skitter::crowd

@@ -94,9 +94,10 @@ StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs) {
                              {CONSTANT_HERD_STEPS, kind.herdSteps}};
   addParameters(kind.parameters, kernels.first);
   const ControllerStages& of = controllerStages(kind.controller);
-  if (needs.options.sleep)
+  if (kind.rests(needs.options))
     kernels.first.constants.emplace_back(
         CONSTANT_SLEEP, traitsOf(kind.controller).breathes ? SLEEP_BREATHED_OUT : SLEEP_STILL);
+  if (kind.reserves) kernels.first.constants.emplace_back(CONSTANT_RESERVE, true);
   if (of.specialise != nullptr) of.specialise(kind, kernels.first);
   if (stage.specialise != nullptr) stage.specialise(needs, kernels);
   for (const StageShader& given : needs.options.shaders) {

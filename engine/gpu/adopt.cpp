@@ -18,4 +18,19 @@ vk::raii::Device adoptDevice(const vk::raii::PhysicalDevice& physical, VkDevice 
   return device;
 }
 
+std::optional<uint32_t> indexOf(const vk::raii::Instance& instance, VkPhysicalDevice wanted) {
+  uint32_t index = 0;
+  for (const vk::raii::PhysicalDevice& physical : vk::raii::PhysicalDevices(instance)) {
+    if (*physical == vk::PhysicalDevice(wanted)) return index;
+    ++index;
+  }
+  return {};
+}
+
+vk::raii::PipelineCache adoptPipelineCache(const vk::raii::Device& device, VkPipelineCache handle) {
+  const_cast<vk::raii::DeviceDispatcher*>(device.getDispatcher())->vkDestroyPipelineCache =
+      [](VkDevice, VkPipelineCache, const VkAllocationCallbacks*) {};
+  return {device, handle};
+}
+
 }  // namespace skitter::gpu

@@ -49,6 +49,8 @@ Scope scopeOf(ImageState state) {
     case ImageState::sampled:
       return {Stage::eComputeShader | Stage::eVertexShader | Stage::eFragmentShader,
               Access::eShaderSampledRead};
+    case ImageState::sampledByCompute:
+      return {Stage::eComputeShader, Access::eShaderSampledRead};
     case ImageState::colour:
       return {Stage::eColorAttachmentOutput, Access::eColorAttachmentRead | Access::eColorAttachmentWrite};
     case ImageState::depth:
@@ -70,6 +72,19 @@ void computeToIndirectAndCompute(vk::CommandBuffer cmd) {
 
 void computeToGraphics(vk::CommandBuffer cmd) { barrier(cmd, kComputeDone, kGraphics); }
 void graphicsToCompute(vk::CommandBuffer cmd) { barrier(cmd, kGraphicsDone, kCompute); }
+
+void anyToCompute(const Context& context, vk::CommandBuffer cmd) {
+  Scope before{kComputeDone.stages | kTransferDone.stages, kComputeDone.access | kTransferDone.access};
+  if (context.draws()) before.stages |= kGraphicsDone.stages;
+  barrier(cmd, before, kCompute);
+}
+
+void computeToAny(const Context& context, vk::CommandBuffer cmd) {
+  Scope after{kCompute.stages | kTransfer.stages, kCompute.access | kTransfer.access};
+  if (context.draws()) after.stages |= kGraphics.stages, after.access |= kGraphics.access;
+  barrier(cmd, kComputeDone, after);
+}
+
 void computeToTransfer(vk::CommandBuffer cmd) { barrier(cmd, kComputeDone, kTransfer); }
 
 // Fills set indirect arguments too.
@@ -92,6 +107,7 @@ vk::ImageLayout layoutOf(ImageState state) {
     case ImageState::transferDst:
       return vk::ImageLayout::eTransferDstOptimal;
     case ImageState::sampled:
+    case ImageState::sampledByCompute:
       return vk::ImageLayout::eShaderReadOnlyOptimal;
     case ImageState::colour:
     case ImageState::depth:

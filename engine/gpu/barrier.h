@@ -17,6 +17,10 @@ void computeToGraphics(vk::CommandBuffer);
 // The picture has been read from records that compute writes next (write after read).
 void graphicsToCompute(vk::CommandBuffer);
 
+// Compute between the caller's own work of any kind that the device's queue does, before and after it.
+void anyToCompute(const Context&, vk::CommandBuffer);
+void computeToAny(const Context&, vk::CommandBuffer);
+
 void computeToTransfer(vk::CommandBuffer);
 void transferToCompute(vk::CommandBuffer);
 void transferToGraphics(vk::CommandBuffer);
@@ -34,15 +38,20 @@ void allToAll(vk::CommandBuffer);
 
 // What an image is being used for; each has one layout.
 enum class ImageState {
-  discard,      // as a source only: the contents are of no interest; waits for all earlier uses
-  transferSrc,  // copied from
-  transferDst,  // copied to
-  sampled,      // read by compute or graphics shaders
-  colour,       // colour attachment (and target of a resolve)
-  depth,        // depth attachment
-  present,      // handed to the window system
+  discard,           // as a source only: the contents are of no interest; waits for all earlier uses
+  transferSrc,       // copied from
+  transferDst,       // copied to
+  sampled,           // read by compute or graphics shaders
+  sampledByCompute,  // the same, on a queue that only computes
+  colour,            // colour attachment (and target of a resolve)
+  depth,             // depth attachment
+  present,           // handed to the window system
 };
 vk::ImageLayout layoutOf(ImageState);
+// One of both, by the device's queue.
+inline ImageState sampledOn(const Context& context) {
+  return context.draws() ? ImageState::sampled : ImageState::sampledByCompute;
+}
 
 void transition(vk::CommandBuffer, vk::Image, vk::ImageAspectFlags, ImageState from, ImageState to);
 inline void transition(vk::CommandBuffer cmd, const Image& image, ImageState from, ImageState to) {

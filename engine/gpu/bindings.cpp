@@ -51,7 +51,8 @@ Target targetOf(const Context& context, const BindingLayout& layout, const Bindi
     const Buffer& buffer = *std::get<const Buffer*>(binding.resource);
     if (type == vk::DescriptorType::eStorageBuffer)
       checkReach(context, buffer.size(), buffer.name(), layout.name());
-    target.buffer = vk::DescriptorBufferInfo{.buffer = buffer.handle(), .range = VK_WHOLE_SIZE};
+    target.buffer = vk::DescriptorBufferInfo{
+        .buffer = buffer.handle(), .offset = buffer.offset(), .range = buffer.bound()};
   }
   return target;
 }

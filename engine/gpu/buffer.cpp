@@ -39,42 +39,46 @@ Buffer::Buffer(const Context& context, uint64_t bytes, std::string name, BufferU
     : context_(&context), bytes_(bytes), name_(std::move(name)) {
   using Usage = vk::BufferUsageFlagBits;
   checkSize(context, bytes_, name_);
-  allocated_ = allocatedBytes(bytes_);
   vk::BufferUsageFlags usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst;
   if (context.texelLoads()) usage |= Usage::eUniformTexelBuffer;
   if (has(use, BufferUse::indirect)) usage |= Usage::eIndirectBuffer;
   if (has(use, BufferUse::vertex)) usage |= Usage::eVertexBuffer;
   if (has(use, BufferUse::index)) usage |= Usage::eIndexBuffer;
   if (has(use, BufferUse::uniform)) usage |= Usage::eUniformBuffer;
-  buffer_ = makeBuffer(context, allocated_, usage, name_);
+  buffer_ = makeBuffer(context, bound(), usage, name_);
   memory_ =
       context.allocate(buffer_.getMemoryRequirements(), vk::MemoryPropertyFlagBits::eDeviceLocal, {}, name_);
   context.name(*memory_, name_);
   guarded(name_, [&] { buffer_.bindMemory(*memory_, 0); });
 }
 
-Buffer Buffer::borrowed(const Context& context, vk::Buffer handle, uint64_t bytes, std::string name) {
+Buffer Buffer::borrowed(const Context& context, vk::Buffer handle, uint64_t bytes, std::string name,
+                        uint64_t offset) {
   Buffer buffer;
   buffer.context_ = &context;
-  buffer.bytes_ = buffer.allocated_ = bytes;
+  buffer.bytes_ = bytes;
   buffer.name_ = std::move(name);
+  buffer.offset_ = offset;
   buffer.borrowed_ = handle;
   return buffer;
 }
 
+uint64_t Buffer::bound() const { return allocatedBytes(bytes_); }
+
 vk::BufferView Buffer::texelView() const {
   if (*texels_) return *texels_;
-  const uint64_t texels = allocated_ / (4 * sizeof(float));
+  const uint64_t texels = bound() / (4 * sizeof(float));
   const uint64_t most = context_->limits().maxTexelBufferElements;
   if (texels > most) {
     throw deviceError(fmt::format("\"{}\" has {} texels, {} reaches {} through one view", name_, texels,
                                   context_->report().name, most));
   }
   texels_ = guarded("the texel view of \"" + name_ + "\"", [&] {
-    return vk::raii::BufferView(
-        context_->device(),
-        vk::BufferViewCreateInfo{
-            .buffer = handle(), .format = vk::Format::eR32G32B32A32Sfloat, .range = allocated_});
+    return vk::raii::BufferView(context_->device(),
+                                vk::BufferViewCreateInfo{.buffer = handle(),
+                                                         .format = vk::Format::eR32G32B32A32Sfloat,
+                                                         .offset = offset_,
+                                                         .range = bound()});
   });
   context_->name(*texels_, name_);
   return *texels_;

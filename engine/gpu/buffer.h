@@ -22,11 +22,14 @@ class Buffer {
   Buffer() = default;
   // Throws Error(device) when there is not enough memory, saying how much `name` asked for.
   Buffer(const Context&, uint64_t bytes, std::string name, BufferUse = BufferUse::records);
-  // The first `bytes`, a multiple of 16, of a buffer that the caller keeps, with usage STORAGE_BUFFER and,
-  // where texel buffers are loaded from, UNIFORM_TEXEL_BUFFER; TRANSFER_SRC and _DST to be copied.
-  static Buffer borrowed(const Context&, vk::Buffer, uint64_t bytes, std::string name);
+  // `bytes`, a multiple of 16, of a buffer that the caller keeps, from `offset` on, which is aligned as
+  // bindings must be. Its usage has STORAGE_BUFFER and, where texel buffers are loaded from,
+  // UNIFORM_TEXEL_BUFFER; TRANSFER_SRC and _DST to be copied.
+  static Buffer borrowed(const Context&, vk::Buffer, uint64_t bytes, std::string name, uint64_t offset = 0);
 
-  uint64_t size() const { return bytes_; }  // as asked for
+  uint64_t size() const { return bytes_; }     // as asked for
+  uint64_t offset() const { return offset_; }  // 0, but for borrowed ones
+  uint64_t bound() const;                      // bytes that a binding reaches: whole texels
   const std::string& name() const { return name_; }
   vk::Buffer handle() const { return *buffer_ ? *buffer_ : borrowed_; }
   explicit operator bool() const { return !!handle(); }
@@ -38,7 +41,7 @@ class Buffer {
  private:
   const Context* context_ = nullptr;
   uint64_t bytes_ = 0;
-  uint64_t allocated_ = 0;
+  uint64_t offset_ = 0;
   std::string name_;
   vk::raii::DeviceMemory memory_ = nullptr;
   vk::raii::Buffer buffer_ = nullptr;

@@ -3,6 +3,7 @@
 #include "gpu/context.h"
 #include "gpu/device_memory.h"
 #include "gpu/extensions.h"
+#include "gpu/features.h"
 #include "gpu/record_access.h"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstring>
 
 namespace skitter::gpu {
 namespace {
@@ -45,26 +47,30 @@ std::optional<uint32_t> findQueueFamily(const std::vector<vk::QueueFamilyPropert
   return {};
 }
 
-void inspectFeatures(const vk::raii::PhysicalDevice& physical, bool adopted, DeviceReport& report) {
-  const auto chain =
-      physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features,
-                            vk::PhysicalDeviceVulkan12Features, vk::PhysicalDeviceVulkan13Features>();
-  const auto& core = chain.get<vk::PhysicalDeviceFeatures2>().features;
-  const auto& v11 = chain.get<vk::PhysicalDeviceVulkan11Features>();
-  const auto& v12 = chain.get<vk::PhysicalDeviceVulkan12Features>();
-  const auto& v13 = chain.get<vk::PhysicalDeviceVulkan13Features>();
-  if (!v13.dynamicRendering) report.refusals.push_back("has no dynamicRendering");
-  if (!v13.synchronization2) report.refusals.push_back("has no synchronization2");
-  if (!v12.timelineSemaphore) report.refusals.push_back("has no timelineSemaphore");
-  if (adopted) return;
-  report.features.drawIndirectCount = v12.drawIndirectCount;
-  report.features.multiDrawIndirect = core.multiDrawIndirect;
-  report.features.drawIndirectFirstInstance = core.drawIndirectFirstInstance;
-  report.features.shaderDrawParameters = v11.shaderDrawParameters;
-  report.features.fillModeNonSolid = core.fillModeNonSolid;
-  report.features.samplerAnisotropy = core.samplerAnisotropy;
-  report.features.shaderInt64 = core.shaderInt64;
-  report.features.presentation = hasExtension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+bool isAmong(std::span<const char* const> names, const char* wanted) {
+  return std::any_of(names.begin(), names.end(),
+                     [&](const char* name) { return std::strcmp(name, wanted) == 0; });
+}
+
+void inspectFeatures(const vk::raii::PhysicalDevice& physical, const AdoptedDevice* adopted,
+                     DeviceReport& report) {
+  FeatureChain has;
+  physical.getDispatcher()->vkGetPhysicalDeviceFeatures2(*physical, &has.core);
+  const VkPhysicalDeviceFeatures2& chain = adopted ? *adopted->features : has.core;
+  const char* const without = adopted ? "was made without" : "has no";
+  for (const Feature& feature : allFeatures) {
+    const bool on = feature.isOnIn(chain);
+    if (!feature.isRequired())
+      report.features.*feature.reported = on;
+    else if (!on)
+      report.refusals.push_back(fmt::format("{} {}", without, feature.name));
+  }
+  const auto extends = [&](const char* extension) {
+    return adopted ? isAmong(adopted->extensions, extension) : hasExtension(physical, extension);
+  };
+  for (const char* extension : requiredExtensions())
+    if (!extends(extension)) report.refusals.push_back(fmt::format("{} {}", without, extension));
+  report.features.presentation = extends(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
 }
 
 void inspectLimits(const vk::raii::PhysicalDevice& physical, DeviceReport& report) {
@@ -101,41 +107,34 @@ void inspectLimits(const vk::raii::PhysicalDevice& physical, DeviceReport& repor
   if (!limits.sampledR32f) report.refusals.push_back("cannot sample R32_SFLOAT images");
 }
 
-void inspectQueue(const vk::raii::PhysicalDevice& physical, std::optional<uint32_t> given,
+void inspectQueue(const vk::raii::PhysicalDevice& physical, const AdoptedDevice* adopted,
                   Candidate& candidate) {
+  DeviceReport& report = candidate.report;
   const auto families = physical.getQueueFamilyProperties();
-  const auto family = given ? given : findQueueFamily(families);
+  const auto family = adopted ? std::optional(adopted->queueFamily) : findQueueFamily(families);
   if (!family) {
-    candidate.report.refusals.push_back("has no queue for graphics and compute");
-    return;
-  }
-  constexpr auto wanted = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
-  if (*family >= families.size()) {
-    candidate.report.refusals.push_back(
+    report.refusals.push_back("has no queue for graphics and compute");
+  } else if (*family >= families.size()) {
+    report.refusals.push_back(
         fmt::format("has {} queue families, so no number {}", families.size(), *family));
-  } else if ((families[*family].queueFlags & wanted) != wanted) {
-    candidate.report.refusals.push_back(fmt::format("queue family {} lacks graphics or compute", *family));
+  } else if (!(families[*family].queueFlags & vk::QueueFlagBits::eCompute)) {
+    report.refusals.push_back(fmt::format("queue family {} does not compute", *family));
   } else {
     candidate.queueFamily = *family;
-    candidate.report.limits.timestampBits = families[*family].timestampValidBits;
+    report.features.graphics = bool(families[*family].queueFlags & vk::QueueFlagBits::eGraphics);
+    report.limits.timestampBits = families[*family].timestampValidBits;
   }
 }
 
-// The features of an adopted device are not known.
-void listLacks(bool adopted, DeviceReport& report) {
+void listLacks(DeviceReport& report) {
   const DeviceLimits& limits = report.limits;
-  const DeviceFeatures& features = report.features;
   const auto lack = [&](bool has, std::string what) {
     if (!has) report.lacks.push_back(std::move(what));
   };
-  lack(adopted || features.drawIndirectCount, "drawIndirectCount");
-  lack(adopted || features.multiDrawIndirect, "multiDrawIndirect");
-  lack(adopted || features.drawIndirectFirstInstance, "drawIndirectFirstInstance");
-  lack(adopted || features.shaderDrawParameters, "shaderDrawParameters");
-  lack(adopted || features.fillModeNonSolid, "fillModeNonSolid");
-  lack(adopted || features.samplerAnisotropy, "samplerAnisotropy");
-  lack(adopted || features.shaderInt64, "shaderInt64");
-  lack(adopted || features.presentation, "windows (VK_KHR_swapchain)");
+  lack(report.features.graphics, "graphics");
+  for (const Feature& feature : allFeatures)
+    if (!feature.isRequired()) lack(report.features.*feature.reported, feature.name);
+  lack(report.features.presentation, "windows (VK_KHR_swapchain)");
   lack(limits.timestampBits > 0, "timestamps");
   lack(limits.texelRgba32f, "RGBA32F texel buffers");
   lack(!limits.texelRgba32f || limits.maxTexelBufferElements >= kEnoughTexels,
@@ -167,7 +166,7 @@ bool selects(const std::string& selector, const DeviceReport& report) {
 }  // namespace
 
 Candidate inspect(vk::raii::PhysicalDevice physical, uint32_t index, const DeviceRequest& request,
-                  std::optional<uint32_t> queueFamily) {
+                  const AdoptedDevice* adopted) {
   Candidate candidate{.physical = std::move(physical), .report = {}};
   const vk::raii::PhysicalDevice& device = candidate.physical;
   DeviceReport& report = candidate.report;
@@ -183,14 +182,15 @@ Candidate inspect(vk::raii::PhysicalDevice physical, uint32_t index, const Devic
                                           VK_API_VERSION_MINOR(report.apiVersion)));
   } else {
     inspectLimits(device, report);
-    inspectFeatures(device, queueFamily.has_value(), report);
-    inspectQueue(device, queueFamily, candidate);
-    listLacks(queueFamily.has_value(), report);
+    inspectFeatures(device, adopted, report);
+    inspectQueue(device, adopted, candidate);
+    listLacks(report);
     if (wantedLoads(request.loads) == LoadPath::texel) {
       if (!report.limits.texelRgba32f)
         report.refusals.push_back("has no RGBA32F texel buffers, which were asked for");
-      if (!queueFamily && !report.features.shaderInt64)
-        report.refusals.push_back("has no shaderInt64 for the texel buffers that were asked for");
+      if (!report.features.shaderInt64)
+        report.refusals.push_back(fmt::format("{} shaderInt64 for the texel buffers that were asked for",
+                                              adopted ? "was made without" : "has no"));
     }
     if (request.presentation && !report.features.presentation) {
       report.refusals.push_back("has no VK_KHR_swapchain, which showing a window needs");

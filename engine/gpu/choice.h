@@ -14,9 +14,10 @@ struct Candidate {
   uint32_t queueFamily = 0;
 };
 
-// Reports on a device and what speaks against it; the queue family is the best one, or the one given.
+// Reports on a device and what speaks against it; the queue family is the best one. Of an adopted device,
+// what its maker says of it decides.
 Candidate inspect(vk::raii::PhysicalDevice, uint32_t index, const DeviceRequest&,
-                  std::optional<uint32_t> queueFamily = {});
+                  const AdoptedDevice* adopted = nullptr);
 
 // Every device, in Vulkan's order, with the request's choice marked if there is one.
 std::vector<Candidate> candidates(const vk::raii::Instance&, const DeviceRequest&);

@@ -1,5 +1,6 @@
 #include "gpu/context.h"
 
+#include "gpu/adopt.h"
 #include "gpu/device_memory.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,12 @@ std::optional<uint32_t> findType(const vk::PhysicalDeviceMemoryProperties& memor
 
 Context::Context(Parts parts) : parts_(std::move(parts)) {
   guarded("device set-up", [&] {
-    pipelineCache_ = vk::raii::PipelineCache(device(), vk::PipelineCacheCreateInfo{});
+    const std::vector<uint8_t> cached = std::exchange(parts_.pipelineCache, {});
+    pipelineCache_ =
+        parts_.hostsCache
+            ? adoptPipelineCache(device(), parts_.hostsCache)
+            : vk::raii::PipelineCache(device(), vk::PipelineCacheCreateInfo{.initialDataSize = cached.size(),
+                                                                            .pInitialData = cached.data()});
     nearestSampler_ = vk::raii::Sampler(
         device(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eNearest,
                                         .minFilter = vk::Filter::eNearest,
@@ -92,7 +98,14 @@ void Context::endLabel(vk::CommandBuffer cmd) const {
 }
 
 void Context::waitIdle() const {
-  guarded("waiting for the device", [&] { device().waitIdle(); });
+  guarded("waiting for the device", [&] {
+    if (!parts_.adopted) return device().waitIdle();
+    // Other queues of it are the host's, who may be using them.
+    const vk::raii::Fence done(device(), vk::FenceCreateInfo{});
+    queue()->submit2({}, *done);
+    const vk::Result result = device().waitForFences(*done, true, UINT64_MAX);
+    if (result != vk::Result::eSuccess) throw deviceError("waiting for the device: " + vk::to_string(result));
+  });
 }
 
 }  // namespace skitter::gpu

@@ -29,6 +29,10 @@ class Context {
     uint32_t queueFamily = 0;
     bool debugUtils = false;  // VK_EXT_debug_utils is enabled
     DeviceReport report;
+    bool adopted = false;
+    std::function<void()> lockQueue = {}, unlockQueue = {};
+    vk::PipelineCache hostsCache = {};
+    std::vector<uint8_t> pipelineCache = {};  // to begin with
   };
   explicit Context(Parts);
   ~Context();
@@ -38,7 +42,24 @@ class Context {
   const vk::raii::Instance& instance() const { return parts_.instance; }
   const vk::raii::PhysicalDevice& physical() const { return parts_.physical; }
   const vk::raii::Device& device() const { return parts_.device; }
-  const vk::raii::Queue& queue() const { return parts_.queue; }
+  // The queue, kept from the host's other threads for as long as this lives: the end of a statement.
+  class LockedQueue {
+   public:
+    explicit LockedQueue(const Parts& parts) : parts_(parts) {
+      if (parts_.lockQueue) parts_.lockQueue();
+    }
+    ~LockedQueue() {
+      if (parts_.unlockQueue) parts_.unlockQueue();
+    }
+    LockedQueue(const LockedQueue&) = delete;
+    LockedQueue& operator=(const LockedQueue&) = delete;
+    const vk::raii::Queue* operator->() const { return &parts_.queue; }
+
+   private:
+    const Parts& parts_;
+  };
+  LockedQueue queue() const { return LockedQueue(parts_); }
+  vk::Queue queueHandle() const { return *parts_.queue; }
   uint32_t queueFamily() const { return parts_.queueFamily; }
 
   const DeviceReport& report() const { return parts_.report; }
@@ -55,6 +76,7 @@ class Context {
   bool wideStores() const { return parts_.report.stores.width == StoreWidth::bits64; }
   void setStores(StoreChoice choice) { parts_.report.stores = std::move(choice); }
   bool timestamps() const { return limits().timestampBits != 0; }
+  bool draws() const { return features().graphics; }
 
   // Kernels and graphics pipelines all go through it, so that making one again is cheap.
   const vk::raii::PipelineCache& pipelineCache() const { return pipelineCache_; }
@@ -75,6 +97,7 @@ class Context {
   void beginLabel(vk::CommandBuffer, const char* text) const;
   void endLabel(vk::CommandBuffer) const;
 
+  // For what was submitted; on an adopted device, to its queue.
   void waitIdle() const;
 
  private:

@@ -4,39 +4,32 @@
 #include "gpu/choice.h"
 #include "gpu/context.h"
 #include "gpu/extensions.h"
+#include "gpu/features.h"
 #include "gpu/instance.h"
 #include "gpu/record_access.h"
+#include "gpu/submit.h"
 
 #include <fmt/format.h>
+
+#include <cstring>
 
 namespace skitter {
 namespace {
 
 vk::raii::Device makeDevice(const gpu::Candidate& candidate, bool presentation) {
-  const DeviceFeatures& has = candidate.report.features;
-  vk::PhysicalDeviceVulkan13Features v13{
-      .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
-  vk::PhysicalDeviceVulkan12Features v12{
-      .pNext = &v13, .drawIndirectCount = has.drawIndirectCount, .timelineSemaphore = true};
-  vk::PhysicalDeviceVulkan11Features v11{.pNext = &v12, .shaderDrawParameters = has.shaderDrawParameters};
-  const vk::PhysicalDeviceFeatures2 features{
-      .pNext = &v11,
-      .features = {.multiDrawIndirect = has.multiDrawIndirect,
-                   .drawIndirectFirstInstance = has.drawIndirectFirstInstance,
-                   .fillModeNonSolid = has.fillModeNonSolid,
-                   .samplerAnisotropy = has.samplerAnisotropy,
-                   .shaderInt64 = has.shaderInt64}};
+  gpu::FeatureChain features;
+  for (const gpu::Feature& feature : gpu::allFeatures)
+    *feature.in(features.core) = feature.isRequired() || candidate.report.features.*feature.reported;
 
   std::vector<const char*> extensions;
   if (presentation) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-  if (gpu::hasExtension(candidate.physical, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME)) {
-    extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
-  }
+  for (const char* extension : recommendedExtensions())
+    if (gpu::hasExtension(candidate.physical, extension)) extensions.push_back(extension);
 
   const float priority = 1;
   const vk::DeviceQueueCreateInfo queue{
       .queueFamilyIndex = candidate.queueFamily, .queueCount = 1, .pQueuePriorities = &priority};
-  const vk::DeviceCreateInfo info{.pNext = &features,
+  const vk::DeviceCreateInfo info{.pNext = &features.core,
                                   .queueCreateInfoCount = 1,
                                   .pQueueCreateInfos = &queue,
                                   .enabledExtensionCount = uint32_t(extensions.size()),
@@ -117,21 +110,45 @@ Device Device::create(const DeviceRequest& request) {
                       .queue = std::move(queue),
                       .queueFamily = candidate.queueFamily,
                       .debugUtils = instance.debugUtils,
-                      .report = std::move(candidate.report)},
+                      .report = std::move(candidate.report),
+                      .pipelineCache = request.pipelineCache},
                      request));
 }
 
-Device Device::adopt(VkInstance instance, VkPhysicalDevice physicalDevice, VkDevice device,
-                     uint32_t queueFamily, VkQueue queue, PFN_vkGetInstanceProcAddr getInstanceProcAddr,
-                     std::optional<LoadPath> loads) {
-  gpu::Context::Parts parts{.log = std::make_shared<ValidationLog>(),
-                            .loader = vk::raii::Context(getInstanceProcAddr),
-                            .queueFamily = queueFamily,
-                            .report = {}};
-  parts.instance = gpu::adoptInstance(parts.loader, instance);
+Device Device::adopt(const AdoptedDevice& adopted) {
+  std::vector<std::string> missing;
+  const auto needs = [&](bool given, const char* what) {
+    if (!given) missing.push_back(what);
+  };
+  needs(adopted.instance, "no instance");
+  needs(adopted.physicalDevice, "no physicalDevice");
+  needs(adopted.device, "no device");
+  needs(adopted.queue, "no queue");
+  needs(adopted.features, "no features, of which the chain says what was enabled");
+  needs(!adopted.lockQueue == !adopted.unlockQueue, "one of lockQueue and unlockQueue alone");
+  if (!missing.empty())
+    throw deviceError(fmt::format("the adopted device comes with {}", fmt::join(missing, ", ")));
+
+  gpu::Context::Parts parts{
+      .log = std::make_shared<ValidationLog>(),
+      .loader = vk::raii::Context(adopted.getInstanceProcAddr ? adopted.getInstanceProcAddr
+                                                              : vkGetInstanceProcAddr),
+      .queueFamily = adopted.queueFamily,
+      .report = {},
+      .adopted = true,
+      .lockQueue = adopted.lockQueue,
+      .unlockQueue = adopted.unlockQueue,
+      .hostsCache = adopted.pipelineCache};
+  parts.instance = gpu::adoptInstance(parts.loader, adopted.instance);
+  for (const char* extension : adopted.extensions)
+    parts.debugUtils = parts.debugUtils || std::strcmp(extension, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0;
+  const DeviceRequest request{.loads = adopted.loads, .stores = adopted.stores};
   gpu::Candidate candidate = gpu::guarded("adopting a device", [&] {
-    return gpu::inspect(vk::raii::PhysicalDevice(parts.instance, physicalDevice), 0, {.loads = loads},
-                        queueFamily);
+    const auto index = gpu::indexOf(parts.instance, adopted.physicalDevice);
+    if (!index)
+      throw deviceError("the adopted device comes with a physicalDevice that its instance does not have");
+    return gpu::inspect(vk::raii::PhysicalDevice(parts.instance, adopted.physicalDevice), *index, request,
+                        &adopted);
   });
   if (!candidate.report.suitable) {
     throw deviceError(fmt::format("the adopted device \"{}\" ({}) {}", candidate.report.name,
@@ -140,9 +157,9 @@ Device Device::adopt(VkInstance instance, VkPhysicalDevice physicalDevice, VkDev
   candidate.report.chosen = true;
   parts.report = std::move(candidate.report);
   parts.physical = std::move(candidate.physical);
-  parts.device = gpu::adoptDevice(parts.physical, device);
-  parts.queue = vk::raii::Queue(parts.device, queue);
-  return Device(open(std::move(parts), {.loads = loads}));
+  parts.device = gpu::adoptDevice(parts.physical, adopted.device);
+  parts.queue = vk::raii::Queue(parts.device, adopted.queue);
+  return Device(open(std::move(parts), request));
 }
 
 Device::Device(std::unique_ptr<gpu::Context> context) : context_(std::move(context)) {}
@@ -154,9 +171,15 @@ const DeviceReport& Device::report() const { return context_->report(); }
 VkDevice Device::handle() const { return *context_->device(); }
 VkInstance Device::instance() const { return *context_->instance(); }
 VkPhysicalDevice Device::physicalDevice() const { return *context_->physical(); }
-VkQueue Device::queue() const { return *context_->queue(); }
+VkQueue Device::queue() const { return context_->queueHandle(); }
 uint32_t Device::queueFamily() const { return context_->queueFamily(); }
 void Device::waitIdle() const { context_->waitIdle(); }
+void Device::run(const std::function<void(VkCommandBuffer)>& record) const {
+  gpu::submitAndWait(*context_, record);
+}
+std::vector<uint8_t> Device::pipelineCacheData() const {
+  return gpu::guarded("reading the pipeline cache", [&] { return context_->pipelineCache().getData(); });
+}
 
 std::vector<ValidationMessage> Device::validationMessages() const {
   return context_->validationLog()->messages();

@@ -69,12 +69,12 @@ uint64_t CommandRing::submit(const SubmitLinks& links) {
   const vk::CommandBufferSubmitInfo commands{.commandBuffer = frame.cmd};
   guarded("submitting commands", [&] {
     frame.cmd.end();
-    context_.queue().submit2(vk::SubmitInfo2{.waitSemaphoreInfoCount = links.wait ? 1u : 0u,
-                                             .pWaitSemaphoreInfos = &wait,
-                                             .commandBufferInfoCount = 1,
-                                             .pCommandBufferInfos = &commands,
-                                             .signalSemaphoreInfoCount = links.signal ? 2u : 1u,
-                                             .pSignalSemaphoreInfos = signals.data()});
+    context_.queue()->submit2(vk::SubmitInfo2{.waitSemaphoreInfoCount = links.wait ? 1u : 0u,
+                                              .pWaitSemaphoreInfos = &wait,
+                                              .commandBufferInfoCount = 1,
+                                              .pCommandBufferInfos = &commands,
+                                              .signalSemaphoreInfoCount = links.signal ? 2u : 1u,
+                                              .pSignalSemaphoreInfos = signals.data()});
   });
   submitted_ = value;
   frame.value = value;

@@ -139,11 +139,11 @@ void Swapchain::present() {
   showing_ = false;
   try {
     const vk::Result result =
-        context_.queue().presentKHR(vk::PresentInfoKHR{.waitSemaphoreCount = 1,
-                                                       .pWaitSemaphores = &*shown_[image_],
-                                                       .swapchainCount = 1,
-                                                       .pSwapchains = &*swapchain_,
-                                                       .pImageIndices = &image_});
+        context_.queue()->presentKHR(vk::PresentInfoKHR{.waitSemaphoreCount = 1,
+                                                        .pWaitSemaphores = &*shown_[image_],
+                                                        .swapchainCount = 1,
+                                                        .pSwapchains = &*swapchain_,
+                                                        .pImageIndices = &image_});
     if (result == vk::Result::eSuboptimalKHR) stale_ = true;
   } catch (const vk::OutOfDateKHRError&) {
     stale_ = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ik/limits.h"
 #include "shared/ik_batch.h"
 #include "skitter/records.h"
 
@@ -11,12 +12,6 @@ namespace {
 
 void append(std::vector<float>& records, const glm::dvec3& v, double w) {
   for (const double x : {v.x, v.y, v.z, w}) records.push_back(static_cast<float>(x));
-}
-
-int kindOf(const Limit& limit) {
-  if (std::holds_alternative<Ellipse>(limit)) return shared::LIMIT_ELLIPSE;
-  if (std::holds_alternative<Hinge>(limit)) return shared::LIMIT_HINGE;
-  return shared::LIMIT_CONE;  // a free ball is a cone as wide as can be
 }
 
 // For aimed seeds, only lengths matter.
@@ -36,17 +31,12 @@ std::vector<float> boneRecords(const Skeleton& skeleton) {
   const std::vector<glm::dvec3> rest = skeleton.place(skeleton.rest());
   for (size_t i = 0; i < skeleton.bones(); ++i) {
     const Skeleton::Joint& joint = skeleton.joints()[i];
-    const double edge = std::tan(std::min(greatestAngle(joint.limit, 0), kWidestAngle) / 2);
+    const double edge = std::tan(std::min(greatestAngle(joint.limit, 0), widestAngle) / 2);
     append(records, joint.frame[0], joint.length);
     append(records, joint.frame[2], edge);
     append(records, start, joint.stiffness);
-    if (const auto* ellipse = std::get_if<Ellipse>(&joint.limit)) {
-      append(records, {ellipse->px, ellipse->py, ellipse->nx}, ellipse->ny);
-    } else if (const auto* hinge = std::get_if<Hinge>(&joint.limit)) {
-      append(records, {std::tan(hinge->min / 2), std::tan(hinge->max / 2), joint.axis.x}, joint.axis.z);
-    } else {
-      append(records, glm::dvec3(0), 0);
-    }
+    const glm::dvec4 numbers = numbersOf(joint.limit, joint.axis);
+    append(records, numbers, numbers.w);
     // The dissertation asks whether there is a cone at all.
     const int kind = std::holds_alternative<Free>(joint.limit) ? 0 : kindOf(joint.limit);
     append(records, {kind, std::tan(joint.twistMin / 2), std::tan(joint.twistMax / 2)}, 0);

@@ -6,14 +6,15 @@
 #include <numbers>
 
 #include "base/split_mix.h"
+#include "ik/limits.h"
 
 namespace skitter::ik {
 namespace {
 
 using glm::dvec3;
 
-constexpr uint32_t kCandidates = 1024;
-constexpr double kPulled = 0.7;  // of the way out from rest is left
+constexpr uint32_t candidateCount = 1024;
+constexpr double pulled = 0.7;  // of the way out from rest is left
 
 double within(base::SplitMix64& random, double low, double high) {
   return low + (high - low) * random.uniform();
@@ -22,14 +23,14 @@ double within(base::SplitMix64& random, double low, double high) {
 dvec3 randomDirection(const Limit& limit, base::SplitMix64& random) {
   if (const auto* hinge = std::get_if<Hinge>(&limit)) {
     const double middle = std::clamp<double>(0, hinge->min, hinge->max);
-    const double q = middle + kPulled * (within(random, hinge->min, hinge->max) - middle);
+    const double q = middle + pulled * (within(random, hinge->min, hinge->max) - middle);
     return {0, -std::sin(q), std::cos(q)};
   }
   const double phi = within(random, 0, 2 * std::numbers::pi);
   const double most = greatestAngle(limit, phi);
   // Uniform on the cap.
   const double theta = std::acos(within(random, std::cos(most), 1));
-  return leaning(std::holds_alternative<Free>(limit) ? theta : kPulled * theta, phi);
+  return leaning(std::holds_alternative<Free>(limit) ? theta : pulled * theta, phi);
 }
 
 double fold(const std::vector<dvec3>& places, const dvec3& pole) {
@@ -53,11 +54,11 @@ std::vector<Skeleton::Pose> seedPoses(const Skeleton& skeleton, const std::optio
   const bool aimed = aimsSeeds(skeleton, pole);
   std::vector<Skeleton::Pose> candidates;
   std::vector<dvec3> tips;
-  for (uint32_t c = 0; c < kCandidates; ++c) {
+  for (uint32_t c = 0; c < candidateCount; ++c) {
     Skeleton::Pose pose;
     for (const Skeleton::Joint& joint : skeleton.joints()) {
       pose.directions.push_back(joint.length > 0 ? randomDirection(joint.limit, random) : dvec3(0, 0, 1));
-      pose.twists.push_back(kPulled * within(random, joint.twistMin, joint.twistMax));
+      pose.twists.push_back(pulled * within(random, joint.twistMin, joint.twistMax));
     }
     if (aimed) pose.directions[0] = {0, 0, 1};
     const std::vector<dvec3> places = skeleton.place(pose);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ik/limits.h"
+
 namespace skitter::ik {
 namespace {
 
@@ -37,19 +39,6 @@ dmat3 turnAboutZ(double angle) {
 }
 
 }  // namespace
-
-dvec3 leaning(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
-
-double greatestAngle(const Limit& limit, double phi) {
-  if (const auto* cone = std::get_if<Cone>(&limit)) return std::min<double>(cone->halfAngle, kWidestAngle);
-  if (const auto* ellipse = std::get_if<Ellipse>(&limit)) {
-    const double c = std::cos(phi), s = std::sin(phi);
-    return 1 / std::hypot(c / (c < 0 ? ellipse->nx : ellipse->px), s / (s < 0 ? ellipse->ny : ellipse->py));
-  }
-  return kWidestAngle;
-}
 
 Skeleton::Skeleton(const Chain& chain) {
   const double reach = chain.reach();
@@ -95,21 +84,10 @@ bool Skeleton::restIsStraight() const {
                      [&](const dvec3& p) { return glm::length(glm::cross(line, p)) < 2e-3; });
 }
 
-dvec3 Skeleton::clamp(size_t bone, const dvec3& d) const {
-  const Limit& limit = joints_[bone].limit;
-  if (const auto* hinge = std::get_if<Hinge>(&limit)) {
-    const double q = std::clamp<double>(std::atan2(-d.y, d.z), hinge->min, hinge->max);
-    return {0, -std::sin(q), std::cos(q)};
-  }
-  const double theta = std::atan2(std::hypot(d.x, d.y), d.z), phi = std::atan2(d.y, d.x);
-  const double most = greatestAngle(limit, phi);
-  return theta <= most ? d : leaning(most, phi);
-}
-
 Skeleton::Pose Skeleton::rest() const {
   Pose pose;
   for (size_t i = 0; i < bones(); ++i) {
-    pose.directions.push_back(clamp(i, {0, 0, 1}));
+    pose.directions.push_back(clamped(joints_[i].limit, {0, 0, 1}));
     pose.twists.push_back(std::clamp(0.0, joints_[i].twistMin, joints_[i].twistMax));
   }
   return pose;
@@ -140,7 +118,7 @@ Skeleton::Pose Skeleton::aim(std::span<const dvec3> wanted) const {
       dvec3 d = glm::transpose(a) * glm::normalize(v);
       if (std::holds_alternative<Hinge>(joint.limit) && std::hypot(d.y, d.z) > 1e-12)
         d = glm::normalize(dvec3(0, d.y, d.z));
-      pose.directions[i] = clamp(i, d);
+      pose.directions[i] = clamped(joints_[i].limit, d);
     }
     carried = a * swing(pose.directions[i]) * turnAboutZ(pose.twists[i]) * glm::transpose(joint.frame);
   }

@@ -34,7 +34,6 @@ class Skeleton {
   bool restIsLegal() const;     // no limit forbids it
   bool restIsStraight() const;  // every joint within 2e-3 of the line base-tip
 
-  glm::dvec3 clamp(size_t bone, const glm::dvec3& direction) const;
   Pose rest() const;
   // p_1 .. p_n, base at 0.
   std::vector<glm::dvec3> place(const Pose&) const;
@@ -44,12 +43,5 @@ class Skeleton {
  private:
   std::vector<Joint> joints_;
 };
-
-// The direction at polar angle `theta` from rest, leaning toward `phi`.
-glm::dvec3 leaning(double theta, double phi);
-// The greatest polar angle that a ball's limit allows toward `phi`.
-double greatestAngle(const Limit&, double phi);
-
-inline constexpr double kWidestAngle = 3.1;
 
 }  // namespace skitter::ik

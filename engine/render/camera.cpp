@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "crowd/herd.h"
 #include "crowd/spawn.h"
 #include "skitter/renderer.h"
+#include "skitter/spline.h"
 
 namespace skitter {
 namespace {
@@ -13,6 +15,8 @@ constexpr float kElevation = 0.30f;  // radians above the ground's horizon
 constexpr float kAside = 0.62f;      // radians off the line behind the one followed
 constexpr float kClearance = 0.5f;   // metres that eye and line of sight keep above gentle ground
 constexpr float kLeast = 0.2f;       // the same above the ground itself, which may be a cliff
+constexpr float kPathRadius = 1;     // metres within which the ground below an eye on a path is levelled
+constexpr double kLongest = 1e9;     // seconds: whatever comes later looks the same
 
 // Where the middle one of a herd walks if nothing holds it up.
 struct Walk {
@@ -27,9 +31,16 @@ Walk walkOf(const Herd& herd, const crowd::Kind& live, const Heightfield& terrai
   const glm::vec2 there(placed.targetX, placed.targetZ), back(placed.otherX, placed.otherZ);
   const float length = glm::distance(start, there);
   Walk walk{start, {std::sin(placed.heading), std::cos(placed.heading)}};
+  if (herd.goal.kind == Goal::Kind::velocity) {
+    const glm::vec2 velocity = herd.goal.velocity,
+                    edge = 0.5f * glm::vec2(terrain.extentX(), terrain.extentZ());
+    if (glm::length(velocity) > 1e-3f) walk.along = glm::normalize(velocity);
+    walk.at = glm::clamp(start + velocity * float(seconds), -edge, edge);
+    return walk;
+  }
   if (herd.goal.kind == Goal::Kind::none || length < 1e-3f) return walk;
   walk.along = (there - start) / length;
-  const double gone = seconds * herd.goal.speed;
+  const double gone = std::max(0.0, seconds) * herd.goal.speed;
   if (gone <= length || herd.goal.kind == Goal::Kind::point) {
     walk.at = start + walk.along * float(std::min(gone, double(length)));
     return walk;
@@ -50,42 +61,95 @@ float gentleHeight(const Heightfield& terrain, glm::vec2 at, float radius) {
   return sum / 13;
 }
 
-View followed(const Camera& camera, const Walk& walk, const Heightfield& terrain) {
-  const float distance = std::max(camera.distance, 0.5f);
-  const float c = std::cos(kAside), s = std::sin(kAside);
-  const glm::vec2 ahead(c * walk.along.x - s * walk.along.y, s * walk.along.x + c * walk.along.y);
-  const glm::vec2 eye = walk.at - ahead * (distance * std::cos(kElevation));
+// The same of the whole crowd: of the first herd that has agents.
+Walk walkOf(const Scene& scene, const Crowd::Impl& live, double seconds) {
+  for (uint32_t i = 0; i < scene.herds.size() && i < live.herds.size(); ++i)
+    if (scene.herds[i].agents > 0)
+      return walkOf(scene.herds[i], live.kindOf(i), live.terrain, scene.seed, seconds);
+  return {{0, 0}, {0, 1}};
+}
 
+// What height keeps a point clear of the ground, which is gentle where its mean within `radius` is.
+float clearHeight(const Heightfield& terrain, glm::vec2 at, float radius) {
+  return std::max(gentleHeight(terrain, at, radius) + kClearance, terrain.seenAt(at.x, at.y) + kLeast);
+}
+
+// Above the middle of a crowd's feet.
+glm::vec3 middleOf(const Walk& walk, const Heightfield& terrain, float distance) {
+  return {walk.at.x, gentleHeight(terrain, walk.at, 0.3f * distance) + 0.35f, walk.at.y};
+}
+
+// From `distance` away, along a way (unit) in the plane and up by the elevation; raised where the eye would
+// be in the ground or behind a rise.
+View seenFrom(const glm::vec3& target, glm::vec2 away, float elevation, float distance,
+              const Heightfield& terrain) {
+  const glm::vec2 middle(target.x, target.z), eye = middle + away * (distance * std::cos(elevation));
   View view;
-  view.fieldOfView = camera.fieldOfView;
-  view.target = {walk.at.x, gentleHeight(terrain, walk.at, 0.3f * distance) + 0.35f, walk.at.y};
-  view.eye = {eye.x, view.target.y + distance * std::sin(kElevation), eye.y};
-  // Neither in the ground nor behind a rise.
+  view.target = target;
+  view.eye = {eye.x, target.y + distance * std::sin(elevation), eye.y};
   for (int i = 0; i <= 8; ++i) {
     const float t = float(i) / 12;  // from the eye; the ground beside the target may hide its feet
-    const glm::vec2 p = glm::mix(eye, walk.at, t);
-    const float needed =
-        std::max(gentleHeight(terrain, p, 0.1f * distance) + kClearance, terrain.seenAt(p.x, p.y) + kLeast);
+    const float needed = clearHeight(terrain, glm::mix(eye, middle, t), 0.1f * distance);
     const float line = view.eye.y + t * (view.target.y - view.eye.y);
     if (line < needed) view.eye.y += (needed - line) / (1 - t);
   }
   return view;
 }
 
+View followed(const Walk& walk, float distance, const Heightfield& terrain) {
+  const float c = std::cos(kAside), s = std::sin(kAside);
+  const glm::vec2 ahead(c * walk.along.x - s * walk.along.y, s * walk.along.x + c * walk.along.y);
+  return seenFrom(middleOf(walk, terrain, distance), -ahead, kElevation, distance, terrain);
+}
+
+View orbited(const Camera& camera, const glm::vec3& target, float distance, double seconds,
+             const Heightfield& terrain) {
+  const double turns = camera.secondsATurn != 0 ? std::fmod(seconds / camera.secondsATurn, 1.0) : 0.0;
+  const double angle = camera.azimuth + turns * 2 * std::numbers::pi;
+  return seenFrom(target, {std::sin(angle), std::cos(angle)}, camera.elevation, distance, terrain);
+}
+
+// Before the first key and beyond the last one it stays.
+View onPath(const Camera& camera, double seconds, const Heightfield& terrain) {
+  SplineChain eyes, targets;
+  for (const CameraKey& key : camera.keys) {
+    eyes.points.push_back(key.position);
+    targets.points.push_back(key.target);
+    eyes.knots.push_back(key.time);
+  }
+  targets.knots = eyes.knots;
+  View view;
+  view.eye = Spline(eyes).position(seconds);
+  view.target = Spline(targets).position(seconds);
+  view.eye.y = std::max(view.eye.y, clearHeight(terrain, {view.eye.x, view.eye.z}, kPathRadius));
+  return view;
+}
+
+View viewOf(const Camera& camera, const Scene& scene, const Crowd::Impl& live, double seconds) {
+  const float distance = std::max(camera.distance, 0.5f);
+  switch (camera.kind) {
+    case Camera::Kind::fixed:
+      return {.eye = camera.position, .target = camera.target};
+    case Camera::Kind::orbit:
+      return orbited(
+          camera,
+          camera.about ? *camera.about : middleOf(walkOf(scene, live, seconds), live.terrain, distance),
+          distance, seconds, live.terrain);
+    case Camera::Kind::path:
+      return onPath(camera, seconds, live.terrain);
+    case Camera::Kind::follow:
+      break;
+  }
+  return followed(walkOf(scene, live, seconds), distance, live.terrain);
+}
+
 }  // namespace
 
 View viewOf(const Scene& scene, const Crowd& crowd, double seconds) {
-  const Camera& camera = scene.camera;
-  if (camera.kind == Camera::Kind::fixed)
-    return {.eye = camera.position, .target = camera.target, .fieldOfView = camera.fieldOfView};
-  const Crowd::Impl& live = implOf(crowd);
-  Walk walk{{0, 0}, {0, 1}};
-  for (uint32_t i = 0; i < scene.herds.size() && i < live.herds.size(); ++i) {
-    if (scene.herds[i].agents == 0) continue;
-    walk = walkOf(scene.herds[i], live.kindOf(i), live.terrain, scene.seed, seconds);
-    break;
-  }
-  return followed(camera, walk, live.terrain);
+  const double time = std::isnan(seconds) ? 0 : std::clamp(seconds, -kLongest, kLongest);
+  View view = viewOf(scene.camera, scene, implOf(crowd), time);
+  view.fieldOfView = scene.camera.fieldOfView;
+  return view;
 }
 
 }  // namespace skitter

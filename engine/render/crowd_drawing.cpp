@@ -38,8 +38,8 @@ std::vector<gpu::VertexStream> streams(bool shaded) {
            .attributes = {{0, F::eR32Uint, 0}}}};
 }
 
-gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences, bool matrices) {
-  gpu::GraphicsInfo info = crowdShading(influences, matrices);
+gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences, bool matrices, bool tinted) {
+  gpu::GraphicsInfo info = crowdShading(influences, matrices, tinted);
   info.colour = s.colour;
   info.depth = s.depth;
   info.samples = s.samples;
@@ -66,29 +66,36 @@ gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences, bool matr
 
 }  // namespace
 
-gpu::GraphicsInfo crowdShading(int influences, bool matrices) {
+gpu::GraphicsInfo crowdShading(int influences, bool matrices, bool tinted) {
   return {.name = "crowd",
           .vertex = {embedded::crowd_vert_texel(), embedded::crowd_vert_storage()},
           .fragment = embedded::crowd_frag(),
           .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
                        {shared::DRAW_BODY, BindingKind::load4},
                        {shared::DRAW_POSE, BindingKind::load4},
+                       {shared::DRAW_TINT, BindingKind::load4},
                        {shared::DRAW_GROUND, BindingKind::texture},
                        {shared::DRAW_SHADOW, BindingKind::texture}},
           .pushBytes = sizeof(shared::CrowdConstants),
           .streams = streams(true),
-          .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}};
+          .constants = {{shared::CONSTANT_INFLUENCES, influences},
+                        {shared::CONSTANT_MATRICES, matrices},
+                        {shared::CONSTANT_TINTED, tinted}}};
 }
 
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s.context) {
   if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
   for (const crowd::Kind& source : crowd.kinds) {
     Kind kind;
+    if (source.pages.empty()) {  // of a herd that is gone; kinds keep their numbers
+      kinds_.push_back(std::move(kind));
+      continue;
+    }
     const bool clips = crowd::traitsOf(source.controller).playsClips;
     kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
     kind.mesh =
         uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
-    kind.draw = drawPipeline(s, kind.mesh.influences, clips);
+    kind.draw = drawPipeline(s, kind.mesh.influences, clips, source.tinted);
     kind.shadow = shadowPipeline(s, kind.mesh.influences, clips);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
@@ -99,6 +106,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s
                                      {shared::DRAW_BODY, &records.body},
                                      {shared::DRAW_POSE, &records.pose}};
       page.shadow = kind.shadow.bind(s.context, list);
+      list.push_back({shared::DRAW_TINT, source.tinted ? &records.tint : &records.body});
       list.push_back({shared::DRAW_GROUND, &s.ground, s.groundSampler});
       list.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
       page.draw = kind.draw.bind(s.context, list);

@@ -8,8 +8,8 @@
 namespace skitter::render {
 
 // The pipeline that shades a kind, without its targets. `influences` is the most bones that carry a vertex;
-// `matrices` says that poses are matrices instead of rotations.
-gpu::GraphicsInfo crowdShading(int influences, bool matrices);
+// `matrices` says that poses are matrices instead of rotations, `tinted` that agents have tints.
+gpu::GraphicsInfo crowdShading(int influences, bool matrices, bool tinted);
 
 // The crowd, skinned where its poses lie: one indirect draw a page and level of detail.
 class CrowdDrawing {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "crowd/radius.h"
 #include "gpu/transfer.h"
 #include "render/ribbons.h"
 
@@ -28,14 +29,6 @@ struct Skin {
   std::vector<glm::vec3> starts;
   const Rig* rig = nullptr;  // where legs are known
 };
-
-std::vector<glm::vec3> restStarts(const Rig& rig) {
-  std::vector<glm::vec3> starts = {glm::vec3(0)};
-  for (const Leg& leg : rig.legs)
-    for (int i = 0; i < rig.maxBones(); ++i)
-      starts.push_back(leg.bones[std::min(size_t(i), leg.bones.size() - 1)].start);
-  return starts;
-}
 
 MeshVertex meshVertex(const Skin& from, const SkinVertex& skin, int& influences) {
   // Heaviest first, so that a rig whose vertices hang on few bones needs few loads.
@@ -61,13 +54,12 @@ struct Welded {
   std::vector<SkinVertex> vertices;
   std::vector<uint32_t> remap;  // of the skin's vertices; those of no triangle lead nowhere
 };
-Welded weld(const Skin& skin) {
+Welded weld(const std::vector<SkinVertex>& vertices, const std::vector<uint32_t>& indices) {
   std::vector<glm::vec3> positions;
-  for (const SkinVertex& vertex : skin.vertices) positions.push_back(vertex.position);
+  for (const SkinVertex& vertex : vertices) positions.push_back(vertex.position);
   Welded welded{{}, std::vector<uint32_t>(positions.size())};
-  const size_t count =
-      meshopt_generateVertexRemap(welded.remap.data(), skin.indices.data(), skin.indices.size(),
-                                  positions.data(), positions.size(), sizeof(glm::vec3));
+  const size_t count = meshopt_generateVertexRemap(welded.remap.data(), indices.data(), indices.size(),
+                                                   positions.data(), positions.size(), sizeof(glm::vec3));
   welded.vertices.resize(count);
   std::vector<float> shared(count, 0.0f);
   for (size_t i = 0; i < welded.remap.size(); ++i) {
@@ -76,10 +68,10 @@ Welded weld(const Skin& skin) {
     SkinVertex& vertex = welded.vertices[place];
     const float before = shared[place]++;
     if (before == 0) {
-      vertex = skin.vertices[i];
+      vertex = vertices[i];
     } else {
-      vertex.normal += skin.vertices[i].normal;
-      vertex.colour = (vertex.colour * before + skin.vertices[i].colour) / (before + 1);
+      vertex.normal += vertices[i].normal;
+      vertex.colour = (vertex.colour * before + vertices[i].colour) / (before + 1);
     }
   }
   for (SkinVertex& vertex : welded.vertices) vertex.normal /= std::max(glm::length(vertex.normal), 1e-6f);
@@ -98,17 +90,23 @@ std::vector<uint32_t> simplified(const Welded& welded, std::vector<uint32_t> tri
   return indices;
 }
 
-void append(MeshData& data, MeshLod& lod, const Skin& skin, std::vector<SkinVertex> vertices,
-            std::vector<uint32_t> indices) {
+// As a device fetches them best, without vertices of no triangle.
+Surface optimised(const std::vector<SkinVertex>& vertices, std::vector<uint32_t> indices) {
   meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), vertices.size());
-  std::vector<SkinVertex> used(vertices.size());
-  used.resize(meshopt_optimizeVertexFetch(used.data(), indices.data(), indices.size(), vertices.data(),
-                                          vertices.size(), sizeof(SkinVertex)));
+  Surface surface{std::vector<SkinVertex>(vertices.size()), std::move(indices)};
+  surface.vertices.resize(meshopt_optimizeVertexFetch(surface.vertices.data(), surface.indices.data(),
+                                                      surface.indices.size(), vertices.data(),
+                                                      vertices.size(), sizeof(SkinVertex)));
+  return surface;
+}
+
+void append(MeshData& data, MeshLod& lod, const Skin& skin, const Surface& surface) {
   lod = {.firstIndex = uint32_t(data.indices.size()),
-         .indexCount = uint32_t(indices.size()),
+         .indexCount = uint32_t(surface.indices.size()),
          .firstVertex = int32_t(data.vertices.size())};
-  for (const SkinVertex& vertex : used) data.vertices.push_back(meshVertex(skin, vertex, data.influences));
-  data.indices.insert(data.indices.end(), indices.begin(), indices.end());
+  for (const SkinVertex& vertex : surface.vertices)
+    data.vertices.push_back(meshVertex(skin, vertex, data.influences));
+  data.indices.insert(data.indices.end(), surface.indices.begin(), surface.indices.end());
 }
 
 // A quad, whose corners the vertex shader moves apart.
@@ -131,51 +129,39 @@ void append(MeshData& data, MeshLod& lod, const Ribbon& ribbon) {
 
 void appendLods(MeshData& data, const Skin& skin) {
   if (skin.indices.empty()) return;
-  append(data, data.lods[0], skin, skin.vertices, skin.indices);
-  const Welded welded = weld(skin);
+  append(data, data.lods[0], skin, optimised(skin.vertices, skin.indices));
+  const Welded welded = weld(skin.vertices, skin.indices);
   for (size_t i = 1; i < data.lods.size(); ++i) {
     const float radius = kRibbonPixels * data.radius / kLodPixels[i - 1];
     const Ribbons thin = skin.rig ? ribbonsOf(*skin.rig, radius) : Ribbons{{}, skin.indices};
-    append(data, data.lods[i], skin, welded.vertices, simplified(welded, thin.others, kShare[i]));
+    append(data, data.lods[i], skin, optimised(welded.vertices, simplified(welded, thin.others, kShare[i])));
     for (const Ribbon& ribbon : thin.ribbons) append(data, data.lods[i], ribbon);
   }
 }
 
-// At most how far a vertex gets from the body: each leg straight, pointing away from it. What lies along a
-// bone adds to the length of the leg, what lies beside it does not.
-float furthestOf(const Rig& rig, const SkinVertex& vertex) {
-  float mean = 0;
-  for (int i = 0; i < 4; ++i) {
-    if (vertex.weights[i] <= 0) continue;
-    float furthest = glm::length(vertex.position);
-    if (const int entry = vertex.bones[i]; entry > 0) {
-      const Leg& leg = rig.legs.at(size_t((entry - 1) / rig.maxBones()));
-      const size_t last = std::min(size_t((entry - 1) % rig.maxBones()), leg.bones.size() - 1);
-      const glm::vec3 from = vertex.position - leg.bones[last].start;
-      const float along = glm::dot(from, leg.bones[last].direction);
-      float straight = glm::length(leg.root()) + along;
-      for (size_t k = 0; k < last; ++k) straight += leg.bones[k].length;
-      furthest = glm::length(glm::vec2(straight, glm::length(from - along * leg.bones[last].direction)));
-    }
-    mean += vertex.weights[i] * furthest;
-  }
-  return mean;
-}
-
 }  // namespace
+
+std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
+                                const std::vector<uint32_t>& indices) {
+  std::vector<Surface> surfaces;
+  if (indices.empty()) return surfaces;
+  surfaces.push_back(optimised(vertices, indices));
+  const Welded welded = weld(vertices, indices);
+  for (size_t i = 1; i < kShare.size(); ++i)
+    surfaces.push_back(optimised(welded.vertices, simplified(welded, indices, kShare[i])));
+  return surfaces;
+}
 
 MeshData makeMesh(const Rig& rig) {
   MeshData data;
-  for (const SkinVertex& vertex : rig.vertices) data.radius = std::max(data.radius, furthestOf(rig, vertex));
-  for (const Leg& leg : rig.legs) data.radius = std::max(data.radius, glm::length(leg.root()) + leg.reach);
-  appendLods(data, {rig.vertices, rig.indices, restStarts(rig), &rig});
+  data.radius = crowd::radiusOf(rig);
+  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), &rig});
   return data;
 }
 
 MeshData makeMesh(const ClipSet& set) {
   MeshData data;
-  for (const Clip& clip : set.clips)
-    data.radius = std::max(data.radius, glm::length(glm::max(glm::abs(clip.least), glm::abs(clip.most))));
+  data.radius = crowd::radiusOf(set);
   appendLods(data, {set.vertices, set.indices, std::vector<glm::vec3>(set.joints.size())});
   return data;
 }

@@ -35,6 +35,15 @@ struct MeshData {
   int influences = 1;  // most bones that carry one vertex, 1 to 4
   float radius = 0;    // of a sphere about the body's position that holds every pose, metres
 };
+// Triangles of a skin.
+struct Surface {
+  std::vector<SkinVertex> vertices;
+  std::vector<uint32_t> indices;
+};
+// A skin at its levels of detail as surfaces alone, finest first; none of a skin without triangles.
+std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
+                                const std::vector<uint32_t>& indices);
+
 MeshData makeMesh(const Rig&);
 MeshData makeMesh(const ClipSet&);  // its palette holds matrices
 

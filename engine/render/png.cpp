@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "render/partial_file.h"
+#include "assets/files/partial_file.h"
 #include "skitter/error.h"
 #include "skitter/image.h"
 
@@ -35,7 +35,7 @@ std::string pngOf(uint32_t width, uint32_t height, std::span<const uint8_t> rgba
 
 void writePng(const std::filesystem::path& file, uint32_t width, uint32_t height,
               std::span<const uint8_t> rgba) {
-  render::writeText(file, render::pngOf(width, height, rgba, render::PngEffort::fast));
+  writeText(file, render::pngOf(width, height, rgba, render::PngEffort::fast));
 }
 
 }  // namespace skitter

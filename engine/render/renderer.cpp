@@ -30,6 +30,14 @@ vk::Extent2D checkedExtent(const gpu::Context& context, uint32_t width, uint32_t
   return {width, height};
 }
 
+const gpu::Context& checkedContext(const gpu::Context& context) {
+  if (!context.draws())
+    throw deviceError(fmt::format(
+        "a renderer needs a queue for graphics, and {} was given queue family {}, which only computes",
+        context.report().name, context.queueFamily()));
+  return context;
+}
+
 // Four samples where a GPU gives them almost for nothing; a software device pays sevenfold.
 vk::SampleCountFlagBits sampleCount(const gpu::Context& context) {
   return context.isCpu() ? vk::SampleCountFlagBits::e1 : vk::SampleCountFlagBits::e4;
@@ -48,6 +56,8 @@ struct Renderer::Impl {
   void smoothEdges(vk::CommandBuffer);
 
   const gpu::Context& context;
+  const Crowd::Impl& live;
+  uint32_t revision;  // of the live crowd, as it is drawn
   gpu::StageTimer timer;
   vk::SampleCountFlagBits samples;
   gpu::Image colour, depth;
@@ -64,7 +74,9 @@ struct Renderer::Impl {
 };
 
 Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height)
-    : context(c),
+    : context(checkedContext(c)),
+      live(source),
+      revision(source.revision),
       timer(c, kPasses),
       samples(sampleCount(c)),
       colour(c,
@@ -101,6 +113,12 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
 // The whole picture.
 void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
                             const std::function<void(VkCommandBuffer)>& over) {
+  // Herds have come or gone. Pictures in flight may still use what goes.
+  if (revision != live.revision) {
+    context.waitIdle();
+    crowd = render::CrowdDrawing(setting, live);
+    revision = live.revision;
+  }
   const vk::Extent2D extent = colour.extent();
   const render::Composition composition =
       render::compose(view, setting.terrain, terrain.lowest(), terrain.highest(), extent.width, extent.height,

@@ -8,8 +8,8 @@
 #include <system_error>
 #include <vector>
 
+#include "assets/files/partial_file.h"
 #include "render/child.h"
-#include "render/partial_file.h"
 #include "skitter/error.h"
 #include "skitter/video.h"
 
@@ -44,7 +44,7 @@ std::vector<std::string> encoder(const std::filesystem::path& output, uint32_t w
 }  // namespace
 
 struct VideoWriter::Impl {
-  render::PartialFile file;
+  PartialFile file;
   std::optional<render::Child> ffmpeg;
   size_t frameBytes;
   uint64_t frames = 0;

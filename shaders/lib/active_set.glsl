@@ -4,8 +4,6 @@
 // Damped least squares over the joint angles with an active set of limits: a joint that meets its limit is held
 // there, and what it could not do is handed to the others (docs/ik.md, Active set).
 
-const float UNLIMITED = 1e9;
-
 // A way in which a bone is limited: unit, in its (X, Y); how far it may go down and up it; its column.
 struct Way {
   vec2 along, room;
@@ -14,43 +12,12 @@ struct Way {
 
 Way wayOf(Limb limb, int i, vec2 s, Columns c) {
   Way way;
-  if (isKind(i, LIMIT_HINGE)) {
-    // tan(end - q), q = -2 atan(s.y).
-    vec2 to = limb.ends[i].xy + s.y, over = 1.0 - limb.ends[i].xy * s.y;
-    vec2 sines = 2.0 * to * over, cosines = over * over - to * to, least = 0.1 * (over * over + to * to);
-    way.along = vec2(0.0, -1.0);
-    way.room = vec2(cosines.x < least.x ? -UNLIMITED : sines.x / cosines.x,
-                    cosines.y < least.y ? UNLIMITED : sines.y / cosines.y);
+  roomOf(i, limb.edge[i], limb.ends[i], s, way.along, way.room);
+  if (isKind(i, LIMIT_HINGE))
     way.column = -c.y[i];
-    return way;
-  }
-  float s2 = dot(s, s), inverse = inversesqrt(max(s2, 1e-20));
-  vec2 h = s2 < 1e-13 ? vec2(1.0, 0.0) : s * inverse;
-  float r = s2 * inverse;
-  if (isKind(i, LIMIT_ELLIPSE)) {
-    float theta = 2.0 * arctangent(r);
-    vec2 axes = ellipseAxes(limb.ends[i], h), n = theta * h / (axes * axes);
-    float share = sqrt(theta * dot(h, n));
-    // theta / sin(theta) turns what is across h.
-    vec2 slope = vec2(dot(h, n), (h.x * n.y - h.y * n.x) * theta * (1.0 + s2) * 0.5 / max(r, 1e-6));
-    bool small = theta < 1e-3;
-    vec2 normal = small ? vec2(1.0, 0.0) : unit(slope);
-    way.along = vec2(normal.x * h.x - normal.y * h.y, normal.x * h.y + normal.y * h.x);
-    way.room = vec2(-UNLIMITED, small ? UNLIMITED : (1.0 - share) * share * inversesqrt(max(dot(slope, slope), 1e-20)));
-  } else {
-    // tan(alpha - theta) by half tangents.
-    float to = limb.edge[i] - r, over = 1.0 + limb.edge[i] * r;
-    float cosine = over * over - to * to;
-    way.along = h;
-    way.room = vec2(-UNLIMITED, cosine < 0.1 * (over * over + to * to) ? UNLIMITED : 2.0 * to * over / cosine);
-  }
-  way.column = way.along.x * c.x[i] + way.along.y * c.y[i];
+  else
+    way.column = way.along.x * c.x[i] + way.along.y * c.y[i];
   return way;
-}
-
-vec2 twistRoomOf(Limb limb, Pose pose, int i) {
-  vec2 ends = limb.twists[i], below = 1.0 + ends * pose.twist[i], room = 2.0 * (ends - pose.twist[i]) / max(below, vec2(0.1));
-  return vec2(below.x < 0.1 ? -UNLIMITED : room.x, below.y < 0.1 ? UNLIMITED : room.y);
 }
 
 // Holds a column whose step x leaves its room at that end: its share of e, from `z` to that end, is done.
@@ -101,7 +68,7 @@ void activeSet(Limb limb, vec3 target, bool lost, int chords, int which, float r
       float z = dot(way[i].along, pull[i]);
       hold(z + dot(way[i].column, lambda), z, way[i].room, way[i].column, end[i], free[i], m, e);
       if (isKind(i, LIMIT_TWIST))
-        hold(dot(c.twist[i], lambda), 0.0, twistRoomOf(limb, pose, i), c.twist[i], twistEnd[i], twistFree[i], m, e);
+        hold(dot(c.twist[i], lambda), 0.0, twistRoom(limb.twists[i], pose.twist[i]), c.twist[i], twistEnd[i], twistFree[i], m, e);
     }
     inverse = inverseOf(m);
     lambda = times(inverse, e);

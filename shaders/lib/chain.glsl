@@ -50,11 +50,7 @@ vec3 fromStereographic(vec2 s) {
 
 // (X, Y) within the limit of the direction n (d.x, d.y), n (1 + d.z).
 vec2 clampSwing(Limb limb, int i, vec2 xy, float below, float n) {
-  if (isKind(i, LIMIT_HINGE)) return clampHinge(xy.y, below, limb.ends[i].xy);
-  float s2 = dot(xy, xy), edge = limb.edge[i];
-  bool against = isAgainst(s2, below, n);
-  if (isKind(i, LIMIT_ELLIPSE)) edge = ellipseEdge(limb.ends[i], against ? vec2(1.0, 0.0) : xy * inversesqrt(max(s2, 1e-20)));
-  return clampBall(xy, below, s2, against, edge);
+  return clampToLimit(i, limb.edge[i], limb.ends[i], xy, below, n);
 }
 vec2 clampSwing(Limb limb, int i, vec3 d) { return clampSwing(limb, i, d.xy, 1.0 + d.z, 1.0); }
 

@@ -17,6 +17,9 @@ bool isKind(int bone, int kind) {
 }
 #endif
 
+// Kinds that keep numbers of their own in the bone's record, a limb's `ends`.
+const int LIMITS_WITH_ENDS = LIMIT_ELLIPSE | LIMIT_HINGE;
+
 // Abramowitz & Stegun 4.4.49, error 2e-8 within [0, 1].
 float arctangent(float x) {
   float y = x > 1.0 ? 1.0 / x : x, z = y * y;
@@ -64,6 +67,68 @@ vec2 clampBall(vec2 xy, float below, float s2, bool against, float edge) {
 // `range`: tangents of half the least and the greatest angle.
 vec2 clampHinge(float y, float below, vec2 range) {
   return vec2(0.0, clamp(y / max(below, 1e-6), -range.y, -range.x));
+}
+
+// (X, Y) within bone i's limit of the direction n (d.x, d.y), n (1 + d.z).
+vec2 clampToLimit(int i, float edge, vec4 ends, vec2 xy, float below, float n) {
+  if (isKind(i, LIMIT_HINGE)) return clampHinge(xy.y, below, ends.xy);
+  float s2 = dot(xy, xy);
+  bool against = isAgainst(s2, below, n);
+  if (isKind(i, LIMIT_ELLIPSE)) edge = ellipseEdge(ends, against ? vec2(1.0, 0.0) : xy * inversesqrt(max(s2, 1e-20)));
+  return clampBall(xy, below, s2, against, edge);
+}
+
+// Room is how far a bone may go down and up a way before it meets its limit: the tangent of the angle left.
+const float UNLIMITED = 1e9;
+
+// tan(end - q), q = -2 atan(y).
+vec2 hingeRoom(vec2 ends, float y) {
+  vec2 to = ends + y, over = 1.0 - ends * y;
+  vec2 sines = 2.0 * to * over, cosines = over * over - to * to, least = 0.1 * (over * over + to * to);
+  return vec2(cosines.x < least.x ? -UNLIMITED : sines.x / cosines.x,
+              cosines.y < least.y ? UNLIMITED : sines.y / cosines.y);
+}
+
+// tan(alpha - theta) by half tangents; r: tan(theta / 2).
+float coneRoom(float edge, float r) {
+  float to = edge - r, over = 1.0 + edge * r;
+  float cosine = over * over - to * to;
+  return cosine < 0.1 * (over * over + to * to) ? UNLIMITED : 2.0 * to * over / cosine;
+}
+
+// Across the ellipse's level line, which `h`, the unit way from rest, is turned to.
+float ellipseRoom(vec4 ellipse, float s2, float r, inout vec2 h) {
+  float theta = 2.0 * arctangent(r);
+  vec2 axes = ellipseAxes(ellipse, h), n = theta * h / (axes * axes);
+  float share = sqrt(theta * dot(h, n));
+  // theta / sin(theta) turns what is across h.
+  vec2 slope = vec2(dot(h, n), (h.x * n.y - h.y * n.x) * theta * (1.0 + s2) * 0.5 / max(r, 1e-6));
+  bool small = theta < 1e-3;
+  vec2 normal = small ? vec2(1.0, 0.0) : unit(slope);
+  h = vec2(normal.x * h.x - normal.y * h.y, normal.x * h.y + normal.y * h.x);
+  return small ? UNLIMITED : (1.0 - share) * share * inversesqrt(max(dot(slope, slope), 1e-20));
+}
+
+// The way in which bone i at (X, Y) = s is limited, a unit vector in its (X, Y), and the room along it.
+void roomOf(int i, float edge, vec4 ends, vec2 s, out vec2 along, out vec2 room) {
+  if (isKind(i, LIMIT_HINGE)) {
+    along = vec2(0.0, -1.0);
+    room = hingeRoom(ends.xy, s.y);
+  } else {
+    float s2 = dot(s, s), inverse = inversesqrt(max(s2, 1e-20)), r = s2 * inverse;
+    along = s2 < 1e-13 ? vec2(1.0, 0.0) : s * inverse;
+    room.x = -UNLIMITED;
+    if (isKind(i, LIMIT_ELLIPSE))
+      room.y = ellipseRoom(ends, s2, r, along);
+    else
+      room.y = coneRoom(edge, r);
+  }
+}
+
+// The room of a twist, tan(tau / 2), down and up; `ends` likewise.
+vec2 twistRoom(vec2 ends, float twist) {
+  vec2 below = 1.0 + ends * twist, room = 2.0 * (ends - twist) / max(below, vec2(0.1));
+  return vec2(below.x < 0.1 ? -UNLIMITED : room.x, below.y < 0.1 ? UNLIMITED : room.y);
 }
 
 #endif

@@ -18,10 +18,12 @@ BINDING DRAW_SHADOW = 5;     // depth, compared
 BINDING DRAW_INSTANCES = 6;  // uint, written by cull
 BINDING DRAW_COMMANDS = 7;   // indirect draws, counted by cull
 BINDING DRAW_DRAWN = 8;      // the picture before its edges are smoothed
+BINDING DRAW_TINT = 9;       // LOAD4, one an agent; read where CONSTANT_TINTED says so
 
 BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter
+BINDING CONSTANT_TINTED = 3;    // agents have tints (tint.h)
 #undef BINDING
 
 #ifdef __cplusplus

@@ -3,9 +3,12 @@
 #include "picture.glsl"
 #include "skin.glsl"
 #include "hash.glsl"
+#include "tint.h"
 
 layout(location = 8) in vec3 colour;
+layout(constant_id = CONSTANT_TINTED) const bool TINTED = false;
 layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
+LOAD4_BUFFER(DRAW_TINT, tints)
 
 layout(location = 0) out vec3 outPosition;
 layout(location = 1) out vec3 outNormal;
@@ -28,7 +31,15 @@ void main() {
 
   // No two alike: a little lighter or darker, redder or greyer.
   uint h = hashed(uvec2(agent + constants.firstAgent, constants.kind));
-  float value = 0.75 + 0.6 * unitOf(h), warmth = unitOf(h * 0x9E3779B1u) - 0.5;
-  outColour = vec4(colour * value * vec3(1.0 + 0.35 * warmth, 1.0, 1.0 - 0.35 * warmth), openness);
+  float value = LEAST_VALUE + VALUE_RANGE * unitOf(h), warmth = unitOf(h * 0x9E3779B1u) - 0.5;
+  vec3 own = colour;
+  if (TINTED) {
+    vec4 tint = LOAD4(tints, int(agent));
+    int flags = int(tint.w);
+    if ((flags & TINT_LIGHTNESS) != 0) own = vec3(dot(own, vec3(RED_LIGHTNESS, GREEN_LIGHTNESS, BLUE_LIGHTNESS)));
+    if ((flags & TINT_VARIED) != 0) value = 1.0, warmth = 0.0;
+    own *= tint.xyz;
+  }
+  outColour = vec4(own * value * vec3(1.0 + WARMTH_RANGE * warmth, 1.0, 1.0 - WARMTH_RANGE * warmth), openness);
   outSun = ground.w;
 }

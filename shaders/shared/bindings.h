@@ -53,9 +53,10 @@ BINDING CONSTANT_CLIPS = 20;
 BINDING CONSTANT_JOINTS = 21;        // of the clips' palette
 BINDING CONSTANT_SEARCH_STEPS = 22;  // 2 to their power is more than a clip has frames
 BINDING CONSTANT_REACH = 23;         // gait steps when out of reach, without a rhythm
-BINDING CONSTANT_WATCH = 24;  // gait looks at the ground under every foot: the heights were edited lately
-BINDING CONSTANT_SLEEP = 25;  // SLEEP_
-BINDING CONSTANT_FEET = 26;   // tips are written, and feet where no other stage needs them
+BINDING CONSTANT_WATCH = 24;    // gait looks at the ground under every foot: the heights were edited lately
+BINDING CONSTANT_SLEEP = 25;    // SLEEP_
+BINDING CONSTANT_FEET = 26;     // tips are written, and feet where no other stage needs them
+BINDING CONSTANT_RESERVE = 29;  // whether places may be empty
 BINDING CONSTANT_HERD_STEPS = 28;  // 2 to their power is at least the number of herds in a page
 // From here on the numbers with which the rig's records of legs begin, 4 * RIG_LEG_STRIDE a leg.
 BINDING CONSTANT_RIG_LEGS = 100;

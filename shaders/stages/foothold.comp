@@ -18,6 +18,93 @@ STORE4_BUFFER(BINDING_ARC_OUT, arcsOut);
 layout(set = 0, binding = BINDING_LIST, std430) readonly buffer ListBlock { uint list[]; };
 #include "stages/counters.glsl"
 
+// Where a leg may land, and what judges it.
+struct Search {
+  Ladder ladder;
+  Range range;
+  vec3 up, root, predicted;  // along world axes, relative to the body
+  vec2 world;                // the body's place
+  float height;              // and height
+};
+
+// The best candidate on the ladder; with none that fits, `predicted`, which does not.
+Candidate bestOn(Search search) {
+  Candidate best;
+  best.score = 3e38;
+  best.fits = false;
+  best.point = search.predicted;
+  best.distance = 0.0;
+  // Rung by rung and along each, some places at once: their heights, far away in memory, are waited for together.
+  int k = 1, j = -1;
+  for (int places = 0; places < PLACES; places += AT_ONCE) {
+    vec3 q[AT_ONCE], ground[AT_ONCE];
+    [[unroll]] for (int i = 0; i < AT_ONCE; ++i) {
+      q[i] = placeOn(search.ladder, k, j);
+      ground[i] = groundAt(search.world + q[i].xz);
+      bool last = j == k;
+      k += last ? 1 : 0;
+      j = last ? -k : j + 1;
+    }
+    [[unroll]] for (int i = 0; i < AT_ONCE; ++i) {
+      q[i].y = ground[i].x - search.height;
+      Candidate candidate =
+          judge(parameters, q[i], ground[i], search.up, search.root, search.predicted, search.range);
+      if (candidate.fits && candidate.score < best.score) best = candidate;
+    }
+  }
+  return best;
+}
+
+// Where none fits, `point` moves to the candidate that is nearest to doing so, brought into range. Few legs have none
+// that fits; where none of those solved side by side has, these loops end after a turn.
+void takeLastResort(Search search, bool lastResort, int agent, inout vec3 point) {
+  vec3 nearest = search.predicted;
+  float nearestMiss = 3e38;
+  for (int k = 1; lastResort && k <= RUNGS; ++k) {
+    for (int j = -k; j <= k; ++j) {
+      vec3 q = placeOn(search.ladder, k, j);
+      q.y = groundAt(search.world + q.xz).x - search.height;
+      float far = distance(q, search.root), miss = abs(far - clamp(far, search.range.least, search.range.most));
+      if (miss < nearestMiss) {
+        nearestMiss = miss;
+        nearest = q;
+      }
+    }
+  }
+  if (lastResort) {
+    vec3 d = nearest - search.root;
+    float far = length(d);
+    point = search.root + d * (clamp(far, search.range.least, search.range.most) / max(far, 1e-6));
+    countForHerd(true, agent, ROW_LAST_RESORTS);
+  }
+}
+
+// The shortest lift of at least `least` that clears the ground between p0 and p1.
+vec3 shortestLift(Search search, vec3 p0, vec3 p1, bool reaim, vec3 m0, float least) {
+  vec3 aside = unit(cross(search.up, p1 - p0)) * parameters.routeWidth;
+  vec3 lift = vec3(0.0);
+  float shortest = 3e38;
+  // No bow is shorter than the least lift, so most steps look along the straight lane alone.
+  for (int lane = 0; lane < WAYS && shortest > 1.0001 * least * least; ++lane) {
+    vec3 side = aside * sideOf(lane);
+    float height = least;
+    for (int i = 0; i < SAMPLES; ++i) {
+      Place place = placeOf(p0, p1, reaim, m0, i);
+      vec3 p = place.straight + place.share * side;
+      float gap = groundAt(search.world + p.xz).x - (search.height + p.y);
+      height = max(height, (gap * search.up.y + parameters.stepClearance * place.clearing) / place.share);
+    }
+    float over = max(0.0, height - parameters.stepHeightMax);
+    vec3 bow = search.up * (height - over) + side;
+    float cost = dot(bow, bow) + ROUTE_FORBIDDEN * over * over;
+    if (cost < shortest) {
+      shortest = cost;
+      lift = bow;
+    }
+  }
+  return lift;
+}
+
 void main() {
   uint listed = gl_GlobalInvocationID.x;
   if (listed >= counters[COUNTER_LISTED]) return;
@@ -43,56 +130,19 @@ void main() {
   float span = length(out2);
   vec2 o = span < 1e-6 ? unit(home.xz - root.xz) : out2 / span;
   float rho = max(span, 0.1 * reach);
-  vec3 up = rotate(body.orientation, vec3(0.0, 1.0, 0.0));
-  vec3 predicted = rotate(body.orientation, tau), rootWorld = rotate(body.orientation, rootThen);
-  vec2 world = worldOf(body.local, body.tile);
-  Ladder ladder = Ladder(predicted, rotate(body.orientation, vec3(o.x, 0.0, o.y)) * (rho / 3.0),
+  Search search;
+  search.up = rotate(body.orientation, vec3(0.0, 1.0, 0.0));
+  search.predicted = rotate(body.orientation, tau);
+  search.root = rotate(body.orientation, rootThen);
+  search.world = worldOf(body.local, body.tile);
+  search.height = body.local.y;
+  search.ladder = Ladder(search.predicted, rotate(body.orientation, vec3(o.x, 0.0, o.y)) * (rho / 3.0),
                          rotate(body.orientation, vec3(-o.y, 0.0, o.x)) * (rho / 6.0));
-  Range range = rangeOf(parameters, reach);
+  search.range = rangeOf(parameters, reach);
 
-  Candidate best;
-  best.score = 3e38;
-  best.fits = false;
-  best.point = predicted;
-  best.distance = 0.0;
-  // Rung by rung and along each, some places at once: their heights, far away in memory, are waited for together.
-  int k = 1, j = -1;
-  for (int places = 0; places < PLACES; places += AT_ONCE) {
-    vec3 q[AT_ONCE], ground[AT_ONCE];
-    [[unroll]] for (int i = 0; i < AT_ONCE; ++i) {
-      q[i] = placeOn(ladder, k, j);
-      ground[i] = groundAt(world + q[i].xz);
-      bool last = j == k;
-      k += last ? 1 : 0;
-      j = last ? -k : j + 1;
-    }
-    [[unroll]] for (int i = 0; i < AT_ONCE; ++i) {
-      q[i].y = ground[i].x - body.local.y;
-      Candidate candidate = judge(parameters, q[i], ground[i], up, rootWorld, predicted, range);
-      if (candidate.fits && candidate.score < best.score) best = candidate;
-    }
-  }
-  // Few legs have none that fits; where none of those solved side by side has, these loops end after a turn.
+  Candidate best = bestOn(search);
   bool lastResort = !best.fits;
-  vec3 nearest = predicted;
-  float nearestMiss = 3e38;
-  for (int k = 1; lastResort && k <= RUNGS; ++k) {
-    for (int j = -k; j <= k; ++j) {
-      vec3 q = placeOn(ladder, k, j);
-      q.y = groundAt(world + q.xz).x - body.local.y;
-      float far = distance(q, rootWorld), miss = abs(far - clamp(far, range.least, range.most));
-      if (miss < nearestMiss) {
-        nearestMiss = miss;
-        nearest = q;
-      }
-    }
-  }
-  if (lastResort) {
-    vec3 d = nearest - rootWorld;
-    float far = length(d);
-    best.point = rootWorld + d * (clamp(far, range.least, range.most) / max(far, 1e-6));
-    countForHerd(true, agent, ROW_LAST_RESORTS);
-  }
+  takeLastResort(search, lastResort, agent, best.point);
 
   // Relative to the body's position, as the old step too; stored relative to its tile.
   Swing flight = swingOf(old, oldArc, body.local, body.tile);
@@ -101,28 +151,7 @@ void main() {
   vec3 p0 = reaim ? swingPoint(flight, way) : flight.p1;
   vec3 p1 = best.point;
   vec3 m0 = reaim ? swingTangent(flight, way) * (easedRate(u, rate) * ticks / old.ticks) : vec3(0.0);
-  vec3 aside = unit(cross(up, p1 - p0)) * parameters.routeWidth;
-  float least = parameters.stepHeight * (reaim ? 1.0 - u : 1.0);
-  vec3 lift = vec3(0.0);
-  float shortest = 3e38;
-  // No bow is shorter than the least lift, so most steps look along the straight lane alone.
-  for (int lane = 0; lane < WAYS && shortest > 1.0001 * least * least; ++lane) {
-    vec3 side = aside * sideOf(lane);
-    float height = least;
-    for (int i = 0; i < SAMPLES; ++i) {
-      Place place = placeOf(p0, p1, reaim, m0, i);
-      vec3 p = place.straight + place.share * side;
-      float gap = groundAt(world + p.xz).x - (body.local.y + p.y);
-      height = max(height, (gap * up.y + parameters.stepClearance * place.clearing) / place.share);
-    }
-    float over = max(0.0, height - parameters.stepHeightMax);
-    vec3 bow = up * (height - over) + side;
-    float cost = dot(bow, bow) + ROUTE_FORBIDDEN * over * over;
-    if (cost < shortest) {
-      shortest = cost;
-      lift = bow;
-    }
-  }
+  vec3 lift = shortestLift(search, p0, p1, reaim, m0, parameters.stepHeight * (reaim ? 1.0 - u : 1.0));
   m0 = reaim ? m0 : lift;
 
   STORE4_TWO(stepsOut, record * STEP_STRIDE, vec4(p1 + body.local, thisTick - 1.0),

@@ -16,6 +16,7 @@ STORE4_BUFFER(BINDING_WATCH_OUT, watchesOut);
 LOAD4_BUFFER(BINDING_METRIC, metrics);
 STORE4_BUFFER(BINDING_METRIC_OUT, metricsOut);
 #include "stages/counters.glsl"
+#include "stages/absent.glsl"
 layout(set = 0, binding = BINDING_HISTOGRAM, std430) buffer HistogramBlock { uint histogram[]; };
 
 const float FAR = 3e38;
@@ -196,7 +197,6 @@ void measure(int slot, int agent) {
 }
 
 void main() {
-  int slot = int(gl_GlobalInvocationID.x);
-  RARELY(gl_GlobalInvocationID.x < constants.count)
-    measure(slot, int(constants.first + gl_GlobalInvocationID.x * constants.every));
+  int slot = int(gl_GlobalInvocationID.x), agent = int(constants.first + gl_GlobalInvocationID.x * constants.every);
+  RARELY(gl_GlobalInvocationID.x < constants.count && !absent(agent)) measure(slot, agent);
 }

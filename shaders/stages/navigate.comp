@@ -8,6 +8,7 @@ STORE4_BUFFER(BINDING_STEER_OUT, steersOut);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_GAIT, gaits);
 #include "stages/navigate.glsl"
+#include "stages/absent.glsl"
 layout(constant_id = CONSTANT_SLEEP) const int SLEEP = SLEEP_NEVER;
 
 // Nothing of it changes any more but by a goal or by the ground.
@@ -22,6 +23,10 @@ bool asleep(int agent, vec2 velocity) {
 void main() {
   int agent = int(gl_GlobalInvocationID.x);
   if (agent >= int(constants.count)) return;
+  if (absent(agent)) {
+    STORE4(steersOut, agent, vec4(0.0, 0.0, 1.0, 0.0));
+    return;
+  }
   vec4 body = LOAD4(bodies, agent * BODY_STRIDE);
   vec2 velocity = makeVelocity(agent, worldOf(body.xyz, tileOf(body.w)));
   STORE4(steersOut, agent, vec4(velocity, SLEEP != SLEEP_NEVER && asleep(agent, velocity) ? 1.0 : 0.0, 0.0));

@@ -48,7 +48,8 @@ TEST_F(Info, ALoadPathCanBeAskedFor) {
   const Result result = skitter({"info", "--json", file("info.json")}, {{"SKITTER_LOADS", "storage"}});
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_NE(result.out.find("storage buffers: asked for"), std::string::npos) << result.out;
-  for (const nlohmann::json& device : json("info.json").at("devices")) {
+  const nlohmann::json written = json("info.json");
+  for (const nlohmann::json& device : written.at("devices")) {
     if (device.at("suitable")) {
       EXPECT_EQ(device.at("loads").at("path"), "storage");
     }
@@ -60,7 +61,8 @@ TEST_F(Info, AStoreWidthCanBeAskedFor) {
     const Result result =
         skitter({"info", "--json", file("info.json")}, {{"SKITTER_STORES", std::to_string(bits)}});
     ASSERT_EQ(result.code, 0) << result.err;
-    for (const nlohmann::json& device : json("info.json").at("devices")) {
+    const nlohmann::json written = json("info.json");
+    for (const nlohmann::json& device : written.at("devices")) {
       // Storage buffers are written by one width alone.
       if (device.at("suitable") && device.at("loads").at("path") == "texel") {
         EXPECT_EQ(device.at("stores").at("bits"), bits);

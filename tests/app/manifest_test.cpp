@@ -95,6 +95,28 @@ TEST_F(ManifestTest, TheHashIsOfWhatIsSimulated) {
   EXPECT_EQ(hashes.size(), 4u);
 }
 
+TEST_F(ManifestTest, TheHashIsOfWhatHappens) {
+  const std::vector<const char*> events = {
+      R"("mound": {})",
+      R"("goal": {"kind": "none"})",
+      R"("agents": [1], "goal": {"kind": "none"})",
+      R"("speed": 2)",
+      R"("speed": 3)",
+      R"("teleport": [{"agent": 1}])",
+      R"("teleport": [{"agent": 1, "heading": 1}])",
+      R"("add": [{}])",
+      R"("add": [{"goal": {"kind": "none"}}])",
+      R"("remove": [1])",
+  };
+  std::set<std::string> hashes;
+  for (const char* event : events) {
+    std::ofstream(file("scene.json"))
+        << R"({"herds": [{"reserve": 2}], "events": [{"at": 1, )" << event << "}]}";
+    hashes.insert(hashOf({file("scene.json")}));
+  }
+  EXPECT_EQ(hashes.size(), events.size());
+}
+
 TEST_F(ManifestTest, TheHashIsOfTheFilesOfRigs) {
   for (const char* name : {"quadruped.glb", "quadruped.rig.json"})
     std::filesystem::copy_file(std::string(SKITTER_ROOT "/assets/") + name, file(name));

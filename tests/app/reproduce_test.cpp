@@ -38,6 +38,10 @@ void expectTable(const std::string& csv, const std::string& name) {
   std::istringstream lines(csv);
   std::string line;
   ASSERT_TRUE(std::getline(lines, line)) << name;
+  const std::string manifest = "# manifest: ";
+  ASSERT_TRUE(line.starts_with(manifest)) << name << ": " << line;
+  EXPECT_EQ(nlohmann::json::parse(line.substr(manifest.size())).at("version"), "0.1.0") << name;
+  ASSERT_TRUE(std::getline(lines, line)) << name;
   const size_t columns = cells(line);
   EXPECT_GT(columns, 1u) << name;
   while (std::getline(lines, line)) {

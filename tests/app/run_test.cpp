@@ -24,8 +24,10 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   EXPECT_EQ(keysOf(run),
             (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
                                    "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity", "herds",
-                                   "sleeping", "stateHash", "ticksWanted", "interrupted", "manifest"}));
+                                   "sleeping", "stateHash", "ticksWanted", "interrupted", "manifest",
+                                   "resumedAt"}));
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
+  EXPECT_TRUE(run.at("resumedAt").is_null()) << "it began at the start";
   EXPECT_EQ(run.at("agents"), 20);
   EXPECT_EQ(run.at("ticks"), 30);
   EXPECT_EQ(run.at("ticksWanted"), 30);
@@ -98,6 +100,10 @@ TEST_F(Running, WritesEveryFootfall) {
   EXPECT_EQ(json("run.json").at("watchEvery"), 2);
   std::ifstream lines(file("feet.csv"));
   std::string line;
+  std::getline(lines, line);
+  const std::string manifest = "# manifest: ";
+  ASSERT_EQ(line.substr(0, manifest.size()), manifest);
+  EXPECT_EQ(nlohmann::json::parse(line.substr(manifest.size())), json("run.json").at("manifest"));
   std::getline(lines, line);
   EXPECT_EQ(line, "herd,agent,leg,tick,seconds,x,y,z,speed");
   int count = 0, last = 0;

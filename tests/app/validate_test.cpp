@@ -1,38 +1,13 @@
 #include <signal.h>
 
-#include <fstream>
-#include <map>
-
+#include "../support/stages_page.h"
 #include "process.h"
+#include "skitter/controller.h"
 
 namespace skitter::test {
 namespace {
 
 using Validate = AppTest;
-
-TEST_F(Validate, EveryStageAgreesWithTheReference) {
-  const Result result =
-      skitter({"validate", "--agents", "16", "--frames", "30", "--seed", "5", "--json", file("v.json")});
-  EXPECT_EQ(result.code, 0) << result.out << result.err;
-  EXPECT_NE(result.out.find("seed 5"), std::string::npos);
-  const nlohmann::json validation = json("v.json");
-  EXPECT_TRUE(validation.at("pass"));
-  EXPECT_FALSE(validation.at("interrupted"));
-  EXPECT_EQ(validation.at("ticks"), 30);
-  EXPECT_EQ(validation.at("ticksWanted"), 30);
-  EXPECT_TRUE(validation.at("device").is_string());
-  std::vector<std::string> names;
-  for (const nlohmann::json& stage : validation.at("stages")) {
-    names.push_back(stage.at("name"));
-    EXPECT_TRUE(stage.at("pass"));
-    EXPECT_GT(stage.at("samples"), 0) << names.back();
-    EXPECT_LE(stage.at("maxError"), stage.at("tolerance")) << names.back();
-    EXPECT_TRUE(stage.at("ties").is_number_unsigned());
-    EXPECT_EQ(stage.at("why"), "");
-  }
-  EXPECT_EQ(names, (std::vector<std::string>{"navigate", "body", "gait", "foothold", "swing", "ik", "pose",
-                                             "measure", "footfall"}));
-}
 
 std::vector<std::string> stagesThatAgree(const nlohmann::json& validation) {
   std::vector<std::string> names;
@@ -40,22 +15,27 @@ std::vector<std::string> stagesThatAgree(const nlohmann::json& validation) {
     names.push_back(stage.at("name"));
     EXPECT_TRUE(stage.at("pass")) << names.back();
     EXPECT_GT(stage.at("samples"), 0) << names.back();
+    EXPECT_LE(stage.at("maxError"), stage.at("tolerance")) << names.back();
+    EXPECT_TRUE(stage.at("ties").is_number_unsigned()) << names.back();
+    EXPECT_EQ(stage.at("why"), "") << names.back();
   }
   return names;
 }
 
-TEST_F(Validate, EveryControllerHasItsStages) {
-  const std::map<std::string, std::vector<std::string>> stages = {
-      {"loop", {"navigate", "body", "gait", "swing", "ik", "pose", "measure", "footfall"}},
-      {"clip", {"navigate", "body", "clip", "swing", "pose", "measure", "footfall"}},
-      {"planted", {"navigate", "body", "clip", "swing", "ik", "pose", "measure", "footfall"}},
-      {"key-poses", {"navigate", "body", "gait", "swing", "pose", "measure", "footfall"}}};
-  for (const auto& [controller, names] : stages) {
-    SCOPED_TRACE(controller);
-    const Result result = skitter({"validate", "--controller", controller, "--agents", "8", "--frames", "20",
-                                   "--json", file("v.json")});
+TEST_F(Validate, EveryStageAgreesWithTheReference) {
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    const Result result = skitter({"validate", "--controller", nameOf(controller), "--agents", "16",
+                                   "--frames", "30", "--seed", "5", "--json", file("v.json")});
     EXPECT_EQ(result.code, 0) << result.out << result.err;
-    EXPECT_EQ(stagesThatAgree(json("v.json")), names);
+    EXPECT_NE(result.out.find("seed 5"), std::string::npos);
+    const nlohmann::json validation = json("v.json");
+    EXPECT_TRUE(validation.at("pass"));
+    EXPECT_FALSE(validation.at("interrupted"));
+    EXPECT_EQ(validation.at("ticks"), 30);
+    EXPECT_EQ(validation.at("ticksWanted"), 30);
+    EXPECT_TRUE(validation.at("device").is_string());
+    EXPECT_EQ(stagesThatAgree(validation), replayedOnThePage({nameOf(controller)}));
   }
 }
 
@@ -79,18 +59,14 @@ TEST_F(Validate, HerdsWithDifferentStagesAreOneTable) {
     {"rig": "spider", "controller": "adaptive", "agents": 4}]})");
   const Result result = skitter({"validate", file("mixed.json"), "--frames", "20", "--json", file("v.json")});
   EXPECT_EQ(result.code, 0) << result.out << result.err;
-  EXPECT_EQ(stagesThatAgree(json("v.json")),
-            (std::vector<std::string>{"navigate", "body", "clip", "gait", "foothold", "swing", "ik", "pose",
-                                      "measure", "footfall"}));
+  EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({"clip", "adaptive"}));
 }
 
-constexpr const char* kControllers[] = {"adaptive", "loop", "clip", "planted", "key-poses"};
-
 TEST_F(Validate, AFreeRunStaysTogether) {
-  for (const char* controller : kControllers) {
-    SCOPED_TRACE(controller);
-    const Result result = skitter({"validate", "--controller", controller, "--agents", "8", "--frames", "120",
-                                   "--free-run", "--json", file("v.json")});
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    const Result result = skitter({"validate", "--controller", nameOf(controller), "--agents", "8",
+                                   "--frames", "120", "--free-run", "--json", file("v.json")});
     EXPECT_EQ(result.code, 0) << result.out << result.err;
     EXPECT_NE(result.out.find("free run: "), std::string::npos) << result.out;
     EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
@@ -98,10 +74,10 @@ TEST_F(Validate, AFreeRunStaysTogether) {
 }
 
 TEST_F(Validate, TheGroundMayChangeUnderTheCrowd) {
-  for (const char* controller : kControllers) {
-    SCOPED_TRACE(controller);
-    const Result result = skitter({"validate", "--controller", controller, "--agents", "24", "--frames", "90",
-                                   "--edits", "--free-run", "--json", file("v.json")});
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    const Result result = skitter({"validate", "--controller", nameOf(controller), "--agents", "24",
+                                   "--frames", "90", "--edits", "--free-run", "--json", file("v.json")});
     EXPECT_EQ(result.code, 0) << result.out << result.err;
     // Four times, near 16 agents each.
     EXPECT_EQ(json("v.json").at("edits"), 64);
@@ -110,9 +86,56 @@ TEST_F(Validate, TheGroundMayChangeUnderTheCrowd) {
   }
 }
 
+// Ground that changes when the scene says.
+TEST_F(Validate, EventsOfASceneAreReplayed) {
+  const Result result = skitter({"validate", SKITTER_ROOT "/assets/scenes/events.json", "--agents", "40",
+                                 "--frames", "130", "--free-run", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_FALSE(stagesThatAgree(json("v.json")).empty());
+  EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
+}
+
+// Agents that are steered, moved, added and removed when the scene says, with every controller.
+TEST_F(Validate, EventsAboutAgentsAreReplayed) {
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    const Result result =
+        skitter({"validate", SKITTER_ROOT "/assets/scenes/steered.json", "--controller", nameOf(controller),
+                 "--dt", "0.05", "--frames", "45", "--free-run", "--json", file("v.json")});
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({nameOf(controller)}));
+    EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
+  }
+}
+
+// The usual number of agents does not suit a scene that names some, whatever it is.
+TEST_F(Validate, AgentsThatEventsNameAreThere) {
+  write("named.json", R"({"herds": [{"agents": 70}], "events": [{"at": 0.1, "agents": [69], "speed": 2}]})");
+  const Result result = skitter({"validate", file("named.json"), "--frames", "10"});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find(": 70 agents, 10 ticks"), std::string::npos) << result.out;
+  expectRefusal(skitter({"validate", file("named.json"), "--agents", "69"}), 2,
+                {"named: events[0].agents[0] is 69, expected less than 69"});
+  write("gone.json", R"({"herds": [{"agents": 3, "reserve": 1}],
+                         "events": [{"at": 0.1, "remove": [1]}, {"at": 0.2, "remove": [1]}]})");
+  expectRefusal(skitter({"validate", file("gone.json"), "--quiet"}), 2,
+                {"gone: events[1]: herd 0, agent 1: nobody, expected one of 2 agents"});
+}
+
+TEST_F(Validate, WhoComesLaterIsCompared) {
+  write("empty.json", R"({"herds": [{"agents": 0, "reserve": 4}],
+                          "events": [{"at": 0.1, "add": [{"position": [1, 2]}, {"position": [5, 2]}]}]})");
+  const Result result =
+      skitter({"validate", file("empty.json"), "--agents", "0", "--frames", "60", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({"adaptive"}));
+}
+
 TEST_F(Validate, NothingToCompareIsAWrongInput) {
   expectRefusal(skitter({"validate", "--frames", "0"}), 2, {"--frames", "0", "1"});
   expectRefusal(skitter({"validate", "--agents", "0"}), 2, {"no agents", "at least one"});
+  write("empty.json", R"({"herds": [{"agents": 0, "reserve": 4}]})");
+  expectRefusal(skitter({"validate", file("empty.json"), "--agents", "0"}), 2, {"no agents", "at least one"});
 }
 
 // Foothold must leave the steps of legs that never step as they are.
@@ -122,8 +145,10 @@ TEST_F(Validate, ACrowdThatStandsIsCompared) {
   const Result result = skitter(
       {"validate", file("standing.json"), "--agents", "4", "--frames", "20", "--json", file("v.json")});
   EXPECT_EQ(result.code, 0) << result.out << result.err;
-  const nlohmann::json foothold = json("v.json").at("stages").at(3);
-  EXPECT_EQ(foothold.at("name"), "foothold");
+  const nlohmann::json written = json("v.json");
+  nlohmann::json foothold;
+  for (const nlohmann::json& stage : written.at("stages"))
+    if (stage.at("name") == "foothold") foothold = stage;
   EXPECT_EQ(foothold.at("samples").get<int>() + foothold.at("kept").get<int>(), 4 * 8 * 20);
   EXPECT_GT(foothold.at("kept"), 4 * 8 * 10);
 }

@@ -50,5 +50,19 @@ TEST(Heightfield, ClampsOutside) {
   EXPECT_TRUE(std::isfinite(field.at(std::numeric_limits<float>::quiet_NaN(), 0)));
 }
 
+TEST(Heightfield, HasTheNormalOfItsSlopes) {
+  // 0.5 m a metre along x, 2.5 along z.
+  for (const glm::vec2 place : {glm::vec2(0, 0), {-2, -2}, {1.9f, 1.5f}, {100, -100}})
+    EXPECT_LT(glm::distance(ramp().normalAt(place.x, place.y), glm::normalize(glm::vec3(-0.5f, 1, -2.5f))),
+              1e-6f);
+  // Of a surface that is bent, by differences.
+  Heightfield bent = ramp();
+  bent.heights[4] = -3;
+  const float x = 0.7f, z = 0.9f, step = 0.01f;
+  const float slopeX = (bent.at(x + step, z) - bent.at(x - step, z)) / (2 * step);
+  const float slopeZ = (bent.at(x, z + step) - bent.at(x, z - step)) / (2 * step);
+  EXPECT_LT(glm::distance(bent.normalAt(x, z), glm::normalize(glm::vec3(-slopeX, 1, -slopeZ))), 1e-4f);
+}
+
 }  // namespace
 }  // namespace skitter

@@ -56,7 +56,8 @@ TEST(Scene, EveryKey) {
     "herds": [{"rig": "crab.glb", "controller": "loop", "agents": 7, "keys": 6,
                "spawn": {"kind": "grid", "spacing": 3, "centre": [1, -2], "heading": 1.5},
                "goal": {"kind": "point", "target": [5, 6], "speed": 0}},
-              {"agents": 0, "goal": {"kind": "none"}}],
+              {"agents": 0, "reserve": 9, "goal": {"kind": "none"}},
+              {"agents": 0, "goal": {"kind": "velocity", "velocity": [0.5, -1]}}],
     "camera": {"kind": "fixed", "position": [1, 2, 3], "target": [4, 5, 6], "distance": 2, "fieldOfView": 1}
   })",
                                  "all.json", "folder");
@@ -72,7 +73,7 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(terrain.units.columns, 3u);
   EXPECT_EQ(terrain.units.rows, 4u);
   EXPECT_EQ(terrain.units.voidValue, -9999.0);
-  ASSERT_EQ(scene.herds.size(), 2u);
+  ASSERT_EQ(scene.herds.size(), 3u);
   const Herd& herd = scene.herds[0];
   EXPECT_EQ(std::filesystem::path(herd.rig), std::filesystem::path("folder/crab.glb"));
   EXPECT_EQ(herd.controller, Controller::loop);
@@ -84,11 +85,76 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(herd.goal.kind, Goal::Kind::point);
   EXPECT_EQ(herd.goal.target, glm::vec2(5, 6));
   EXPECT_EQ(herd.goal.speed, 0);
+  EXPECT_EQ(scene.herds[1].reserve, 9u);
+  EXPECT_EQ(scene.capacity(), 16u);
+  EXPECT_EQ(scene.herds[2].goal.kind, Goal::Kind::velocity);
+  EXPECT_EQ(scene.herds[2].goal.velocity, glm::vec2(0.5f, -1));
   EXPECT_EQ(scene.herds[1].goal.kind, Goal::Kind::none);
   EXPECT_EQ(scene.camera.kind, Camera::Kind::fixed);
   EXPECT_EQ(scene.camera.target, glm::vec3(4, 5, 6));
   EXPECT_EQ(scene.camera.fieldOfView, 1);
   EXPECT_EQ(scene.agentCount(), 7u);
+}
+
+TEST(Scene, CamerasThatOrbitAndGoAlongPaths) {
+  const Scene orbit = parseScene(R"({"camera": {"kind": "orbit", "distance": 20, "elevation": -0.5,
+                                                "azimuth": 1, "secondsATurn": -7}})",
+                                 "orbit.json", "");
+  EXPECT_EQ(orbit.camera.kind, Camera::Kind::orbit);
+  EXPECT_EQ(orbit.camera.distance, 20);
+  EXPECT_EQ(orbit.camera.elevation, -0.5f);
+  EXPECT_EQ(orbit.camera.azimuth, 1);
+  EXPECT_EQ(orbit.camera.secondsATurn, -7);
+  EXPECT_FALSE(orbit.camera.about);
+  const Scene about = parseScene(R"({"camera": {"kind": "orbit", "about": [1, 2, 3]}})", "about.json", "");
+  EXPECT_EQ(about.camera.about, glm::vec3(1, 2, 3));
+  const Scene path = parseScene(R"({"camera": {"kind": "path", "keys": [
+                                      {"time": 0.5, "position": [1, 2, 3], "target": [4, 5, 6]},
+                                      {"time": 2, "position": [7, 8, 9], "target": [0, 0, 0]}]}})",
+                                "path.json", "");
+  const std::vector<CameraKey> keys{{.time = 0.5f, .position = {1, 2, 3}, .target = {4, 5, 6}},
+                                    {.time = 2, .position = {7, 8, 9}}};
+  EXPECT_EQ(path.camera.kind, Camera::Kind::path);
+  EXPECT_EQ(path.camera.keys, keys);
+}
+
+TEST(Scene, EventsOfEveryKind) {
+  const Scene scene = parseScene(R"({"events": [
+    {"mound": {"radius": 2}},
+    {"at": 1, "goal": {"kind": "none"}},
+    {"at": 1, "herd": 2, "agents": [3, 1], "goal": {"kind": "point", "target": [5, 6]}},
+    {"at": 2, "herd": 1, "agents": [9], "speed": 0.5},
+    {"at": 3, "herd": 1, "teleport": [{"agent": 4, "position": [1, -2], "heading": 1.5}, {"agent": 0}]},
+    {"at": 4, "herd": 1, "add": [{"position": [7, 8], "heading": -1}, {"goal": {"kind": "none"}}]},
+    {"at": 5, "remove": [2, 7]}
+  ]})",
+                                 "events.json", "");
+  const Goal none{.kind = Goal::Kind::none}, point{.kind = Goal::Kind::point, .target = {5, 6}};
+  const std::vector<Event> expected{
+      {0, Mound{.radius = 2}},
+      {1, GoalChange{.goal = none}},
+      {1, GoalChange{.herd = 2, .agents = {3, 1}, .goal = point}},
+      {2, SpeedChange{.herd = 1, .agents = {9}, .speed = 0.5f}},
+      {3, Teleport{.herd = 1, .moves = {{4, {{1, -2}, 1.5f}}, {0, {}}}}},
+      {4, Addition{.herd = 1, .arrivals = {{.place = {{7, 8}, -1}}, {.goal = none}}}},
+      {5, Removal{.agents = {2, 7}}},
+  };
+  ASSERT_EQ(scene.events.size(), expected.size());
+  for (size_t e = 0; e < expected.size(); ++e) EXPECT_TRUE(scene.events[e] == expected[e]) << e;
+}
+
+TEST(Scene, LooksOfAHerd) {
+  const auto herd = [](const char* keys) {
+    return parseScene(fmt::format(R"({{"herds": [{{{}}}]}})", keys), "looks.json", "").herds.at(0);
+  };
+  EXPECT_FALSE(herd(R"("phase": "random")").phase);
+  EXPECT_EQ(herd(R"("phase": "together")").phase, 0);
+  EXPECT_EQ(herd(R"("phase": 0.25)").phase, 0.25f);
+  EXPECT_EQ(herd(R"("tint": 1)").tint, 1);
+  EXPECT_EQ(herd(R"("colour": [0.1, 0.2, 1])").colour, glm::vec3(0.1f, 0.2f, 1));
+  // sRGB: 0x80 is 0.2158605, 0x0a is below the straight part's end: 10 / 255 / 12.92.
+  const glm::vec3 hex = herd(R"("colour": "#80FF0a")").colour.value();
+  EXPECT_LT(glm::distance(hex, glm::vec3(0.2158605f, 1, 10 / 255.0f / 12.92f)), 1e-6f);
 }
 
 TEST(Scene, WholeNumbersHoweverTheyAreWritten) {
@@ -123,6 +189,8 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"herds": [{"spawn": {"centre": [1, 4097]}}]})", "herds[0].spawn.centre[1] is 4097"},
       {R"({"herds": [{"spawn": {"center": [1, 2]}}]})", "herds[0].spawn.center is no known key"},
       {R"({"herds": [{"goal": {"speed": -0.5}}]})", "herds[0].goal.speed is -0.5"},
+      {R"({"herds": [{"goal": {"velocity": [800, 800]}}]})", "herds[0].goal.velocity is 1131.37 m/s long"},
+      {R"({"herds": [{"agents": 9, "reserve": 16777210}]})", "16777219 agents in all"},
       {R"({"terrain": {"columns": 1}})", "terrain.columns is 1"},
       {R"({"terrain": {"rows": 16385}})", "terrain.rows is 16385"},
       {R"({"terrain": {"octaves": 0}})", "terrain.octaves is 0"},
@@ -136,6 +204,65 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"terrain": {"kind": "file", "file": "a.r16", "voidValue": "0"}})", "terrain.voidValue is \"0\""},
       {R"({"camera": {"fieldOfView": 7}})", "camera.fieldOfView is 7"},
       {R"({"camera": {"kind": "fixed"}})", "camera.position equals camera.target"},
+      {R"({"herds": [{"phase": "togeter"}]})",
+       "\"togeter\"; did you mean together? Expected one of \"random\""},
+      {R"({"herds": [{"phase": 1.5}]})", "herds[0].phase is 1.5, expected a number from 0 to 1"},
+      {R"({"herds": [{"tint": -1}]})", "herds[0].tint is -1"},
+      {R"({"herds": [{"colour": "red"}]})", "herds[0].colour is \"red\", expected \"#rrggbb\""},
+      {R"({"herds": [{"colour": "#12345g"}]})", "herds[0].colour is \"#12345g\""},
+      {R"({"herds": [{"colour": [0, 1]}]})", "herds[0].colour is an array of 2"},
+      {R"({"herds": [{"colour": [0, 1, 2]}]})", "herds[0].colour[2] is 2, expected a number from 0 to 1"},
+      {R"({"camera": {"kind": "path"}})", "camera.keys has 0, expected at least 2"},
+      {R"({"camera": {"kind": "path", "keys": [{"position": [0, 1, 0]}]}})", "camera.keys has 1"},
+      {R"({"camera": {"keys": [{"position": [0, 1, 0], "target": [0, 1, 0]}]}})",
+       "camera.keys[0].position equals camera.keys[0].target"},
+      {R"({"camera": {"keys": [{"time": 2, "position": [0, 1, 0]}, {"time": 2, "position": [0, 1, 0]}]}})",
+       "camera.keys[1].time is 2, expected at least 2.015625"},
+      {R"({"camera": {"keys": [{"time": -1, "position": [0, 1, 0]}]}})", "camera.keys[0].time is -1"},
+      {R"({"camera": {"elevation": 1.6}})", "camera.elevation is 1.6"},
+      {R"({"camera": {"about": [0, 1]}})", "camera.about is an array of 2"},
+      {R"({"events": {}})", "events is an object, expected an array of at most 4096 events"},
+      {R"({"events": [{"at": -1, "mound": {}}]})", "events[0].at is -1"},
+      {R"({"events": [{"at": 1}]})",
+       "events[0] has 0 of mound, edit, goal, speed, teleport, add, remove, expected one"},
+      {R"({"events": [{"mound": {}, "edit": {"columns": 1, "rows": 1, "heights": [0]}}]})",
+       "events[0] has 2 of mound, edit"},
+      {R"({"events": [{"mond": {}, "mound": {}}]})", "events[0].mond is no known key; did you mean mound?"},
+      {R"({"events": [{"at": 2, "mound": {}}, {"at": 1, "mound": {}}]})",
+       "events[1].at is 1, expected 2 or later"},
+      {R"({"events": [{"mound": {"radius": 0}}]})", "events[0].mound.radius is 0"},
+      {R"({"events": [{"edit": {"columns": 2, "rows": 2, "heights": [0, 1, 2]}}]})",
+       "events[0].edit.heights has 3 numbers, expected 4"},
+      {R"({"events": [{"edit": {"x": 16384, "columns": 1, "rows": 1, "heights": [0]}}]})",
+       "events[0].edit.x is 16384"},
+      {R"({"events": [{"herd": 0, "gaol": {}}]})", "events[0].gaol is no known key; did you mean goal?"},
+      {R"({"events": [{"herd": 0, "mound": {}}]})", "events[0].herd is no known key"},
+      {R"({"events": [{"herd": 0, "goal": {}, "speed": 1}]})", "events[0] has 2 of mound, edit, goal, speed"},
+      {R"({"events": [{"herd": 1024, "speed": 1}]})",
+       "events[0].herd is 1024, expected a whole number from 0 to 1023"},
+      {R"({"events": [{"agents": 3, "speed": 1}]})",
+       "events[0].agents is 3, expected an array of 1 to 65536"},
+      {R"({"events": [{"agents": [], "speed": 1}]})", "events[0].agents is an array of 0"},
+      {R"({"events": [{"agents": [0, 1.5], "speed": 1}]})",
+       "events[0].agents[1] is 1.5, expected a whole number from 0 to 16777215"},
+      {R"({"events": [{"speed": 1001}]})", "events[0].speed is 1001, expected a number from 0 to 1000"},
+      {R"({"events": [{"goal": {"knd": "none"}}]})",
+       "events[0].goal.knd is no known key; did you mean kind?"},
+      {R"({"events": [{"goal": {"velocity": [800, 800]}}]})", "events[0].goal.velocity is 1131.37 m/s long"},
+      {R"({"events": [{"teleport": []}]})", "events[0].teleport is empty, expected at least one agent"},
+      {R"({"events": [{"teleport": [{"position": [1, 2]}]}]})", "events[0].teleport[0].agent is missing"},
+      {R"({"events": [{"teleport": [{"agent": 1, "positon": [1, 2]}]}]})",
+       "events[0].teleport[0].positon is no known key; did you mean position?"},
+      {R"({"events": [{"teleport": [{"agent": 1, "position": [1, 4097]}]}]})",
+       "events[0].teleport[0].position[1] is 4097"},
+      {R"({"events": [{"agents": [1], "teleport": [{"agent": 1}]}]})", "events[0].agents is no known key"},
+      {R"({"events": [{"add": {}}]})",
+       "events[0].add is an object, expected an array of at most 65536 agents"},
+      {R"({"events": [{"add": []}]})", "events[0].add is empty, expected at least one agent"},
+      {R"({"events": [{"add": [{"heading": 1001}]}]})", "events[0].add[0].heading is 1001"},
+      {R"({"events": [{"add": [{"goal": {"speed": -1}}]}]})", "events[0].add[0].goal.speed is -1"},
+      {R"({"events": [{"remove": []}]})", "events[0].remove is an array of 0"},
+      {R"({"events": [{"remove": [0, -1]}]})", "events[0].remove[1] is -1"},
       {R"({"seed": 1, "seed": 2})", "\"seed\" appears twice"},
       {R"({"seed": NaN})", "line 1"},
       {"", "not valid JSON"},
@@ -201,12 +328,18 @@ class RandomScenes {
 
   Scene scene() {
     Scene made;
-    auto& [name, terrain, herds, camera, seed] = made;
+    auto& [name, terrain, herds, camera, events, seed] = made;
     name = text();
     terrain = coin() ? decltype(Scene::terrain)(noise()) : terrainFile();
     herds.resize(whole(0, 3));
     for (Herd& each : herds) each = herd();
     camera = this->camera();
+    events.resize(whole(0, 3));
+    float last = 0;
+    for (auto& [at, what] : events) {
+      at = last += real(0, 5);
+      what = happening();
+    }
     seed = random_();
     return made;
   }
@@ -285,7 +418,8 @@ class RandomScenes {
   }
   Herd herd() {
     Herd made;
-    auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = made;
+    auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, phase,
+           colour, tint] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -302,20 +436,123 @@ class RandomScenes {
     spacing = real(0.1, 10);
     centre = place();
     heading = real(-10, 10);
-    auto& [goalKind, target, speed] = goal;
-    goalKind = one({Goal::Kind::cross, Goal::Kind::point, Goal::Kind::none});
+    reserve = static_cast<uint32_t>(whole(0, 1000));
+    goal = this->goal();
+    maybe(phase, 0, 1);
+    if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
+    maybe(tint, 0, 1);
+    return made;
+  }
+  Goal goal() {
+    Goal made;
+    auto& [kind, target, speed, velocity] = made;
+    kind = one({Goal::Kind::cross, Goal::Kind::point, Goal::Kind::none, Goal::Kind::velocity});
+    velocity = {real(-10, 10), real(-10, 10)};
     target = place();
     speed = real(0, 10);
     return made;
   }
+  decltype(Event::what) happening() {
+    switch (whole(0, 6)) {
+      case 0:
+        return mound();
+      case 1:
+        return samples();
+      case 2: {
+        GoalChange made;
+        auto& [herd, agents, goal] = made;
+        herd = someHerd();
+        agents = numbers(0);
+        goal = this->goal();
+        return made;
+      }
+      case 3: {
+        SpeedChange made;
+        auto& [herd, agents, speed] = made;
+        herd = someHerd();
+        agents = numbers(0);
+        speed = real(0, 10);
+        return made;
+      }
+      case 4: {
+        Teleport made;
+        auto& [herd, moves] = made;
+        herd = someHerd();
+        for (const uint32_t agent : numbers(1)) moves.push_back({agent, standing()});
+        return made;
+      }
+      case 5: {
+        Addition made;
+        auto& [herd, arrivals] = made;
+        herd = someHerd();
+        arrivals.resize(whole(1, 3));
+        for (auto& [place, goal] : arrivals) {
+          place = standing();
+          if (coin()) goal = this->goal();
+        }
+        return made;
+      }
+      default: {
+        Removal made;
+        auto& [herd, agents] = made;
+        herd = someHerd();
+        agents = numbers(1);
+        return made;
+      }
+    }
+  }
+  uint32_t someHerd() { return static_cast<uint32_t>(whole(0, Scene::maxHerds - 1)); }
+  std::vector<uint32_t> numbers(uint64_t least) {
+    std::vector<uint32_t> made(whole(least, 3));
+    for (uint32_t& each : made) each = static_cast<uint32_t>(whole(0, Scene::maxAgents - 1));
+    return made;
+  }
+  Place standing() {
+    Place made;
+    auto& [position, heading] = made;
+    position = place();
+    heading = real(-10, 10);
+    return made;
+  }
+  Mound mound() {
+    Mound made;
+    auto& [centre, radius, height] = made;
+    centre = place();
+    radius = real(0.1, 10);
+    height = real(-3, 3);
+    return made;
+  }
+  HeightSamples samples() {
+    HeightSamples made;
+    auto& [x, z, columns, rows, heights] = made;
+    x = static_cast<uint32_t>(whole(0, 100));
+    z = static_cast<uint32_t>(whole(0, 100));
+    columns = static_cast<uint32_t>(whole(1, 3));
+    rows = static_cast<uint32_t>(whole(1, 3));
+    heights.resize(size_t{columns} * rows);
+    for (float& height : heights) height = real(-3, 3);
+    return made;
+  }
   Camera camera() {
     Camera made;
-    auto& [kind, position, target, distance, fieldOfView] = made;
-    kind = one({Camera::Kind::follow, Camera::Kind::fixed});
+    auto& [kind, position, target, distance, fieldOfView, about, elevation, azimuth, secondsATurn, keys] =
+        made;
+    kind = one({Camera::Kind::follow, Camera::Kind::fixed, Camera::Kind::orbit, Camera::Kind::path});
     position = point();
     target = point();
     distance = real(0.1, 100);
     fieldOfView = real(0.1, 3);
+    if (coin()) about = point();
+    elevation = real(-1, 1);
+    azimuth = real(-3, 3);
+    secondsATurn = real(-60, 60);
+    keys.resize(kind == Camera::Kind::path || coin() ? whole(2, 4) : 0);
+    float last = 0;
+    for (auto& [time, from, at] : keys) {
+      time = last += real(0.1, 10);
+      from = point();
+      at = point();
+    }
     return made;
   }
 
@@ -360,6 +597,22 @@ TEST(Scene, IsNotWrittenWhereItCouldNotBeRead) {
               scene.herds[0].cuts.push_back({"walk", "", 0, 1});
             }),
             "built-in: herds[0].cuts[0].name is missing");
+  const auto faultOfEvent = [&](const decltype(Event::what)& what) {
+    return faultOf([&](Scene& scene) { scene.events.push_back({0, what}); });
+  };
+  EXPECT_EQ(faultOfEvent(Teleport{}), "built-in: events[0].teleport is empty, expected at least one agent");
+  EXPECT_EQ(faultOfEvent(Addition{}), "built-in: events[0].add is empty, expected at least one agent");
+  EXPECT_EQ(faultOfEvent(Removal{}), "built-in: events[0].remove is empty, expected at least one agent");
+  EXPECT_EQ(
+      faultOfEvent(Teleport{.moves = {{}}}),
+      "built-in: events[0].teleport[0].agent is 4294967295, expected a whole number from 0 to 16777215");
+  EXPECT_EQ(faultOfEvent(SpeedChange{.herd = 1024}),
+            "built-in: events[0].herd is 1024, expected a whole number from 0 to 1023");
+  const std::vector<uint32_t> many(Event::maxAgents + 1);
+  EXPECT_EQ(faultOfEvent(GoalChange{.agents = many}),
+            "built-in: events[0].agents are 65537, expected at most 65536");
+  EXPECT_EQ(faultOfEvent(Addition{.arrivals = std::vector<Addition::Arrival>(Event::maxAgents + 1)}),
+            "built-in: events[0].add are 65537, expected at most 65536");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct Start {
     state = crowd.download(0);
   }
   Start(Device& device, const Heightfield& ground, uint32_t agents, int ticks, Rig rig)
-      : terrain(ground), crowd(device, terrain, sceneOf(agents), std::vector<Rig>{std::move(rig)}) {
+      : terrain(ground), crowd(device, terrain, sceneOf(agents), {.rigs = {std::move(rig)}}) {
     simulate(device, crowd, ticks);
     state = crowd.download(0);
   }

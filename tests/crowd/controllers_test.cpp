@@ -111,8 +111,8 @@ Rig narrowSpider() {
 
 TEST_P(BrokenLimitsTest, AreMeasuredAsAnglesAndNotJudged) {
   const Heightfield ground = rollingGround();
-  Crowd crowd(device(), ground, sceneOf(16, 1, 1, Controller::clip), std::vector<Rig>{narrowSpider()},
-              CrowdOptions{.footfalls = UINT32_MAX});
+  Crowd crowd(device(), ground, sceneOf(16, 1, 1, Controller::clip),
+              {.footfalls = UINT32_MAX, .rigs = {narrowSpider()}});
   expectPass(replay(device(), crowd, ground, 60));
   EXPECT_GT(validation::metricOf(crowd.download(0), 0).largestViolation, 0.4);
   EXPECT_FALSE(crowd.fidelity().limitViolation.has_value());
@@ -123,7 +123,7 @@ TEST_P(BrokenLimitsTest, AreMeasuredAsAnglesAndNotJudged) {
 TEST_P(BrokenLimitsTest, AreNotCountedAmongKeptOnes) {
   Scene scene = sceneOf(16, 1, 1, Controller::clip);
   scene.herds.push_back(sceneOf(16).herds[0]);
-  Crowd crowd(device(), rollingGround(), scene, std::vector<Rig>{narrowSpider(), spiderRig()});
+  Crowd crowd(device(), rollingGround(), scene, {.rigs = {narrowSpider(), spiderRig()}});
   simulate(device(), crowd, 60);
   ASSERT_TRUE(crowd.fidelity().limitViolation.has_value());
   EXPECT_EQ(crowd.fidelity().limitViolation, crowd.fidelity(1).limitViolation);

@@ -74,7 +74,7 @@ Rig halfASpider() {
 }
 
 TEST_F(CrowdTest, PercentileOfReachErrorsIsOfEveryLegAndTick) {
-  Crowd crowd(device(), rollingGround(), sceneOf(16), std::vector<Rig>{halfASpider()});
+  Crowd crowd(device(), rollingGround(), sceneOf(16), {.rigs = {halfASpider()}});
   std::vector<double> errors;
   for (int tick = 0; tick < 60; ++tick) {
     simulate(device(), crowd, 1);

@@ -153,8 +153,19 @@ TEST_F(InputTest, RefusesStepsThatTheirRecordsDoNotHold) {
   simulate(device(), looping, 1, 2e-5f);
   Rig giant = crowd.rig(0);
   giant.legLength = 101;
-  EXPECT_THROW(Crowd(device(), flatGround(), sceneOf(1), std::vector<Rig>{giant}), Error);
-  EXPECT_NO_THROW(Crowd(device(), flatGround(), sceneOf(1, 1, 1, Controller::loop), std::vector<Rig>{giant}));
+  EXPECT_THROW(Crowd(device(), flatGround(), sceneOf(1), {.rigs = {giant}}), Error);
+  EXPECT_NO_THROW(Crowd(device(), flatGround(), sceneOf(1, 1, 1, Controller::loop), {.rigs = {giant}}));
+}
+
+TEST_F(InputTest, TakesOneRigAHerdOrNone) {
+  EXPECT_NO_THROW(Crowd(device(), flatGround(), sceneOf(1), {}));
+  try {
+    Crowd(device(), flatGround(), sceneOf(1), {.rigs = {spiderRig(), spiderRig()}});
+    FAIL() << "two rigs for one herd were taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("2 rigs were given, expected one for each of 1 herds"));
+  }
 }
 
 TEST_F(InputTest, RefusesMoreAgentsThanThereIsMemoryFor) {

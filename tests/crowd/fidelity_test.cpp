@@ -175,7 +175,7 @@ TEST_F(FidelityTest, FiguresAreWhatTheRunGave) {
   scene.herds[2].goal.speed = 5;
   const Heightfield ground =
       generateHeightfield({.columns = 129, .rows = 129, .amplitude = 16, .wavelength = 12});
-  Crowd crowd(device(), ground, scene, {stiffSpider(), hopper(), scaledSpider(1.7f)});
+  Crowd crowd(device(), ground, scene, {.rigs = {stiffSpider(), hopper(), scaledSpider(1.7f)}});
 
   std::vector<Record> records;
   for (int i = 0; i < 90; ++i) {
@@ -252,8 +252,8 @@ TEST_F(FidelityTest, LimitsAreThoseOfJudgedHerds) {
   scene.herds.resize(3, scene.herds[0]);
   scene.herds[1].controller = Controller::loop;
   scene.herds[2].controller = Controller::adaptive;
-  Crowd crowd(device(), rollingGround(), scene, {stiffSpider(), spiderRig(), scaledSpider(1.7f)},
-              CrowdOptions{.sleep = true});
+  Crowd crowd(device(), rollingGround(), scene,
+              {.sleep = true, .rigs = {stiffSpider(), spiderRig(), scaledSpider(1.7f)}});
   const auto asleep = [&] { return crowd.sleeping() == 3 * agents; };
   while (crowd.tick() < 300 && !asleep()) simulate(device(), crowd, 10);
   ASSERT_TRUE(asleep());

@@ -66,7 +66,7 @@ double stabilityMargin(const HerdState& state, size_t agent, size_t legs) {
 
 void expectOrderly(Device& device, const Heightfield& ground, const Scene& scene, const Rig& rig, int ticks,
                    int stableFrom) {
-  Crowd crowd(device, ground, scene, std::vector<Rig>{rig});
+  Crowd crowd(device, ground, scene, {.rigs = {rig}});
   const auto legs = static_cast<size_t>(rig.legCount());
   std::vector<int> flights(legs);
   for (int tick = 0; tick < ticks; ++tick) {

@@ -73,7 +73,9 @@ TEST_P(SharedPagesTest, DoNotShow) {
         CrowdOptions{
             .watchEvery = 1, .feet = true, .footfalls = UINT32_MAX, .sleep = true, .pageAgents = 24}}) {
     SCOPED_TRACE(options.pageAgents);
-    Crowd together(device(), ground, scene, options), apart(device(), ground, scene, ownRigs(scene), options);
+    CrowdOptions own = options;
+    own.rigs = ownRigs(scene);
+    Crowd together(device(), ground, scene, options), apart(device(), ground, scene, own);
     ASSERT_EQ(implOf(together).kinds.size(), 2u);
     ASSERT_EQ(implOf(apart).kinds.size(), scene.herds.size());
     for (const int ticks : {1, 30, 30}) {

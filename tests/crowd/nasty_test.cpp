@@ -109,7 +109,7 @@ void expectEveryStage(Device& device, const Rig& rig, uint64_t seeds, float fart
   const Heightfield ground = rollingGround();
   for (uint64_t seed = 1; seed <= seeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Crowd crowd(device, ground, sceneOf(65), std::vector<Rig>{rig});
+    Crowd crowd(device, ground, sceneOf(65), {.rigs = {rig}});
     scramble(device.context(), crowd, seed, farthest);
     expectAllPass(replay(device, crowd, validation::herdFacts(implOf(crowd).kindOf(0), ground), 4));
   }
@@ -136,7 +136,7 @@ void solveListed(const gpu::Context& context, const crowd::Kind& kind, uint64_t 
   constants.tick = static_cast<float>(tick);
   gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
     kind.stages[ik].listed.dispatchIndirect(cmd, page.bindings[ik], gpu::bytesOf(constants), page.counters,
-                                          shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
+                                            shared::COUNTER_IK_DISPATCH_X * sizeof(uint32_t));
   });
 }
 
@@ -156,7 +156,7 @@ TEST_P(NastyTest, ListedLegsAndOthersAreSolvedAlike) {
   const gpu::Context& context = device().context();
   for (const Rig& rig : {spiderRig(), straightLegs({2, 5, 3, 1, 4, 5}, 60), straightLegs({15, 15}, 30)}) {
     SCOPED_TRACE(rig.name + " with " + std::to_string(rig.maxBones()) + " bones");
-    Crowd crowd(device(), rollingGround(), sceneOf(65), std::vector<Rig>{rig});
+    Crowd crowd(device(), rollingGround(), sceneOf(65), {.rigs = {rig}});
     const crowd::Kind& kind = implOf(crowd).kindOf(0);
     const crowd::Page& page = kind.pages.at(0);
     scramble(context, crowd, 1, 1.1f);
@@ -189,7 +189,7 @@ TEST_P(NastyTest, ListedLegsAndOthersAreSolvedAlike) {
 TEST_P(NastyTest, MissesAreThoseOfTheTips) {
   for (const Rig& rig : {spiderRig(), straightLegs({2, 5, 3, 1, 4, 5}, 60)}) {
     SCOPED_TRACE(rig.name);
-    Crowd crowd(device(), rollingGround(), sceneOf(65), std::vector<Rig>{rig});
+    Crowd crowd(device(), rollingGround(), sceneOf(65), {.rigs = {rig}});
     const crowd::Kind& kind = implOf(crowd).kindOf(0);
     scramble(device().context(), crowd, 1, 1.1f);
     for (int tick = 0; tick < 3; ++tick) {

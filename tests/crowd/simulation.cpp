@@ -119,6 +119,31 @@ void expectAllPass(const std::vector<validation::StageResult>& results) {
     EXPECT_TRUE(stage.pass) << stage.name << ": " << stage.why;
 }
 
+void expectBeganAlike(const Crowd& anew, const Crowd& began) {
+  const Controller controller = implOf(began).kindOf(0).controller;
+  if (controller == Controller::clip || controller == Controller::keyPoses) {
+    EXPECT_EQ(anew.stateHash(), began.stateHash());
+    return;
+  }
+  const HerdState ours = anew.download(0), theirs = began.download(0);
+  EXPECT_EQ(ours.goal, theirs.goal);
+  EXPECT_EQ(ours.gait, theirs.gait);
+  const double leg = began.rig(0).legLength;
+  const size_t legs = began.rig(0).legs.size();
+  for (size_t i = 0; i < theirs.agents; ++i) {
+    EXPECT_LT(glm::distance(positionOf(ours, i), positionOf(theirs, i)), 0.01 * leg) << "agent " << i;
+    const float* heading = &theirs.body[4 * (shared::BODY_STRIDE * i + 1)];
+    EXPECT_TRUE(std::equal(heading, heading + 2, &ours.body[4 * (shared::BODY_STRIDE * i + 1)]))
+        << "agent " << i;
+    for (size_t l = 0; l < legs; ++l) {
+      const size_t at = 4 * (legs * i + l);
+      const glm::vec3 a(ours.tip[at], ours.tip[at + 1], ours.tip[at + 2]);
+      const glm::vec3 b(theirs.tip[at], theirs.tip[at + 1], theirs.tip[at + 2]);
+      EXPECT_LT(glm::distance(a, b), 0.01 * leg) << "agent " << i << ", leg " << l;
+    }
+  }
+}
+
 glm::dvec3 positionOf(const HerdState& state, size_t agent) {
   const float* b = state.body.data() + agent * shared::BODY_STRIDE * 4;
   return {double{shared::tileX(b[3])} * shared::TILE_SIZE + b[0], b[1],

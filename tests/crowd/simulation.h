@@ -45,6 +45,11 @@ std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crow
                                                             const Heightfield& terrain, int ticks,
                                                             float dt = kTick);
 
+// Who stood anew before the first tick against who began in the same places: the same bits where poses do not
+// depend on feet; else goals, gaits and headings have the same bits, and bodies and feet are within a
+// hundredth of a leg, for the way to a foot differs.
+void expectBeganAlike(const Crowd& anew, const Crowd& began);
+
 // Agent i's world position and, for each leg, whether it is planted.
 glm::dvec3 positionOf(const HerdState& state, size_t agent);
 bool plantedOf(const HerdState& state, size_t leg);

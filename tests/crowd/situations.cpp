@@ -76,6 +76,19 @@ Results atTheEdge(Device& device, Controller controller, const CrowdOptions& opt
   return replay(device, crowd, ground, 60);
 }
 
+// By velocities of every direction, half of them longer than they are cut to.
+Results goingByVelocity(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), options);
+  simulate(device, crowd, 30);
+  setGoals(device, crowd, [&](size_t agent, float* goal) {
+    const float angle = 0.785398f * static_cast<float>(agent);
+    goal[0] = 0.8f * std::sin(angle), goal[1] = 0.8f * std::cos(angle);
+    goal[4] = agent < 8 ? 0.6f : 1.0f, goal[6] = shared::GOAL_VELOCITY;
+  });
+  return replay(device, crowd, ground, 30);
+}
+
 // On a small map agents run faster than they can turn back in time: they brake before its edge.
 Results tooFastForTheMap(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = smallRollingGround();
@@ -197,7 +210,9 @@ Results beyondTheLimits(Device& device, Controller controller, const CrowdOption
   Rig rig = spiderRig();
   for (Leg& leg : rig.legs)
     for (Bone& bone : leg.bones) bone.coneHalfAngle = 0.05f;
-  Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), std::vector<Rig>{rig}, options);
+  CrowdOptions stiff = options;
+  stiff.rigs = {rig};
+  Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), stiff);
   return replay(device, crowd, ground, 60);
 }
 
@@ -208,6 +223,7 @@ const std::vector<Situation>& situations() {
       {"walking", {Controller::adaptive}, walking},
       {"fallingAsleep", {Controller::adaptive}, fallingAsleep},
       {"atTheEdge", {Controller::adaptive}, atTheEdge},
+      {"goingByVelocity", {Controller::adaptive, Controller::loop}, goingByVelocity},
       {"tooFastForTheMap", {Controller::adaptive, Controller::loop}, tooFastForTheMap},
       {"reachingOverRocks", {Controller::adaptive}, reachingOverRocks},
       {"liftingAtOnce", {Controller::adaptive}, liftingAtOnce},

@@ -14,6 +14,7 @@ namespace {
 using glm::dquat;
 using glm::dvec3;
 using validation::IkJudge;
+namespace judged = validation::judged;
 using Joints = std::vector<dvec3>;
 
 constexpr double tiny = 1e-9;
@@ -26,12 +27,11 @@ dvec3 leaning(const dvec3& from, const dvec3& toward, double degrees) {
   return std::cos(rad(degrees)) * from + std::sin(rad(degrees)) * toward;
 }
 
-IkJudge::Bone bone(const dvec3& rest, decltype(IkJudge::Bone::limit) limit = IkJudge::Free{},
-                   double length = 1) {
+IkJudge::Bone bone(const dvec3& rest, judged::Limit limit = judged::Free{}, double length = 1) {
   return {length, rest, limit, 0, 0};
 }
-IkJudge::Cone cone(double degrees) { return {rad(degrees)}; }
-IkJudge::Hinge hinge(const dvec3& axis, double min, double max) { return {axis, rad(min), rad(max)}; }
+judged::Cone cone(double degrees) { return {rad(degrees)}; }
+judged::Hinge hinge(const dvec3& axis, double min, double max) { return {axis, rad(min), rad(max)}; }
 
 // Joints of a chain of unit bones with these directions.
 Joints posed(const std::vector<dvec3>& directions) {
@@ -50,7 +50,7 @@ double violation(const std::vector<IkJudge::Bone>& bones, const std::vector<dvec
 
 TEST(IkJudge, RestPoseIsLegalUnderEveryLimit) {
   const dvec3 oblique = glm::normalize(dvec3(0.3, 0.8, -0.5));
-  EXPECT_NEAR(violation({bone(oblique, cone(1)), bone(Y, IkJudge::Ellipse{0.1, 0.2, 0.3, 0.4}),
+  EXPECT_NEAR(violation({bone(oblique, cone(1)), bone(Y, judged::Ellipse{0.1, 0.2, 0.3, 0.4}),
                          bone(oblique, hinge(dvec3(0, 0, 5), -1, 1)), bone(-Z, cone(1)), bone(X)},
                         {oblique, Y, oblique, -Z, X}),
               0, tiny);
@@ -93,7 +93,7 @@ TEST(IkJudge, ConeIsCarriedAlong) {
 TEST(IkJudge, StraightAgainstTheRestDirection) {
   EXPECT_NEAR(violation({bone(Y), bone(Y, cone(30))}, {Y, -Y}), rad(150), tiny);
   EXPECT_NEAR(violation({bone(Z, cone(90))}, {-Z}), rad(90), tiny);
-  EXPECT_NEAR(violation({bone(Z, IkJudge::Ellipse{1, 2, 3, 1})}, {-Z}), rad(180) - 1, tiny);
+  EXPECT_NEAR(violation({bone(Z, judged::Ellipse{1, 2, 3, 1})}, {-Z}), rad(180) - 1, tiny);
   EXPECT_NEAR(violation({bone(Y, hinge(Z, -10, 20))}, {-Y}), rad(160), tiny);
   EXPECT_EQ(violation({bone(Y)}, {-Y}), 0) << "free";
   EXPECT_NEAR(violation({bone(Z), bone(Y, cone(1))}, {-Z, -Y}), 0, tiny) << "a half turn is about x";
@@ -113,7 +113,7 @@ TEST(IkJudge, RollComesFromEveryBoneBefore) {
 }
 
 TEST(IkJudge, EllipseHasAnAngleAQuadrant) {
-  const IkJudge::Ellipse ellipse{rad(40), rad(70), rad(30), rad(20)};
+  const judged::Ellipse ellipse{rad(40), rad(70), rad(30), rad(20)};
   const std::vector<IkJudge::Bone> bones = {bone(Z, ellipse)};
   const struct {
     dvec3 side;
@@ -131,7 +131,7 @@ TEST(IkJudge, EllipseHasAnAngleAQuadrant) {
 
 // For a bone along Y, x is X and y is -Z; for one along -Z, x is X and y is -Y.
 TEST(IkJudge, EllipseLiesInTheFrameAtRest) {
-  const IkJudge::Ellipse ellipse{rad(40), rad(70), rad(30), rad(20)};
+  const judged::Ellipse ellipse{rad(40), rad(70), rad(30), rad(20)};
   EXPECT_NEAR(violation({bone(Y, ellipse)}, {leaning(Y, -Z, 71)}), rad(1), tiny);
   EXPECT_NEAR(violation({bone(Y, ellipse)}, {leaning(Y, Z, 21)}), rad(1), tiny);
   EXPECT_NEAR(violation({bone(Y, ellipse)}, {leaning(Y, X, 41)}), rad(1), tiny);
@@ -207,7 +207,7 @@ TEST(IkJudge, RefusesWhatDoesNotMatch) {
 }
 
 struct TwistedBone : testing::Test {
-  IkJudge judge{{{1, Y, IkJudge::Cone{rad(50)}, rad(-30), rad(60)}, bone(Y, cone(30))}};
+  IkJudge judge{{{1, Y, judged::Cone{rad(50)}, rad(-30), rad(60)}, bone(Y, cone(30))}};
 
   // The first bone leans to X by 40 degrees and is twisted; the second follows it, leaning a little more.
   IkJudge::Verdict twisted(double twist, double more = 0) const {
@@ -278,10 +278,10 @@ TEST(IkJudge, JointsAndRotationsGiveTheSameVerdict) {
       if (std::abs(glm::dot(axis, rest)) > 0.9) axis = glm::normalize(glm::cross(axis, rest));
       const double angle = uniform(0.1, 2), turned = i == 3 ? angle + excess : uniform(0, angle);
       if (i % 2 == 0) {
-        bones.push_back(bone(rest, IkJudge::Hinge{axis, -0.5, angle}));
+        bones.push_back(bone(rest, judged::Hinge{axis, -0.5, angle}));
         carried = carried * glm::angleAxis(turned, axis);
       } else {
-        bones.push_back(bone(rest, IkJudge::Cone{angle}));
+        bones.push_back(bone(rest, judged::Cone{angle}));
         carried = carried * glm::angleAxis(turned, glm::normalize(glm::cross(rest, axis)));
       }
       rotations.push_back(carried);

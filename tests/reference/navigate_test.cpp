@@ -44,6 +44,28 @@ TEST_F(Navigate, crossTurnsRoundAtItsEnds) {
   EXPECT_NEAR(there.arrivalMargin, 0.1, 1e-12);
 }
 
+TEST_F(Navigate, velocityIsPassedOnUpToTheSpeed) {
+  const auto desired = [&](double speed) {
+    return reference::navigate(tuning, bodyAt(1, 2), {{3, -4}, {0, 0}, speed, 0.5, GoalKind::velocity})
+        .desired;
+  };
+  EXPECT_EQ(desired(6), glm::dvec2(3, -4));
+  EXPECT_EQ(desired(5), glm::dvec2(3, -4));
+  EXPECT_NEAR(glm::length(desired(2.5) - glm::dvec2(1.5, -2)), 0, 1e-12);
+  EXPECT_EQ(desired(0), glm::dvec2(0));
+  const auto atTheEdge =
+      reference::navigate(tuning, bodyAt(31, 5), {{3, -4}, {0, 0}, 6, 0.5, GoalKind::velocity});
+  EXPECT_EQ(atTheEdge.desired, glm::dvec2(-3, -4));
+}
+
+TEST_F(Navigate, nobodySleepsWhateverTheGoalIs) {
+  reference::AgentBody body = bodyAt(1, 2);
+  body.absent = true;
+  const auto result = reference::navigate(tuning, body, {{9, 9}, {0, 0}, 1, 0.5, GoalKind::point});
+  EXPECT_TRUE(result.asleep);
+  EXPECT_EQ(result.desired, glm::dvec2(0));
+}
+
 TEST_F(Navigate, edgeTurnsBackOnlyTheOutwardPart) {
   const Goal goal{{100, 100}, {0, 0}, 1, 0.5, GoalKind::point};
   const auto result = reference::navigate(tuning, bodyAt(31, 5), goal);

@@ -171,19 +171,119 @@ TEST_F(CameraTest, followGlidesOverTheMeanOfTheGround) {
   EXPECT_NEAR(double(viewOf(scene, crowd, 0).target.y), mean + 0.35, 1e-4);
 }
 
-// The mean height that the camera glides over says nothing of a cliff's edge.
-TEST_F(CameraTest, followIsNeverInTheGround) {
+// Checkers of 2.5 m that are 30 m high or low.
+Heightfield cliffs() {
   Heightfield terrain;
   terrain.columns = terrain.rows = 129;
   terrain.spacingX = terrain.spacingZ = 0.5f;
   for (uint32_t z = 0; z < 129; ++z)
     for (uint32_t x = 0; x < 129; ++x) terrain.heights.push_back(x / 5 % 2 == z / 5 % 2 ? 15.0f : -15.0f);
+  return terrain;
+}
+
+// The mean height that the camera glides over says nothing of a cliff's edge.
+TEST_F(CameraTest, followIsNeverInTheGround) {
+  const Heightfield terrain = cliffs();
   const Scene scene = herdOf(1, {.kind = Spawn::Kind::lanes}, {.kind = Goal::Kind::cross});
   const Crowd crowd = crowdOf(device(), terrain, scene);
   for (double seconds = 0; seconds < 100; seconds += 0.1) {
     const View view = viewOf(scene, crowd, seconds);
     ASSERT_GT(view.eye.y, terrain.at(view.eye.x, view.eye.z) + 0.19f) << seconds;
   }
+}
+
+// A scene about one agent that stands at (3, -5), whose `orbit` camera is 12 m away, 0.4 rad up.
+Scene orbitScene() {
+  Scene scene = herdOf(1, {.kind = Spawn::Kind::grid, .centre = {3, -5}}, {.kind = Goal::Kind::none});
+  scene.camera = {.kind = Camera::Kind::orbit,
+                  .distance = 12,
+                  .fieldOfView = 0.7f,
+                  .elevation = 0.4f,
+                  .azimuth = 0.3f,
+                  .secondsATurn = 20};
+  return scene;
+}
+
+TEST_F(CameraTest, orbitTurnsAboutTheMiddleOfTheCrowd) {
+  Scene scene = orbitScene();
+  const Crowd crowd = crowdOf(device(), incline(200, 0), scene);
+  for (const float turn : {20.0f, -20.0f}) {
+    scene.camera.secondsATurn = turn;
+    for (const double seconds : {0.0, 5.0, 8.0, 27.0, -3.0}) {
+      const View view = viewOf(scene, crowd, seconds);
+      EXPECT_EQ(view.fieldOfView, 0.7f);
+      EXPECT_LT(glm::distance(view.target, glm::vec3(3, 0.35f, -5)), 1e-5f);
+      const double angle = 0.3 + 2 * 3.14159265358979 * seconds / double(turn), flat = std::cos(0.4);
+      const glm::dvec3 eye = glm::dvec3(view.target) +
+                             12.0 * glm::dvec3(flat * std::sin(angle), std::sin(0.4), flat * std::cos(angle));
+      EXPECT_LT(glm::distance(glm::dvec3(view.eye), eye), 1e-4) << turn << " at " << seconds;
+    }
+  }
+  scene.camera.secondsATurn = 0;
+  EXPECT_EQ(viewOf(scene, crowd, 0).eye, viewOf(scene, crowd, 7).eye);
+}
+
+TEST_F(CameraTest, orbitTurnsAboutThePointThatTheSceneNames) {
+  Scene scene = orbitScene();
+  scene.camera.about = glm::vec3(-7, 4, 9);
+  const Crowd crowd = crowdOf(device(), incline(200, 0), scene);
+  const View view = viewOf(scene, crowd, 6);
+  EXPECT_EQ(view.target, glm::vec3(-7, 4, 9));
+  EXPECT_NEAR(glm::distance(view.eye, view.target), 12, 1e-4);
+}
+
+Scene pathScene() {
+  Scene scene = orbitScene();
+  scene.camera = {.kind = Camera::Kind::path,
+                  .keys = {{.time = 1, .position = {0, 5, 0}, .target = {0, 0, 10}},
+                           {.time = 3, .position = {10, 6, 0}, .target = {0, 1, 10}},
+                           {.time = 4, .position = {10, 8, 20}, .target = {0, 0, 30}}}};
+  return scene;
+}
+
+TEST_F(CameraTest, pathMeetsItsKeysAndStaysAtItsEnds) {
+  const Scene scene = pathScene();
+  const Crowd crowd = crowdOf(device(), incline(200, 0), scene);
+  for (const CameraKey& key : scene.camera.keys) {
+    const View view = viewOf(scene, crowd, key.time);
+    EXPECT_LT(glm::distance(view.eye, key.position), 1e-5f) << key.time;
+    EXPECT_LT(glm::distance(view.target, key.target), 1e-5f) << key.time;
+  }
+  // Through the middle key at the slope of the parabola through the three, P = (5, 1/2, 0) towards it over
+  // 2 s and (0, 2, 20) away from it over 1 s: (1 (5, 1/2, 0) + 2 (0, 2, 20)) / 3.
+  const glm::vec3 slope = (viewOf(scene, crowd, 3.01).eye - viewOf(scene, crowd, 2.99).eye) / 0.02f;
+  EXPECT_LT(glm::distance(slope, glm::vec3(5.0f / 3, 4.5f / 3, 40.0f / 3)), 0.1f);
+  EXPECT_EQ(viewOf(scene, crowd, 0).eye, scene.camera.keys.front().position);
+  EXPECT_EQ(viewOf(scene, crowd, 1e6).eye, scene.camera.keys.back().position);
+  EXPECT_EQ(viewOf(scene, crowd, 1e6).target, scene.camera.keys.back().target);
+}
+
+TEST_F(CameraTest, orbitAndPathAreNeverInTheGround) {
+  const Heightfield terrain = cliffs();
+  Scene below = orbitScene(), path = pathScene(), above = orbitScene();
+  below.camera.about = glm::vec3(0, -40, 0);
+  below.camera.elevation = -1.5f;
+  const Crowd crowd = crowdOf(device(), terrain, above);
+  for (const Scene* scene : {&below, &path, &above})
+    for (double seconds = -5; seconds < 30; seconds += 0.05) {
+      const View view = viewOf(*scene, crowd, seconds);
+      ASSERT_GT(view.eye.y, terrain.seenAt(view.eye.x, view.eye.z) + 0.19f) << seconds;
+    }
+}
+
+TEST_F(CameraTest, anyTimeHasAView) {
+  const Heightfield terrain = cliffs();
+  Scene scene = herdOf(1, {.kind = Spawn::Kind::lanes}, {.kind = Goal::Kind::cross});
+  const Crowd crowd = crowdOf(device(), terrain, scene);
+  const std::vector<CameraKey> keys = pathScene().camera.keys;
+  for (const Camera::Kind kind : {Camera::Kind::follow, Camera::Kind::orbit, Camera::Kind::path})
+    for (const double seconds : {-HUGE_VAL, -1e300, -1.0, 1e300, HUGE_VAL, std::nan("")}) {
+      scene.camera = {.kind = kind, .keys = keys};
+      const View view = viewOf(scene, crowd, seconds);
+      ASSERT_TRUE(glm::all(glm::lessThan(glm::abs(view.eye), glm::vec3(1e4f)))) << seconds;
+      ASSERT_TRUE(glm::all(glm::lessThan(glm::abs(view.target), glm::vec3(1e4f)))) << seconds;
+      ASSERT_GT(view.eye.y, terrain.seenAt(view.eye.x, view.eye.z) + 0.19f) << seconds;
+    }
 }
 
 }  // namespace

@@ -178,6 +178,60 @@ TEST_P(RendererTest, equalHerdsAreWhereOthersAre) {
   EXPECT_LT(odd, (left + right) / 50);
 }
 
+// Ground of half a metre a sample, its first sample where noise of as many columns and rows has it.
+Heightfield groundOf(uint32_t columns, uint32_t rows, const std::function<float(float, float)>& heightOf) {
+  Heightfield field{
+      .name = "made", .columns = columns, .rows = rows, .spacingX = 0.5f, .spacingZ = 0.5f, .heights = {}};
+  for (uint32_t z = 0; z < rows; ++z)
+    for (uint32_t x = 0; x < columns; ++x) field.heights.push_back(heightOf(float(x), float(z)));
+  return field;
+}
+
+// A herd's colour and tint change its own pixels, and those of no other herd of its kind.
+TEST_P(RendererTest, aHerdHasTheColourThatItsSceneSays) {
+  for (const Controller controller : {Controller::adaptive, Controller::clip}) {
+    Scene scene = smallScene(3);
+    scene.herds[0].controller = controller;
+    scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 3, .centre = {6, 0}};
+    scene.herds[0].goal.kind = Goal::Kind::none;
+    scene.herds.resize(2, scene.herds[0]);
+    scene.herds[1].spawn.centre = {-6, 0};
+    const View view{.eye = {0, 9, -16}, .target = {0, 1, 0}};
+    const auto drawn = [&](const std::function<void(Herd&)>& change) {
+      Scene changed = scene;
+      change(changed.herds[0]);
+      Stage stage(device(), changed, 320, 180);
+      stage.tick(1);
+      return stage.draw(view);
+    };
+    Stage none(device(), smallScene(0), 320, 180);
+    const Picture ground = none.draw(view), plain = drawn([](Herd&) {});
+    const Picture blue = drawn([](Herd& herd) { herd.colour = glm::vec3(0.02f, 0.05f, 0.8f); });
+    const Picture alike = drawn([](Herd& herd) { herd.tint = 0; });
+    // +X, where the first herd is, is to the left of who looks along +Z.
+    glm::dvec3 sum(0), was(0);
+    int pixels = 0, otherwise = 0, varied = 0;
+    for (int y = 0; y < 180; ++y)
+      for (int x = 0; x < 320; ++x) {
+        if (x >= 160) {
+          EXPECT_EQ(blue.at(x, y), plain.at(x, y)) << x << ", " << y;
+          EXPECT_EQ(alike.at(x, y), plain.at(x, y)) << x << ", " << y;
+        } else if (plain.at(x, y) != ground.at(x, y)) {
+          ++pixels;
+          varied += alike.at(x, y) != plain.at(x, y);
+          if (blue.at(x, y) == plain.at(x, y)) continue;  // a shadow
+          ++otherwise;
+          sum += glm::dvec3(blue.at(x, y));
+          was += glm::dvec3(plain.at(x, y));
+        }
+      }
+    ASSERT_GT(pixels, 200);
+    EXPECT_GT(otherwise, pixels / 3);
+    EXPECT_GT(varied, pixels / 4);
+    EXPECT_GT(sum.b / sum.r, 1.3 * was.b / was.r);
+  }
+}
+
 TEST_P(RendererTest, theSamePictureTwiceAndAnotherWhenAgentsMove) {
   Stage stage(device(), smallScene(70), 200, 120);
   stage.tick(1);
@@ -186,15 +240,6 @@ TEST_P(RendererTest, theSamePictureTwiceAndAnotherWhenAgentsMove) {
   EXPECT_EQ(differing(first, again), 0u);
   stage.tick(60);
   EXPECT_GT(differing(first, stage.draw(view)), 100u);
-}
-
-// Ground of half a metre a sample, its first sample where noise of as many columns and rows has it.
-Heightfield groundOf(uint32_t columns, uint32_t rows, const std::function<float(float, float)>& heightOf) {
-  Heightfield field{
-      .name = "made", .columns = columns, .rows = rows, .spacingX = 0.5f, .spacingZ = 0.5f, .heights = {}};
-  for (uint32_t z = 0; z < rows; ++z)
-    for (uint32_t x = 0; x < columns; ++x) field.heights.push_back(heightOf(float(x), float(z)));
-  return field;
 }
 
 // How much neighbouring pixels differ, to the right and downwards.

@@ -111,7 +111,7 @@ class SkinTest : public test::GpuLoadTest {
     picture.tile = {kPictureTile, 100, 0};
     picture.ground = {0, 0, 1, 1};
 
-    gpu::GraphicsInfo info = crowdShading(influences, asMatrices);
+    gpu::GraphicsInfo info = crowdShading(influences, asMatrices, false);
     info.fragment = embedded::normal_frag();
     std::erase_if(info.bindings, [](const auto& b) { return int(b.binding) == shared::DRAW_SHADOW; });
     info.colour = vk::Format::eR32G32B32A32Sfloat;
@@ -131,6 +131,7 @@ class SkinTest : public test::GpuLoadTest {
     const std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &block},
                                          {shared::DRAW_BODY, &bodies},
                                          {shared::DRAW_POSE, &poses},
+                                         {shared::DRAW_TINT, &bodies},
                                          {shared::DRAW_GROUND, &ground, *sampler}};
     const gpu::Bindings bindings = pipeline.bind(context(), list);
     const gpu::Image image(

@@ -47,7 +47,7 @@ void expectSame(const std::vector<SplineMotion>& a, const std::vector<SplineMoti
 
 TEST_P(SplineBatchTest, EveryRuleOpenAndClosed) {
   uint64_t seed = 100;
-  for (const SplineRule rule : allRules)
+  for (const SplineRule rule : allSplineRules)
     for (const bool closed : {false, true})
       for (const uint32_t points : {2u, 3u, 7u})
         expectMatches(
@@ -56,7 +56,7 @@ TEST_P(SplineBatchTest, EveryRuleOpenAndClosed) {
 
 TEST_P(SplineBatchTest, AtConstantSpeed) {
   uint64_t seed = 200;
-  for (const SplineRule rule : allRules)
+  for (const SplineRule rule : allSplineRules)
     for (const bool closed : {false, true})
       expectMatches(
           randomRun({.points = 5, .closed = closed, .tangents = someTangents(rule), .constantSpeed = true},
@@ -148,7 +148,7 @@ TEST_P(SplineBatchTest, NastyChains) {
   };
   const std::vector<std::vector<float>> knots = {
       {0, 1, 2, 3}, {0, 2e-6f, 1, 2}, {-1e6f, -1, 1, 1e6f}, {1, 1.5f, 1.5f + 2e-6f, 2}};
-  for (const SplineRule rule : allRules)
+  for (const SplineRule rule : allSplineRules)
     for (const bool even : {false, true}) {
       SplineRun run{.options = {.points = 4, .tangents = someTangents(rule), .constantSpeed = even},
                     .now = 5};
@@ -223,7 +223,7 @@ TEST_F(SplinePathsTest, RecordPathsAgreeToTheBit) {
   if (!hasTexelPath()) GTEST_SKIP() << "the device has one load path only";
   for (const DeviceRequest& request : everyRecordPath()) {
     Device other = Device::create(request);
-    for (const SplineRule rule : allRules) {
+    for (const SplineRule rule : allSplineRules) {
       const SplineRun run =
           randomRun({.points = 5, .closed = true, .tangents = someTangents(rule)}, 200, 1100);
       expectSame(travelled(device(), run), travelled(other, run));

@@ -45,12 +45,6 @@ std::vector<Finding> compare(const SplineMotion& found, const reference::Travel&
 
 }  // namespace
 
-const char* nameOf(SplineRule rule) {
-  constexpr const char* names[] = {
-      "given", "catmullRom", "finiteDifference", "cardinal", "kochanekBartels", "monotone", "zero"};
-  return names[static_cast<size_t>(rule)];
-}
-
 SplineRun randomRun(const SplineBatch::Options& options, uint32_t splines, uint64_t seed) {
   SplineRun run{.seed = seed, .options = options, .splines = splines};
   std::mt19937_64 random(seed);

@@ -20,12 +20,6 @@ struct SplineRun {
   double now = 0;
 };
 
-inline constexpr SplineRule allRules[] = {
-    SplineRule::given,    SplineRule::catmullRom,      SplineRule::finiteDifference,
-    SplineRule::cardinal, SplineRule::kochanekBartels, SplineRule::monotone,
-    SplineRule::zero};
-const char* nameOf(SplineRule);
-
 // Points within 2 m of one within 10 m, knots 0.1 to 1.5 apart from a first within +-3, durations 0.3 to 5,
 // and clocks that stand anywhere from before the start to beyond the end (closed: the fourth round) at 3600
 // s.

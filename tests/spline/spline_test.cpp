@@ -66,7 +66,7 @@ TEST(Spline, ARoundOfACircle) {
 
 TEST(Spline, IsTheReferences) {
   uint64_t seed = 10;
-  for (const SplineRule rule : allRules)
+  for (const SplineRule rule : allSplineRules)
     for (const bool closed : {false, true})
       for (const bool even : {false, true}) {
         const SplineRun run = randomRun(

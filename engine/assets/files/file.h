@@ -13,6 +13,7 @@ class FileStream {
  public:
   explicit FileStream(const std::filesystem::path& file);
   uintmax_t size() const { return size_; }
+  void seek(uintmax_t at) { stream_.seekg(static_cast<std::streamoff>(at)); }
   void read(void* to, size_t bytes);  // throws Error(input) where fewer are left
 
  private:

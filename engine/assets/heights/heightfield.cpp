@@ -8,7 +8,18 @@
 
 namespace skitter {
 
-float Heightfield::at(float x, float z) const {
+namespace {
+
+float mix(float a, float b, float t) { return a + t * (b - a); }
+
+// The four samples about a place, and where it is between them.
+struct Cell {
+  const float* north;  // of the row of lower z: the sample of lower x, and the one after it
+  const float* south;
+  float a, b;  // along x and z, 0 to 1
+};
+
+Cell cellAt(const Heightfield& field, float x, float z) {
   // !(u > 0) also sends a NaN to the edge.
   const auto locate = [](float u, uint32_t samples, size_t& index) {
     const float last = static_cast<float>(samples - 1);
@@ -17,13 +28,25 @@ float Heightfield::at(float x, float z) const {
     index = std::min<size_t>(static_cast<size_t>(u), samples - 2);
     return u - static_cast<float>(index);
   };
-  const auto mix = [](float a, float b, float t) { return a + t * (b - a); };
   size_t i = 0, j = 0;
-  const float a = locate((x - originX()) / spacingX, columns, i);
-  const float b = locate((z - originZ()) / spacingZ, rows, j);
-  const float* north = heights.data() + j * columns + i;
-  const float* south = north + columns;
-  return mix(mix(north[0], north[1], a), mix(south[0], south[1], a), b);
+  const float a = locate((x - field.originX()) / field.spacingX, field.columns, i);
+  const float b = locate((z - field.originZ()) / field.spacingZ, field.rows, j);
+  const float* north = field.heights.data() + j * field.columns + i;
+  return {north, north + field.columns, a, b};
+}
+
+}  // namespace
+
+float Heightfield::at(float x, float z) const {
+  const Cell c = cellAt(*this, x, z);
+  return mix(mix(c.north[0], c.north[1], c.a), mix(c.south[0], c.south[1], c.a), c.b);
+}
+
+glm::vec3 Heightfield::normalAt(float x, float z) const {
+  const Cell c = cellAt(*this, x, z);
+  const float slopeX = mix(c.north[1] - c.north[0], c.south[1] - c.south[0], c.b) / spacingX;
+  const float slopeZ = (mix(c.south[0], c.south[1], c.a) - mix(c.north[0], c.north[1], c.a)) / spacingZ;
+  return glm::normalize(glm::vec3(-slopeX, 1, -slopeZ));
 }
 
 float Heightfield::seenAt(float x, float z) const {

@@ -207,6 +207,14 @@ int Rig::maxBones() const {
   return static_cast<int>(most);
 }
 
+std::vector<glm::vec3> Rig::restStarts() const {
+  std::vector<glm::vec3> starts = {glm::vec3(0)};
+  for (const Leg& leg : legs)
+    for (size_t i = 0; i < static_cast<size_t>(maxBones()); ++i)
+      starts.push_back(leg.bones[std::min(i, leg.bones.size() - 1)].start);
+  return starts;
+}
+
 Rig buildRig(const Model& model, const RigSetup& setup, const std::string& name, const std::string& path) {
   try {
     return RigBuilder(model, setup, name, path).build();

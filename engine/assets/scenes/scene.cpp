@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -33,6 +34,19 @@ struct Source {
   throw inputError(fmt::format("{}: {} is {}, expected {}", file, path, describeJson(found), expected));
 }
 
+// The linear RGB of "#rrggbb", which is sRGB (IEC 61966-2-1); none where it is something else.
+std::optional<glm::vec3> linearOf(const std::string& colour) {
+  const auto isDigit = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
+  if (colour.size() != 7 || colour[0] != '#' || !std::all_of(colour.begin() + 1, colour.end(), isDigit))
+    return {};
+  glm::vec3 linear;
+  for (int i = 0; i < 3; ++i) {
+    const double s = std::stoi(colour.substr(1 + 2 * static_cast<size_t>(i), 2), nullptr, 16) / 255.0;
+    linear[i] = static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+  }
+  return linear;
+}
+
 // keysOf(fields, object) lists the keys of each object of a scene, once for both directions: a Reader sets
 // the members, a Writer writes them. Bindings name all members, so that a new one does not compile until it
 // is looked at here. checkKeys(object, where) refuses what no single key shows.
@@ -61,13 +75,7 @@ class Reader {
   }
   template <typename Integer>
   void integer(const char* key, Integer& value, uint64_t least, uint64_t most) {
-    const auto* json = find(key);
-    if (!json) return;
-    const bool whole = json->is_number_unsigned();
-    if (!whole || json->get<uint64_t>() < least || json->get<uint64_t>() > most) {
-      fail(pathOf(key), *json, fmt::format("a whole number from {} to {}", least, most));
-    }
-    value = static_cast<Integer>(json->get<uint64_t>());
+    if (const auto* json = find(key)) value = static_cast<Integer>(whole(*json, pathOf(key), least, most));
   }
   template <typename Integer>
   void integer(const char* key, std::optional<Integer>& value, uint64_t least, uint64_t most) {
@@ -111,6 +119,60 @@ class Reader {
           number((*json)[static_cast<size_t>(i)], fmt::format("{}[{}]", pathOf(key), i), -limit, limit));
     }
   }
+  template <int Size>
+  void key(const char* key, std::optional<glm::vec<Size, float>>& value, double limit) {
+    if (find(key)) this->key(key, value.emplace(), limit);
+  }
+  void key(const char* key, std::vector<float>& values, size_t mostValues, double least, double most) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_array() || json->size() > mostValues)
+      fail(pathOf(key), *json, fmt::format("an array of at most {} numbers", mostValues));
+    values.clear();
+    for (const nlohmann::json& item : *json) {
+      const std::string path = fmt::format("{}[{}]", pathOf(key), values.size());
+      values.push_back(static_cast<float>(number(item, path, least, most)));
+    }
+  }
+  // Whole numbers from 0 on, at least one: a missing key means something else than none.
+  void integers(const char* key, std::vector<uint32_t>& values, size_t mostValues, uint32_t most) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_array() || json->empty() || json->size() > mostValues)
+      fail(pathOf(key), *json, fmt::format("an array of 1 to {} whole numbers", mostValues));
+    values.clear();
+    for (const nlohmann::json& item : *json) {
+      const std::string path = fmt::format("{}[{}]", pathOf(key), values.size());
+      values.push_back(static_cast<uint32_t>(whole(item, path, 0, most)));
+    }
+  }
+  // A number from 0 to 1, or "random", which is none, or "together", which is 0.
+  void phase(const char* key, std::optional<float>& value) {
+    const auto* json = find(key);
+    if (!json || *json == "random") return;
+    if (*json == "together")
+      value = 0;
+    else if (json->is_number())
+      this->key(key, value, 0, 1);
+    else
+      failNamed(pathOf(key), *json, {"random", "together"});
+  }
+  // "#rrggbb" in sRGB, or linear RGB.
+  void colour(const char* key, std::optional<glm::vec3>& value) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (json->is_string()) {
+      value = linearOf(json->get<std::string>());
+      if (!value) fail(pathOf(key), *json, "\"#rrggbb\"");
+      return;
+    }
+    if (!json->is_array() || json->size() != 3)
+      fail(pathOf(key), *json, "\"#rrggbb\" or an array of 3 numbers");
+    value.emplace();
+    for (int i = 0; i < 3; ++i)
+      (*value)[i] = static_cast<float>(
+          number((*json)[static_cast<size_t>(i)], fmt::format("{}[{}]", pathOf(key), i), 0, 1));
+  }
   // The index of the key's string among `names`.
   template <typename Kind>
   void kind(const char* key, Kind& value, std::initializer_list<const char*> names) {
@@ -152,6 +214,10 @@ class Reader {
     if (const auto* json = find(key)) read(*json, pathOf(key), value);
   }
   template <typename Object>
+  void object(const char* key, std::optional<Object>& value) {
+    if (find(key)) object(key, value.emplace());
+  }
+  template <typename Object>
   void objects(const char* key, std::vector<Object>& values, size_t most, const char* what) {
     const auto* json = find(key);
     if (!json) return;
@@ -162,6 +228,31 @@ class Reader {
       const std::string path = fmt::format("{}[{}]", pathOf(key), values.size());
       read(item, path, values.emplace_back());
     }
+  }
+
+  // The alternative whose key is there: exactly one is. It may have more keys in this object.
+  template <size_t Count, typename... Kinds>
+  void oneOf(const char* const (&keys)[Count], std::variant<Kinds...>& value) {
+    static_assert(Count == sizeof...(Kinds));
+    size_t found = 0, index = 0;
+    const auto readIf = [&]<typename Kind>(Kind made) {
+      const char* key = keys[index++];
+      if (!find(key)) return;
+      ++found;
+      keysOf(*this, key, made);
+      value = std::move(made);
+    };
+    (readIf(Kinds{}), ...);
+    if (found == 0) {
+      // A misspelt key says more than a missing one. The keys of every alternative are known by then.
+      index = 0;
+      const auto know = [&]<typename Kind>(Kind none) { keysOf(*this, keys[index++], none); };
+      (know(Kinds{}), ...);
+      finish();
+    }
+    if (found != 1)
+      throw inputError(fmt::format("{}: {} has {} of {}, expected one", source_.file, path_, found,
+                                   fmt::join(keys, ", ")));
   }
 
   // Call last: every key must have been asked for.
@@ -206,6 +297,11 @@ class Reader {
     }
     return json.get<double>();
   }
+  uint64_t whole(const nlohmann::json& json, const std::string& path, uint64_t least, uint64_t most) const {
+    if (!json.is_number_unsigned() || json.get<uint64_t>() < least || json.get<uint64_t>() > most)
+      fail(path, json, fmt::format("a whole number from {} to {}", least, most));
+    return json.get<uint64_t>();
+  }
 
   const nlohmann::json& json_;
   const Source& source_;
@@ -233,10 +329,7 @@ class Writer {
   }
   template <typename Integer>
   void integer(const char* key, const Integer& value, uint64_t least, uint64_t most) {
-    const auto whole = static_cast<uint64_t>(value);
-    if (whole < least || whole > most)
-      failIn(file_, pathOf(key), value, fmt::format("a whole number from {} to {}", least, most));
-    json_[key] = whole;
+    json_[key] = whole(static_cast<uint64_t>(value), pathOf(key), least, most);
   }
   template <typename Integer>
   void integer(const char* key, const std::optional<Integer>& value, uint64_t least, uint64_t most) {
@@ -260,6 +353,30 @@ class Writer {
     for (int i = 0; i < Size; ++i)
       array.push_back(number(value[i], fmt::format("{}[{}]", pathOf(key), i), -limit, limit));
   }
+  template <int Size>
+  void key(const char* key, const std::optional<glm::vec<Size, float>>& value, double limit) {
+    if (value) this->key(key, *value, limit);
+  }
+  void key(const char* key, const std::vector<float>& values, size_t mostValues, double least, double most) {
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    expectAtMost(mostValues, values.size(), key);
+    for (const float value : values)
+      array.push_back(number(value, fmt::format("{}[{}]", pathOf(key), array.size()), least, most));
+  }
+  void integers(const char* key, const std::vector<uint32_t>& values, size_t mostValues, uint32_t most) {
+    if (values.empty()) return;
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    expectAtMost(mostValues, values.size(), key);
+    for (const uint32_t value : values)
+      array.push_back(whole(value, fmt::format("{}[{}]", pathOf(key), array.size()), 0, most));
+  }
+  void phase(const char* key, const std::optional<float>& value) { this->key(key, value, 0, 1); }
+  void colour(const char* key, const std::optional<glm::vec3>& value) {
+    if (!value) return;
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    for (int i = 0; i < 3; ++i)
+      array.push_back(number((*value)[i], fmt::format("{}[{}]", pathOf(key), i), 0, 1));
+  }
   template <typename Kind>
   void kind(const char* key, const Kind& value, std::initializer_list<const char*> names) {
     json_[key] = names.begin()[static_cast<size_t>(value)];
@@ -276,10 +393,20 @@ class Writer {
     json_[key] = written(pathOf(key), value);
   }
   template <typename Object>
-  void objects(const char* key, std::vector<Object>& values, size_t, const char*) {
+  void object(const char* key, std::optional<Object>& value) {
+    if (value) object(key, *value);
+  }
+  template <typename Object>
+  void objects(const char* key, std::vector<Object>& values, size_t most, const char*) {
     nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    expectAtMost(most, values.size(), key);
     for (Object& value : values)
       array.push_back(written(fmt::format("{}[{}]", pathOf(key), array.size()), value));
+  }
+
+  template <size_t Count, typename... Kinds>
+  void oneOf(const char* const (&keys)[Count], std::variant<Kinds...>& value) {
+    std::visit([&](auto& each) { keysOf(*this, keys[value.index()], each); }, value);
   }
 
   const nlohmann::ordered_json& json() const { return json_; }
@@ -292,6 +419,15 @@ class Writer {
   [[noreturn]] void failRange(const std::string& path, double found, double least, double most) const {
     throw inputError(
         fmt::format("{}: {} is {}, expected a number from {} to {}", file_, path, found, least, most));
+  }
+  void expectAtMost(size_t most, size_t found, const char* key) const {
+    if (found > most)
+      throw inputError(fmt::format("{}: {} are {}, expected at most {}", file_, pathOf(key), found, most));
+  }
+  uint64_t whole(uint64_t value, const std::string& path, uint64_t least, uint64_t most) const {
+    if (value < least || value > most)
+      failIn(file_, path, value, fmt::format("a whole number from {} to {}", least, most));
+    return value;
   }
   // The shortest decimals that are read as this float.
   double number(float value, const std::string& path, double least, double most) const {
@@ -389,15 +525,22 @@ void keysOf(Fields& fields, Spawn& spawn) {
 
 template <class Fields>
 void keysOf(Fields& fields, Goal& goal) {
-  auto& [kind, target, speed] = goal;
-  fields.kind("kind", kind, {"cross", "point", "none"});
+  auto& [kind, target, speed, velocity] = goal;
+  fields.kind("kind", kind, {"cross", "point", "none", "velocity"});
   fields.key("target", target, Scene::maxCoordinate);
-  fields.key("speed", speed, 0, 1000);
+  fields.key("speed", speed, 0, double{Goal::maxSpeed});
+  fields.key("velocity", velocity, double{Goal::maxSpeed});
+}
+void checkKeys(const Goal& goal, const std::string& file, const std::string& path) {
+  if (glm::length(goal.velocity) > Goal::maxSpeed)
+    throw inputError(fmt::format("{}: {}.velocity is {:.6g} m/s long, expected at most {:.6g}", file, path,
+                                 glm::length(goal.velocity), Goal::maxSpeed));
 }
 
 template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
-  auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, spawn, goal] = herd;
+  auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, phase,
+         colour, tint] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -407,38 +550,183 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.named("stepping", stepping, allSteppings);
   fields.object("tuning", tuning);
   fields.integer("agents", agents, 0, Scene::maxAgents);
+  fields.integer("reserve", reserve, 0, Scene::maxAgents);
   fields.object("spawn", spawn);
   fields.object("goal", goal);
+  fields.phase("phase", phase);
+  fields.colour("colour", colour);
+  fields.key("tint", tint, 0, 1);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, CameraKey& key) {
+  auto& [time, position, target] = key;
+  fields.key("time", time, 0, Camera::maxPathTime);
+  fields.key("position", position, cameraLimit);
+  fields.key("target", target, cameraLimit);
+}
+void checkKeys(const CameraKey& key, const std::string& file, const std::string& path) {
+  if (key.position == key.target)
+    throw inputError(
+        fmt::format("{}: {}.position equals {}.target, a camera needs a direction", file, path, path));
 }
 
 template <class Fields>
 void keysOf(Fields& fields, Camera& camera) {
-  auto& [kind, position, target, distance, fieldOfView] = camera;
-  fields.kind("kind", kind, {"follow", "fixed"});
+  auto& [kind, position, target, distance, fieldOfView, about, elevation, azimuth, secondsATurn, keys] =
+      camera;
+  fields.kind("kind", kind, {"follow", "fixed", "orbit", "path"});
   fields.key("position", position, cameraLimit);
   fields.key("target", target, cameraLimit);
   fields.key("distance", distance, 0.01, cameraLimit);
   fields.key("fieldOfView", fieldOfView, 0.01, 3.1);
+  fields.key("about", about, cameraLimit);
+  fields.key("elevation", elevation, -1.5, 1.5);
+  fields.key("azimuth", azimuth, -1000, 1000);
+  fields.key("secondsATurn", secondsATurn, -Camera::maxPathTime, Camera::maxPathTime);
+  fields.objects("keys", keys, Camera::maxPathKeys, "objects");
 }
 void checkKeys(const Camera& camera, const std::string& file, const std::string& path) {
   if (camera.kind == Camera::Kind::fixed && camera.position == camera.target)
     throw inputError(
         fmt::format("{}: {}.position equals {}.target, a fixed camera needs a direction", file, path, path));
+  if (camera.kind == Camera::Kind::path && camera.keys.size() < Camera::minPathKeys)
+    throw inputError(fmt::format("{}: {}.keys has {}, expected at least {} for a path", file, path,
+                                 camera.keys.size(), Camera::minPathKeys));
+  for (size_t k = 1; k < camera.keys.size(); ++k) {
+    const float least = camera.keys[k - 1].time + Camera::minPathStep;
+    if (camera.keys[k].time < least)
+      throw inputError(
+          fmt::format("{}: {}.keys[{}].time is {}, expected at least {}, {} s after the key before", file,
+                      path, k, camera.keys[k].time, least, Camera::minPathStep));
+  }
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Mound& mound) {
+  auto& [centre, radius, height] = mound;
+  fields.key("centre", centre, Scene::maxCoordinate);
+  fields.key("radius", radius, 0.01, Scene::maxCoordinate);
+  fields.key("height", height, -maxHeightMagnitude, maxHeightMagnitude);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, HeightSamples& samples) {
+  auto& [x, z, columns, rows, heights] = samples;
+  fields.integer("x", x, 0, maxSamples - 1);
+  fields.integer("z", z, 0, maxSamples - 1);
+  fields.integer("columns", columns, 1, maxSamples);
+  fields.integer("rows", rows, 1, maxSamples);
+  fields.key("heights", heights, Event::maxSamples, -maxHeightMagnitude, maxHeightMagnitude);
+}
+void checkKeys(const HeightSamples& samples, const std::string& file, const std::string& path) {
+  const uint64_t expected = uint64_t{samples.columns} * samples.rows;
+  if (samples.heights.size() != expected)
+    throw inputError(fmt::format("{}: {}.heights has {} numbers, expected {}, columns times rows", file, path,
+                                 samples.heights.size(), expected));
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Place& place) {
+  auto& [position, heading] = place;
+  fields.key("position", position, Scene::maxCoordinate);
+  fields.key("heading", heading, -1000, 1000);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Teleport::Move& move) {
+  auto& [agent, place] = move;
+  fields.integer("agent", agent, 0, Scene::maxAgents - 1);
+  keysOf(fields, place);
+}
+void checkKeys(const Teleport::Move& move, const std::string& file, const std::string& path) {
+  if (move.agent == Teleport::Move{}.agent)
+    throw inputError(fmt::format("{}: {}.agent is missing", file, path));
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Addition::Arrival& arrival) {
+  auto& [place, goal] = arrival;
+  keysOf(fields, place);
+  fields.object("goal", goal);
+}
+
+// The keys of what an event does, of which `key` says that it does that.
+template <class Fields>
+void keysOf(Fields& fields, const char* key, Mound& mound) {
+  fields.object(key, mound);
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, HeightSamples& samples) {
+  fields.object(key, samples);
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, GoalChange& change) {
+  auto& [herd, agents, goal] = change;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+  fields.object(key, goal);
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, SpeedChange& change) {
+  auto& [herd, agents, speed] = change;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+  fields.key(key, speed, 0, double{Goal::maxSpeed});
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, Teleport& teleport) {
+  auto& [herd, moves] = teleport;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.objects(key, moves, Event::maxAgents, "agents");
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, Addition& addition) {
+  auto& [herd, arrivals] = addition;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.objects(key, arrivals, Event::maxAgents, "agents");
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, Removal& removal) {
+  auto& [herd, agents] = removal;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers(key, agents, Event::maxAgents, Scene::maxAgents - 1);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Event& event) {
+  auto& [at, what] = event;
+  fields.key("at", at, 0, Event::maxTime);
+  fields.oneOf({"mound", "edit", "goal", "speed", "teleport", "add", "remove"}, what);
+}
+void checkKeys(const Event& event, const std::string& file, const std::string& path) {
+  const auto expectSome = [&](const char* key, const auto& list) {
+    if (list.empty())
+      throw inputError(fmt::format("{}: {}.{} is empty, expected at least one agent", file, path, key));
+  };
+  if (const auto* teleport = std::get_if<Teleport>(&event.what)) expectSome("teleport", teleport->moves);
+  if (const auto* addition = std::get_if<Addition>(&event.what)) expectSome("add", addition->arrivals);
+  if (const auto* removal = std::get_if<Removal>(&event.what)) expectSome("remove", removal->agents);
 }
 
 template <class Fields>
 void keysOf(Fields& fields, Scene& scene) {
-  auto& [name, terrain, herds, camera, seed] = scene;
+  auto& [name, terrain, herds, camera, events, seed] = scene;
   fields.key("name", name);
   fields.integer("seed", seed, 0, UINT64_MAX);
   fields.object("terrain", terrain);
   fields.objects("herds", herds, Scene::maxHerds, "herds");
   fields.object("camera", camera);
+  fields.objects("events", events, Scene::maxEvents, "events");
 }
 void checkKeys(const Scene& scene, const std::string& file, const std::string&) {
-  if (scene.agentCount() > Scene::maxAgents)
+  for (size_t e = 1; e < scene.events.size(); ++e)
+    if (scene.events[e].at < scene.events[e - 1].at)
+      throw inputError(fmt::format("{}: events[{}].at is {}, expected {} or later, as the event before it",
+                                   file, e, scene.events[e].at, scene.events[e - 1].at));
+  if (scene.capacity() > Scene::maxAgents)
     throw inputError(fmt::format("{}: herds have {} agents in all, expected at most {}", file,
-                                 scene.agentCount(), Scene::maxAgents));
+                                 scene.capacity(), Scene::maxAgents));
 }
 
 template <class Object>
@@ -471,6 +759,12 @@ Heightfield Scene::loadTerrain() const {
 uint64_t Scene::agentCount() const {
   uint64_t count = 0;
   for (const Herd& herd : herds) count += herd.agents;
+  return count;
+}
+
+uint64_t Scene::capacity() const {
+  uint64_t count = agentCount();
+  for (const Herd& herd : herds) count += herd.reserve;
   return count;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "skitter/export.h"
 #include "skitter/rig.h"
 
 namespace skitter {
@@ -51,7 +52,7 @@ struct Clip {
 };
 
 // A model's skin, bound to all joints that it needs, and its clips.
-struct ClipSet {
+struct SKITTER_API ClipSet {
   std::string name;                  // of the file, as messages give it
   double size = 0;                   // metres: the diagonal of the skin's box at rest
   std::vector<ClipJoint> joints;     // the palette, parents first; at most maxJoints
@@ -84,12 +85,13 @@ struct ClipCut {
 // proposedRig made of the same file. A model without legs is placed as it comes, for a Rig without legs. A
 // clip that is faulty or takes over maxFrames is left out and named in `notes`. Throws Error(input) that
 // names the file and the fault.
-ClipSet loadClips(const std::filesystem::path& file, const Rig& rig, std::span<const ClipCut> cuts = {});
+SKITTER_API ClipSet loadClips(const std::filesystem::path& file, const Rig& rig,
+                              std::span<const ClipCut> cuts = {});
 // The clips of the built-in spider: "walk" and "idle".
-ClipSet spiderClips();
+SKITTER_API ClipSet spiderClips();
 
 // loadRig or, where a model has neither sidecar nor legs in its extras, the rig of its proposal
 // (rig_setup.h). Throws Error(input) where no legs are found.
-Rig proposedRig(const std::filesystem::path& file);
+SKITTER_API Rig proposedRig(const std::filesystem::path& file);
 
 }  // namespace skitter

@@ -3,20 +3,28 @@
 #include <vulkan/vulkan.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "skitter/buffers.h"
 #include "skitter/device.h"
+#include "skitter/export.h"
 #include "skitter/heightfield.h"
+#include "skitter/picking.h"
 #include "skitter/records.h"
 #include "skitter/rig.h"
 #include "skitter/scene.h"
+#include "skitter/steering.h"
 
 namespace skitter {
+
+struct State;  // skitter/state.h
 
 // Another shader for a stage: a changed copy of shaders/stages/<stage>.comp, compiled once for each load
 // path, of which the device takes one, with the defines that engine/crowd/CMakeLists.txt has for it:
@@ -45,6 +53,7 @@ struct CrowdOptions {
   bool timestamps = false;                // time every stage on the device
   uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
+  std::vector<Rig> rigs = {};  // one a herd, in place of those that the scene names; empty: the scene's
 };
 
 // How well agents moved in the ticks in which they were watched (docs/stages/measure.md defines each).
@@ -94,7 +103,7 @@ struct AgentSample {
 // and validation.
 struct HerdState : ForRecords<std::vector<float>> {
   uint64_t tick = 0;        // the last one made
-  uint32_t agents = 0;      // that are here
+  uint32_t agents = 0;      // that are here, and empty places: body [1].w tells
   AgentSample sample;       // which of the herd they are
   uint32_t watchEvery = 1;  // measure watches one agent of this many at a time
   // Equal herds take turns as one, the herd's agent g as number watchOffset + g; number n that is being
@@ -133,16 +142,19 @@ struct StageTime {
 // The herds on one terrain, living on one device. Herds that are equal but for agents, spawn and goal share
 // pipelines and dispatches, so that any number of them costs what one of as many agents does. Not
 // thread-safe; one crowd may be recorded while another is.
-class Crowd {
+class SKITTER_API Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
-  // cannot be (an unknown rig or controller, tuning out of its range, more than 100 herds that differ, legs
-  // of an adaptive herd above 100 m, a terrain that reaches beyond 4 km from the origin) and, before any
-  // agent is made, Error(device) when memory does not suffice (as DeviceLimits::availableBytes, but now).
+  // cannot be (an unknown rig or controller, a count of rigs that is not that of herds, tuning out of its
+  // range, more than 100 herds that differ, legs of an adaptive herd above 100 m, a terrain that reaches
+  // beyond 4 km from the origin, an event that names nobody) and, before any agent is made, Error(device)
+  // when memory does not suffice (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
-  // With rigs that the caller made, one a herd, in place of those that the scene names.
-  Crowd(Device& device, const Heightfield& terrain, const Scene& scene, std::vector<Rig> rigs,
-        const CrowdOptions& options = {});
+  // As it was when it was saved; on another device and in other pages, too: every record has the bits that it
+  // had. What the state's options ask for and the state lacks (poses, feet, footfalls) follows from it.
+  // Throws Error as above, and Error(input) that names the state where it is damaged, or where a rig or its
+  // clips are others than they were.
+  Crowd(Device& device, const State& state);
   ~Crowd();
   Crowd(Crowd&&) noexcept;
   Crowd& operator=(Crowd&&) noexcept;
@@ -150,8 +162,11 @@ class Crowd {
   // Records one tick of `dt` seconds into the caller's command buffer (outside a render pass). It begins with
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in
-  // order. Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an
-  // adaptive herd, below 22 microseconds.
+  // order. What Scene::events has for that time happens first, as if the caller had called editHeights,
+  // steer, setSpeed, teleport, add or remove just before. Throws Error(input) where dt is not what it was
+  // before, for steps are timed in ticks, or, of an adaptive herd, below 22 microseconds; and where an event
+  // cannot happen, because an agent is not there or no place is left: then none of the tick's events has, and
+  // the tick can be recorded again.
   void record(VkCommandBuffer commandBuffer, float dt);
 
   // Replaces a rectangle of the terrain's samples while the crowd walks: columns [x0, x0 + columns), rows
@@ -164,13 +179,79 @@ class Crowd {
   void editHeights(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
   const Heightfield& terrain() const;  // as edited
 
-  uint64_t tick() const;  // ticks recorded so far
-  uint32_t herdCount() const;
-  uint32_t watchEvery() const;  // the fidelity figures are of one agent of this many at a time
-  uint64_t agentCount() const;
+  // Steering (docs/steering.md). What the host says takes effect in the next recorded tick, which carries it
+  // in its command buffer: the data may go at once, nothing waits, and of several calls for one agent the
+  // last counts. A number that is not finite or out of its range, a count that is not the herd's, a herd that
+  // is not there and a handle of nobody throw Error(input), and nothing is changed then.
+  //
+  // Goals: of all agents of a herd, of each one (one goal a place), or of some. Kind cross: along the lane in
+  // which the herd's spawn has the agent's place.
+  void steer(uint32_t herd, const Goal& goal);
+  void steer(uint32_t herd, std::span<const Goal> goals);
+  void steer(std::span<const AgentGoal> goals);
+  // The speed alone, 0 to Goal::maxSpeed, metres a second. Of kind velocity it is what the velocity is cut to
+  // from then on, until the next goal.
+  void setSpeed(uint32_t herd, float speed);
+  void setSpeed(uint32_t herd, std::span<const float> speeds);
+  void setSpeed(std::span<const AgentSpeed> speeds);
+  // Puts agents elsewhere: standing, feet on the ground at their homes, without speed and past. The goal
+  // stays.
+  void teleport(std::span<const AgentPlace> places);
+  void teleport(AgentId agent, const Place& place);
+  // The goals themselves, one buffer a page of the herd, for the caller's own shaders. record() begins with a
+  // barrier against what compute shaders and transfers wrote before it; before the caller's shader writes
+  // goals it needs one of its own against the tick before: from COMPUTE_SHADER, SHADER_STORAGE_WRITE to
+  // COMPUTE_SHADER, SHADER_STORAGE_READ | SHADER_STORAGE_WRITE. What the host says counts, where both do.
+  std::vector<GoalBuffer> goalBuffers(uint32_t herd) const;
+  // The handle of who is in that place of the herd. Throws Error(input) where nobody is.
+  AgentId agentId(uint32_t herd, uint32_t agent) const;
+
+  // Agents that come and go, in herds with a reserve (Herd::reserve): a herd has `places` for its agents and
+  // its reserve, and the lowest empty one is taken first. Handles of who is gone are of nobody.
+  //
+  // Throw Error(input) where no place is left, or where the herd has no reserve.
+  AgentId add(uint32_t herd, const Place& place, const Goal& goal);
+  AgentId add(uint32_t herd, const Place& place);  // with the herd's goal
+  void remove(AgentId agent);
+  bool has(AgentId agent) const;
+  uint32_t places(uint32_t herd) const;
+  uint32_t agentCount(uint32_t herd) const;
+
+  // Herds that come and go, between ticks: both calls make or free device memory at once, and take as long.
+  //
+  // The herd is there in the next recorded tick, as one of the scene in a crowd that begins. It has pipelines
+  // and pages of its own (about 0.3 s), and the lowest number that no herd has. A renderer of the crowd
+  // follows at its next picture. Throws as the constructor does, and Error(input) beyond Scene::maxHerds.
+  HerdId addHerd(const Herd& herd);
+  // Waits for the device, frees the herd's memory, and its number is of a herd without places. Command
+  // buffers that were recorded before must not be submitted any more. A herd that shares its kind with others
+  // (equal but for agents, reserve, spawn and goal) leaves its places empty where the kind has a reserve, and
+  // is refused by an Error(input) where it has none.
+  void removeHerd(HerdId herd);
+  bool has(HerdId herd) const;
+  HerdId herdId(uint32_t herd) const;
+
+  // Writes a state, with which a run can go on later (skitter/state.h). Waits for the device. The file takes
+  // its name once it is whole and on the disk; until then an older one stays. `note` is JSON of the
+  // caller's own, which comes back with the state. Throws Error(input) that names the file, or the value of
+  // the scene or the note that cannot be written.
+  void save(const std::filesystem::path& file, const std::string& note = {}) const;
+  std::vector<std::byte> saveToMemory(const std::string& note = {}) const;
+  uint64_t stateBytes() const;  // about what a state takes, without the note
+
+  uint64_t tick() const;         // ticks recorded so far
+  uint32_t herdCount() const;    // numbers, those of herds that are gone among them
+  uint32_t watchEvery() const;   // the fidelity figures are of one agent of this many at a time
+  uint64_t agentCount() const;   // who is there, as the host has said
+  uint64_t capacity() const;     // places for agents, empty ones among them
   uint64_t memoryBytes() const;  // device memory of all records
   std::vector<MemoryUse> memoryUse(uint32_t herd) const;
   const Rig& rig(uint32_t herd) const;
+
+  // The nearest agent under a ray; the one nearest to a point. Positions are relative to `origin`. Both wait
+  // for the device and read every agent's body; Snapshot (skitter/readback.h) has the same without waiting.
+  std::optional<Picked> pick(const Ray& ray, const glm::dvec3& origin = glm::dvec3(0)) const;
+  std::optional<Picked> nearest(const glm::dvec3& point, const glm::dvec3& origin = glm::dvec3(0)) const;
 
   // Each of these waits for the device.
   HerdState download(uint32_t herd, const AgentSample& sample = {}) const;
@@ -191,8 +272,10 @@ class Crowd {
 
   // One a page of the herd; does not wait. The last barrier of record() makes them visible.
   std::vector<FootfallBuffer> footfallBuffers(uint32_t herd) const;
+  // Likewise, of any record but `watch`. Empty where the herd keeps none (CrowdOptions).
+  std::vector<RecordBuffer> buffers(uint32_t herd, Record record) const;
 
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
 
  private:
   // For the engine's own rooms and tools (crowd/herd.h).

@@ -3,11 +3,16 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "skitter/error.h"
+#include "skitter/export.h"
 
 namespace skitter {
 
@@ -73,9 +78,10 @@ struct DeviceLimits {
   bool sampledR32f = false;      // R32_SFLOAT sampled images: heightfields need them
 };
 
-// Optional features. Those present are enabled on a device that create() makes; on an adopted device all are
-// false, because Vulkan cannot be asked what its maker enabled.
+// Optional features. Those present are enabled on a device that create() makes; of an adopted device, those
+// are true that its maker says are enabled.
 struct DeviceFeatures {
+  bool graphics = false;  // the queue draws: without it there is no Renderer
   bool drawIndirectCount = false;
   bool multiDrawIndirect = false;
   bool drawIndirectFirstInstance = false;
@@ -86,7 +92,7 @@ struct DeviceFeatures {
   bool presentation = false;  // VK_KHR_swapchain
 };
 
-struct DeviceReport {
+struct SKITTER_API DeviceReport {
   std::string name;
   std::string driver;  // name and version as the driver tells them
   uint32_t index = 0;  // the number that DeviceRequest::device accepts
@@ -117,6 +123,47 @@ struct DeviceRequest {
   std::optional<LoadPath> loads = {};
   // Likewise; SKITTER_STORES may name "32" or "64".
   std::optional<StoreWidth> stores = {};
+  // What Device::pipelineCacheData() gave in an earlier run; read while the device is made. What another
+  // device or driver wrote is passed over.
+  std::vector<uint8_t> pipelineCache = {};
+};
+
+// The features that a device must be made with, and those with which the engine is quicker: chains of
+// VkPhysicalDeviceVulkan11Features, VkPhysicalDeviceVulkan12Features and VkPhysicalDeviceVulkan13Features,
+// which live as long as the program.
+SKITTER_API const VkPhysicalDeviceFeatures2& requiredFeatures();
+SKITTER_API const VkPhysicalDeviceFeatures2& recommendedFeatures();
+// Names of device extensions.
+SKITTER_API std::span<const char* const> requiredExtensions();
+SKITTER_API std::span<const char* const> recommendedExtensions();
+// Switches on in the caller's chain, before vkCreateDevice, what is required and, of what is recommended,
+// what the device has. Whatever is on stays on. Throws Error(input) naming a required feature for which the
+// chain has no structure.
+SKITTER_API void addFeatures(VkPhysicalDeviceFeatures2& chain, VkPhysicalDevice);
+
+// A device that the caller made, as Device::adopt takes it. What is pointed to is read during the call.
+struct AdoptedDevice {
+  // From the Vulkan loader, as those of GLFW, SDL and volk are. The instance was made for Vulkan 1.3.
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  // Computes; a Renderer also needs graphics.
+  VkQueue queue = VK_NULL_HANDLE;
+  uint32_t queueFamily = 0;
+  PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;  // null: the loader's
+  // What was enabled: the chain that vkCreateDevice was given (VkDeviceCreateInfo::pNext, with
+  // pEnabledFeatures, if any, in its `features`), and the extensions of instance and device.
+  const VkPhysicalDeviceFeatures2* features = nullptr;
+  std::span<const char* const> extensions = {};
+  // Called about each use of the queue by the engine, from the thread that called the engine: both or
+  // neither. They must not throw. Without them the caller's threads keep their uses of the queue apart from
+  // calls of the engine.
+  std::function<void()> lockQueue = {}, unlockQueue = {};
+  VkPipelineCache pipelineCache =
+      VK_NULL_HANDLE;  // the engine's pipelines go through it; null: one of the engine's own
+  // As those of DeviceRequest.
+  std::optional<LoadPath> loads = {};
+  std::optional<StoreWidth> stores = {};
 };
 
 struct ValidationMessage {
@@ -127,7 +174,7 @@ struct ValidationMessage {
 
 // What the validation layer said, warnings and errors. It may outlive its device, so that complaints about
 // the device's own destruction can still be read. Thread-safe.
-class ValidationLog {
+class SKITTER_API ValidationLog {
  public:
   std::vector<ValidationMessage> messages() const;
   void clear();
@@ -140,26 +187,22 @@ class ValidationLog {
 
 // Every device of this machine, suitable or not, in Vulkan's order, with the choice that create() would make.
 // Throws Error(device) when there is no Vulkan driver at all.
-std::vector<DeviceReport> listDevices(const DeviceRequest& = {});
+SKITTER_API std::vector<DeviceReport> listDevices(const DeviceRequest& = {});
 
-// One Vulkan device with one queue that does graphics, compute and transfer. Everything made on it must be
-// gone before it is destroyed. Work is submitted from one thread at a time.
-class Device {
+// One Vulkan device with one queue that does compute, transfer and, but for some that are adopted, graphics.
+// Everything made on it must be gone before it is destroyed. Work is submitted from one thread at a time.
+class SKITTER_API Device {
  public:
-  // The best suitable device: Vulkan 1.3, a graphics and compute queue, dynamicRendering, synchronization2
-  // and timelineSemaphore; discrete before integrated before virtual before cpu. Throws Error(device) listing
-  // each candidate with its reasons. Takes some milliseconds to find out how records are best read and
-  // written.
+  // The best suitable device: Vulkan 1.3, a graphics and compute queue, requiredFeatures(); discrete before
+  // integrated before virtual before cpu. Throws Error(device) listing each candidate with its reasons. Takes
+  // some milliseconds to find out how records are best read and written.
   static Device create(const DeviceRequest& = {});
 
-  // A device that the caller made and keeps; it is never destroyed here. It needs what create() asks for,
-  // with those three features enabled; the queue is used from the calling threads only and the caller keeps
-  // its own submissions to it apart from ours, the first of which this call makes (see create()). The handles
-  // must come from the Vulkan loader (GLFW, SDL and volk all use it). Throws Error(device) when the physical
-  // device is unsuitable. Records are read through texel buffers only if `loads` says so; the device must
-  // then have shaderInt64 enabled.
-  static Device adopt(VkInstance, VkPhysicalDevice, VkDevice, uint32_t queueFamily, VkQueue,
-                      PFN_vkGetInstanceProcAddr, std::optional<LoadPath> loads = {});
+  // A device that the caller made and keeps: no handle is ever destroyed here, and all outlive the Device.
+  // How records are best read and written is measured as create() does it, by submissions to the queue.
+  // Throws Error(device) that names everything that is missing, before anything is made. docs/embedding.md
+  // tells who waits for what.
+  static Device adopt(const AdoptedDevice&);
 
   Device(Device&&) noexcept;
   Device& operator=(Device&&) noexcept;
@@ -172,8 +215,17 @@ class Device {
   VkQueue queue() const;
   uint32_t queueFamily() const;
 
-  // Throws Error(device) when the device is lost.
+  // Waits for what was submitted: to a device of create() at all, to the queue of an adopted one. Throws
+  // Error(device) when the device is lost.
   void waitIdle() const;
+
+  // Records into a command buffer, submits it and waits: for set-up, tools and first steps, where nothing
+  // else is to go on meanwhile. Throws Error(device) when the device is lost.
+  void run(const std::function<void(VkCommandBuffer)>& record) const;
+
+  // For DeviceRequest::pipelineCache in the next run: the pipelines made so far, and the host's where it gave
+  // a cache.
+  std::vector<uint8_t> pipelineCacheData() const;
 
   // Empty unless the request asked for validation.
   std::vector<ValidationMessage> validationMessages() const;

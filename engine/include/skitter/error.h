@@ -3,11 +3,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "skitter/export.h"
+
 namespace skitter {
 
 // Wrong input or a failing world. what() is one line that names the file or object, what was found and what
 // was expected. A caller's own bug is an assertion, never an Error.
-class Error : public std::runtime_error {
+class SKITTER_API Error : public std::runtime_error {
  public:
   // The values are the exit codes of the `skitter` command.
   enum class Kind {

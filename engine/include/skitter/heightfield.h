@@ -2,17 +2,20 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "skitter/export.h"
 
 namespace skitter {
 
 // A terrain y = h(x, z), sampled at the corners of a regular grid and bilinear in between.
 // Columns run to +x and rows to +z; the grid is centred on the world's origin and heights are metres relative
 // to mid height (the mean of the lowest and the highest sample). Outside, heights clamp to the edge.
-struct Heightfield {
+struct SKITTER_API Heightfield {
   std::string name;
   uint32_t columns = 0;        // samples along x, at least 2
   uint32_t rows = 0;           // samples along z, at least 2
@@ -27,6 +30,8 @@ struct Heightfield {
   float extentZ() const { return spacingZ * static_cast<float>(rows - 1); }
   // Bilinear height at world (x, z), for spawning, cameras and tools; the simulation samples on the device.
   float at(float x, float z) const;
+  // The ground's unit normal there, of the same surface.
+  glm::vec3 normalAt(float x, float z) const;
   // The same, but beyond its edge the ground goes on as its mirror image, as it does in pictures.
   float seenAt(float x, float z) const;
   // Replaces the samples of columns [x0, x0 + columns) and rows [z0, z0 + rows) by `samples`, row-major,
@@ -52,7 +57,8 @@ struct HeightfieldUnits {
 
 // Reads .png (grey, 8 or 16 bits), .r16, .r32f, .hgt (SRTM) or .npy, by the name's extension. Voids are
 // filled and counted. Throws Error(input) that names the file and the fault.
-Heightfield loadHeightfield(const std::filesystem::path& file, const HeightfieldUnits& units = {});
+SKITTER_API Heightfield loadHeightfield(const std::filesystem::path& file,
+                                        const HeightfieldUnits& units = {});
 
 // Rolling ground made of value noise in octaves, with ridges; the same bits for the same arguments.
 struct TerrainNoise {
@@ -68,6 +74,6 @@ struct TerrainNoise {
 
   bool operator==(const TerrainNoise&) const = default;
 };
-Heightfield generateHeightfield(const TerrainNoise& noise);
+SKITTER_API Heightfield generateHeightfield(const TerrainNoise& noise);
 
 }  // namespace skitter

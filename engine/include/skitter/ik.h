@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "skitter/device.h"
+#include "skitter/export.h"
 #include "skitter/solver.h"
 
 // Inverse kinematics of many equal chains at once, on its own: N chains, N targets in, joints out. docs/ik.md
@@ -53,7 +54,7 @@ struct Bone {
 };
 
 // The kind of chain that a batch solves: its base at 0, its axes the base's.
-struct Chain {
+struct SKITTER_API Chain {
   static constexpr size_t maxBones = 15;
 
   std::vector<Bone> bones;        // 1 to maxBones; joints are one more
@@ -65,7 +66,7 @@ struct Chain {
 };
 
 // Throws Error(input) naming the bone and the fault: a count, length, direction or limit that cannot be.
-void check(const Chain&);
+SKITTER_API void check(const Chain&);
 
 enum class Start {
   rest,      // every solve starts at the rest pose
@@ -98,12 +99,12 @@ struct Options {
   std::vector<Shader> shaders = {};  // in place of the built-in ones, for experiments
 };
 // What the engine ships: 20 for free chains, 64 for limited ones, 4 where solves continue.
-uint32_t defaultIterations(const Chain&, const Options&);
+SKITTER_API uint32_t defaultIterations(const Chain&, const Options&);
 // The rest pull asked for; else 0.02 where the active set continues solves of a chain with hinges, which it
 // keeps out of dead ends (docs/ik.md, Tracking), and 0.
-float restPullOf(const Chain&, const Options&);
+SKITTER_API float restPullOf(const Chain&, const Options&);
 // The solver that `automatic` stands for.
-Solver solverFor(const Chain&, const Options&);
+SKITTER_API Solver solverFor(const Chain&, const Options&);
 
 struct Base {
   glm::vec3 position{0};
@@ -126,7 +127,7 @@ struct Span {
 // N chains of one kind. Not thread-safe. Throws Error(input) for a chain or options that cannot be,
 // Error(device) when memory does not suffice. Chains are split over pages, so that any count up to maxChains
 // fits the device's bindings.
-class Batch {
+class SKITTER_API Batch {
  public:
   static constexpr uint32_t maxChains = 1 << 24;
 
@@ -181,7 +182,7 @@ class Batch {
   void use(const Buffers&);
 
  private:
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
   std::unique_ptr<Impl> impl_;
 };
 
@@ -195,7 +196,7 @@ struct Tree {
   float anchor = 0;       // 0: the body goes where its legs pull it; 1: it stays where it was
 };
 
-class TreeBatch {
+class SKITTER_API TreeBatch {
  public:
   TreeBatch(Device&, const Tree&, uint32_t trees, uint32_t iterations = 20, float tolerance = 9e-4f);
   ~TreeBatch();
@@ -209,7 +210,7 @@ class TreeBatch {
   std::vector<Report> downloadReports() const;    // one a tree; the error is the largest of its legs'
 
  private:
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <span>
 
+#include "skitter/export.h"
+
 namespace skitter {
 
 // Writes tightly packed RGBA8 sRGB rows, top row first, as an opaque PNG. The file appears whole or not at
 // all: it is written as NAME.part and renamed. Throws Error(input) that names the file and the fault.
-void writePng(const std::filesystem::path& file, uint32_t width, uint32_t height,
-              std::span<const uint8_t> rgba);
+SKITTER_API void writePng(const std::filesystem::path& file, uint32_t width, uint32_t height,
+                          std::span<const uint8_t> rgba);
 
 }  // namespace skitter

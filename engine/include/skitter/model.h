@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "skitter/export.h"
+
 namespace skitter {
 
 // A glTF 2.0 file as it comes, in its own units and axes: nodes and the mesh at rest, and what moves with
 // what. Every index is in range, every number finite. docs/rigs.md tells how a model becomes a rig.
-struct Model {
+struct SKITTER_API Model {
   struct Node {
     std::string name;    // may be empty, and may be another node's too
     int parent = -1;     // -1: none
@@ -53,6 +55,6 @@ struct Model {
 };
 
 // Reads a .glb or .gltf with its buffers. Throws Error(input) that names the file and the fault.
-Model loadModel(const std::filesystem::path& file);
+SKITTER_API Model loadModel(const std::filesystem::path& file);
 
 }  // namespace skitter

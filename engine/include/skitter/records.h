@@ -1,6 +1,7 @@
-// The records that the stages exchange, as GLSL and C++ both see them. Every buffer is an array of vec4; a
-// record is `stride` consecutive vec4. Small integers travel as exact floats. docs/stages.md has the meaning
-// of each symbol. One stage writes each record; `written by` names it. The table at the end says all else.
+// The records that the stages exchange, as GLSL, C++ and C (C99, without a prefix) see them. Every buffer is
+// an array of vec4; a record is `stride` consecutive vec4. Small integers travel as exact floats.
+// docs/stages.md has the meaning of each symbol. One stage writes each record; `written by` names it. The
+// table at the end says all else.
 #ifndef SKITTER_RECORDS_H
 #define SKITTER_RECORDS_H
 
@@ -11,15 +12,28 @@
 #include <cstdint>
 
 namespace skitter::shared {
-using uint = unsigned;
 using std::abs, std::floor;
 #define SKITTER_CONST inline constexpr
 #define SKITTER_FUNCTION inline constexpr
 #define SKITTER_INLINE inline
+#define SKITTER_INT(x) int(x)
+#define SKITTER_UINT(x) unsigned(x)
+#define SKITTER_ABS(x) abs(x)
+#elif defined(__STDC__)
+#include <math.h>
+#define SKITTER_CONST static const
+#define SKITTER_FUNCTION static inline
+#define SKITTER_INLINE static inline
+#define SKITTER_INT(x) ((int)(x))
+#define SKITTER_UINT(x) ((unsigned)(x))
+#define SKITTER_ABS(x) fabs(x)
 #else
 #define SKITTER_CONST const
 #define SKITTER_FUNCTION
 #define SKITTER_INLINE
+#define SKITTER_INT(x) int(x)
+#define SKITTER_UINT(x) uint(x)
+#define SKITTER_ABS(x) abs(x)
 #endif
 
 // Legs that a creature may have.
@@ -36,13 +50,16 @@ SKITTER_CONST int WORK_GROUP = 128;
 // instructions.
 SKITTER_CONST int BLOCK = 8;
 SKITTER_FUNCTION int legRecord(int agent, int leg, int legs) {
-  return int((uint(agent) / uint(BLOCK) * uint(legs) + uint(leg)) * uint(BLOCK) + uint(agent) % uint(BLOCK));
+  return SKITTER_INT((SKITTER_UINT(agent) / SKITTER_UINT(BLOCK) * SKITTER_UINT(legs) + SKITTER_UINT(leg)) *
+                         SKITTER_UINT(BLOCK) +
+                     SKITTER_UINT(agent) % SKITTER_UINT(BLOCK));
 }
 SKITTER_FUNCTION int agentOfRecord(int record, int legs) {
-  return int(uint(record) / uint(BLOCK * legs) * uint(BLOCK) + uint(record) % uint(BLOCK));
+  return SKITTER_INT(SKITTER_UINT(record) / SKITTER_UINT(BLOCK * legs) * SKITTER_UINT(BLOCK) +
+                     SKITTER_UINT(record) % SKITTER_UINT(BLOCK));
 }
 SKITTER_FUNCTION int legOfRecord(int record, int legs) {
-  return int(uint(record) / uint(BLOCK) % uint(legs));
+  return SKITTER_INT(SKITTER_UINT(record) / SKITTER_UINT(BLOCK) % SKITTER_UINT(legs));
 }
 // Metres; body positions are tile * TILE_SIZE + local, 0 <= local < TILE_SIZE.
 SKITTER_CONST float TILE_SIZE = 16.0;
@@ -53,13 +70,16 @@ SKITTER_FUNCTION float packedTile(float x, float z) { return TILES * x + z; }
 SKITTER_INLINE float tileX(float tile) { return floor(tile / TILES + 0.5f); }
 SKITTER_INLINE float tileZ(float tile) { return tile - TILES * tileX(tile); }
 
-// goal, per agent, written by navigate.
+// goal, per agent, written by navigate, and by whoever steers: the host (Crowd::steer) or shaders of the
+// caller's (Crowd::goalBuffers). Other kinds than these are undefined, as is what is not finite.
 //   [0] target x, target z, other end x, other end z    world metres
-//   [1] speed (m/s), arrival radius (m), kind (0 none, 1 point, 2 cross), unused
+//       of kind velocity: desired velocity x, z (m/s), unused x 2
+//   [1] speed (m/s; of kind velocity what it is cut to), arrival radius (m), kind (GOAL_), unused
 SKITTER_CONST int GOAL_STRIDE = 2;
 SKITTER_CONST float GOAL_NONE = 0.0;
 SKITTER_CONST float GOAL_POINT = 1.0;
 SKITTER_CONST float GOAL_CROSS = 2.0;
+SKITTER_CONST float GOAL_VELOCITY = 3.0;
 
 // steer, per agent, written by navigate.
 //   [0] desired velocity x, z (m/s), 1 if the agent sleeps, unused
@@ -76,10 +96,12 @@ SKITTER_CONST int AWAKE_STRIDE = 1;
 
 // body, per agent, written by body.
 //   [0] local x, y (world), local z, tile
-//   [1] heading x, heading z, speed s (m/s, horizontal, along the heading), unused
+//   [1] heading x, heading z, speed s (m/s, horizontal, along the heading), 1 where the place is empty
 //   [2] R_0, quaternion xyzw, worldFromModel
 //   [3] turn rate omega (rad/s), still time (s), follow factor kappa, surface speed v3 (m/s)
 SKITTER_CONST int BODY_STRIDE = 4;
+// World y of an empty place's body, metres: out of every picture.
+SKITTER_CONST float ABSENT_HEIGHT = -1e6;
 
 // gait, per agent, written by gait.
 //   [0] phase phi in [0,1), lift mask, re-aim mask, step duration (ticks)
@@ -101,13 +123,13 @@ SKITTER_INLINE float stepTile(float x, float z) {
   return tile - STEP_TICK * floor(tile / STEP_TICK);
 }
 SKITTER_INLINE float packedTicks(float ticks, float tile) {
-  float packed = STEP_TICK * abs(ticks) + tile;
+  float packed = STEP_TICK * SKITTER_ABS(ticks) + tile;
   return ticks < 0.0f ? -packed : packed;
 }
 SKITTER_INLINE float ticksOf(float packed) {  // without their sign
-  return floor(abs(packed) / STEP_TICK);
+  return floor(SKITTER_ABS(packed) / STEP_TICK);
 }
-SKITTER_INLINE float tileOfTicks(float packed) { return abs(packed) - STEP_TICK * ticksOf(packed); }
+SKITTER_INLINE float tileOfTicks(float packed) { return SKITTER_ABS(packed) - STEP_TICK * ticksOf(packed); }
 // From a body's tile to a step's, as one number and in x and z.
 SKITTER_INLINE float tilesApart(float step, float body) {
   return step - body - STEP_TICK * floor((step - body) / STEP_TICK + 0.5f);

@@ -10,6 +10,7 @@
 
 #include "skitter/crowd.h"
 #include "skitter/device.h"
+#include "skitter/export.h"
 #include "skitter/scene.h"
 
 namespace skitter {
@@ -21,17 +22,19 @@ struct View {
   float fieldOfView = 0.8f;  // radians, vertical
 };
 
-// The scene's camera at a time. `follow` frames the action: one walker and those about it, seen from behind,
-// aside and above, moving as the first herd is commanded to, never below the ground. It needs no readback.
-// `crowd` was made of `scene`.
-View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
+// The scene's camera at a time, any number of seconds. `follow` frames the action: one walker and those about
+// it, seen from behind, aside and above, moving as the first herd is commanded to. `orbit` turns about it, or
+// about a point. `path` goes through its keys, and stays at the first before it and at the last after it.
+// None of these is ever below the ground. Needs no readback. `crowd` was made of `scene`. Throws Error(input)
+// for a path of keys that cannot be (Camera::keys).
+SKITTER_API View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
 
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.
-class Renderer {
+class SKITTER_API Renderer {
  public:
-  // Throws Error(input) for a picture without pixels or a crowd without poses, Error(device) when width or
-  // height exceed the device's limits or memory does not suffice. The crowd outlives the renderer and stays
-  // where it is.
+  // Throws Error(input) for a picture without pixels or a crowd without poses, Error(device) for a device
+  // whose queue has no graphics, when width or height exceed the device's limits or memory does not suffice.
+  // The crowd outlives the renderer and stays where it is.
   Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
@@ -56,7 +59,7 @@ class Renderer {
   std::vector<uint8_t> download() const;
 
  private:
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "skitter/export.h"
+
 namespace skitter {
 
 // Everything here is in model space at rest: metres, +Y up, the creature faces +Z (so +X is its left), the
@@ -48,7 +50,7 @@ struct SkinVertex {
 };
 
 // A skeleton, its skin, its legs and their limits; immutable once loaded.
-struct Rig {
+struct SKITTER_API Rig {
   static constexpr size_t maxLegs = 24;
 
   std::string name;
@@ -64,15 +66,17 @@ struct Rig {
   int groupCount() const { return static_cast<int>(groups.size()); }
   int maxBones() const;  // the longest chain; shorter ones are padded in the palette
   int paletteSize() const { return 1 + legCount() * maxBones(); }
+  // Where the bone of each palette entry starts at rest; of padding, the leg's last bone.
+  std::vector<glm::vec3> restStarts() const;
   bool operator==(const Rig&) const = default;
 };
 
 // A sidecar (NAME.rig.json); or a model (.glb, .gltf) with its sidecar beside it or, failing that, with legs
 // in its extras (docs/rig.md). Throws Error(input) that names the file and the fault.
-Rig loadRig(const std::filesystem::path& file);
+SKITTER_API Rig loadRig(const std::filesystem::path& file);
 // A model whose extras hold the legs, everything in one file.
-Rig parseRig(std::span<const uint8_t> gltf, const std::string& name);
+SKITTER_API Rig parseRig(std::span<const uint8_t> gltf, const std::string& name);
 // The built-in spider (assets/spider.glb, embedded): eight legs of four bones, leg length 1 m.
-Rig spiderRig();
+SKITTER_API Rig spiderRig();
 
 }  // namespace skitter

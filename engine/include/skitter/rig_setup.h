@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "skitter/export.h"
 #include "skitter/model.h"
 #include "skitter/rig.h"
 
@@ -37,16 +38,16 @@ struct RigSetup {
 };
 
 // Throws Error(input) that names the file and the key.
-RigSetup loadRigSetup(const std::filesystem::path& sidecar);
-RigSetup parseRigSetup(const std::string& json, const std::string& name);
+SKITTER_API RigSetup loadRigSetup(const std::filesystem::path& sidecar);
+SKITTER_API RigSetup parseRigSetup(const std::string& json, const std::string& name);
 // The sidecar's text.
-std::string writeRigSetup(const RigSetup& setup);
+SKITTER_API std::string writeRigSetup(const RigSetup& setup);
 
 // Where a model's sidecar lies by default: NAME.rig.json beside NAME.glb.
-std::filesystem::path sidecarOf(const std::filesystem::path& model);
+SKITTER_API std::filesystem::path sidecarOf(const std::filesystem::path& model);
 
 // `name` begins messages. Throws Error(input) naming the key that does not fit the model.
-Rig buildRig(const Model& model, const RigSetup& setup, const std::string& name);
+SKITTER_API Rig buildRig(const Model& model, const RigSetup& setup, const std::string& name);
 
 // A chain that ends near the ground, as found in a model.
 struct FoundLeg {
@@ -63,6 +64,6 @@ struct RigProposal {
 };
 
 // Legs by geometry and names; docs/rig.md states the rules.
-RigProposal proposeRig(const Model& model);
+SKITTER_API RigProposal proposeRig(const Model& model);
 
 }  // namespace skitter

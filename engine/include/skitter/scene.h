@@ -10,6 +10,7 @@
 
 #include "skitter/clip.h"
 #include "skitter/controller.h"
+#include "skitter/export.h"
 #include "skitter/heightfield.h"
 #include "skitter/solver.h"
 #include "skitter/tuning.h"
@@ -38,10 +39,13 @@ struct Spawn {
 };
 struct Goal {
   // cross: walk to the far side of the terrain, turn, and come back beside the own lane, for ever.
-  // point: walk to `target` and stand there.   none: stand.
-  enum class Kind { cross, point, none } kind = Kind::cross;
-  glm::vec2 target{0};  // x, z
-  float speed = 1;      // commanded horizontal speed, metres a second, >= 0
+  // point: walk to `target` and stand there.   none: stand.   velocity: go by `velocity`.
+  enum class Kind { cross, point, none, velocity } kind = Kind::cross;
+  static constexpr float maxSpeed = 1000;  // metres a second
+
+  glm::vec2 target{0};    // x, z
+  float speed = 1;        // commanded horizontal speed, metres a second, 0 to maxSpeed; not of kind velocity
+  glm::vec2 velocity{0};  // x, z, metres a second, at most maxSpeed long
 
   bool operator==(const Goal&) const = default;
 };
@@ -61,24 +65,136 @@ struct Herd {
   Stepping stepping = Stepping::gait;
   Tuning tuning;  // docs/tuning.md
   uint32_t agents = 1000;
+  uint32_t reserve = 0;  // places for more, who come and go while the crowd runs (Crowd::add)
   Spawn spawn;
   Goal goal;
+  // Where in the cycle of its gait or clip each agent begins, 0 to 1; none: drawn by the seed.
+  std::optional<float> phase = {};
+  // What the model's colours are turned into: this, lighter or darker as they are. Linear RGB, 0 to 1; none:
+  // they stay.
+  std::optional<glm::vec3> colour = {};
+  // How much agents differ in colour, by the seed: 0 not at all, 1 by most; none: half, by their numbers.
+  std::optional<float> tint = {};
 
   bool operator==(const Herd&) const = default;
 };
 
-struct Camera {
-  // follow: behind and above the middle of the crowd.  fixed: from `position` at `target`.
-  enum class Kind { follow, fixed } kind = Kind::follow;
+// Where a camera on a path is, and what it looks at, at a time.
+struct CameraKey {
+  float time = 0;  // seconds
   glm::vec3 position{0}, target{0};
-  float distance = 9;        // metres from the crowd's middle, follow only
-  float fieldOfView = 0.8f;  // radians, vertical
+
+  bool operator==(const CameraKey&) const = default;
+};
+struct Camera {
+  static constexpr size_t minPathKeys = 2, maxPathKeys = 1024;
+  static constexpr float maxPathTime = 86400;      // seconds
+  static constexpr float minPathStep = 1.0f / 64;  // seconds from a key to the next
+
+  // follow: behind and above the middle of the crowd.  fixed: from `position` at `target`.
+  // orbit: around the middle of the crowd, or `about`.  path: through `keys`, along a Hermite spline.
+  enum class Kind { follow, fixed, orbit, path } kind = Kind::follow;
+  glm::vec3 position{0}, target{0};  // fixed only
+  float distance = 9;                // metres from what it looks at, follow and orbit only
+  float fieldOfView = 0.8f;          // radians, vertical
+  // Orbit only.
+  std::optional<glm::vec3> about = {};  // none: the middle of the crowd, as follow has it
+  float elevation = 0.3f;               // radians above the horizon of what it looks at
+  float azimuth = 0;                    // radians about +Y from +Z: on which side of it the eye begins
+  float secondsATurn = 30;  // counter-clockwise as seen from above; below 0 clockwise, 0: it stays
+  // Path only: minPathKeys to maxPathKeys, each at least minPathStep after the one before.
+  std::vector<CameraKey> keys = {};
 
   bool operator==(const Camera&) const = default;
 };
 
-struct Scene {
-  static constexpr size_t maxHerds = 1024;
+// Ground that rises or sinks: a sample at distance d from the centre by height (1 - d^2 / radius^2)^2.
+struct Mound {
+  glm::vec2 centre{0};  // x, z
+  float radius = 1;     // metres, above 0
+  float height = 0.5f;  // metres; below 0: a pit
+
+  bool operator==(const Mound&) const = default;
+};
+// New heights of a rectangle of the terrain's samples, as Crowd::editHeights takes them.
+struct HeightSamples {
+  uint32_t x = 0, z = 0, columns = 0, rows = 0;
+  std::vector<float> heights = {};
+
+  bool operator==(const HeightSamples&) const = default;
+};
+
+// Where an agent is put, its feet on the ground around.
+struct Place {
+  glm::vec2 position{0};  // x, z, world metres, on the terrain
+  float heading = 0;      // radians about +Y, 0 faces +Z, -1000 to 1000
+
+  bool operator==(const Place&) const = default;
+};
+// What a scene says to agents, as Crowd::steer, setSpeed, teleport, add and remove do. Herds are named by
+// their number in the scene and agents by that of their place in the herd, below its agents and reserve:
+// whoever is there then.
+struct GoalChange {
+  uint32_t herd = 0;
+  std::vector<uint32_t> agents = {};  // empty: all who are there
+  Goal goal = {};
+
+  bool operator==(const GoalChange&) const = default;
+};
+struct SpeedChange {
+  uint32_t herd = 0;
+  std::vector<uint32_t> agents = {};  // empty: all who are there
+  float speed = 0;                    // metres a second, 0 to Goal::maxSpeed
+
+  bool operator==(const SpeedChange&) const = default;
+};
+struct Teleport {
+  struct Move {
+    uint32_t agent = UINT32_MAX;  // none
+    Place place = {};
+
+    bool operator==(const Move&) const = default;
+  };
+  uint32_t herd = 0;
+  std::vector<Move> moves = {};  // at least one
+
+  bool operator==(const Teleport&) const = default;
+};
+// To the lowest empty places of a herd with a reserve.
+struct Addition {
+  struct Arrival {
+    Place place = {};
+    std::optional<Goal> goal = {};  // none: the herd's
+
+    bool operator==(const Arrival&) const = default;
+  };
+  uint32_t herd = 0;
+  std::vector<Arrival> arrivals = {};  // at least one
+
+  bool operator==(const Addition&) const = default;
+};
+// From a herd with a reserve.
+struct Removal {
+  uint32_t herd = 0;
+  std::vector<uint32_t> agents = {};  // at least one, none twice
+
+  bool operator==(const Removal&) const = default;
+};
+
+// What happens to a running crowd, just before the first tick that ends at `at` or later.
+struct Event {
+  static constexpr float maxTime = 86400;        // seconds
+  static constexpr size_t maxSamples = 1 << 16;  // of HeightSamples
+  static constexpr size_t maxAgents = 1 << 16;   // that one event names, moves or adds
+
+  float at = 0;  // seconds
+  std::variant<Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal> what;
+
+  bool operator==(const Event&) const = default;
+};
+
+struct SKITTER_API Scene {
+  static constexpr size_t maxHerds = 1024, maxEvents = 4096;
   static constexpr uint32_t maxAgents = 1 << 24;  // of all herds: records hold an agent's index as a float
   static constexpr float maxCoordinate = 4096;  // metres from the origin: feet beyond are placed too coarsely
 
@@ -86,21 +202,24 @@ struct Scene {
   std::variant<TerrainNoise, TerrainFile> terrain;
   std::vector<Herd> herds{Herd{}};
   Camera camera;
+  std::vector<Event> events;  // by time; Crowd::record lets them happen
   uint64_t seed = 1;
 
   Heightfield loadTerrain() const;  // throws Error(input)
   uint64_t agentCount() const;
+  uint64_t capacity() const;  // with the herds' reserves, at most maxAgents
   bool operator==(const Scene&) const = default;
 };
 
 // The built-in scene: 1,000 spiders crossing generated ground in parallel lanes
 // (assets/scenes/crossing.json).
-Scene builtinScene();
+SKITTER_API Scene builtinScene();
 // Throws Error(input) that names the file and the field.
-Scene loadScene(const std::filesystem::path& file);
-Scene parseScene(const std::string& json, const std::string& name, const std::filesystem::path& folder);
+SKITTER_API Scene loadScene(const std::filesystem::path& file);
+SKITTER_API Scene parseScene(const std::string& json, const std::string& name,
+                             const std::filesystem::path& folder);
 // The JSON form, with every key and with absolute file names: it is read back as an equal scene. Throws
 // Error(input) that names the key of a value that no scene file may have.
-std::string sceneJson(const Scene& scene);
+SKITTER_API std::string sceneJson(const Scene& scene);
 
 }  // namespace skitter

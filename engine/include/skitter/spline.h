@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "skitter/device.h"
+#include "skitter/enum_names.h"
+#include "skitter/export.h"
 
 // Cubic Hermite splines: chains of points that something travels along. docs/spline.md states the equations
 // and their sources. Lengths are in the caller's units; knots and clocks in seconds, or any unit of time.
@@ -26,6 +28,19 @@ enum class SplineRule : uint32_t {
   monotone,          // Fritsch-Carlson: no coordinate overshoots
   zero,              // rests at every point
 };
+inline constexpr std::array allSplineRules = {
+    SplineRule::given,    SplineRule::catmullRom,      SplineRule::finiteDifference,
+    SplineRule::cardinal, SplineRule::kochanekBartels, SplineRule::monotone,
+    SplineRule::zero};
+constexpr const char* nameOf(SplineRule rule) {
+  constexpr std::array names = {"given",    "catmullRom", "finiteDifference", "cardinal", "kochanekBartels",
+                                "monotone", "zero"};
+  static_assert(names.size() == allSplineRules.size());
+  return names[static_cast<size_t>(rule)];
+}
+constexpr std::optional<SplineRule> splineRuleNamed(std::string_view name) {
+  return enumNamed(allSplineRules, name);
+}
 struct SplineTangents {
   SplineRule rule = SplineRule::catmullRom;
   float tension = 0;               // cardinal: 0 to 1; kochanekBartels: -1 to 1
@@ -47,7 +62,7 @@ struct SplineChain {
 
 // Knots from 0 on for points that have none, apart by the distance of the points to a power: 0 uniform, 1/2
 // centripetal, 1 chordal (Lee 1989).
-std::vector<float> splineKnots(std::span<const glm::vec3> points, bool closed, float power);
+SKITTER_API std::vector<float> splineKnots(std::span<const glm::vec3> points, bool closed, float power);
 
 enum class SplineState : uint32_t {
   idle,  // not active, or not yet begun: at the start
@@ -55,9 +70,16 @@ enum class SplineState : uint32_t {
   finished,  // at the end; a closed spline never is
   refused,   // device only: its records there hold what may not be
 };
+inline constexpr std::array allSplineStates = {SplineState::idle, SplineState::moving, SplineState::finished,
+                                               SplineState::refused};
+constexpr const char* nameOf(SplineState state) {
+  constexpr std::array names = {"idle", "moving", "finished", "refused"};
+  static_assert(names.size() == allSplineStates.size());
+  return names[static_cast<size_t>(state)];
+}
 
 // When one travels along a spline. A value: batches take arrays of them.
-struct SplineClock {
+struct SKITTER_API SplineClock {
   double start = 0;
   double duration = 1;  // of the way, or of a round; > 0
   bool active = false;
@@ -81,7 +103,7 @@ struct SplineMotion {
 
 // One spline on the host, computed in double. Immutable but for its clock. Throws Error(input) for a chain
 // that cannot be, naming the fault.
-class Spline {
+class SKITTER_API Spline {
  public:
   explicit Spline(const SplineChain&);
 
@@ -105,7 +127,7 @@ class Spline {
   SplineMotion at(double now, bool constantSpeed = false) const;
 
  private:
-  struct Segment {
+  struct SKITTER_LOCAL Segment {
     glm::dvec3 p, a, c, e;  // P = p + s (a + s (c + s e))
     glm::dvec3 first(double s) const { return a + s * (2.0 * c + 3.0 * s * e); }
     double length(double s) const;
@@ -126,7 +148,7 @@ class Spline {
 // N splines of equal point count on the device. Not thread-safe. Throws Error(input) for options that cannot
 // be, Error(device) when memory does not suffice. Splines are split over pages, so that any count fits the
 // device's bindings.
-class SplineBatch {
+class SKITTER_API SplineBatch {
  public:
   // Device memory, in the caller's hands or the batch's: arrays of vec4 with usage STORAGE_BUFFER and
   // UNIFORM_TEXEL_BUFFER.
@@ -196,7 +218,7 @@ class SplineBatch {
   void use(const Buffers&);
 
  private:
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
   std::unique_ptr<Impl> impl_;
 };
 

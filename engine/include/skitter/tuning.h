@@ -211,6 +211,8 @@
 #include <array>
 #include <string>
 
+#include "skitter/export.h"
+
 namespace skitter {
 
 // A herd's tuning in units that do not depend on its size.
@@ -303,10 +305,10 @@ inline constexpr std::array allTuningOrders = {
 };
 
 // "0.01 to 1 leg lengths"
-std::string rangeOf(const TuningInfo&);
+SKITTER_API std::string rangeOf(const TuningInfo&);
 // Throws Error(input) for a value out of its range, NaN included, and for two values in the wrong order. `of`
 // begins the message: "scene.json: herds[0].tuning".
-void checkTuning(const Tuning&, const std::string& of);
+SKITTER_API void checkTuning(const Tuning&, const std::string& of);
 
 }  // namespace skitter
 #endif

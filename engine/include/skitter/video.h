@@ -5,13 +5,15 @@
 #include <memory>
 #include <span>
 
+#include "skitter/export.h"
+
 namespace skitter {
 
 // An H.264 video (.mp4), encoded by the `ffmpeg` program. It is written as NAME.part and gets its name in
 // finish(); a writer that is destroyed before leaves nothing, and where ffmpeg fails, hangs or writes no
 // video, an earlier file of the name stays. ffmpeg does not hear a Ctrl-C at the terminal, so that finish()
 // still makes a playable file of the frames so far.
-class VideoWriter {
+class SKITTER_API VideoWriter {
  public:
   // `picturesPerSecond` of those given to write() last a second of the video; 0: as many as it has frames.
   // If there are more frames than the video shows, some are left out; if there are fewer, some are repeated.
@@ -32,7 +34,7 @@ class VideoWriter {
   uint64_t frames() const;
 
  private:
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
   std::unique_ptr<Impl> impl_;
 };
 

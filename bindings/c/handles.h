@@ -1,0 +1,120 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <concepts>
+#include <exception>
+#include <glm/glm.hpp>
+#include <memory>
+#include <new>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "bindings/c/skitter.h"
+#include "bindings/common/walk.h"
+#include "skitter/crowd.h"
+#include "skitter/error.h"
+#include "skitter/ik.h"
+#include "skitter/spline.h"
+#include "skitter/state.h"
+
+// What is behind the handles. Members are destroyed last first: what is made on a device before its share of
+// it.
+
+struct skitter_device {
+  std::shared_ptr<skitter::Device> device;
+};
+
+struct skitter_scene {
+  skitter::Scene scene;
+};
+
+struct skitter_crowd {
+  std::shared_ptr<skitter::Device> device;
+  skitter::Crowd crowd;
+  skitter::bindings::Walk walk;
+};
+
+struct skitter_state {
+  skitter::State state;
+};
+
+struct skitter_ik_batch {
+  std::shared_ptr<skitter::Device> device;
+  skitter::ik::Batch batch;
+};
+
+struct skitter_spline_batch {
+  std::shared_ptr<skitter::Device> device;
+  skitter::SplineBatch batch;
+};
+
+namespace skitter::c {
+
+// Keeps the message for skitter_last_error().
+void remember(const char* message) noexcept;
+
+// Runs `call`; an exception becomes a result.
+template <std::invocable Call>
+skitter_result guarded(Call&& call) noexcept {
+  try {
+    call();
+    return SKITTER_OK;
+  } catch (const Error& error) {
+    remember(error.what());
+    return error.kind() == Error::Kind::device ? SKITTER_ERROR_DEVICE : SKITTER_ERROR_INPUT;
+  } catch (const std::bad_alloc&) {
+    remember("the host has no memory left");
+    return SKITTER_ERROR_MEMORY;
+  } catch (const std::exception& error) {
+    remember(error.what());
+    return SKITTER_ERROR_OTHER;
+  } catch (...) {
+    remember("an unknown fault");
+    return SKITTER_ERROR_OTHER;
+  }
+}
+
+// Throws Error(input) for NULL; else what it points at.
+template <typename Pointee>
+Pointee& given(Pointee* pointer, const char* name) {
+  if (pointer == nullptr) throw inputError(fmt::format("{} is NULL", name));
+  return *pointer;
+}
+
+// A list of the caller's. Throws Error(input) for one of NULL that has something in it.
+template <typename Element>
+std::span<const Element> listOf(const Element* first, size_t count, const char* name) {
+  if (count > 0) given(first, name);
+  return {first, count};
+}
+
+// x, y, z of each.
+inline std::vector<glm::vec3> vectorsOf(const float* xyz, size_t count, const char* name) {
+  std::vector<glm::vec3> vectors;
+  vectors.reserve(count);
+  const std::span<const float> numbers = listOf(xyz, 3 * count, name);
+  for (size_t i = 0; i < numbers.size(); i += 3)
+    vectors.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  return vectors;
+}
+template <typename Number>
+void copyVectors(const std::vector<glm::vec<3, Number>>& vectors, Number* xyz) {
+  for (const auto& vector : vectors)
+    for (int k = 0; k < 3; ++k) *xyz++ = vector[k];
+}
+
+template <typename SceneOrConst>
+auto& herdOf(SceneOrConst& scene, uint32_t herd) {
+  if (herd >= scene.herds.size())
+    throw inputError(fmt::format("herd {}: the scene has {}, counted from 0", herd, scene.herds.size()));
+  return scene.herds[herd];
+}
+
+// Throws Error(input) where `room` is not enough for `needed` things.
+inline void checkRoom(const char* name, size_t room, size_t needed) {
+  if (room < needed) throw inputError(fmt::format("{} has room for {}, expected {}", name, room, needed));
+}
+
+}  // namespace skitter::c

@@ -1,0 +1,460 @@
+/*
+ * Skitter for C99: crowds of legged creatures on uneven ground, animated by Vulkan compute shaders, and
+ * inverse kinematics and splines by themselves. docs/c.md shows a program.
+ *
+ * - Every function returns a skitter_result, but for skitter_version() and skitter_last_error(). No exception
+ * leaves one. After an error nothing has changed, unless the function says otherwise.
+ * - Pointers must not be NULL where nothing else is said: that is SKITTER_ERROR_INPUT.
+ * - Handles are opaque. Each is made by a function whose last argument is the handle, and ended by its
+ * ..._destroy, for which NULL is nothing to do. A device lives until all that was made on it has been
+ * destroyed as well.
+ * - Lengths are metres, times seconds, angles radians. The world is right-handed, +Y is up, and an unturned
+ * creature faces +Z.
+ * - Herds and agents are numbered from 0; agents within their herd.
+ * - Functions of one device, and of what was made on it, are called by one thread at a time. Error messages
+ * are by thread.
+ */
+#ifndef SKITTER_H
+#define SKITTER_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <vulkan/vulkan.h>
+
+#ifdef __GNUC__
+#define SKITTER_C __attribute__((visibility("default")))
+#else
+#define SKITTER_C
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum skitter_result {
+  SKITTER_OK = 0,
+  SKITTER_ERROR_INPUT = 2,  /* a wrong argument, an unreadable or malformed file */
+  SKITTER_ERROR_DEVICE = 3, /* no usable Vulkan device, not enough of its memory, or it failed */
+  SKITTER_ERROR_MEMORY = 4, /* the host has no memory left */
+  SKITTER_ERROR_OTHER = 5   /* a fault of Skitter's */
+} skitter_result;
+
+/* "0.1.0". */
+SKITTER_C const char* skitter_version(void);
+/* What the last error of this thread was, in one line; empty before the first. It holds until the next error.
+ */
+SKITTER_C const char* skitter_last_error(void);
+
+/* ---- Devices ---- */
+
+typedef struct skitter_device skitter_device;
+
+typedef struct skitter_device_info {
+  char name[256];
+  char type[16];     /* "discrete", "integrated", "virtual", "cpu", "other" */
+  char why_not[512]; /* of a device that is not chosen: why */
+  uint32_t index;    /* what skitter_device_create takes, as text */
+  int suitable;      /* Skitter runs on it */
+  int chosen;        /* skitter_device_create takes it where none is named */
+} skitter_device_info;
+
+/* Every device of this machine. Writes up to `room` of them to `infos`, which may be NULL where `room` is 0,
+ * and to `count` how many there are. */
+SKITTER_C skitter_result skitter_device_list(skitter_device_info* infos, uint32_t room, uint32_t* count);
+
+/* `name`: an index, or part of a name in any case; NULL: the best suitable device. */
+SKITTER_C skitter_result skitter_device_create(const char* name, skitter_device** device);
+
+/* Switches on in a chain of features, before vkCreateDevice, what the engine needs and, of what makes it
+ * quicker, what the device has. The chain has VkPhysicalDeviceVulkan12Features and
+ * VkPhysicalDeviceVulkan13Features. */
+SKITTER_C skitter_result skitter_add_features(VkPhysicalDeviceFeatures2* chain, VkPhysicalDevice device);
+
+/* A Vulkan device of the caller's, who keeps it and destroys it after all that was made on it here; Vulkan
+ * 1.3. docs/embedding.md lists what it needs. What is missing is named in one error. All zero but for the
+ * handles, queue family and features: the defaults. */
+typedef struct skitter_adoption {
+  VkInstance instance;
+  VkPhysicalDevice physical_device;
+  VkDevice device;
+  uint32_t queue_family;
+  VkQueue queue;
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* NULL: that of the Vulkan loader */
+  const VkPhysicalDeviceFeatures2* features;        /* the chain that vkCreateDevice was given */
+  const char* const* extensions;                    /* enabled ones, of instance and device; or NULL */
+  uint32_t extension_count;
+  /* Called about each use of the queue by the engine, both or neither. Without them the caller keeps its own
+   * submissions to the queue apart from these functions. */
+  void (*lock_queue)(void* user);
+  void (*unlock_queue)(void* user);
+  void* user;
+  VkPipelineCache pipeline_cache; /* or VK_NULL_HANDLE */
+} skitter_adoption;
+SKITTER_C skitter_result skitter_device_adopt(const skitter_adoption* from, skitter_device** device);
+
+SKITTER_C skitter_result skitter_device_destroy(skitter_device* device);
+
+/* ---- Scenes ---- */
+
+typedef struct skitter_scene skitter_scene;
+
+/* 1,000 spiders that cross generated ground. */
+SKITTER_C skitter_result skitter_scene_builtin(skitter_scene** scene);
+/* A scene file (docs/scene.md). */
+SKITTER_C skitter_result skitter_scene_load(const char* file, skitter_scene** scene);
+/* The text of a scene file. File names in it are relative to `folder`; NULL: to the working directory. */
+SKITTER_C skitter_result skitter_scene_parse(const char* json, const char* folder, skitter_scene** scene);
+SKITTER_C skitter_result skitter_scene_herds(const skitter_scene* scene, uint32_t* herds);
+SKITTER_C skitter_result skitter_scene_agents(const skitter_scene* scene, uint32_t herd, uint32_t* agents);
+SKITTER_C skitter_result skitter_scene_set_agents(skitter_scene* scene, uint32_t herd, uint32_t agents);
+SKITTER_C skitter_result skitter_scene_set_seed(skitter_scene* scene, uint64_t seed);
+SKITTER_C skitter_result skitter_scene_destroy(skitter_scene* scene);
+
+/* ---- Crowds ---- */
+
+typedef struct skitter_crowd skitter_crowd;
+
+/* All zero: the defaults. */
+typedef struct skitter_crowd_options {
+  int no_poses;         /* without bones: neither joints nor pictures */
+  int no_figures;       /* without fidelity figures */
+  uint32_t watch_every; /* figures of one agent of this many at a time; 0: of all up to 256, of one in 64 of
+                           more */
+  uint32_t footfalls;   /* keep so many touchdowns of a tick, of each page of records; 0: none */
+  int sleep;            /* agents that have stood still for seconds are passed over */
+} skitter_crowd_options;
+
+/* A crowd as it was between two ticks, with all that it needs to go on (docs/state.md). */
+typedef struct skitter_state skitter_state;
+
+/* The scene's herds on its terrain. The scene may be destroyed afterwards. `options` may be NULL. */
+SKITTER_C skitter_result skitter_crowd_create(skitter_device* device, const skitter_scene* scene,
+                                              const skitter_crowd_options* options, skitter_crowd** crowd);
+/* The crowd of a state, which goes on as if it had never stopped. The state may be destroyed afterwards.
+ * `options`: NULL: those of the crowd that was saved; else poses, footfalls and sleep are as they say, and
+ * figures stay as they were. */
+SKITTER_C skitter_result skitter_crowd_resume(skitter_device* device, const skitter_state* state,
+                                              const skitter_crowd_options* options, skitter_crowd** crowd);
+
+/* Records one tick of `dt` seconds into the caller's command buffer, outside a render pass. The tick waits
+ * for earlier reads of the crowd's buffers, and makes its results visible to vertex, compute and transfer
+ * work after it. Each recorded tick is submitted once, in order. A crowd keeps the dt of its first tick. */
+SKITTER_C skitter_result skitter_crowd_record(skitter_crowd* crowd, VkCommandBuffer commands, float dt);
+/* Makes so many ticks on the device's queue and waits for the last one. */
+SKITTER_C skitter_result skitter_crowd_step(skitter_crowd* crowd, uint64_t ticks, float dt);
+
+/* Ticks recorded so far. */
+SKITTER_C skitter_result skitter_crowd_tick(const skitter_crowd* crowd, uint64_t* tick);
+SKITTER_C skitter_result skitter_crowd_herds(const skitter_crowd* crowd, uint32_t* herds);
+/* Agents that are there, of all herds and of one. */
+SKITTER_C skitter_result skitter_crowd_agent_count(const skitter_crowd* crowd, uint64_t* agents);
+SKITTER_C skitter_result skitter_crowd_herd_agents(const skitter_crowd* crowd, uint32_t herd,
+                                                   uint32_t* agents);
+/* Places of one herd, which are its agents and its reserve; its legs; and the bones of its longest leg. */
+SKITTER_C skitter_result skitter_crowd_herd_places(const skitter_crowd* crowd, uint32_t herd,
+                                                   uint32_t* places);
+SKITTER_C skitter_result skitter_crowd_herd_legs(const skitter_crowd* crowd, uint32_t herd, uint32_t* legs);
+SKITTER_C skitter_result skitter_crowd_herd_bones(const skitter_crowd* crowd, uint32_t herd, uint32_t* bones);
+
+/* Replaces a rectangle of the ground's samples before the next tick: `columns` from column `x` and `rows`
+ * from row `z` on, row after row, metres above mid height as made. Feet whose ground moves step anew. */
+SKITTER_C skitter_result skitter_crowd_edit_heights(skitter_crowd* crowd, uint32_t x, uint32_t z,
+                                                    uint32_t columns, uint32_t rows, const float* heights);
+
+/* The functions below wait for the device. */
+
+/* Where bodies are: x, y, z of each place of the herd in world metres, to `xyz`, which has room for `room`
+ * of them. Too little room is an error, and nothing is written. Where nobody is, y is -1,000,000. */
+SKITTER_C skitter_result skitter_crowd_positions(const skitter_crowd* crowd, uint32_t herd, double* xyz,
+                                                 size_t room);
+/* About +Y: 0 faces +Z, a quarter turn +X. One a place. */
+SKITTER_C skitter_result skitter_crowd_headings(const skitter_crowd* crowd, uint32_t herd, float* radians,
+                                                size_t room);
+/* x, y, z of joints in world metres: of each place and leg the starts of its bones and the foot, bones + 1 a
+ * leg. NaN fills up legs with fewer bones. There is room for `room` joints. */
+SKITTER_C skitter_result skitter_crowd_joints(const skitter_crowd* crowd, uint32_t herd, double* xyz,
+                                              size_t room);
+
+/* Of every record that the next tick depends on: the same device, scene, seed and ticks give the same hash.
+ */
+SKITTER_C skitter_result skitter_crowd_state_hash(const skitter_crowd* crowd, uint64_t* hash);
+
+/* How well agents moved in the ticks in which they were watched (docs/stages/measure.md). Lengths are in leg
+ * lengths. A figure without a sample is 0. */
+typedef struct skitter_fidelity {
+  uint64_t agent_ticks, stances;
+  double slip, skating;
+  double penetration, penetration_beyond;
+  double floating, floating_beyond;
+  double segment_penetration, segment_penetration_most;
+  double crossing;
+  double reach_error_p99, reach_error_most;
+  double limit_violation, limit_violations; /* NaN where no herd is judged by limits */
+  double foot_jerk, body_jerk;
+  double margin, margin_least, unstable;
+  uint64_t last_resorts, not_finite;
+} skitter_fidelity;
+/* Of one herd, or of SKITTER_ALL_HERDS. */
+#define SKITTER_ALL_HERDS UINT32_MAX
+SKITTER_C skitter_result skitter_crowd_fidelity(const skitter_crowd* crowd, uint32_t herd,
+                                                skitter_fidelity* fidelity);
+
+typedef struct skitter_footfall {
+  uint64_t tick;
+  uint32_t agent, leg;
+  float place[3]; /* world metres */
+  float speed;    /* of the foot over the tick that ended there, m/s */
+} skitter_footfall;
+/* The touchdowns of the last tick, by agent and leg. Writes up to `room` of them to `footfalls`, which may be
+ * NULL where `room` is 0, and to `count` how many there are. A crowd that was made without footfalls has
+ * none. */
+SKITTER_C skitter_result skitter_crowd_footfalls(const skitter_crowd* crowd, uint32_t herd,
+                                                 skitter_footfall* footfalls, size_t room, size_t* count);
+
+typedef struct skitter_picked {
+  uint32_t herd, agent;
+  double distance; /* metres, from the ray's start to the agent's sphere; from the point to its middle */
+  double place[3]; /* where the ray meets the sphere; the sphere's middle */
+} skitter_picked;
+/* The nearest agent under a ray, which is `length` metres long (INFINITY: without an end) and has a direction
+ * of any length but 0; and the agent nearest to a point. An agent is picked by a sphere about the middle of
+ * its body. World metres. `found` becomes 0, and `picked` stays as it is, where there is none. */
+SKITTER_C skitter_result skitter_crowd_pick(const skitter_crowd* crowd, const double start[3],
+                                            const double direction[3], double length, skitter_picked* picked,
+                                            int* found);
+SKITTER_C skitter_result skitter_crowd_nearest(const skitter_crowd* crowd, const double point[3],
+                                               skitter_picked* picked, int* found);
+
+SKITTER_C skitter_result skitter_crowd_destroy(skitter_crowd* crowd);
+
+/* ---- Steering ---- */
+
+/* These functions take effect in the crowd's next tick (docs/steering.md). The caller's data may go at once,
+ * and the last of several calls for one agent counts. A number out of its range, a count that is not the
+ * herd's and an agent that is not there are SKITTER_ERROR_INPUT; then nothing is changed. */
+
+typedef enum skitter_goal_kind {
+  SKITTER_GOAL_CROSS = 0,   /* to the far side of the ground and back, for ever */
+  SKITTER_GOAL_POINT = 1,   /* to `target`, to stand there */
+  SKITTER_GOAL_NONE = 2,    /* nowhere */
+  SKITTER_GOAL_VELOCITY = 3 /* by `velocity` */
+} skitter_goal_kind;
+typedef struct skitter_goal {
+  skitter_goal_kind kind;
+  float target[2];   /* x, z, metres */
+  float speed;       /* metres a second, 0 to 1000, of kinds CROSS and POINT */
+  float velocity[2]; /* x, z, metres a second, at most 1000 long */
+} skitter_goal;
+
+/* Where an agent is put, its feet on the ground around. */
+typedef struct skitter_place {
+  float x, z;    /* metres, on the ground */
+  float heading; /* -1000 to 1000 */
+} skitter_place;
+
+/* A handle of an agent: its herd, its place there, and how often agents have come to that place. It never
+ * means another agent, not even once its place is taken again. */
+typedef uint64_t skitter_agent_id;
+#define SKITTER_NO_AGENT UINT64_MAX
+/* The handle of the agent in that place of the herd; where nobody is, SKITTER_ERROR_INPUT. */
+SKITTER_C skitter_result skitter_crowd_agent_id(const skitter_crowd* crowd, uint32_t herd, uint32_t agent,
+                                                skitter_agent_id* id);
+/* The handles of all, one a place; SKITTER_NO_AGENT where nobody is. There is room for `room` of them. */
+SKITTER_C skitter_result skitter_crowd_agent_ids(const skitter_crowd* crowd, uint32_t herd,
+                                                 skitter_agent_id* ids, size_t room);
+/* `has` becomes whether that agent is there. */
+SKITTER_C skitter_result skitter_crowd_has(const skitter_crowd* crowd, skitter_agent_id agent, int* has);
+
+/* Goals: one for all agents of a herd; one a place of a herd; one for each of `count` agents of any herds. */
+SKITTER_C skitter_result skitter_crowd_steer(skitter_crowd* crowd, uint32_t herd, const skitter_goal* goal);
+SKITTER_C skitter_result skitter_crowd_steer_each(skitter_crowd* crowd, uint32_t herd,
+                                                  const skitter_goal* goals, size_t count);
+SKITTER_C skitter_result skitter_crowd_steer_agents(skitter_crowd* crowd, const skitter_agent_id* agents,
+                                                    const skitter_goal* goals, size_t count);
+/* Likewise, the speed alone: metres a second, 0 to 1000. A velocity is cut to it until the next goal. */
+SKITTER_C skitter_result skitter_crowd_set_speed(skitter_crowd* crowd, uint32_t herd, float speed);
+SKITTER_C skitter_result skitter_crowd_set_speed_each(skitter_crowd* crowd, uint32_t herd,
+                                                      const float* speeds, size_t count);
+SKITTER_C skitter_result skitter_crowd_set_speed_agents(skitter_crowd* crowd, const skitter_agent_id* agents,
+                                                        const float* speeds, size_t count);
+/* Puts agents elsewhere: standing, without speed and past. Goals stay. */
+SKITTER_C skitter_result skitter_crowd_teleport(skitter_crowd* crowd, const skitter_agent_id* agents,
+                                                const skitter_place* places, size_t count);
+
+/* Adds an agent to a herd with a reserve, in its lowest empty place, and removes one from such a herd.
+ * `goal`: NULL: the herd's. `id` may be NULL. No empty place and no reserve are SKITTER_ERROR_INPUT. */
+SKITTER_C skitter_result skitter_crowd_add(skitter_crowd* crowd, uint32_t herd, const skitter_place* place,
+                                           const skitter_goal* goal, skitter_agent_id* id);
+SKITTER_C skitter_result skitter_crowd_remove(skitter_crowd* crowd, skitter_agent_id agent);
+
+/* A handle of a herd: its number, and which one it is of those that have had that number. */
+typedef struct skitter_herd_id {
+  uint32_t herd, generation;
+} skitter_herd_id;
+/* Adds a herd of a scene, under the lowest number that no herd has, and removes one, between two ticks. Both
+ * make or free device memory at once; adding takes about 0.3 s. No command buffer that was recorded before a
+ * herd was removed may be submitted any more. `id` may be NULL. */
+SKITTER_C skitter_result skitter_crowd_add_herd(skitter_crowd* crowd, const skitter_scene* scene,
+                                                uint32_t herd, skitter_herd_id* id);
+SKITTER_C skitter_result skitter_crowd_remove_herd(skitter_crowd* crowd, skitter_herd_id herd);
+SKITTER_C skitter_result skitter_crowd_herd_id(const skitter_crowd* crowd, uint32_t herd,
+                                               skitter_herd_id* id);
+SKITTER_C skitter_result skitter_crowd_has_herd(const skitter_crowd* crowd, skitter_herd_id herd, int* has);
+
+/* ---- States ---- */
+
+/* Saving waits for the device. What was recorded must have been submitted. `note` is JSON of the caller's
+ * own, which comes back with the state, or NULL. */
+
+/* The file takes its name once it is whole; until then an older one stays. */
+SKITTER_C skitter_result skitter_crowd_save(const skitter_crowd* crowd, const char* file, const char* note);
+/* Writes a state to `bytes`, which has room for `room` of them, and to `size` how many it has. Too little
+ * room is an error, but no room (then `bytes` may be NULL) asks for the size alone. */
+SKITTER_C skitter_result skitter_crowd_save_to_memory(const skitter_crowd* crowd, const char* note,
+                                                      void* bytes, size_t room, size_t* size);
+
+/* A state in a file, and one in memory, which is copied. While the state is there, its file may be replaced
+ * but not be changed in place. Damage is SKITTER_ERROR_INPUT here or in skitter_crowd_resume(). */
+SKITTER_C skitter_result skitter_state_load(const char* file, skitter_state** state);
+SKITTER_C skitter_result skitter_state_parse(const void* bytes, size_t size, skitter_state** state);
+/* The last tick that was made, and the seconds a tick, 0 before the first. */
+SKITTER_C skitter_result skitter_state_tick(const skitter_state* state, uint64_t* tick);
+SKITTER_C skitter_result skitter_state_dt(const skitter_state* state, float* dt);
+/* The note with which the state was saved, as JSON; empty without one. It lives as long as the state. */
+SKITTER_C skitter_result skitter_state_note(const skitter_state* state, const char** note);
+SKITTER_C skitter_result skitter_state_destroy(skitter_state* state);
+
+/* ---- Inverse kinematics ---- */
+
+/* Many chains of one kind, solved at once (docs/ik.md). Each has its base at 0; lengths are in the caller's
+ * unit. */
+typedef struct skitter_ik_batch skitter_ik_batch;
+
+typedef enum skitter_ik_limit {
+  SKITTER_IK_FREE = 0,
+  SKITTER_IK_CONE = 1,    /* limit[0]: half-angle, above 0 */
+  SKITTER_IK_ELLIPSE = 2, /* limit[0..3]: half-angles toward +x, +y, -x, -y, each above 0 and up to 3.1 */
+  SKITTER_IK_HINGE = 3    /* about `axis`, from limit[0] to limit[1], up to 3.1 either way */
+} skitter_ik_limit;
+
+typedef struct skitter_ik_bone {
+  float length;       /* >= 0; one of 0 never turns */
+  float direction[3]; /* at rest, any length but 0 */
+  skitter_ik_limit limit_kind;
+  float limit[4];             /* radians */
+  float axis[3];              /* of a hinge, in the chain's rest axes: any length but 0, not along the bone */
+  float twist_min, twist_max; /* about the bone, of balls only, radians */
+  float stiffness;            /* of the pull to the rest pose; 0: 1 */
+} skitter_ik_bone;
+
+/* All zero: the defaults. */
+typedef struct skitter_ik_options {
+  const char* solver;  /* a name of docs/ik.md, such as "fabrik"; NULL: what measures best */
+  uint32_t iterations; /* at most; 0: 20 for free chains, 64 for limited ones, 4 where solves continue */
+  float tolerance;     /* share of the reach; 0: 9e-4 */
+  int continues;       /* solves go on from the result of the solve before */
+} skitter_ik_options;
+
+/* 1 to 15 bones. `options` may be NULL. */
+SKITTER_C skitter_result skitter_ik_batch_create(skitter_device* device, const skitter_ik_bone* bones,
+                                                 uint32_t bone_count, uint32_t chains,
+                                                 const skitter_ik_options* options, skitter_ik_batch** batch);
+/* x, y, z of a target for each chain, relative to its base. `chains` is as the batch has them. */
+SKITTER_C skitter_result skitter_ik_batch_set_targets(skitter_ik_batch* batch, const float* xyz,
+                                                      size_t chains);
+/* Solves every chain and waits. */
+SKITTER_C skitter_result skitter_ik_batch_solve(skitter_ik_batch* batch);
+/* Records one solve into the caller's command buffer, outside a render pass, with barriers against compute
+ * and transfer work before and after it. */
+SKITTER_C skitter_result skitter_ik_batch_record(const skitter_ik_batch* batch, VkCommandBuffer commands);
+/* x, y, z of the joints, bone_count + 1 a chain, base first. There is room for `room` joints. */
+SKITTER_C skitter_result skitter_ik_batch_joints(const skitter_ik_batch* batch, float* xyz, size_t room);
+
+typedef enum skitter_ik_stop {
+  SKITTER_IK_TOLERANCE = 0,
+  SKITTER_IK_CAP = 1,
+  SKITTER_IK_STALL = 2,
+  SKITTER_IK_UNREACHABLE = 3,
+  SKITTER_IK_SKIPPED = 4
+} skitter_ik_stop;
+typedef struct skitter_ik_report {
+  float error; /* of the tip from its target, share of the reach */
+  uint32_t iterations;
+  skitter_ik_stop stop;
+} skitter_ik_report;
+/* One a chain. */
+SKITTER_C skitter_result skitter_ik_batch_reports(const skitter_ik_batch* batch, skitter_ik_report* reports,
+                                                  size_t room);
+SKITTER_C skitter_result skitter_ik_batch_destroy(skitter_ik_batch* batch);
+
+/* ---- Splines ---- */
+
+/* Many cubic Hermite splines of one kind, along which something travels (docs/spline.md). Lengths are in the
+ * caller's unit, knots and clocks in seconds or any unit of time. */
+typedef struct skitter_spline_batch skitter_spline_batch;
+
+/* All zero but for the points: the defaults. */
+typedef struct skitter_spline_options {
+  uint32_t points;  /* a spline, 2 to 1024 */
+  int closed;       /* splines come back to their first points */
+  const char* rule; /* of the tangents, a name of docs/spline.md, such as "monotone"; NULL: "catmullRom" */
+  float tension, continuity, bias; /* of the rules "cardinal" and "kochanekBartels" */
+  int constant_speed;              /* the arc length grows evenly, not the knots' time */
+} skitter_spline_options;
+
+SKITTER_C skitter_result skitter_spline_batch_create(skitter_device* device, uint32_t splines,
+                                                     const skitter_spline_options* options,
+                                                     skitter_spline_batch** batch);
+/* x, y, z of `points` points, spline after spline, within +-1e6; and when they are met: as many knots as a
+ * spline has points, and one more of a closed one, for all splines or of each. Knots ascend by at least 1e-6;
+ * NULL and a count of 0: 0, 1, 2, ... These and the functions below, but for ..._record(), wait for the
+ * device. */
+SKITTER_C skitter_result skitter_spline_batch_set_points(skitter_spline_batch* batch, const float* xyz,
+                                                         size_t points, const float* knots,
+                                                         size_t knot_count);
+/* Velocities with which each point is met and left, for the rule "given" alone. `leaving`: NULL: as they are
+ * met. */
+SKITTER_C skitter_result skitter_spline_batch_set_tangents(skitter_spline_batch* batch, const float* arriving,
+                                                           const float* leaving, size_t points);
+
+typedef struct skitter_spline_clock {
+  double start;
+  double duration; /* of the way, or of a round; above 0 */
+  int active;
+} skitter_spline_clock;
+/* One a spline. */
+SKITTER_C skitter_result skitter_spline_batch_set_clocks(skitter_spline_batch* batch,
+                                                         const skitter_spline_clock* clocks, size_t splines);
+
+/* Computes where everything is at a time, and waits. */
+SKITTER_C skitter_result skitter_spline_batch_travel(skitter_spline_batch* batch, double now);
+/* Records the same into the caller's command buffer, outside a render pass, with barriers against compute and
+ * transfer work before and after it. */
+SKITTER_C skitter_result skitter_spline_batch_record(skitter_spline_batch* batch, VkCommandBuffer commands,
+                                                     double now);
+
+typedef enum skitter_spline_state {
+  SKITTER_SPLINE_IDLE = 0, /* not active, or not yet begun: at the start */
+  SKITTER_SPLINE_MOVING = 1,
+  SKITTER_SPLINE_FINISHED = 2, /* at the end; a closed spline never is */
+  SKITTER_SPLINE_REFUSED = 3   /* its length is beyond 1e18 */
+} skitter_spline_state;
+typedef struct skitter_spline_motion {
+  float position[3];
+  float velocity[3]; /* a second of the clock */
+  float travelled;   /* arc length since the start; of a closed spline of all rounds */
+  skitter_spline_state state;
+} skitter_spline_motion;
+/* One a spline, of the last time. */
+SKITTER_C skitter_result skitter_spline_batch_motions(const skitter_spline_batch* batch,
+                                                      skitter_spline_motion* motions, size_t room);
+/* Arc lengths, one a spline. */
+SKITTER_C skitter_result skitter_spline_batch_lengths(const skitter_spline_batch* batch, float* lengths,
+                                                      size_t room);
+SKITTER_C skitter_result skitter_spline_batch_destroy(skitter_spline_batch* batch);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

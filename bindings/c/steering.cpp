@@ -1,0 +1,158 @@
+#include <algorithm>
+
+#include "bindings/c/handles.h"
+#include "bindings/common/herd_reader.h"
+
+using namespace skitter;
+using c::given;
+using c::guarded;
+using c::listOf;
+
+namespace {
+
+static_assert(SKITTER_NO_AGENT == AgentId().bits());
+static_assert(SKITTER_GOAL_CROSS == static_cast<int>(Goal::Kind::cross) &&
+              SKITTER_GOAL_POINT == static_cast<int>(Goal::Kind::point) &&
+              SKITTER_GOAL_NONE == static_cast<int>(Goal::Kind::none) &&
+              SKITTER_GOAL_VELOCITY == static_cast<int>(Goal::Kind::velocity));
+
+Crowd& crowdOf(skitter_crowd* crowd) { return given(crowd, "crowd").crowd; }
+const Crowd& crowdOf(const skitter_crowd* crowd) { return given(crowd, "crowd").crowd; }
+
+Goal goalOf(const skitter_goal& goal) {
+  if (const int kind = static_cast<int>(goal.kind); kind < SKITTER_GOAL_CROSS || kind > SKITTER_GOAL_VELOCITY)
+    throw inputError(fmt::format("goal.kind is {}, expected a skitter_goal_kind", kind));
+  return {.kind = static_cast<Goal::Kind>(goal.kind),
+          .target = {goal.target[0], goal.target[1]},
+          .speed = goal.speed,
+          .velocity = {goal.velocity[0], goal.velocity[1]}};
+}
+
+Place placeOf(const skitter_place& place) { return {{place.x, place.z}, place.heading}; }
+
+// A list of AgentGoal, AgentSpeed or AgentPlace.
+template <typename Given, typename From, typename Convert>
+std::vector<Given> eachOf(const skitter_agent_id* agents, const From* values, size_t count, const char* name,
+                          Convert convert) {
+  const auto ids = listOf(agents, count, "agents");
+  const auto from = listOf(values, count, name);
+  std::vector<Given> list;
+  list.reserve(count);
+  for (size_t i = 0; i < count; ++i) list.push_back({AgentId::ofBits(ids[i]), convert(from[i])});
+  return list;
+}
+
+}  // namespace
+
+skitter_result skitter_crowd_agent_id(const skitter_crowd* crowd, uint32_t herd, uint32_t agent,
+                                      skitter_agent_id* id) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(id, "id");
+    *id = asked.agentId(herd, agent).bits();
+  });
+}
+
+skitter_result skitter_crowd_agent_ids(const skitter_crowd* crowd, uint32_t herd, skitter_agent_id* ids,
+                                       size_t room) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(ids, "ids");
+    c::checkRoom("ids", room, asked.places(herd));
+    std::ranges::copy(bindings::agentIdsOf(asked, herd), ids);
+  });
+}
+
+skitter_result skitter_crowd_has(const skitter_crowd* crowd, skitter_agent_id agent, int* has) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(has, "has");
+    *has = asked.has(AgentId::ofBits(agent)) ? 1 : 0;
+  });
+}
+
+skitter_result skitter_crowd_steer(skitter_crowd* crowd, uint32_t herd, const skitter_goal* goal) {
+  return guarded([&] { crowdOf(crowd).steer(herd, goalOf(given(goal, "goal"))); });
+}
+
+skitter_result skitter_crowd_steer_each(skitter_crowd* crowd, uint32_t herd, const skitter_goal* goals,
+                                        size_t count) {
+  return guarded([&] {
+    Crowd& steered = crowdOf(crowd);
+    std::vector<Goal> all;
+    for (const skitter_goal& goal : listOf(goals, count, "goals")) all.push_back(goalOf(goal));
+    steered.steer(herd, all);
+  });
+}
+
+skitter_result skitter_crowd_steer_agents(skitter_crowd* crowd, const skitter_agent_id* agents,
+                                          const skitter_goal* goals, size_t count) {
+  return guarded([&] { crowdOf(crowd).steer(eachOf<AgentGoal>(agents, goals, count, "goals", goalOf)); });
+}
+
+skitter_result skitter_crowd_set_speed(skitter_crowd* crowd, uint32_t herd, float speed) {
+  return guarded([&] { crowdOf(crowd).setSpeed(herd, speed); });
+}
+
+skitter_result skitter_crowd_set_speed_each(skitter_crowd* crowd, uint32_t herd, const float* speeds,
+                                            size_t count) {
+  return guarded([&] { crowdOf(crowd).setSpeed(herd, listOf(speeds, count, "speeds")); });
+}
+
+skitter_result skitter_crowd_set_speed_agents(skitter_crowd* crowd, const skitter_agent_id* agents,
+                                              const float* speeds, size_t count) {
+  return guarded([&] {
+    crowdOf(crowd).setSpeed(
+        eachOf<AgentSpeed>(agents, speeds, count, "speeds", [](float speed) { return speed; }));
+  });
+}
+
+skitter_result skitter_crowd_teleport(skitter_crowd* crowd, const skitter_agent_id* agents,
+                                      const skitter_place* places, size_t count) {
+  return guarded(
+      [&] { crowdOf(crowd).teleport(eachOf<AgentPlace>(agents, places, count, "places", placeOf)); });
+}
+
+skitter_result skitter_crowd_add(skitter_crowd* crowd, uint32_t herd, const skitter_place* place,
+                                 const skitter_goal* goal, skitter_agent_id* id) {
+  return guarded([&] {
+    Crowd& to = crowdOf(crowd);
+    const Place at = placeOf(given(place, "place"));
+    const AgentId added = goal != nullptr ? to.add(herd, at, goalOf(*goal)) : to.add(herd, at);
+    if (id != nullptr) *id = added.bits();
+  });
+}
+
+skitter_result skitter_crowd_remove(skitter_crowd* crowd, skitter_agent_id agent) {
+  return guarded([&] { crowdOf(crowd).remove(AgentId::ofBits(agent)); });
+}
+
+skitter_result skitter_crowd_add_herd(skitter_crowd* crowd, const skitter_scene* scene, uint32_t herd,
+                                      skitter_herd_id* id) {
+  return guarded([&] {
+    Crowd& to = crowdOf(crowd);
+    const HerdId added = to.addHerd(c::herdOf(given(scene, "scene").scene, herd));
+    if (id != nullptr) *id = {added.index, added.generation};
+  });
+}
+
+skitter_result skitter_crowd_remove_herd(skitter_crowd* crowd, skitter_herd_id herd) {
+  return guarded([&] { crowdOf(crowd).removeHerd({herd.herd, herd.generation}); });
+}
+
+skitter_result skitter_crowd_herd_id(const skitter_crowd* crowd, uint32_t herd, skitter_herd_id* id) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(id, "id");
+    const HerdId found = asked.herdId(herd);
+    *id = {found.index, found.generation};
+  });
+}
+
+skitter_result skitter_crowd_has_herd(const skitter_crowd* crowd, skitter_herd_id herd, int* has) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(has, "has");
+    *has = asked.has(HerdId{herd.herd, herd.generation}) ? 1 : 0;
+  });
+}

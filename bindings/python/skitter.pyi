@@ -1,0 +1,600 @@
+"""Crowds of legged creatures on uneven ground, animated by Vulkan compute shaders.
+
+Lengths are metres, times seconds and angles radians, where nothing else is said. The world is right-handed and
++Y is up; an unturned creature faces +Z. What scene files and files of figures have, too, has the same name here.
+"""
+
+import os
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+__version__: str
+no_agent: int
+spline_rules: Tuple[str, ...]
+spline_states: Tuple[str, ...]
+
+_Path = Union[str, "os.PathLike[str]"]
+_Floats = npt.ArrayLike
+_Float32s = npt.NDArray[np.float32]
+_Float64s = npt.NDArray[np.float64]
+_Agents = Union[int, Sequence[int], npt.NDArray[np.uint64]]
+
+class Error(RuntimeError):
+    """Wrong input or a failing world, in one line."""
+
+    kind: str
+
+class InputError(Error, ValueError):
+    """A wrong argument, or an unreadable or malformed file."""
+
+class DeviceError(Error):
+    """No usable Vulkan device, not enough of its memory, or it failed."""
+
+class Device:
+    """A Vulkan device, which lives as long as anything that was made on it."""
+
+    def __init__(self, name: Optional[str] = None, *, validation: bool = False) -> None: ...
+    @staticmethod
+    def list() -> List[Dict[str, Any]]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def report(self) -> Dict[str, Any]: ...
+    def validation_messages(self) -> List[str]: ...
+
+class Tuning:
+    """The numbers that a herd's walk depends on, in units that do not depend on its size."""
+
+    def __init__(self, **values: float) -> None: ...
+    @staticmethod
+    def info() -> Dict[str, Dict[str, Any]]: ...
+    def to_dict(self) -> Dict[str, float]: ...
+    def __eq__(self, other: object) -> bool: ...
+    edgeMargin: float
+    slowRadius: float
+    acceleration: float
+    braking: float
+    turnRate: float
+    turnAcceleration: float
+    turnGain: float
+    stretchSlow: float
+    stretchStop: float
+    errorStop: float
+    followLeast: float
+    heightTime: float
+    tiltTime: float
+    maxSlope: float
+    bellyClearance: float
+    leanGain: float
+    leanMost: float
+    leanLevel: float
+    breathHeight: float
+    halfStrideStill: float
+    halfStrideMax: float
+    dutyStill: float
+    dutyGain: float
+    dutyLeast: float
+    lagShare: float
+    swingStill: float
+    swingSpeed: float
+    cycleMax: float
+    windowSlack: float
+    windowOpen: float
+    liftShare: float
+    stretchLift: float
+    strayShare: float
+    errorLift: float
+    rootShare: float
+    settleTime: float
+    sleepTime: float
+    reaimDistance: float
+    reaimLatest: float
+    groundTolerance: float
+    reachMost: float
+    reachLeast: float
+    reachComfort: float
+    slopeLeast: float
+    slopeWeight: float
+    reachWeight: float
+    stepHeight: float
+    stepClearance: float
+    stepHeightMax: float
+    routeWidth: float
+    restPull: float
+    fadeTime: float
+    clipIdle: float
+    clipHysteresis: float
+    clipRateMost: float
+    plantStray: float
+    plantTime: float
+    poseWalk: float
+    springFrequency: float
+    springDamping: float
+
+class Spawn:
+    """Where the agents of a herd start."""
+
+    kind: str
+    spacing: float
+    centre: Sequence[float]
+    heading: float
+    def __init__(self) -> None: ...
+
+class Goal:
+    """Where the agents of a herd go."""
+
+    kind: str
+    target: Sequence[float]
+    velocity: Sequence[float]
+    speed: float
+    def __init__(self) -> None: ...
+
+class ClipCut:
+    """A part of a clip under a name of its own."""
+
+    clip: str
+    name: str
+    start: float
+    end: float
+    def __init__(self) -> None: ...
+
+class Herd:
+    """Agents with one rig, controller and spawn."""
+
+    rig: str
+    controller: str
+    clips: Sequence[str]
+    cuts: Sequence[ClipCut]
+    keys: int
+    solver: str
+    stepping: str
+    tuning: Tuning
+    agents: int
+    reserve: int
+    spawn: Spawn
+    goal: Goal
+    phase: Optional[float]
+    colour: Optional[Sequence[float]]
+    tint: Optional[float]
+    def __init__(self, agents: int = 1000) -> None: ...
+
+class TerrainNoise:
+    """Rolling ground, the same for the same numbers."""
+
+    columns: int
+    rows: int
+    spacing: float
+    amplitude: float
+    wavelength: float
+    octaves: int
+    gain: float
+    seed: int
+    def __init__(self) -> None: ...
+
+class TerrainFile:
+    """Ground out of a file."""
+
+    file: _Path
+    spacingX: Optional[float]
+    spacingZ: Optional[float]
+    minHeight: Optional[float]
+    maxHeight: Optional[float]
+    scale: Optional[float]
+    exaggeration: Optional[float]
+    columns: Optional[int]
+    rows: Optional[int]
+    voidValue: Optional[float]
+    def __init__(self, file: _Path) -> None: ...
+
+class Heightfield:
+    """Ground y = h(x, z), bilinear between samples, its middle at the origin."""
+
+    def __init__(
+        self, heights: _Floats, spacing: Tuple[float, float] = (0.5, 0.5), name: str = "array"
+    ) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def spacing(self) -> Tuple[float, float]: ...
+    @property
+    def extent(self) -> Tuple[float, float]: ...
+    @property
+    def heights(self) -> _Float32s: ...
+    def at(self, x: _Floats, z: _Floats) -> Any: ...
+
+class Leg:
+    """A limb, from its root to its foot, at rest in model space."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def group(self) -> int: ...
+    @property
+    def home(self) -> Tuple[float, float, float]: ...
+    @property
+    def reach(self) -> float: ...
+    @property
+    def lengths(self) -> List[float]: ...
+
+class Rig:
+    """A model's legs and their limits."""
+
+    @staticmethod
+    def load(file: _Path) -> Rig: ...
+    @staticmethod
+    def spider() -> Rig: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def legs(self) -> Tuple[Leg, ...]: ...
+    @property
+    def legLength(self) -> float: ...
+    @property
+    def bodyHeight(self) -> float: ...
+    @property
+    def bodyRadius(self) -> float: ...
+
+class CameraKey:
+    """Where a camera on a path is at a time."""
+
+    time: float
+    position: Sequence[float]
+    target: Sequence[float]
+    def __init__(self, time: float, position: Sequence[float], target: Sequence[float]) -> None: ...
+
+class Camera:
+    """Where pictures are taken from."""
+
+    kind: str
+    position: Sequence[float]
+    target: Sequence[float]
+    distance: float
+    fieldOfView: float
+    about: Optional[Sequence[float]]
+    elevation: float
+    azimuth: float
+    secondsATurn: float
+    keys: Sequence[CameraKey]
+    def __init__(self) -> None: ...
+
+class Scene:
+    """Terrain, herds, camera and seed: what a crowd is made of."""
+
+    name: str
+    seed: int
+    camera: Camera
+    herds: List[Herd]
+    terrain: Union[TerrainNoise, TerrainFile]
+    def __init__(self) -> None: ...
+    @staticmethod
+    def builtin() -> Scene: ...
+    @staticmethod
+    def load(file: _Path) -> Scene: ...
+    @staticmethod
+    def parse(json: Union[str, Dict[str, Any]], folder: _Path = "") -> Scene: ...
+    @property
+    def agent_count(self) -> int: ...
+    def load_terrain(self) -> Heightfield: ...
+    def to_json(self) -> str: ...
+
+class View:
+    """Where a picture is taken from."""
+
+    eye: Sequence[float]
+    target: Sequence[float]
+    fieldOfView: float
+    def __init__(self, eye: Sequence[float], target: Sequence[float], fieldOfView: float = ...) -> None: ...
+
+class Picked:
+    """An agent under a ray or near a point."""
+
+    @property
+    def herd(self) -> int: ...
+    @property
+    def agent(self) -> int: ...
+    @property
+    def distance(self) -> float: ...
+    @property
+    def place(self) -> Tuple[float, float, float]: ...
+
+class State:
+    """A crowd as it was between two ticks, with all that it needs to go on."""
+
+    @staticmethod
+    def load(file: _Path) -> State: ...
+    @staticmethod
+    def parse(
+        data: Union[bytes, bytearray, memoryview, npt.NDArray[np.uint8]], name: str = "the state"
+    ) -> State: ...
+    @property
+    def tick(self) -> int: ...
+    @property
+    def dt(self) -> float: ...
+    @property
+    def scene(self) -> Scene: ...
+    @property
+    def terrain(self) -> Heightfield: ...
+    @property
+    def note(self) -> Any: ...
+
+class Crowd:
+    """The herds of a scene on one terrain, living on one device. Herds and agents are numbered from 0."""
+
+    def __init__(
+        self,
+        device: Device,
+        scene: Scene,
+        terrain: Optional[Heightfield] = None,
+        *,
+        pose: bool = True,
+        measure: bool = True,
+        watch_every: int = 0,
+        feet: bool = False,
+        footfalls: int = 0,
+        sleep: bool = False,
+        fuse: bool = True,
+        timestamps: bool = False,
+        page_agents: int = 0,
+    ) -> None: ...
+    def step(self, ticks: int = 1, dt: Optional[float] = None) -> None: ...
+    @property
+    def tick(self) -> int: ...
+    def edit_heights(self, x: int, z: int, heights: _Floats) -> None: ...
+    def terrain(self) -> Heightfield: ...
+    def steer(self, goal: Goal, herd: int = 0, agents: Optional[_Agents] = None) -> None: ...
+    def steer_to(
+        self, targets: _Floats, speed: float = 1, herd: int = 0, agents: Optional[_Agents] = None
+    ) -> None: ...
+    def steer_by(self, velocities: _Floats, herd: int = 0, agents: Optional[_Agents] = None) -> None: ...
+    def set_speed(self, speed: _Floats, herd: int = 0, agents: Optional[_Agents] = None) -> None: ...
+    def agent_id(self, agent: int, herd: int = 0) -> int: ...
+    def agent_ids(self, herd: int = 0) -> npt.NDArray[np.uint64]: ...
+    def has(self, agent: int) -> bool: ...
+    def teleport(self, agents: _Agents, positions: _Floats, headings: _Floats = 0) -> None: ...
+    def add(
+        self, position: Sequence[float], heading: float = 0, herd: int = 0, goal: Optional[Goal] = None
+    ) -> int: ...
+    def remove(self, agent: int) -> None: ...
+    def add_herd(self, herd: Herd) -> Tuple[int, int]: ...
+    def remove_herd(self, herd: Tuple[int, int]) -> None: ...
+    def has_herd(self, herd: Tuple[int, int]) -> bool: ...
+    def herd_id(self, herd: int) -> Tuple[int, int]: ...
+    def pick(
+        self, start: Sequence[float], direction: Sequence[float], length: float = ...
+    ) -> Optional[Picked]: ...
+    def nearest(self, point: Sequence[float]) -> Optional[Picked]: ...
+    @property
+    def herd_count(self) -> int: ...
+    @property
+    def agent_count(self) -> int: ...
+    def agents(self, herd: int = 0) -> int: ...
+    def places(self, herd: int = 0) -> int: ...
+    def rig(self, herd: int = 0) -> Rig: ...
+    @property
+    def watch_every(self) -> int: ...
+    @property
+    def memory_bytes(self) -> int: ...
+    def memory_use(self, herd: int = 0) -> Dict[str, int]: ...
+    def state_hash(self) -> int: ...
+    def sleeping(self) -> int: ...
+    def stage_times(self) -> Dict[str, float]: ...
+    def positions(self, herd: int = 0) -> _Float64s: ...
+    def headings(self, herd: int = 0) -> _Float32s: ...
+    def speeds(self, herd: int = 0) -> _Float32s: ...
+    def rotations(self, herd: int = 0) -> _Float32s: ...
+    def joints(self, herd: int = 0) -> _Float64s: ...
+    def footfalls(self, herd: int = 0) -> npt.NDArray[np.void]: ...
+    def dropped_footfalls(self, herd: int = 0) -> int: ...
+    def fidelity(self, herd: Optional[int] = None) -> Dict[str, Any]: ...
+    def agent_fidelity(self, herd: int = 0) -> Dict[str, _Float64s]: ...
+    def records(self, herd: int = 0) -> Dict[str, _Float32s]: ...
+    def save(self, file: _Path, note: Any = None) -> None: ...
+    def save_to_memory(self, note: Any = None) -> npt.NDArray[np.uint8]: ...
+    @staticmethod
+    def resume(
+        device: Device,
+        state: State,
+        *,
+        pose: Optional[bool] = None,
+        feet: Optional[bool] = None,
+        footfalls: Optional[int] = None,
+        sleep: Optional[bool] = None,
+        fuse: Optional[bool] = None,
+        timestamps: bool = False,
+        page_agents: int = 0,
+    ) -> Crowd: ...
+    def render(
+        self, width: int = 1280, height: int = 720, view: Optional[View] = None
+    ) -> npt.NDArray[np.uint8]: ...
+
+class ik:
+    """The submodule skitter.ik: inverse kinematics of many equal chains at once."""
+
+    solvers: Tuple[str, ...]
+    stop_names: Tuple[str, ...]
+
+    class Cone:
+        """A bone stays within an angle of its rest direction."""
+
+        halfAngle: float
+        def __init__(self, halfAngle: float) -> None: ...
+
+    class Ellipse:
+        """A cone with another half-angle toward each side of the bone's frame."""
+
+        px: float
+        py: float
+        nx: float
+        ny: float
+        def __init__(self, px: float, py: float, nx: float, ny: float) -> None: ...
+
+    class Hinge:
+        """A bone turns about one axis."""
+
+        axis: Sequence[float]
+        min: float
+        max: float
+        def __init__(self, axis: Sequence[float], min: float, max: float) -> None: ...
+
+    class Bone:
+        """A bone of a chain, at rest."""
+
+        length: float
+        direction: Sequence[float]
+        stiffness: float
+        def __init__(
+            self,
+            length: float,
+            direction: Sequence[float] = (0, 1, 0),
+            limit: Optional[Union[ik.Cone, ik.Ellipse, ik.Hinge]] = None,
+            twist: Tuple[float, float] = (0, 0),
+            stiffness: float = 1,
+        ) -> None: ...
+
+    class Chain:
+        """The kind of chain that a batch solves, from its base at 0."""
+
+        def __init__(self, bones: Sequence[ik.Bone], pole: Optional[Sequence[float]] = None) -> None: ...
+        @property
+        def bones(self) -> Tuple[ik.Bone, ...]: ...
+        @property
+        def reach(self) -> float: ...
+        def rest(self) -> _Float32s: ...
+
+    class Batch:
+        """Chains of one kind on a device."""
+
+        def __init__(
+            self,
+            device: Device,
+            chain: ik.Chain,
+            chains: int,
+            *,
+            solver: str = "auto",
+            start: str = "rest",
+            tolerance: float = ...,
+            iterations: int = 0,
+            restarts: bool = True,
+            rest_pull: Optional[float] = None,
+            bases: bool = False,
+            rotations: bool = False,
+        ) -> None: ...
+        def set_targets(self, targets: _Floats) -> None: ...
+        def set_bases(self, positions: _Floats, rotations: Optional[_Floats] = None) -> None: ...
+        def reset(self) -> None: ...
+        def solve(self, targets: Optional[_Floats] = None) -> _Float32s: ...
+        def joints(self) -> _Float32s: ...
+        def rotations(self) -> _Float32s: ...
+        def reports(self) -> npt.NDArray[np.void]: ...
+        @property
+        def chains(self) -> int: ...
+        @property
+        def solver(self) -> str: ...
+        @property
+        def iterations(self) -> int: ...
+
+class Spline:
+    """A cubic Hermite spline on the host, computed in double."""
+
+    def __init__(
+        self,
+        points: _Floats,
+        knots: Optional[_Floats] = None,
+        *,
+        closed: bool = False,
+        rule: str = "catmullRom",
+        tension: float = 0,
+        continuity: float = 0,
+        bias: float = 0,
+        arriving: Optional[_Floats] = None,
+        leaving: Optional[_Floats] = None,
+    ) -> None: ...
+    @property
+    def begin(self) -> float: ...
+    @property
+    def end(self) -> float: ...
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def length(self) -> float: ...
+    def position(self, time: _Floats) -> _Float32s: ...
+    def velocity(self, time: _Floats) -> _Float32s: ...
+    def acceleration(self, time: _Floats) -> _Float32s: ...
+    def length_at(self, time: _Floats) -> Any: ...
+    def time_at_length(self, length: _Floats) -> Any: ...
+
+class SplineBatch:
+    """Splines of equal point counts on a device."""
+
+    def __init__(
+        self,
+        device: Device,
+        points: _Floats,
+        knots: Optional[_Floats] = None,
+        *,
+        closed: bool = False,
+        rule: str = "catmullRom",
+        tension: float = 0,
+        continuity: float = 0,
+        bias: float = 0,
+        constant_speed: bool = False,
+        arriving: Optional[_Floats] = None,
+        leaving: Optional[_Floats] = None,
+    ) -> None: ...
+    @property
+    def splines(self) -> int: ...
+    def set_clocks(self, start: _Floats, duration: _Floats) -> None: ...
+    def travel(self, now: float) -> npt.NDArray[np.void]: ...
+    def lengths(self) -> _Float32s: ...
+
+class StageResult:
+    """How a stage compared with the reference."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def samples(self) -> int: ...
+    @property
+    def kept(self) -> int: ...
+    @property
+    def maxError(self) -> float: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def ratio(self) -> float: ...
+    @property
+    def ties(self) -> int: ...
+    @property
+    def worst(self) -> str: ...
+    @property
+    def passed(self) -> bool: ...
+    @property
+    def why(self) -> str: ...
+
+class Validation:
+    """The outcome of validate(), which is true where every stage passed."""
+
+    @property
+    def device(self) -> str: ...
+    @property
+    def ticks(self) -> int: ...
+    @property
+    def stages(self) -> Dict[str, StageResult]: ...
+    @property
+    def passed(self) -> bool: ...
+    def __bool__(self) -> bool: ...
+
+def validate(
+    scene: Scene,
+    frames: int = 120,
+    device: Optional[Device] = None,
+    stages: Optional[Sequence[str]] = None,
+    *,
+    terrain: Optional[Heightfield] = None,
+    dt: float = ...,
+    sleep: bool = False,
+    fuse: bool = True,
+    page_agents: int = 0,
+) -> Validation: ...

@@ -1,0 +1,273 @@
+#include "crowd/changes.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "crowd/frame.h"
+#include "crowd/herd.h"
+#include "crowd/page.h"
+#include "crowd/record.h"
+#include "crowd/spawn.h"
+#include "crowd/watch.h"
+#include "gpu/barrier.h"
+#include "gpu/submit.h"
+
+namespace skitter::crowd {
+
+AgentChange& AgentChanges::of(uint32_t agent, uint64_t agents) {
+  places_.resize(agents);
+  uint32_t& place = places_[agent];
+  if (place == 0) {
+    changes_.push_back({.agent = agent});
+    place = static_cast<uint32_t>(changes_.size());
+  }
+  return changes_[place - 1];
+}
+
+std::vector<AgentChange> AgentChanges::take() {
+  for (const AgentChange& change : changes_) places_[change.agent] = 0;
+  if (!std::ranges::is_sorted(changes_, {}, &AgentChange::agent))
+    std::ranges::sort(changes_, {}, &AgentChange::agent);
+  return std::exchange(changes_, {});
+}
+
+namespace {
+
+// Floats for places in buffers, none of them twice. They travel within the command buffer: by way of a
+// staging buffer, for pieces are small and many.
+class Writes {
+ public:
+  Writes(vk::CommandBuffer cmd, const gpu::Buffer& staging) : cmd_(cmd), staging_(staging) {
+    values_.reserve(staging.size() / sizeof(float));
+  }
+
+  void add(const gpu::Buffer& to, uint64_t offset, std::span<const float> values) {
+    while (!values.empty()) {
+      const size_t room = values_.capacity() - values_.size();
+      if (room == 0) {
+        flush();
+        continue;
+      }
+      const auto piece = values.first(std::min(room, values.size()));
+      append(to, offset, piece);
+      offset += piece.size_bytes();
+      values = values.subspan(piece.size());
+    }
+  }
+
+  void flush() {
+    if (values_.empty()) return;
+    constexpr uint64_t most = 65536;  // that vkCmdUpdateBuffer takes
+    const uint64_t bytes = values_.size() * sizeof(float);
+    gpu::transferToTransfer(cmd_);
+    for (uint64_t at = 0; at < bytes; at += most)
+      cmd_.updateBuffer(staging_.handle(), at, std::min(most, bytes - at),
+                        values_.data() + at / sizeof(float));
+    gpu::transferToTransfer(cmd_);
+    for (const auto& [to, copies] : copies_) cmd_.copyBuffer(staging_.handle(), to, copies);
+    copies_.clear();
+    values_.clear();
+  }
+
+ private:
+  void append(const gpu::Buffer& to, uint64_t offset, std::span<const float> values) {
+    const uint64_t from = values_.size() * sizeof(float);
+    std::vector<vk::BufferCopy>& copies = copies_[to.handle()];
+    const bool goesOn = !copies.empty() && copies.back().srcOffset + copies.back().size == from &&
+                        copies.back().dstOffset + copies.back().size == offset;
+    if (goesOn)
+      copies.back().size += values.size_bytes();
+    else
+      copies.push_back({.srcOffset = from, .dstOffset = offset, .size = values.size_bytes()});
+    values_.insert(values_.end(), values.begin(), values.end());
+  }
+
+  vk::CommandBuffer cmd_;
+  const gpu::Buffer& staging_;
+  std::vector<float> values_;
+  std::map<vk::Buffer, std::vector<vk::BufferCopy>> copies_;
+};
+
+// One agent's records, as a block of which it is the first has them.
+class Standing {
+ public:
+  explicit Standing(const Crowd::Impl& crowd, const Kind& kind) : crowd_(crowd), kind_(kind) {
+    for (const PageBuffer& each : pageBuffers(crowd, kind)) {
+      if (!each.record || !keeps(kind, crowd.options, *each.record) || *each.record == Record::goal) continue;
+      const RecordInfo info = infoOf(*each.record);
+      // What every tick makes anew can stay, and what measure has summed up shall.
+      if (!info.spawned && !isHashed(*each.record, kind.controller) && *each.record != Record::flight)
+        continue;
+      const auto floats =
+          static_cast<size_t>(4 * strideOf(*each.record, kind.legs, kind.bones, kind.clips.joints));
+      const size_t count = info.per == Per::leg ? size_t{shared::BLOCK} * static_cast<size_t>(kind.legs) : 1;
+      values_.of(*each.record).resize(floats * count);
+      spans_.of(*each.record) = info.spawned ? std::span(values_.of(*each.record)) : std::span<float>();
+      kept_.push_back(*each.record);
+    }
+  }
+
+  void write(const Spawner& spawner, uint32_t agentOfHerd, const Place& place, const Page& page,
+             uint32_t agent, Writes& writes) {
+    spawner.stand(agentOfHerd, place, 0, spans_);
+    for (const Record record : kept_) {
+      const bool ofLegs = infoOf(record).per == Per::leg;
+      const int legs = ofLegs ? kind_.legs : 1;
+      const std::span<const float> all = values_.of(record);
+      const size_t floats = all.size() / (ofLegs ? size_t{shared::BLOCK} * static_cast<size_t>(legs) : 1);
+      for (int leg = 0; leg < legs; ++leg) {
+        const auto from = static_cast<size_t>(ofLegs ? shared::legRecord(0, leg, legs) : 0);
+        const auto to = static_cast<uint64_t>(ofLegs ? shared::legRecord(static_cast<int>(agent), leg, legs)
+                                                     : static_cast<int>(agent));
+        writes.add(page.of(record), to * floats * sizeof(float), all.subspan(from * floats, floats));
+      }
+    }
+    if (page.watch) forget(crowd_.tick, page, agent, writes);
+  }
+
+  // Every watched one's trail alone, of agents that begin before the next tick.
+  void beginWatch(const Spawner& spawner, uint32_t agentOfHerd, const Page& page, uint32_t agent,
+                  Writes& writes) {
+    if (!page.watch || !slotOf(crowd_.tick + 1, page, agent)) return;
+    const auto start = spawner.place(agentOfHerd);
+    spawner.stand(agentOfHerd, {{start.x, start.z}, start.heading}, 0, spans_);
+    forget(crowd_.tick + 1, page, agent, writes);
+  }
+
+ private:
+  // Where the watched agent's trail is in that tick.
+  std::optional<uint32_t> slotOf(uint64_t tick, const Page& page, uint32_t agent) const {
+    const Watch watch = watchAt(tick, crowd_.watchEvery, page);
+    if (agent < watch.first || (agent - watch.first) % crowd_.watchEvery != 0) return {};
+    const uint32_t slot = (agent - watch.first) / crowd_.watchEvery;
+    return slot < watch.count ? std::optional(slot) : std::nullopt;
+  }
+
+  // measure goes on from where the agent is now, as if it had stood there.
+  void forget(uint64_t tick, const Page& page, uint32_t agent, Writes& writes) {
+    const std::optional<uint32_t> slot = slotOf(tick, page, agent);
+    if (!slot) return;
+    std::vector<float> trail(static_cast<size_t>(4 * shared::watchStride(kind_.legs)));
+    const float* body = values_.body.data();
+    std::copy_n(body, 3, trail.data());
+    for (int leg = 0; leg < kind_.legs; ++leg) {
+      float* at = trail.data() + 4 * shared::WATCH_TRAIL_STRIDE * (1 + leg);
+      const float* tip = values_.tip.data() + 4 * shared::TIP_STRIDE * shared::legRecord(0, leg, kind_.legs);
+      for (int i = 0; i < 3; ++i) at[i] = tip[i] + body[i];
+      at[3] = shared::WATCH_AIR;
+    }
+    writes.add(page.watch, uint64_t{*slot} * trail.size() * sizeof(float), trail);
+  }
+
+  const Crowd::Impl& crowd_;
+  const Kind& kind_;
+  ForRecords<std::vector<float>> values_;
+  SpawnRecords spans_;
+  std::vector<Record> kept_;
+};
+
+bool isOf(const Crowd::Impl& crowd, const Kind& kind, const Herd& herd, uint32_t agent) {
+  return &crowd.kinds[herd.kind] == &kind && agent - herd.firstAgent < herd.agents;
+}
+
+// Lists the legs of a page's agents for ik's second dispatch.
+void list(const Kind& kind, const Page& page, std::span<const uint32_t> agents, Writes& writes) {
+  std::vector<float> legs;
+  for (const uint32_t agent : agents)
+    for (int leg = 0; leg < kind.legs; ++leg)
+      legs.push_back(std::bit_cast<float>(
+          static_cast<uint32_t>(shared::legRecord(static_cast<int>(agent), leg, kind.legs))));
+  const auto count = static_cast<uint32_t>(legs.size());
+  const float groups = std::bit_cast<float>(gpu::groupsFor(count, shared::WORK_GROUP));
+  const float listed = std::bit_cast<float>(count);
+  writes.add(page.list, 0, legs);
+  writes.add(page.counters, sizeof(uint32_t) * shared::COUNTER_IK_DISPATCH_X, std::span(&groups, 1));
+  writes.add(page.counters, sizeof(uint32_t) * shared::COUNTER_IK_LISTED, std::span(&listed, 1));
+}
+
+struct Stood {
+  const Kind* kind;
+  const Page* page;
+  std::vector<uint32_t> agents;  // of the page
+};
+
+// Brings the chains of those who stand anew to their feet, and only these.
+void settle(const Crowd::Impl& crowd, const std::vector<Stood>& stood, vk::CommandBuffer cmd) {
+  const Frame before(crowd, crowd.kinds, crowd.tick - 1, cmd);
+  gpu::transferToCompute(cmd);
+  for (int i = 0; i < settleIterations; ++i) {
+    for (const Stood& each : stood) before.solveListed(*each.kind, *each.page);
+    gpu::computeToCompute(cmd);
+  }
+  gpu::computeToTransfer(cmd);
+  clearLists(crowd.kinds, cmd);
+}
+
+}  // namespace
+
+bool changesWait(const Crowd::Impl& crowd) {
+  return std::ranges::any_of(crowd.kinds, [](const Kind& kind) { return !kind.changes.empty(); });
+}
+
+void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
+  if (!changesWait(crowd)) return;
+  Writes writes(cmd, crowd.edits.staging());
+  std::vector<Stood> stood;
+  for (Kind& kind : crowd.kinds) {
+    if (kind.changes.empty()) continue;
+    Standing standing(crowd, kind);
+    const bool settles = solverOf(kind).has_value();
+    auto page = kind.pages.begin();
+    auto herd = crowd.herds.begin();  // of a kind they are in the order of their agents
+    for (const AgentChange& change : kind.changes.take()) {
+      while (change.agent >= page->firstAgent + page->agents) ++page;
+      const uint32_t agent = change.agent - page->firstAgent;
+      const uint64_t goal = uint64_t{agent} * sizeof change.record;
+      if (change.goal)
+        writes.add(page->goal, goal, change.record);
+      else if (change.speed)
+        writes.add(page->goal, goal + 4 * sizeof(float), std::span(change.record).subspan(4, 1));
+      if (change.leaves) writes.add(page->body, uint64_t{agent} * sizeof(BodyRecord), absentBody());
+      if (!change.stands) continue;
+      while (!isOf(crowd, kind, *herd, change.agent)) ++herd;
+      standing.write(Spawner(herd->from, kind, crowd.terrain, herd->seed), change.agent - herd->firstAgent,
+                     *change.stands, *page, agent, writes);
+      if (!settles) continue;
+      if (stood.empty() || stood.back().page != &*page) stood.push_back({&kind, &*page, {}});
+      stood.back().agents.push_back(agent);
+    }
+  }
+  for (const Stood& each : stood) list(*each.kind, *each.page, each.agents, writes);
+  writes.flush();
+  if (!stood.empty()) settle(crowd, stood, cmd);
+}
+
+void applyChanges(Crowd::Impl& crowd) {
+  if (!changesWait(crowd)) return;
+  ++crowd.tick;  // the one that would carry them
+  gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
+    gpu::allToAll(cmd);
+    recordChanges(crowd, cmd);
+    gpu::allToAll(cmd);
+  });
+  --crowd.tick;
+}
+
+void beginWatch(const Crowd::Impl& crowd, const Kind& kind, vk::CommandBuffer cmd) {
+  Writes writes(cmd, crowd.edits.staging());
+  Standing standing(crowd, kind);
+  for (const Herd& herd : crowd.herds) {
+    if (&crowd.kinds[herd.kind] != &kind) continue;
+    const Spawner spawner(herd.from, kind, crowd.terrain, herd.seed);
+    for (const Page& page : kind.pages)
+      for (uint32_t agent = 0; agent < page.agents; ++agent)
+        if (isOf(crowd, kind, herd, page.firstAgent + agent))
+          standing.beginWatch(spawner, page.firstAgent + agent - herd.firstAgent, page, agent, writes);
+  }
+  writes.flush();
+}
+
+}  // namespace skitter::crowd

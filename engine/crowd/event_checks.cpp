@@ -1,0 +1,131 @@
+// What a scene's events may be, before its crowd runs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "crowd/events.h"
+#include "crowd/steer.h"
+#include "skitter/error.h"
+
+namespace skitter::crowd {
+namespace {
+
+// Whose events they are, and what messages call the one that is looked at.
+struct Where {
+  const Scene& scene;
+  const Heightfield& terrain;
+  std::string event;
+};
+
+void check(const Mound& mound, const Where& at) {
+  if (!(mound.radius > 0 && std::isfinite(mound.radius) && std::isfinite(mound.height) &&
+        std::isfinite(mound.centre.x) && std::isfinite(mound.centre.y)))
+    throw inputError(fmt::format("{}.mound: expected a radius above 0, and finite numbers", at.event));
+}
+
+// As Heightfield::edit will.
+void check(const HeightSamples& edit, const Where& at) {
+  const auto& [x, z, columns, rows, heights] = edit;
+  const Heightfield& terrain = at.terrain;
+  if (uint64_t{x} + columns > terrain.columns || uint64_t{z} + rows > terrain.rows)
+    throw inputError(fmt::format("{}.edit: {} x {} samples at {}, {}, expected some of the {} x {} of {}",
+                                 at.event, columns, rows, x, z, terrain.columns, terrain.rows, terrain.name));
+  if (heights.size() != uint64_t{columns} * rows)
+    throw inputError(
+        fmt::format("{}.edit: {} heights, expected {}", at.event, heights.size(), uint64_t{columns} * rows));
+  if (!std::ranges::all_of(heights, [](float height) { return std::isfinite(height); }))
+    throw inputError(fmt::format("{}.edit: a height is not finite", at.event));
+}
+
+const skitter::Herd& herdOf(uint32_t number, const Where& at) {
+  const size_t herds = at.scene.herds.size();
+  if (number >= herds)
+    throw inputError(
+        fmt::format("{}.herd is {}, expected less than {}, the number of herds", at.event, number, herds));
+  return at.scene.herds[number];
+}
+
+void expectCount(const char* key, size_t found, size_t least, const Where& at) {
+  if (found < least || found > Event::maxAgents)
+    throw inputError(
+        fmt::format("{}.{} has {} agents, expected {} to {}", at.event, key, found, least, Event::maxAgents));
+}
+
+template <class Name>
+void expectAgent(const Name& name, uint32_t agent, const skitter::Herd& herd) {
+  const uint64_t places = uint64_t{herd.agents} + herd.reserve;
+  if (agent >= places)
+    throw inputError(
+        fmt::format("{} is {}, expected less than {}, the places of its herd", name(), agent, places));
+}
+
+void checkAgents(const char* key, const std::vector<uint32_t>& agents, size_t least,
+                 const skitter::Herd& herd, const Where& at) {
+  expectCount(key, agents.size(), least, at);
+  for (size_t i = 0; i < agents.size(); ++i)
+    expectAgent([&] { return fmt::format("{}.{}[{}]", at.event, key, i); }, agents[i], herd);
+}
+
+void expectItsReserve(uint32_t number, const skitter::Herd& herd, const Where& at) {
+  expectReserve([&] { return fmt::format("{}: herd {}", at.event, number); }, herd.reserve > 0);
+}
+
+void check(const GoalChange& change, const Where& at) {
+  checkAgents("agents", change.agents, 0, herdOf(change.herd, at), at);
+  expectGoal([&] { return at.event; }, change.goal);
+}
+
+void check(const SpeedChange& change, const Where& at) {
+  checkAgents("agents", change.agents, 0, herdOf(change.herd, at), at);
+  expectSpeed([&] { return at.event; }, "the speed", change.speed);
+}
+
+void check(const Teleport& teleport, const Where& at) {
+  const skitter::Herd& herd = herdOf(teleport.herd, at);
+  expectCount("teleport", teleport.moves.size(), 1, at);
+  for (size_t i = 0; i < teleport.moves.size(); ++i) {
+    const auto name = [&] { return fmt::format("{}.teleport[{}]", at.event, i); };
+    expectAgent([&] { return name() + ".agent"; }, teleport.moves[i].agent, herd);
+    expectPlace(name, at.terrain, teleport.moves[i].place);
+  }
+}
+
+void check(const Addition& addition, const Where& at) {
+  expectItsReserve(addition.herd, herdOf(addition.herd, at), at);
+  expectCount("add", addition.arrivals.size(), 1, at);
+  for (size_t i = 0; i < addition.arrivals.size(); ++i) {
+    const auto& [place, goal] = addition.arrivals[i];
+    const auto name = [&] { return fmt::format("{}.add[{}]", at.event, i); };
+    expectPlace(name, at.terrain, place);
+    if (goal) expectGoal(name, *goal);
+  }
+}
+
+void check(const Removal& removal, const Where& at) {
+  const skitter::Herd& herd = herdOf(removal.herd, at);
+  expectItsReserve(removal.herd, herd, at);
+  checkAgents("remove", removal.agents, 1, herd, at);
+  std::vector<uint32_t> sorted = removal.agents;
+  std::ranges::sort(sorted);
+  const auto twice = std::ranges::adjacent_find(sorted);
+  if (twice != sorted.end())
+    throw inputError(fmt::format("{}.remove has agent {} twice, expected once", at.event, *twice));
+}
+
+}  // namespace
+
+void checkEvents(const Scene& scene, const Heightfield& terrain) {
+  for (size_t e = 0; e < scene.events.size(); ++e) {
+    const Event& event = scene.events[e];
+    const Where where{scene, terrain, fmt::format("{}: events[{}]", scene.name, e)};
+    if (!(event.at >= 0 && event.at <= Event::maxTime))
+      throw inputError(fmt::format("{}.at is {}, expected 0 to {} s", where.event, event.at, Event::maxTime));
+    if (e > 0 && event.at < scene.events[e - 1].at)
+      throw inputError(fmt::format("{}.at is {}, expected {} or later, as the event before it", where.event,
+                                   event.at, scene.events[e - 1].at));
+    std::visit([&](const auto& what) { check(what, where); }, event.what);
+  }
+}
+
+}  // namespace skitter::crowd

@@ -1,0 +1,214 @@
+#include "crowd/events.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "crowd/herd.h"
+#include "crowd/steer.h"
+#include "skitter/error.h"
+
+namespace skitter::crowd {
+namespace {
+
+// The samples of one side within `radius` of a place.
+struct Side {
+  uint32_t first, count;
+};
+Side sideOf(float place, float radius, float origin, float spacing, uint32_t samples) {
+  const double first = std::ceil((double{place} - radius - origin) / spacing);
+  const double last = std::floor((double{place} + radius - origin) / spacing);
+  const double from = std::max(first, 0.0), to = std::min(last, static_cast<double>(samples) - 1);
+  return to < from ? Side{0, 0} : Side{static_cast<uint32_t>(from), static_cast<uint32_t>(to - from) + 1};
+}
+
+Rectangle rectangleOf(const Mound& mound, const Heightfield& terrain) {
+  const Side columns =
+      sideOf(mound.centre.x, mound.radius, terrain.originX(), terrain.spacingX, terrain.columns);
+  const Side rows = sideOf(mound.centre.y, mound.radius, terrain.originZ(), terrain.spacingZ, terrain.rows);
+  if (columns.count == 0 || rows.count == 0) return {};
+  return {columns.first, rows.first, columns.count, rows.count};
+}
+Rectangle rectangleOf(const HeightSamples& samples, const Heightfield&) {
+  return {samples.x, samples.z, samples.columns, samples.rows};
+}
+template <class AboutAgents>
+Rectangle rectangleOf(const AboutAgents&, const Heightfield&) {
+  return {};
+}
+
+std::vector<float> heightsOf(const Mound& mound, const Rectangle& at, const Heightfield& terrain) {
+  std::vector<float> heights;
+  for (uint32_t row = at.z; row < at.z + at.rows; ++row)
+    for (uint32_t column = at.x; column < at.x + at.columns; ++column) {
+      const glm::vec2 place(terrain.originX() + static_cast<float>(column) * terrain.spacingX,
+                            terrain.originZ() + static_cast<float>(row) * terrain.spacingZ);
+      const glm::vec2 away = (place - mound.centre) / mound.radius;
+      const float inside = std::max(0.0f, 1 - glm::dot(away, away));
+      heights.push_back(terrain.heights[size_t{row} * terrain.columns + column] +
+                        mound.height * inside * inside);
+    }
+  return heights;
+}
+std::vector<float> heightsOf(const HeightSamples& samples, const Rectangle&, const Heightfield&) {
+  return samples.heights;
+}
+
+// The first tick that ends at that time or later. A time that is a whole number of ticks may be a little more
+// or less in float32.
+uint64_t tickOf(const Event& event, double dt) {
+  return static_cast<uint64_t>(std::max(1.0, std::ceil(double{event.at} / dt - 1e-3)));
+}
+
+// Who would be there as a tick's events happen one after the other: none of them happens where one cannot.
+class Rehearsal {
+ public:
+  explicit Rehearsal(const Crowd::Impl& crowd) : crowd_(crowd) {}
+
+  void play(const Event& event) {
+    const auto number = &event - crowd_.events.data();
+    std::visit(
+        [&](const auto& what) { play(what, fmt::format("{}: events[{}]", crowd_.scene.name, number)); },
+        event.what);
+  }
+
+ private:
+  void play(const Mound&, const std::string&) {}
+  void play(const HeightSamples&, const std::string&) {}
+  // Goals and speeds.
+  template <class Change>
+  void play(const Change& change, const std::string& name) {
+    herdAt(change.herd, name);
+    for (const uint32_t agent : change.agents) expectSomebody(change.herd, agent, name);
+  }
+  void play(const Teleport& teleport, const std::string& name) {
+    for (const Teleport::Move& move : teleport.moves) expectSomebody(teleport.herd, move.agent, name);
+  }
+  void play(const Addition& addition, const std::string& name) {
+    Presence& presence = presenceOf(addition.herd, name);
+    expectItsReserve(addition.herd, name);
+    for (size_t i = 0; i < addition.arrivals.size(); ++i) {
+      const std::optional<uint32_t> empty = presence.lowestEmpty();
+      if (!empty)
+        throw inputError(fmt::format(
+            "{}.add[{}]: all of the {} places of herd {} are taken, expected an empty one: a larger "
+            "reserve has more",
+            name, i, presence.generations.size(), addition.herd));
+      presence.come(*empty);
+    }
+  }
+  void play(const Removal& removal, const std::string& name) {
+    for (const uint32_t agent : removal.agents) {
+      expectSomebody(removal.herd, agent, name);
+      presenceOf(removal.herd, name).leave(agent);
+    }
+    expectItsReserve(removal.herd, name);
+  }
+
+  // The host may have removed the herd, and may have made another one of that number.
+  const Herd& herdAt(uint32_t number, const std::string& name) const {
+    const Herd& herd = crowd_.herdAt(number);
+    if (herd.generation % 2 == 1)
+      throw inputError(fmt::format("{}: herd {} was removed, expected one that is there", name, number));
+    return herd;
+  }
+  Presence& presenceOf(uint32_t herd, const std::string& name) {
+    return presences_.try_emplace(herd, herdAt(herd, name).presence).first->second;
+  }
+  void expectSomebody(uint32_t herd, uint32_t agent, const std::string& name) {
+    const Presence& presence = presenceOf(herd, name);
+    if (agent >= presence.generations.size() || !presence.has(agent))
+      throw inputError(fmt::format("{}: herd {}, agent {}: nobody, expected one of {} agents", name, herd,
+                                   agent, presence.count));
+  }
+  void expectItsReserve(uint32_t herd, const std::string& name) const {
+    expectReserve([&] { return fmt::format("{}: herd {}", name, herd); }, crowd_.kindOf(herd).reserves);
+  }
+
+  const Crowd::Impl& crowd_;
+  std::map<uint32_t, Presence> presences_;  // of the herds that events name
+};
+
+// What the host would call. The rehearsal has found nothing in the way.
+class Happening {
+ public:
+  explicit Happening(Crowd& crowd) : crowd_(crowd) {}
+
+  void operator()(const Mound& mound) const { edit(mound); }
+  void operator()(const HeightSamples& samples) const { edit(samples); }
+  void operator()(const GoalChange& change) const {
+    if (change.agents.empty()) return crowd_.steer(change.herd, change.goal);
+    std::vector<AgentGoal> goals;
+    for (const uint32_t agent : change.agents)
+      goals.push_back({crowd_.agentId(change.herd, agent), change.goal});
+    crowd_.steer(goals);
+  }
+  void operator()(const SpeedChange& change) const {
+    if (change.agents.empty()) return crowd_.setSpeed(change.herd, change.speed);
+    std::vector<AgentSpeed> speeds;
+    for (const uint32_t agent : change.agents)
+      speeds.push_back({crowd_.agentId(change.herd, agent), change.speed});
+    crowd_.setSpeed(speeds);
+  }
+  void operator()(const Teleport& teleport) const {
+    std::vector<AgentPlace> places;
+    for (const auto& [agent, place] : teleport.moves)
+      places.push_back({crowd_.agentId(teleport.herd, agent), place});
+    crowd_.teleport(places);
+  }
+  void operator()(const Addition& addition) const {
+    for (const auto& [place, goal] : addition.arrivals) {
+      if (goal)
+        crowd_.add(addition.herd, place, *goal);
+      else
+        crowd_.add(addition.herd, place);
+    }
+  }
+  void operator()(const Removal& removal) const {
+    for (const uint32_t agent : removal.agents) crowd_.remove(crowd_.agentId(removal.herd, agent));
+  }
+
+ private:
+  template <class Ground>
+  void edit(const Ground& ground) const {
+    const Rectangle at = rectangleOf(ground, crowd_.terrain());
+    if (at.columns == 0) return;
+    crowd_.editHeights(at.x, at.z, at.columns, at.rows, heightsOf(ground, at, crowd_.terrain()));
+  }
+
+  Crowd& crowd_;
+};
+
+}  // namespace
+
+std::span<const Event> eventsAt(std::span<const Event> events, uint64_t tick, double dt) {
+  const auto byTick = [&](const Event& event) { return tickOf(event, dt); };
+  const auto found = std::ranges::equal_range(events, tick, {}, byTick);
+  return {found.begin(), found.end()};
+}
+
+Rectangle groundOf(const Event& event, const Heightfield& terrain) {
+  return std::visit([&](const auto& what) { return rectangleOf(what, terrain); }, event.what);
+}
+
+bool namesAgents(const Event& event) {
+  if (const auto* change = std::get_if<GoalChange>(&event.what)) return !change->agents.empty();
+  if (const auto* change = std::get_if<SpeedChange>(&event.what)) return !change->agents.empty();
+  return std::holds_alternative<Teleport>(event.what) || std::holds_alternative<Removal>(event.what);
+}
+
+void letEventsHappen(Crowd& crowd) {
+  Crowd::Impl& impl = implOf(crowd);
+  const uint64_t tick = impl.tick + 1;
+  if (impl.happened == tick) return;
+  const std::span<const Event> events = eventsAt(impl.events, tick, double{impl.dt});
+  Rehearsal rehearsal(impl);
+  for (const Event& event : events) rehearsal.play(event);
+  for (const Event& event : events) std::visit(Happening(crowd), event.what);
+  impl.happened = tick;
+}
+
+}  // namespace skitter::crowd

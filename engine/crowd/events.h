@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "skitter/crowd.h"
+
+// What a scene says happens while its crowd runs (Scene::events).
+namespace skitter::crowd {
+
+// All that can be known before the crowd runs: throws Error(input) that names the event where the terrain has
+// no such place, the scene no such herd or the herd no such agent, or where a number is out of its range.
+void checkEvents(const Scene& scene, const Heightfield& terrain);
+
+// Those that happen just before a tick, counted from 1, of `dt` seconds. `events` are by time.
+std::span<const Event> eventsAt(std::span<const Event> events, uint64_t tick, double dt);
+
+// The samples of the ground that an event changes; none where it lies beyond the map or is about agents.
+struct Rectangle {
+  uint32_t x = 0, z = 0, columns = 0, rows = 0;
+};
+Rectangle groundOf(const Event& event, const Heightfield& terrain);
+
+// Whether it names agents by number, whom a herd of another size may not have.
+bool namesAgents(const Event& event);
+
+// The scene's events before the next tick happen, as if the host did it all now; Crowd::record does not
+// repeat them. The length of a tick is known (setTick). Throws Error(input) that names the event where an
+// agent is not there or no place is left; then none of them has happened.
+void letEventsHappen(Crowd& crowd);
+
+}  // namespace skitter::crowd

@@ -1,0 +1,104 @@
+#include "crowd/picking.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+#include "crowd/page.h"
+#include "gpu/context.h"
+#include "gpu/transfer.h"
+#include "skitter/decode.h"
+
+namespace skitter {
+namespace crowd {
+namespace {
+
+// Calls with herd, agent and the middle of its sphere.
+template <typename Call>
+void eachSphere(std::span<const PickHerd> herds, const glm::dvec3& origin, const Call& call) {
+  constexpr size_t floats = 4 * shared::BODY_STRIDE;
+  for (const PickHerd& herd : herds)
+    for (size_t agent = 0; agent < herd.bodies.size() / floats; ++agent) {
+      const BodyState body = bodyOf(herd.bodies.subspan(agent * floats, floats), origin);
+      if (!body.present) continue;
+      call(herd, static_cast<uint32_t>(agent),
+           body.position + glm::dvec3(body.rotation * glm::vec3(0, herd.sphere.height, 0)));
+    }
+}
+
+// Metres along the ray to the sphere, 0 from within; infinite where it misses.
+double along(const Ray& ray, const glm::dvec3& direction, const glm::dvec3& middle, double radius) {
+  const glm::dvec3 to = middle - ray.start;
+  const double nearest = glm::dot(to, direction);
+  const double beside = glm::dot(to, to) - nearest * nearest, inside = radius * radius - beside;
+  if (glm::dot(to, to) <= radius * radius) return 0;
+  if (inside < 0 || nearest < 0) return std::numeric_limits<double>::infinity();
+  return nearest - std::sqrt(inside);
+}
+
+}  // namespace
+
+PickSphere pickSphereOf(const Rig& rig) { return {rig.bodyHeight, std::max(rig.bodyRadius, rig.bodyHeight)}; }
+
+std::optional<Picked> pick(std::span<const PickHerd> herds, const Ray& ray, const glm::dvec3& origin) {
+  assert(glm::length(ray.direction) > 0);
+  std::optional<Picked> best;
+  const glm::dvec3 direction = glm::normalize(ray.direction);
+  eachSphere(herds, origin, [&](const PickHerd& herd, uint32_t agent, const glm::dvec3& middle) {
+    const double distance = along(ray, direction, middle, double{herd.sphere.radius});
+    if (distance > ray.length || !std::isfinite(distance) || (best && best->distance <= distance)) return;
+    best = {herd.herd, agent, distance, ray.start + distance * direction};
+  });
+  return best;
+}
+
+std::optional<Picked> nearest(std::span<const PickHerd> herds, const glm::dvec3& point,
+                              const glm::dvec3& origin) {
+  std::optional<Picked> best;
+  eachSphere(herds, origin, [&](const PickHerd& herd, uint32_t agent, const glm::dvec3& middle) {
+    const double distance = glm::distance(point, middle);
+    if (!best || distance < best->distance) best = {herd.herd, agent, distance, middle};
+  });
+  return best;
+}
+
+}  // namespace crowd
+
+namespace {
+
+// The body records of all herds, and who they are of.
+struct Bodies {
+  std::vector<std::vector<float>> records;
+  std::vector<crowd::PickHerd> herds;
+};
+Bodies bodiesOf(const Crowd& crowd) {
+  const Crowd::Impl& impl = implOf(crowd);
+  impl.context->waitIdle();
+  Bodies bodies;
+  for (uint32_t herd = 0; herd < crowd.herdCount(); ++herd) {
+    std::vector<float>& records = bodies.records.emplace_back();
+    for (const crowd::Part& part : crowd::partsOf(impl, herd)) {
+      const uint64_t agentBytes = 16 * shared::BODY_STRIDE;
+      const size_t end = records.size();
+      records.resize(end + part.agents * agentBytes / sizeof(float));
+      gpu::downloadBytes(*impl.context, part.page->body,
+                         std::as_writable_bytes(std::span(records).subspan(end)), part.first * agentBytes);
+    }
+  }
+  for (uint32_t herd = 0; herd < crowd.herdCount(); ++herd)
+    bodies.herds.push_back({herd, bodies.records[herd], crowd::pickSphereOf(impl.kindOf(herd).rig)});
+  return bodies;
+}
+
+}  // namespace
+
+std::optional<Picked> Crowd::pick(const Ray& ray, const glm::dvec3& origin) const {
+  return crowd::pick(bodiesOf(*this).herds, ray, origin);
+}
+
+std::optional<Picked> Crowd::nearest(const glm::dvec3& point, const glm::dvec3& origin) const {
+  return crowd::nearest(bodiesOf(*this).herds, point, origin);
+}
+
+}  // namespace skitter

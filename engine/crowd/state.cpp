@@ -1,0 +1,540 @@
+// A crowd's records and what the host knows of it, to a state and back.
+#include "crowd/state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstring>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "assets/files/partial_file.h"
+#include "crowd/frame.h"
+#include "crowd/page.h"
+#include "crowd/record.h"
+#include "crowd/setup.h"
+#include "crowd/state_file.h"
+#include "crowd/state_head.h"
+#include "crowd/watch.h"
+#include "gpu/barrier.h"
+#include "gpu/context.h"
+#include "gpu/submit.h"
+#include "gpu/transfer.h"
+#include "skitter/error.h"
+
+namespace skitter {
+namespace crowd {
+namespace {
+
+using Impl = Crowd::Impl;
+
+uint64_t bytesOfRecord(const Kind& kind, Record record) {
+  return 16 * static_cast<uint64_t>(strideOf(record, kind.legs, kind.bones, kind.clips.joints));
+}
+
+// How many of them a run of agents has.
+uint64_t recordsOf(const Impl& crowd, const Kind& kind, Record record, uint64_t agents) {
+  switch (infoOf(record).per) {
+    case Per::agent:
+      break;
+    case Per::leg:
+      return agents * static_cast<uint64_t>(kind.legs);
+    case Per::watched:
+      return (agents + crowd.watchEvery - 1) / crowd.watchEvery;
+  }
+  return agents;
+}
+
+uint64_t bytesOfChunk(const Impl& crowd, const Kind& kind, Record record) {
+  return recordsOf(crowd, kind, record, kind.agents) * bytesOfRecord(kind, record);
+}
+
+std::vector<StateChunk> recordChunks(const Impl& crowd, const Kind& kind) {
+  std::vector<StateChunk> chunks;
+  for (const Record record : allRecords)
+    if (keeps(kind, crowd.options, record))
+      chunks.push_back({infoOf(record).name, bytesOfChunk(crowd, kind, record)});
+  return chunks;
+}
+
+// Copies each leg's record between a page, where agents are in blocks, and a chunk.
+template <class Copy>
+void eachLeg(const Page& page, int legs, uint64_t bytes, const Copy& copy) {
+  uint64_t place = 0;
+  for (int agent = 0; agent < static_cast<int>(page.agents); ++agent)
+    for (int leg = 0; leg < legs; ++leg, place += bytes)
+      copy(place, bytes * static_cast<uint64_t>(shared::legRecord(agent, leg, legs)));
+}
+
+// Calls each(bytes in the page, bytes in the chunk) for whom measure looks at in this tick. There is one of
+// every `watchEvery` agents of the kind, and so they have their place in the chunk.
+template <class Each>
+void eachWatched(const Impl& crowd, const Page& page, uint64_t bytes, const Each& each) {
+  const Watch watch = watchAt(crowd.tick, crowd.watchEvery, page);
+  for (uint64_t slot = 0; slot < watch.count; ++slot)
+    each(slot * bytes, (page.firstAgent + watch.first + slot * crowd.watchEvery) / crowd.watchEvery * bytes);
+}
+
+uint64_t bytesInPage(const Page& page, const Kind& kind, Record record, uint64_t bytes) {
+  return infoOf(record).per == Per::leg ? wholeBlocks(page.agents) * static_cast<uint64_t>(kind.legs) * bytes
+                                        : page.agents * bytes;
+}
+
+void writeRecords(const Impl& crowd, const Kind& kind, Record record, StateWriter& writer) {
+  const uint64_t bytes = bytesOfRecord(kind, record);
+  std::vector<std::byte> there, here;
+  if (infoOf(record).per == Per::watched) {
+    here.resize(bytesOfChunk(crowd, kind, record));
+    for (const Page& page : kind.pages) {
+      there.resize(page.of(record).size());
+      gpu::downloadBytes(*crowd.context, page.of(record), there);
+      eachWatched(crowd, page, bytes,
+                  [&](uint64_t in, uint64_t to) { std::memcpy(here.data() + to, there.data() + in, bytes); });
+    }
+    return writer.write(here);
+  }
+  for (const Page& page : kind.pages) {
+    there.resize(bytesInPage(page, kind, record, bytes));
+    gpu::downloadBytes(*crowd.context, page.of(record), there);
+    if (infoOf(record).per == Per::agent) {
+      writer.write(there);
+      continue;
+    }
+    here.resize(page.agents * static_cast<uint64_t>(kind.legs) * bytes);
+    eachLeg(page, kind.legs, bytes,
+            [&](uint64_t to, uint64_t from) { std::memcpy(here.data() + to, there.data() + from, bytes); });
+    writer.write(here);
+  }
+}
+
+void readRecords(const Impl& crowd, const Kind& kind, Record record, StateReader& reader) {
+  const uint64_t bytes = bytesOfRecord(kind, record);
+  std::vector<std::byte> there, here;
+  if (infoOf(record).per == Per::watched) {
+    here.resize(bytesOfChunk(crowd, kind, record));
+    reader.read(here);
+    for (const Page& page : kind.pages) {
+      there.assign(page.of(record).size(), std::byte{0});
+      eachWatched(crowd, page, bytes, [&](uint64_t in, uint64_t from) {
+        std::memcpy(there.data() + in, here.data() + from, bytes);
+      });
+      gpu::uploadBytes(*crowd.context, page.of(record), there);
+    }
+    return;
+  }
+  for (const Page& page : kind.pages) {
+    here.resize(recordsOf(crowd, kind, record, page.agents) * bytes);
+    reader.read(here);
+    if (infoOf(record).per == Per::agent) {
+      gpu::uploadBytes(*crowd.context, page.of(record), here);
+      continue;
+    }
+    there.assign(bytesInPage(page, kind, record, bytes), std::byte{0});
+    eachLeg(page, kind.legs, bytes,
+            [&](uint64_t from, uint64_t to) { std::memcpy(there.data() + to, here.data() + from, bytes); });
+    gpu::uploadBytes(*crowd.context, page.of(record), there);
+  }
+}
+
+// A footfall as the device has it; agents are numbered through the kind.
+struct Event {
+  std::array<float, size_t{4} * shared::FOOTFALL_STRIDE> values;
+  float agent() const { return values[4]; }
+  float leg() const { return values[5]; }
+};
+
+std::vector<Event> footfallsOf(const Impl& crowd, const Kind& kind) {
+  std::vector<Event> all;
+  if (crowd.options.footfalls == 0) return all;
+  for (const Page& page : kind.pages) {
+    const auto counters = gpu::download<uint32_t>(*crowd.context, page.counters);
+    std::vector<Event> events(std::min(counters[shared::COUNTER_FOOTFALLS], page.footfallRoom));
+    gpu::downloadBytes(*crowd.context, page.footfall, std::as_writable_bytes(std::span(events)));
+    all.insert(all.end(), events.begin(), events.end());
+  }
+  // The device appends them in any order.
+  std::ranges::sort(all, {}, [](const Event& event) { return std::pair(event.agent(), event.leg()); });
+  return all;
+}
+
+void giveFootfalls(const Impl& crowd, const Kind& kind, const std::vector<Event>& all) {
+  if (crowd.options.footfalls == 0) return;
+  for (const Page& page : kind.pages) {
+    std::vector<Event> events;
+    for (const Event& event : all)
+      if (event.agent() >= static_cast<float>(page.firstAgent) &&
+          event.agent() < static_cast<float>(page.firstAgent + page.agents))
+        events.push_back(event);
+    const std::array count = {static_cast<uint32_t>(std::min<uint64_t>(events.size(), page.footfallRoom))};
+    events.resize(count[0]);
+    gpu::uploadBytes(*crowd.context, page.footfall, std::as_bytes(std::span(events)));
+    gpu::uploadBytes(*crowd.context, page.counters, std::as_bytes(std::span(count)),
+                     bytesOfCounters(shared::COUNTER_FOOTFALLS));
+  }
+}
+
+// Adds what the device has counted for a herd since the start, on all of its pages.
+void addCounts(const Impl& crowd, uint32_t herd, StateHerd& sums) {
+  for (const Part& part : partsOf(crowd, herd)) {
+    const CounterRow row = rowOf(*crowd.context, part);
+    for (size_t i = 0; i < row.size(); ++i) sums.counts[i] += row[i];
+    if (!part.page->histogram) continue;
+    decltype(sums.reachErrors) here;
+    gpu::downloadBytes(*crowd.context, part.page->histogram, std::as_writable_bytes(std::span(here)),
+                       part.row * sizeof here);
+    for (size_t i = 0; i < here.size(); ++i) sums.reachErrors[i] += here[i];
+  }
+}
+
+// To one of its pages: only the sum over all of them is asked for.
+void giveCounts(const Impl& crowd, uint32_t herd, const StateHerd& counts) {
+  const std::vector<Part> parts = partsOf(crowd, herd);
+  if (parts.empty()) return;
+  const Part& part = parts.front();
+  gpu::uploadBytes(*crowd.context, part.page->counters, std::as_bytes(std::span(counts.counts)),
+                   bytesOfCounters(shared::counterRow(static_cast<int>(part.row))));
+  if (part.page->histogram)
+    gpu::uploadBytes(*crowd.context, part.page->histogram, std::as_bytes(std::span(counts.reachErrors)),
+                     part.row * sizeof counts.reachErrors);
+}
+
+// Of all that the simulation knows of the kind's rig and its clips: what the records are of no use without.
+uint32_t fingerprintOf(const Kind& kind) {
+  uint32_t sum = 0;
+  const auto add = [&](const std::vector<float>& values) {
+    sum = checksum(std::as_bytes(std::span(values)), sum);
+  };
+  add(kind.rigRecords);
+  add({kind.rig.legLength, kind.rig.bodyHeight, kind.rig.bodyRadius});
+  for (const auto* each :
+       {&kind.clips.heads, &kind.clips.times, &kind.clips.rows, &kind.clips.legs, &kind.clips.bones})
+    add(*each);
+  add(kind.keyPoses.records);
+  return sum;
+}
+
+bool isGone(const Herd& herd) { return herd.generation % 2 == 1; }
+
+// Whether everybody is there who was there at first, and nobody else.
+bool isFirstGeneration(const Impl& crowd, uint32_t kind) {
+  return std::ranges::all_of(crowd.herds, [&](const Herd& herd) {
+    return herd.kind != kind || isGone(herd) ||
+           std::ranges::all_of(herd.presence.generations,
+                               [](uint32_t generation) { return generation == 0; });
+  });
+}
+
+// Of each of the kind's places.
+std::vector<uint32_t> generationsOf(const Impl& crowd, uint32_t kind) {
+  std::vector<uint32_t> all(crowd.kinds[kind].agents);
+  for (const Herd& herd : crowd.herds)
+    if (herd.kind == kind && !isGone(herd))
+      std::ranges::copy(herd.presence.generations, all.begin() + herd.firstAgent);
+  return all;
+}
+
+void giveGenerations(Impl& crowd, uint32_t kind, std::span<const uint32_t> all) {
+  for (Herd& herd : crowd.herds) {
+    if (herd.kind != kind || isGone(herd)) continue;
+    const auto own = all.subspan(herd.firstAgent, herd.agents);
+    herd.presence = Presence();
+    herd.presence.generations.assign(own.begin(), own.end());
+    herd.presence.count = static_cast<uint32_t>(
+        std::ranges::count_if(own, [](uint32_t generation) { return generation % 2 == 0; }));
+  }
+}
+
+std::vector<StateChange> changesOf(const Kind& kind) {
+  std::vector<StateChange> all;
+  for (const auto& [agent, goal, speed, leaves, record, stands] : kind.changes.all()) {
+    all.push_back({agent, goal, speed, leaves, record, {}});
+    if (stands) all.back().stands = {stands->position.x, stands->position.y, stands->heading};
+  }
+  return all;
+}
+
+void giveChanges(const std::vector<StateChange>& all, Kind& kind) {
+  for (const auto& [agent, goal, speed, leaves, record, stands] : all) {
+    if (agent >= kind.agents) continue;
+    AgentChange& change = kind.changes.of(agent, kind.agents);
+    change = {agent, goal, speed, leaves, record, {}};
+    if (stands.size() == 3) change.stands = Place{{stands[0], stands[1]}, stands[2]};
+  }
+}
+
+StateHead headOf(const Impl& crowd, const std::vector<std::vector<Event>>& footfalls,
+                 const std::string& note) {
+  StateHead head;
+  head.tick = crowd.tick;
+  head.dt = crowd.dt;
+  head.scene = crowd.scene;
+  head.agentsInTick = crowd.agentsInTick;
+  head.terrain = crowd.terrain;
+  head.options = crowd.options;
+  head.options.watchEvery = crowd.watchEvery;
+  head.note = note;
+  head.watchUntil = crowd.watchUntil;
+  head.rigsAreCallers = crowd.rigsAreCallers;
+  for (size_t k = 0; k < crowd.kinds.size(); ++k) {
+    const Kind& kind = crowd.kinds[k];
+    StateKind& made = head.kinds.emplace_back(StateKind{.rig = kind.rig.name,
+                                                        .agents = kind.agents,
+                                                        .firstAgents = kind.firstAgents,
+                                                        .changes = changesOf(kind),
+                                                        .legs = kind.legs,
+                                                        .bones = kind.bones,
+                                                        .joints = kind.clips.joints,
+                                                        .hash = fingerprintOf(kind),
+                                                        .chunks = recordChunks(crowd, kind)});
+    made.chunks.push_back({StateChunk::footfalls, footfalls[k].size() * sizeof(Event)});
+    if (!isFirstGeneration(crowd, static_cast<uint32_t>(k)))
+      made.chunks.push_back({StateChunk::generations, kind.agents * sizeof(uint32_t)});
+  }
+  for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
+    const Herd& herd = crowd.herds[h];
+    head.scene.herds.push_back(herd.from);
+    if (isGone(herd)) {
+      head.scene.herds.back() = {};  // its files may be gone, too
+      head.scene.herds.back().agents = 0;
+    }
+    const std::vector<uint32_t>& generations = herd.presence.generations;
+    head.herds.push_back({.kind = herd.kind,
+                          .place = herd.place,
+                          .firstAgent = herd.firstAgent,
+                          .agents = herd.agents,
+                          .generation = herd.generation,
+                          .lastGeneration = generations.empty() ? 0 : std::ranges::max(generations)});
+    if (!isGone(herd)) addCounts(crowd, h, head.herds.back());
+  }
+  return head;
+}
+
+void save(const Impl& crowd, const std::string& note, StateSink sink) {
+  crowd.context->waitIdle();
+  std::vector<std::vector<Event>> footfalls;
+  for (const Kind& kind : crowd.kinds) footfalls.push_back(footfallsOf(crowd, kind));
+  const StateHead head = headOf(crowd, footfalls, note);
+  StateWriter writer(head, std::move(sink));
+  for (size_t k = 0; k < crowd.kinds.size(); ++k)
+    for (const StateChunk& chunk : head.kinds[k].chunks) {
+      if (const std::optional<Record> record = chunk.record()) {
+        writeRecords(crowd, crowd.kinds[k], *record, writer);
+      } else if (chunk.name == StateChunk::footfalls) {
+        writer.write(std::as_bytes(std::span(footfalls[k])));
+      } else {
+        const std::vector<uint32_t> generations = generationsOf(crowd, static_cast<uint32_t>(k));
+        writer.write(std::as_bytes(std::span(generations)));
+      }
+      writer.endChunk();
+    }
+}
+
+// Records that a state may lack, because nobody had asked for them, and the stages that make them of others.
+struct Derived {
+  std::set<Record> records;
+  std::vector<StageSet> stages;
+};
+const std::vector<Derived>& allDerived() {
+  using enum StageId;
+  static const std::vector<Derived> all = {
+      {{Record::foot, Record::tip}, {swing, StageSet{swing, ik}, ik}},
+      {{Record::pose}, {clip, pose}},  // clip lists who fades from one clip to another
+      {{Record::flight}, {footfall}},
+  };
+  return all;
+}
+
+// Those that the crowd keeps and the state lacks.
+std::set<Record> lackingIn(const Impl& crowd, const StateHead& head) {
+  std::set<Record> lacking;
+  for (size_t k = 0; k < crowd.kinds.size(); ++k)
+    for (const StateChunk& needed : recordChunks(crowd, crowd.kinds[k]))
+      if (std::ranges::find(head.kinds[k].chunks, needed.name, &StateChunk::name) ==
+          head.kinds[k].chunks.end())
+        lacking.insert(needed.record().value());
+  return lacking;
+}
+
+// The counters as between two ticks, with nobody listed.
+void clearCounters(const Impl& crowd) {
+  gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
+    gpu::allToAll(cmd);
+    clearLists(crowd.kinds, cmd);
+    clearAwake(crowd, crowd.kinds, cmd);
+    gpu::allToAll(cmd);
+  });
+}
+
+// Lists who is awake, as the last tick has. The counters are clear.
+void listAwake(const Impl& crowd) {
+  gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
+    Frame(crowd, crowd.kinds, crowd.tick, cmd).record(StageId::wake);
+    gpu::allToAll(cmd);
+  });
+}
+
+// Time stands still meanwhile, so that clips do not go on. What else the stages change is written over later.
+void derive(Impl& crowd, const std::vector<StageSet>& stages) {
+  for (Kind& kind : crowd.kinds) {
+    if (kind.stages.empty()) continue;
+    setParameters(crowd, 0, kind);
+    for (const Page& page : kind.pages) gpu::clear(*crowd.context, page.steer);  // nobody sleeps
+  }
+  clearCounters(crowd);
+  listAwake(crowd);
+  gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
+    const Frame frame(crowd, crowd.kinds, crowd.tick, cmd);
+    for (const StageSet stage : stages) {
+      frame.record(stage);
+      gpu::allToAll(cmd);
+    }
+  });
+}
+
+// All that the state has and the crowd keeps.
+void readChunks(Impl& crowd, State::Source& source) {
+  StateReader reader(source);
+  for (uint32_t k = 0; k < crowd.kinds.size(); ++k) {
+    const Kind& kind = crowd.kinds[k];
+    for (const StateChunk& chunk : source.head.kinds[k].chunks) {
+      std::vector<Event> footfalls;
+      std::vector<uint32_t> generations;
+      const std::optional<Record> record = chunk.record();
+      if (record && keeps(kind, crowd.options, *record)) {
+        readRecords(crowd, kind, *record, reader);
+      } else if (record) {
+        reader.skip(chunk.bytes);
+      } else if (chunk.name == StateChunk::footfalls) {
+        footfalls.resize(chunk.bytes / sizeof(Event));
+        reader.read(std::as_writable_bytes(std::span(footfalls)));
+      } else {
+        generations.resize(kind.agents);
+        reader.read(std::as_writable_bytes(std::span(generations)));
+      }
+      reader.endChunk(fmt::format("record {} of herds of rig {}", chunk.name, kind.rig.name));
+      if (!footfalls.empty()) giveFootfalls(crowd, kind, footfalls);
+      if (!generations.empty()) giveGenerations(crowd, k, generations);
+    }
+  }
+  for (uint32_t herd = 0; herd < crowd.herds.size(); ++herd)
+    if (!isGone(crowd.herds[herd])) giveCounts(crowd, herd, source.head.herds[herd]);
+}
+
+uint64_t expectedBytes(const Impl& crowd, const Kind& kind, const StateChunk& chunk) {
+  if (const std::optional<Record> record = chunk.record()) return bytesOfChunk(crowd, kind, *record);
+  if (chunk.name == StateChunk::generations) return kind.agents * sizeof(uint32_t);
+  return chunk.bytes / sizeof(Event) * sizeof(Event);  // any number of footfalls
+}
+
+void checkChunk(const Impl& crowd, const Kind& kind, const StateChunk& chunk, const std::string& state) {
+  const uint64_t expected = expectedBytes(crowd, kind, chunk);
+  if (chunk.bytes != expected)
+    throw inputError(fmt::format("{}: record {} of herds of rig {} has {} bytes, expected {}", state,
+                                 chunk.name, kind.rig.name, chunk.bytes, expected));
+}
+
+}  // namespace
+
+void restoreHerds(Impl& crowd, const State& state) {
+  assert(state.source);
+  const auto& [name, head] = std::tie(state.source->name, state.source->head);
+  if (head.rigsAreCallers && state.options.rigs.empty())
+    throw inputError(
+        fmt::format("{}: the crowd was made of rigs of a program's own, which must give them again", name));
+  if (!state.options.rigs.empty() && state.options.rigs.size() != head.herds.size())
+    throw inputError(fmt::format("{}: {} rigs for {} herds, expected one a herd", name,
+                                 state.options.rigs.size(), head.herds.size()));
+  for (size_t h = 0; h < head.herds.size(); ++h) {
+    const StateHerd& saved = head.herds[h];
+    Herd& herd = crowd.herds.emplace_back();
+    herd.kind = saved.kind;
+    herd.place = saved.place;
+    herd.firstAgent = saved.firstAgent;
+    herd.agents = saved.agents;
+    herd.from = state.scene.herds.at(h);
+    herd.generation = saved.generation;
+    if (isGone(herd))
+      herd.presence.generations = {saved.lastGeneration};
+    else
+      herd.presence = Presence(saved.agents, saved.agents);
+  }
+  crowd.kinds.resize(head.kinds.size());
+  for (size_t k = 0; k < head.kinds.size(); ++k) {
+    crowd.kinds[k].agents = head.kinds[k].agents;
+    crowd.kinds[k].firstAgents = head.kinds[k].firstAgents;
+  }
+}
+
+void checkState(const Impl& crowd, const State& state) {
+  const auto& [name, head] = std::tie(state.source->name, state.source->head);
+  for (size_t k = 0; k < crowd.kinds.size(); ++k)
+    if (head.kinds[k].hash != fingerprintOf(crowd.kinds[k]))
+      throw inputError(fmt::format("{}: rig {} has other legs or clips than when the state was saved", name,
+                                   crowd.kinds[k].rig.name));
+  const uint32_t watchEvery = head.options.watchEvery;
+  if (crowd.watchEvery != watchEvery)
+    throw inputError(
+        fmt::format("{}: measure is to watch one agent of {}, expected {} as in the crowd that was saved",
+                    name, crowd.watchEvery, watchEvery));
+  for (size_t k = 0; k < crowd.kinds.size(); ++k)
+    for (const StateChunk& chunk : head.kinds[k].chunks) checkChunk(crowd, crowd.kinds[k], chunk, name);
+  for (const Record record : lackingIn(crowd, head))
+    if (std::ranges::none_of(allDerived(),
+                             [&](const Derived& each) { return each.records.contains(record); }))
+      throw inputError(
+          fmt::format("{}: has no {} records, which the crowd's options ask for", name, infoOf(record).name));
+}
+
+void restore(Impl& crowd, const State& state) {
+  State::Source& source = *state.source;
+  crowd.tick = state.tick;
+  if (state.dt > 0) setTick(crowd, state.dt);
+  crowd.watchUntil = source.head.watchUntil;
+  crowd.agentsInTick = source.head.agentsInTick;
+  for (size_t k = 0; k < crowd.kinds.size(); ++k) giveChanges(source.head.kinds[k].changes, crowd.kinds[k]);
+  clearCounters(crowd);
+  readChunks(crowd, source);
+  const std::set<Record> lacking = lackingIn(crowd, source.head);
+  for (const Derived& each : allDerived()) {
+    if (std::ranges::none_of(each.records, [&](Record record) { return lacking.contains(record); })) continue;
+    derive(crowd, each.stages);
+    clearCounters(crowd);
+    readChunks(crowd, source);
+  }
+  for (Kind& kind : crowd.kinds)
+    if (!kind.stages.empty()) setParameters(crowd, crowd.dt > 0 ? crowd.dt : usualDt, kind);
+  listAwake(crowd);
+}
+
+}  // namespace crowd
+
+void Crowd::save(const std::filesystem::path& file, const std::string& note) const {
+  PartialFile out(file);
+  crowd::save(*impl_, note, [&](std::span<const std::byte> bytes) { out.write(bytes); });
+  out.sync();
+  out.keep();
+}
+
+std::vector<std::byte> Crowd::saveToMemory(const std::string& note) const {
+  std::vector<std::byte> state;
+  state.reserve(stateBytes());
+  crowd::save(*impl_, note, [&](std::span<const std::byte> bytes) {
+    state.insert(state.end(), bytes.begin(), bytes.end());
+  });
+  return state;
+}
+
+uint64_t Crowd::stateBytes() const {
+  constexpr uint64_t aHead = 64 << 10, aHerd = 4 << 10;
+  uint64_t bytes = aHead + aHerd * impl_->herds.size() + impl_->terrain.heights.size() * sizeof(float);
+  for (const crowd::Kind& kind : impl_->kinds)
+    for (const crowd::StateChunk& chunk : crowd::recordChunks(*impl_, kind))
+      bytes += crowd::bytesOfChunk(chunk.bytes);
+  return bytes;
+}
+
+}  // namespace skitter

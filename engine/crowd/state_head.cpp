@@ -1,0 +1,197 @@
+#include "crowd/state_head.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "assets/heights/heightfield_limits.h"
+#include "crowd/record.h"
+#include "crowd/state_file.h"
+#include "skitter/error.h"
+
+namespace skitter::crowd {
+namespace {
+
+using Json = nlohmann::json;
+
+// eachKey(object, visit) calls visit(key, member) for both directions. Bindings name all members, so that a
+// new one does not compile until it is looked at here.
+template <class Visit>
+void eachKey(StateChunk& chunk, const Visit& visit) {
+  auto& [name, bytes] = chunk;
+  visit("name", name);
+  visit("bytes", bytes);
+}
+template <class Visit>
+void eachKey(StateChange& change, const Visit& visit) {
+  auto& [agent, goal, speed, leaves, record, stands] = change;
+  visit("agent", agent);
+  visit("goal", goal);
+  visit("speed", speed);
+  visit("leaves", leaves);
+  visit("record", record);
+  visit("stands", stands);
+}
+template <class Visit>
+void eachKey(StateKind& kind, const Visit& visit) {
+  auto& [rig, agents, firstAgents, changes, legs, bones, joints, hash, chunks] = kind;
+  visit("rig", rig);
+  visit("agents", agents);
+  visit("firstAgents", firstAgents);
+  visit("changes", changes);
+  visit("legs", legs);
+  visit("bones", bones);
+  visit("joints", joints);
+  visit("hash", hash);
+  visit("chunks", chunks);
+}
+template <class Visit>
+void eachKey(StateHerd& herd, const Visit& visit) {
+  auto& [kind, place, firstAgent, agents, generation, lastGeneration, counts, reachErrors] = herd;
+  visit("kind", kind);
+  visit("place", place);
+  visit("generation", generation);
+  visit("lastGeneration", lastGeneration);
+  visit("firstAgent", firstAgent);
+  visit("agents", agents);
+  visit("counts", counts);
+  visit("reachErrors", reachErrors);
+}
+template <class Visit>
+void eachKey(CrowdOptions& options, const Visit& visit) {
+  auto& [pose, measure, watchEvery, feet, footfalls, sleep, fuse, timestamps, pageAgents, shaders, rigs] =
+      options;
+  visit("pose", pose);
+  visit("measure", measure);
+  visit("watchEvery", watchEvery);
+  visit("feet", feet);
+  visit("footfalls", footfalls);
+  visit("sleep", sleep);
+  visit("fuse", fuse);
+  // timestamps and pageAgents are the device's matter, and shaders are experiments. A program that made rigs
+  // has them.
+}
+template <class Visit>
+void eachKey(Heightfield& terrain, const Visit& visit) {
+  auto& [name, columns, rows, spacingX, spacingZ, heights, filledVoids] = terrain;
+  visit("name", name);
+  visit("columns", columns);
+  visit("rows", rows);
+  visit("spacingX", spacingX);
+  visit("spacingZ", spacingZ);
+  visit("filledVoids", filledVoids);
+}
+
+template <class Value>
+Json written(Value& value);
+template <class Value>
+void read(const Json& json, Value& value);
+
+template <class Value>
+Json written(std::vector<Value>& values) {
+  Json json = Json::array();
+  for (Value& value : values) json.push_back(written(value));
+  return json;
+}
+template <class Value>
+void read(const Json& json, std::vector<Value>& values) {
+  for (const Json& each : json) read(each, values.emplace_back());
+}
+
+constexpr auto noVisit = [](const char*, const auto&) {};
+
+template <class Value>
+Json written(Value& value) {
+  if constexpr (requires { eachKey(value, noVisit); }) {
+    Json json = Json::object();
+    eachKey(value, [&](const char* key, auto& member) { json[key] = written(member); });
+    return json;
+  } else {
+    return value;
+  }
+}
+template <class Value>
+void read(const Json& json, Value& value) {
+  if constexpr (requires { eachKey(value, noVisit); })
+    eachKey(value, [&](const char* key, auto& member) { read(json.at(key), member); });
+  else
+    json.get_to(value);
+}
+
+template <class Visit>
+void eachKey(StateHead& head, const Visit& visit) {
+  visit("tick", head.tick);
+  visit("dt", head.dt);
+  visit("watchUntil", head.watchUntil);
+  visit("options", head.options);
+  visit("terrain", head.terrain);
+  visit("rigsAreCallers", head.rigsAreCallers);
+  visit("agentsInTick", head.agentsInTick);
+  visit("kinds", head.kinds);
+  visit("herds", head.herds);
+}
+
+Json noteOf(const std::string& note) {
+  if (note.empty()) return {};
+  try {
+    return Json::parse(note);
+  } catch (const Json::exception&) {
+    throw inputError("the note of a state is not JSON");
+  }
+}
+
+void checkHerds(const StateHead& head, const std::string& name) {
+  const auto fits = [&](const StateHerd& herd) {
+    if (herd.generation % 2 == 1) return true;
+    if (herd.kind >= head.kinds.size()) return false;
+    const StateKind& kind = head.kinds[herd.kind];
+    return herd.place < kind.firstAgents.size() && kind.firstAgents[herd.place] == herd.firstAgent &&
+           uint64_t{herd.firstAgent} + herd.agents <= kind.agents;
+  };
+  if (head.herds.size() != head.scene.herds.size() || !std::ranges::all_of(head.herds, fits))
+    throw inputError(fmt::format("{}: its herds are others than those of its scene", name));
+}
+
+void checkSides(const Heightfield& terrain, const std::string& name) {
+  for (const uint32_t side : {terrain.columns, terrain.rows})
+    if (side < minSamples || side > maxSamples)
+      throw inputError(fmt::format("{}: its terrain has {} x {} samples, expected {} to {} a side", name,
+                                   terrain.columns, terrain.rows, minSamples, maxSamples));
+}
+
+}  // namespace
+
+std::optional<Record> StateChunk::record() const {
+  for (const Record record : allRecords)
+    if (name == infoOf(record).name) return record;
+  return {};
+}
+
+Json jsonOf(const StateHead& head) {
+  StateHead copy = head;  // a list of keys is for both directions, so it cannot take what is const
+  Json json = Json::object();
+  eachKey(copy, [&](const char* key, auto& member) { json[key] = written(member); });
+  json["scene"] = Json::parse(sceneJson(head.scene));
+  json["note"] = noteOf(head.note);
+  json["terrain"]["hash"] = fmt::format("{:08x}", checksum(std::as_bytes(std::span(head.terrain.heights))));
+  return json;
+}
+
+StateHead headOf(const Json& json, const std::string& name) try {
+  StateHead head;
+  eachKey(head, [&](const char* key, auto& member) { read(json.at(key), member); });
+  head.scene = parseScene(json.at("scene").dump(), name, "/");
+  if (const Json& note = json.at("note"); !note.is_null()) head.note = note.dump();
+  checkSides(head.terrain, name);
+  checkHerds(head, name);
+  for (const StateKind& kind : head.kinds)
+    for (const StateChunk& chunk : kind.chunks)
+      if (!chunk.record() && chunk.name != StateChunk::footfalls && chunk.name != StateChunk::generations)
+        throw inputError(fmt::format("{}: {} is no known record", name, chunk.name));
+  return head;
+} catch (const Json::exception& fault) {
+  throw inputError(fmt::format("{}: its head is none of a state: {}", name, fault.what()));
+}
+
+}  // namespace skitter::crowd

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skitter/records.h"
+#include "skitter/state.h"
+
+// What the head of a state says (docs/state.md); nothing here needs a device.
+namespace skitter::crowd {
+
+// Bytes of a kind's agents, whatever their pages: a record of each, agent after agent and of an agent leg
+// after leg; or without one the footfalls of the last tick, or the generation of each agent's place.
+struct StateChunk {
+  std::string name;
+  uint64_t bytes = 0;
+
+  static constexpr const char *footfalls = "footfalls", *generations = "generations";
+  std::optional<Record> record() const;
+};
+
+// What is to be written of an agent before the next tick, as AgentChange.
+struct StateChange {
+  uint32_t agent = 0;
+  bool goal = false, speed = false, leaves = false;
+  std::array<float, 4 * shared::GOAL_STRIDE> record{};
+  std::vector<float> stands;  // x, z, heading; empty: where it is
+};
+
+struct StateKind {
+  std::string rig;  // its name, for messages
+  uint64_t agents = 0;
+  std::vector<uint64_t> firstAgents;  // of its herds
+  std::vector<StateChange> changes;
+  int legs = 0, bones = 0, joints = 0;
+  uint32_t hash = 0;  // of what the simulation knows of rig and clips
+  std::vector<StateChunk> chunks;
+};
+
+struct StateHerd {
+  uint32_t kind = 0, place = 0, firstAgent = 0, agents = 0;
+  uint32_t generation = 0;      // odd: the herd is gone
+  uint32_t lastGeneration = 0;  // the highest of its places
+  // What the device has counted since the start.
+  std::array<uint32_t, shared::ROW_COUNTERS> counts{};
+  std::array<uint32_t, shared::HISTOGRAM_BUCKETS> reachErrors{};
+};
+
+// The members of State, and what only its crowd needs.
+struct StateHead : State {
+  uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground
+  bool rigsAreCallers = false;
+  uint64_t agentsInTick = 0;
+  std::vector<StateKind> kinds;
+  std::vector<StateHerd> herds;
+};
+
+// Throws Error(input) where the scene or the note cannot be written. The terrain's heights are hashed only.
+nlohmann::json jsonOf(const StateHead& head);
+// Without the terrain's heights. Throws Error(input) that names the state.
+StateHead headOf(const nlohmann::json& json, const std::string& name);
+
+}  // namespace skitter::crowd

@@ -1,0 +1,195 @@
+// What the host says while a crowd runs; engine/crowd/changes.h carries it to the device.
+#include <fmt/format.h>
+
+#include "crowd/page.h"
+#include "crowd/spawn.h"
+#include "crowd/steer.h"
+#include "skitter/crowd.h"
+#include "skitter/error.h"
+
+namespace skitter {
+namespace {
+
+using crowd::AgentChange, crowd::expectGoal, crowd::expectPlace, crowd::expectSpeed;
+
+std::string nameOf(uint32_t herd) { return fmt::format("herd {}", herd); }
+std::string nameOf(uint32_t herd, uint32_t agent) { return fmt::format("herd {}, agent {}", herd, agent); }
+
+void expectOneEach(const crowd::Herd& herd, uint32_t number, size_t found, const char* what) {
+  if (found != herd.agents)
+    throw inputError(
+        fmt::format("herd {}: found {} {}, expected {}, one a place", number, found, what, herd.agents));
+}
+
+// Of everybody who is there.
+template <class Each>
+void forEach(const crowd::Herd& herd, const Each& each) {
+  for (uint32_t agent = 0; agent < herd.agents; ++agent)
+    if (herd.presence.has(agent)) each(agent);
+}
+
+bool isThere(const crowd::Herd& herd, AgentId id) {
+  return id.agent() < herd.agents && herd.presence.has(id.agent()) &&
+         id.generation() == herd.presence.generations[id.agent()];
+}
+
+void expectSomebody(const Crowd::Impl& crowd, AgentId id) {
+  const crowd::Herd& herd = crowd.herdAt(id.herd());
+  if (!isThere(herd, id))
+    throw inputError(fmt::format("herd {}, agent {} of generation {}: nobody, expected one of {} agents",
+                                 id.herd(), id.agent(), id.generation(), herd.presence.count));
+}
+
+AgentChange& changeOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agent) {
+  crowd::Kind& kind = crowd.kinds[herd.kind];
+  return kind.changes.of(herd.firstAgent + agent, kind.agents);
+}
+
+void expectReserve(const Crowd::Impl& crowd, uint32_t herd) {
+  crowd::expectReserve([&] { return nameOf(herd); }, crowd.kindOf(herd).reserves);
+}
+
+// Sets goals of a herd's agents.
+class Steerer {
+ public:
+  Steerer(Crowd::Impl& crowd, const crowd::Herd& herd)
+      : crowd_(crowd), herd_(herd), spawner_(herd.from, crowd.kinds[herd.kind], crowd.terrain, herd.seed) {}
+  void steer(uint32_t agent, const Goal& goal) const {
+    AgentChange& change = changeOf(crowd_, herd_, agent);
+    change.goal = true;
+    change.record = spawner_.goalRecord(agent, goal);
+  }
+
+ private:
+  Crowd::Impl& crowd_;
+  const crowd::Herd& herd_;
+  crowd::Spawner spawner_;
+};
+
+void setSpeedOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agent, float speed) {
+  AgentChange& change = changeOf(crowd, herd, agent);
+  change.speed = true;
+  change.record[4] = speed;
+}
+
+}  // namespace
+
+void Crowd::steer(uint32_t number, const Goal& goal) {
+  const crowd::Herd& herd = impl_->herdAt(number);
+  expectGoal([&] { return nameOf(number); }, goal);
+  const Steerer steerer(*impl_, herd);
+  forEach(herd, [&](uint32_t agent) { steerer.steer(agent, goal); });
+}
+
+void Crowd::steer(uint32_t number, std::span<const Goal> goals) {
+  const crowd::Herd& herd = impl_->herdAt(number);
+  expectOneEach(herd, number, goals.size(), "goals");
+  forEach(herd, [&](uint32_t agent) { expectGoal([&] { return nameOf(number, agent); }, goals[agent]); });
+  const Steerer steerer(*impl_, herd);
+  forEach(herd, [&](uint32_t agent) { steerer.steer(agent, goals[agent]); });
+}
+
+void Crowd::steer(std::span<const AgentGoal> goals) {
+  for (const auto& [id, goal] : goals) {
+    expectSomebody(*impl_, id);
+    expectGoal([&] { return nameOf(id.herd(), id.agent()); }, goal);
+  }
+  for (const auto& [id, goal] : goals) Steerer(*impl_, impl_->herds[id.herd()]).steer(id.agent(), goal);
+}
+
+void Crowd::setSpeed(uint32_t number, float speed) {
+  const crowd::Herd& herd = impl_->herdAt(number);
+  expectSpeed([&] { return nameOf(number); }, "the speed", speed);
+  forEach(herd, [&](uint32_t agent) { setSpeedOf(*impl_, herd, agent, speed); });
+}
+
+void Crowd::setSpeed(uint32_t number, std::span<const float> speeds) {
+  const crowd::Herd& herd = impl_->herdAt(number);
+  expectOneEach(herd, number, speeds.size(), "speeds");
+  forEach(herd, [&](uint32_t agent) {
+    expectSpeed([&] { return nameOf(number, agent); }, "the speed", speeds[agent]);
+  });
+  forEach(herd, [&](uint32_t agent) { setSpeedOf(*impl_, herd, agent, speeds[agent]); });
+}
+
+void Crowd::setSpeed(std::span<const AgentSpeed> speeds) {
+  for (const auto& [id, speed] : speeds) {
+    expectSomebody(*impl_, id);
+    expectSpeed([&] { return nameOf(id.herd(), id.agent()); }, "the speed", speed);
+  }
+  for (const auto& [id, speed] : speeds) setSpeedOf(*impl_, impl_->herds[id.herd()], id.agent(), speed);
+}
+
+void Crowd::teleport(std::span<const AgentPlace> places) {
+  for (const auto& [id, place] : places) {
+    expectSomebody(*impl_, id);
+    expectPlace([&] { return nameOf(id.herd(), id.agent()); }, impl_->terrain, place);
+  }
+  for (const auto& [id, place] : places) changeOf(*impl_, impl_->herds[id.herd()], id.agent()).stands = place;
+}
+
+void Crowd::teleport(AgentId agent, const Place& place) {
+  const AgentPlace one{agent, place};
+  teleport(std::span(&one, 1));
+}
+
+std::vector<GoalBuffer> Crowd::goalBuffers(uint32_t herd) const {
+  std::vector<GoalBuffer> buffers;
+  for (const crowd::Part& part : crowd::partsOf(*impl_, herd))
+    buffers.push_back({.goals = part.page->goal.handle(),
+                       .first = part.first,
+                       .firstAgent = part.firstAgent,
+                       .agents = part.agents});
+  return buffers;
+}
+
+AgentId Crowd::agentId(uint32_t number, uint32_t agent) const {
+  const crowd::Herd& herd = impl_->herdAt(number);
+  const AgentId id(number, agent, agent < herd.agents ? herd.presence.generations[agent] : 0);
+  expectSomebody(*impl_, id);
+  return id;
+}
+
+bool Crowd::has(AgentId id) const {
+  return id.herd() < impl_->herds.size() && isThere(impl_->herds[id.herd()], id);
+}
+
+uint32_t Crowd::places(uint32_t herd) const { return impl_->herdAt(herd).agents; }
+uint32_t Crowd::agentCount(uint32_t herd) const { return impl_->herdAt(herd).presence.count; }
+
+AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
+  crowd::Herd& herd = impl_->herdAt(number);
+  const auto name = [&] { return fmt::format("herd {}, a new agent", number); };
+  expectGoal(name, goal);
+  expectPlace(name, impl_->terrain, place);
+  expectReserve(*impl_, number);
+  const std::optional<uint32_t> empty = herd.presence.lowestEmpty();
+  if (!empty)
+    throw inputError(
+        fmt::format("herd {}: all of its {} places are taken, expected an empty one: a larger reserve "
+                    "has more",
+                    number, herd.agents));
+  herd.presence.come(*empty);
+  AgentChange& change = changeOf(*impl_, herd, *empty);
+  const crowd::Spawner spawner(herd.from, impl_->kinds[herd.kind], impl_->terrain, herd.seed);
+  change.goal = true;
+  change.record = spawner.goalRecord(place.position.x, goal);
+  change.stands = place;
+  change.leaves = false;
+  return agentId(number, *empty);
+}
+
+AgentId Crowd::add(uint32_t herd, const Place& place) {
+  return add(herd, place, impl_->herdAt(herd).from.goal);
+}
+
+void Crowd::remove(AgentId id) {
+  expectSomebody(*impl_, id);
+  expectReserve(*impl_, id.herd());
+  crowd::Herd& herd = impl_->herds[id.herd()];
+  herd.presence.leave(id.agent());
+  AgentChange& change = changeOf(*impl_, herd, id.agent());
+  change = {.agent = change.agent, .leaves = true};
+}
+
+}  // namespace skitter

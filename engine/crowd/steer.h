@@ -1,0 +1,63 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include "skitter/error.h"
+#include "skitter/heightfield.h"
+#include "skitter/scene.h"
+
+// What may be said to agents while a crowd runs, by the host and by a scene's events. Each throws
+// Error(input); `name` makes the text that says whom it is about.
+namespace skitter::crowd {
+
+template <class Name>
+void expectWithin(const Name& name, const char* what, double value, double least, double most,
+                  const char* unit) {
+  if (value >= least && value <= most) return;
+  throw inputError(
+      fmt::format("{}: {} is {:.6g} {}, expected {:.6g} to {:.6g}", name(), what, value, unit, least, most));
+}
+
+template <class Name>
+void expectSpeed(const Name& name, const char* what, float speed) {
+  expectWithin(name, what, double{speed}, 0, double{Goal::maxSpeed}, "m/s");
+}
+
+// Only what the goal's kind reads.
+template <class Name>
+void expectGoal(const Name& name, const Goal& goal) {
+  constexpr double most = Scene::maxCoordinate;
+  switch (goal.kind) {
+    case Goal::Kind::velocity:
+      expectSpeed(name, "the length of goal.velocity", glm::length(goal.velocity));
+      return;
+    case Goal::Kind::point:
+      expectWithin(name, "goal.target x", double{goal.target.x}, -most, most, "m");
+      expectWithin(name, "goal.target z", double{goal.target.y}, -most, most, "m");
+      [[fallthrough]];
+    case Goal::Kind::cross:
+      expectSpeed(name, "goal.speed", goal.speed);
+      return;
+    case Goal::Kind::none:
+      return;
+  }
+  throw inputError(
+      fmt::format("{}: goal.kind is {}, expected one of Goal::Kind", name(), static_cast<int>(goal.kind)));
+}
+
+template <class Name>
+void expectPlace(const Name& name, const Heightfield& terrain, const Place& place) {
+  const double x = double{terrain.extentX()} / 2, z = double{terrain.extentZ()} / 2;
+  expectWithin(name, "x", double{place.position.x}, -x, x, "m");
+  expectWithin(name, "z", double{place.position.y}, -z, z, "m");
+  expectWithin(name, "the heading", double{place.heading}, -1000, 1000, "radians");
+}
+
+template <class Name>
+void expectReserve(const Name& name, bool reserves) {
+  if (!reserves)
+    throw inputError(
+        fmt::format("{}: its reserve is 0, expected at least 1 where agents come and go", name()));
+}
+
+}  // namespace skitter::crowd

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+
+#include "skitter/scene.h"
+
+// What moves a crowd from outside while it runs (Crowd::steer, setSpeed, teleport; docs/steering.md).
+namespace skitter {
+
+// A handle of an agent: a herd of the crowd, a place in that herd, and how often agents have come there. It
+// never means another agent, not even once its place is taken again. 64 bits, which a C program can keep.
+class AgentId {
+ public:
+  constexpr AgentId() = default;  // of nobody
+  constexpr AgentId(uint32_t herd, uint32_t agent, uint32_t generation = 0) {
+    if (herd < 1u << 10 && agent < 1u << 24 && generation < 1u << 30)
+      bits_ = uint64_t{herd} << 54 | uint64_t{agent} << 30 | generation;
+  }
+  static constexpr AgentId ofBits(uint64_t bits) {
+    AgentId id;
+    id.bits_ = bits;
+    return id;
+  }
+
+  constexpr uint32_t herd() const { return static_cast<uint32_t>(bits_ >> 54); }
+  constexpr uint32_t agent() const { return static_cast<uint32_t>(bits_ >> 30 & 0xffffff); }
+  constexpr uint32_t generation() const { return static_cast<uint32_t>(bits_ & 0x3fffffff); }
+  constexpr uint64_t bits() const { return bits_; }
+  constexpr bool operator==(const AgentId&) const = default;
+
+ private:
+  uint64_t bits_ = UINT64_MAX;
+};
+
+// A handle of a herd: its number, and which herd it is of those that have had that number.
+struct HerdId {
+  uint32_t index = UINT32_MAX, generation = 0;
+  constexpr bool operator==(const HerdId&) const = default;
+};
+
+struct AgentGoal {
+  AgentId agent;
+  Goal goal;
+};
+struct AgentSpeed {
+  AgentId agent;
+  float speed = 0;  // metres a second, 0 to Goal::maxSpeed
+};
+struct AgentPlace {
+  AgentId agent;
+  Place place;
+};
+
+// Goal records of a run of a herd's agents on the device, for shaders of the caller's, which may write them:
+// GOAL_STRIDE vec4 an agent (engine/include/skitter/records.h), that of agent firstAgent + i beginning with
+// vec4 GOAL_STRIDE * (first + i). Equal herds share buffers. Owned by the crowd.
+struct GoalBuffer {
+  VkBuffer goals = VK_NULL_HANDLE;      // a storage buffer; binds from its beginning
+  uint32_t first = 0;                   // record of agent firstAgent
+  uint32_t firstAgent = 0, agents = 0;  // of the herd
+};
+
+}  // namespace skitter

@@ -1,0 +1,7 @@
+#include "skitter/version.h"
+
+namespace skitter {
+
+const char* version() { return SKITTER_VERSION; }
+
+}  // namespace skitter

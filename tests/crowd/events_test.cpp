@@ -1,0 +1,347 @@
+#include "crowd/events.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "crowd/herd.h"
+#include "crowd/simulation.h"
+#include "skitter/error.h"
+#include "skitter/state.h"
+
+namespace skitter::test {
+namespace {
+
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
+
+class EventsTest : public GpuTest {};
+
+// The first has a reserve of 3 places, so the two are of two kinds.
+Scene twoHerds() {
+  Scene scene = sceneOf(20);
+  scene.name = "two.json";
+  scene.herds.push_back(scene.herds[0]);
+  scene.herds[0].reserve = 3;
+  return scene;
+}
+Goal pointAt(float x, float z) { return {.kind = Goal::Kind::point, .target = {x, z}, .speed = 2}; }
+
+TEST(Events, HappenBeforeTheFirstTickThatEndsThenOrLater) {
+  std::vector<Event> events;
+  for (const float at : {0.0f, 0.05f, 0.1f, 0.1f, 0.11f, 5.0f}) events.push_back({at, Mound{}});
+  const auto counts = [&](double dt, uint64_t ticks) {
+    std::vector<size_t> each;
+    for (uint64_t tick = 1; tick <= ticks; ++tick) each.push_back(crowd::eventsAt(events, tick, dt).size());
+    return each;
+  };
+  EXPECT_EQ(counts(0.1, 4), (std::vector<size_t>{4, 1, 0, 0}));
+  EXPECT_EQ(counts(0.05, 4), (std::vector<size_t>{2, 2, 1, 0}));
+  // 5 s are 300 ticks of a sixtieth, though neither is exact.
+  EXPECT_EQ(crowd::eventsAt(events, 300, double{1.0f / 60}).size(), 1u);
+  EXPECT_EQ(crowd::eventsAt(events, 301, double{1.0f / 60}).size(), 0u);
+}
+
+// What a scene says happens as if the caller did it.
+TEST_F(EventsTest, AreWhatTheCallerCouldDo) {
+  const Heightfield ground = rollingGround();
+  Scene scene = sceneOf(40);
+  Scene plain = scene;
+  scene.events = {{0.25f, HeightSamples{60, 70, 2, 1, {1.5f, -1}}},
+                  {0.5f, Mound{.centre = {1, 2}, .radius = 3, .height = -0.7f}}};
+  Crowd crowd(device(), ground, scene), other(device(), ground, plain);
+  const auto both = [&](int ticks) {
+    simulate(device(), crowd, ticks);
+    simulate(device(), other, ticks);
+  };
+  both(14);
+  EXPECT_EQ(crowd.stateHash(), other.stateHash());
+  other.editHeights(60, 70, 2, 1, std::vector<float>{1.5f, -1});
+  both(1);
+  EXPECT_EQ(crowd.terrain().heights, other.terrain().heights);
+  EXPECT_EQ(crowd.terrain().heights[70 * ground.columns + 61], -1);
+  both(14);
+  EXPECT_EQ(crowd.stateHash(), other.stateHash());
+  simulate(device(), crowd, 1);
+  const Heightfield& edited = crowd.terrain();
+  size_t changed = 0;
+  for (uint32_t z = 0; z < ground.rows; ++z)
+    for (uint32_t x = 0; x < ground.columns; ++x) {
+      const size_t at = size_t{z} * ground.columns + x;
+      const float before = other.terrain().heights[at], after = edited.heights[at];
+      const double px = double{ground.originX()} + x * double{ground.spacingX} - 1;
+      const double pz = double{ground.originZ()} + z * double{ground.spacingZ} - 2;
+      const double inside = std::max(0.0, 1 - (px * px + pz * pz) / 9);
+      ASSERT_NEAR(after - before, -0.7 * inside * inside, 1e-4) << x << ", " << z;
+      changed += after != before;
+    }
+  EXPECT_GT(changed, 50u);
+  EXPECT_TRUE(crowd.download(0).watched);
+}
+
+TEST_F(EventsTest, AboutAgentsAreWhatTheCallerCouldDo) {
+  const Goal goal = pointAt(6, -3);
+  const std::vector<Addition::Arrival> arrivals{{.place = {{4, 5}, 1}},
+                                                {.place = {{-4, 5}, 2}, .goal = goal}};
+  struct Case {
+    const char* name;
+    decltype(Event::what) event;
+    std::function<void(Crowd& crowd)> call;
+  };
+  const std::vector<Case> cases{
+      {"a goal", GoalChange{.herd = 1, .goal = goal}, [&](Crowd& crowd) { crowd.steer(1, goal); }},
+      {"a goal of some", GoalChange{.agents = {5, 3}, .goal = goal},
+       [&](Crowd& crowd) {
+         const std::vector<AgentGoal> goals{{crowd.agentId(0, 5), goal}, {crowd.agentId(0, 3), goal}};
+         crowd.steer(goals);
+       }},
+      {"a speed", SpeedChange{.herd = 1, .speed = 0.5f}, [](Crowd& crowd) { crowd.setSpeed(1, 0.5f); }},
+      {"a speed of one", SpeedChange{.agents = {19}, .speed = 0.5f},
+       [](Crowd& crowd) {
+         const AgentSpeed slow{crowd.agentId(0, 19), 0.5f};
+         crowd.setSpeed({&slow, 1});
+       }},
+      {"a teleport", Teleport{.herd = 1, .moves = {{2, {{7, 8}, 3}}, {11, {{9, -9}, 0}}}},
+       [](Crowd& crowd) {
+         crowd.teleport(crowd.agentId(1, 2), {{7, 8}, 3});
+         crowd.teleport(crowd.agentId(1, 11), {{9, -9}, 0});
+       }},
+      {"who comes", Addition{.arrivals = arrivals},
+       [&](Crowd& crowd) {
+         crowd.add(0, arrivals[0].place);
+         crowd.add(0, arrivals[1].place, goal);
+       }},
+      {"who goes", Removal{.agents = {7, 2}},
+       [](Crowd& crowd) {
+         crowd.remove(crowd.agentId(0, 7));
+         crowd.remove(crowd.agentId(0, 2));
+       }},
+  };
+  const Heightfield ground = rollingGround();
+  Crowd plain(device(), ground, twoHerds());
+  simulate(device(), plain, 14);
+  const uint64_t before = plain.stateHash();
+  simulate(device(), plain, 1);
+  for (const Case& each : cases) {
+    SCOPED_TRACE(each.name);
+    Scene scene = twoHerds();
+    scene.events = {{0.25f, each.event}};
+    Crowd crowd(device(), ground, scene), other(device(), ground, twoHerds());
+    for (Crowd* one : {&crowd, &other}) simulate(device(), *one, 14);
+    EXPECT_EQ(crowd.stateHash(), before);
+    each.call(other);
+    for (const int ticks : {1, 20}) {
+      for (Crowd* one : {&crowd, &other}) simulate(device(), *one, ticks);
+      EXPECT_EQ(crowd.stateHash(), other.stateHash());
+      EXPECT_EQ(crowd.agentCount(), other.agentCount());
+      if (ticks == 1) {
+        EXPECT_NE(crowd.stateHash(), plain.stateHash());
+      }
+    }
+  }
+}
+
+// Of events before one tick the later ones find what the earlier ones did, and of goals the last one counts.
+TEST_F(EventsTest, HappenOneAfterTheOther) {
+  Scene scene = twoHerds();
+  scene.events = {{0.1f, Removal{.agents = {4, 6}}},
+                  {0.1f, Addition{.arrivals = {{.place = {{3, 3}, 0}}}}},
+                  {0.1f, Teleport{.moves = {{4, {{5, -5}, 0}}}}},
+                  {0.1f, GoalChange{.goal = {.kind = Goal::Kind::none}}},
+                  {0.1f, GoalChange{.agents = {4}, .goal = pointAt(0, 0)}}};
+  Crowd crowd(device(), flatGround(), scene);
+  simulate(device(), crowd, 6);
+  EXPECT_EQ(crowd.agentCount(0), 19u);
+  EXPECT_TRUE(crowd.has(AgentId(0, 4, 2)));
+  EXPECT_FALSE(crowd.has(AgentId(0, 6, 0)));
+  const HerdState state = crowd.download(0);
+  EXPECT_NEAR(positionOf(state, 4).x, 5, 0.1);
+  EXPECT_NEAR(positionOf(state, 4).z, -5, 0.1);
+  for (size_t i = 0; i < 20; ++i)
+    EXPECT_EQ(state.goal[8 * i + 6], i == 4   ? shared::GOAL_POINT
+                                     : i == 6 ? shared::GOAL_CROSS
+                                              : shared::GOAL_NONE)
+        << i;
+}
+
+// As `skitter validate` has it, for a reference that begins with the state before the tick.
+TEST_F(EventsTest, GiveTheSameBitsWhereTheyAreWrittenBeforeTheTick) {
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    Scene scene = twoHerds();
+    for (Herd& herd : scene.herds) herd.controller = controller;
+    scene.events = {{0.1f, Mound{.centre = {5, -5}, .radius = 6}},
+                    {0.1f, GoalChange{.agents = {2, 3}, .goal = pointAt(6, -3)}},
+                    {0.1f, SpeedChange{.herd = 1, .speed = 2}},
+                    {0.1f, Teleport{.herd = 1, .moves = {{4, {{5, -5}, 1}}}}},
+                    {0.1f, Addition{.arrivals = {{.place = {{3, 3}, 0}}}}},
+                    {0.1f, Removal{.agents = {7}}}};
+    Crowd crowd(device(), rollingGround(), scene), early(device(), rollingGround(), scene);
+    for (Crowd* each : {&crowd, &early}) simulate(device(), *each, 5);
+    crowd::letEventsHappen(early);
+    crowd::applyChanges(implOf(early));
+    EXPECT_NE(early.stateHash(), crowd.stateHash());
+    for (const int ticks : {1, 20}) {
+      for (Crowd* each : {&crowd, &early}) simulate(device(), *each, ticks);
+      EXPECT_EQ(early.stateHash(), crowd.stateHash());
+      EXPECT_EQ(early.agentCount(), 40u);
+    }
+  }
+}
+
+TEST_F(EventsTest, WhereOneCannotHappenNoneDoes) {
+  Scene scene = twoHerds();
+  scene.events = {{0.1f, Mound{.radius = 4}},
+                  {0.1f, Removal{.agents = {1}}},
+                  {0.1f, Addition{.arrivals = std::vector<Addition::Arrival>(5)}},
+                  {0.2f, GoalChange{.agents = {8, 9}}}};
+  Crowd crowd(device(), flatGround(), scene);
+  simulate(device(), crowd, 5);
+  EXPECT_THAT([&] { simulate(device(), crowd, 1); },
+              ThrowsMessage<Error>(HasSubstr(
+                  "two.json: events[2].add[4]: all of the 23 places of herd 0 are taken, expected")));
+  EXPECT_EQ(crowd.tick(), 5u);
+  EXPECT_EQ(crowd.agentCount(0), 20u);
+  EXPECT_EQ(crowd.terrain().heights, flatGround().heights);
+  // The host makes room, and it goes on.
+  crowd.remove(crowd.agentId(0, 9));
+  simulate(device(), crowd, 6);
+  EXPECT_EQ(crowd.agentCount(0), 23u);
+  EXPECT_NE(crowd.terrain().heights, flatGround().heights);
+  EXPECT_TRUE(crowd.has(AgentId(0, 9, 2)));
+  crowd.remove(crowd.agentId(0, 9));
+  EXPECT_THAT(
+      [&] { simulate(device(), crowd, 1); },
+      ThrowsMessage<Error>(HasSubstr("two.json: events[3]: herd 0, agent 9: nobody, expected one of 22")));
+}
+
+TEST_F(EventsTest, OfAHerdThatTheHostHasRemovedAreRefused) {
+  Scene scene = twoHerds();
+  scene.events = {{0.1f, SpeedChange{.herd = 1, .speed = 2}}};
+  Crowd crowd(device(), flatGround(), scene);
+  crowd.removeHerd(crowd.herdId(1));
+  simulate(device(), crowd, 5);
+  EXPECT_THAT([&] { simulate(device(), crowd, 1); },
+              ThrowsMessage<Error>(HasSubstr("two.json: events[0]: herd 1 was removed")));
+}
+
+// A run that is saved and goes on has each of them once.
+TEST_F(EventsTest, AStateNeitherRepeatsNorLosesThem) {
+  Scene scene = twoHerds();
+  scene.events = {{0.1f, Mound{.centre = {0, -100}, .radius = 6}},
+                  {0.1f, Addition{.arrivals = {{.place = {{3, 3}, 0}}}}},
+                  {0.2f, Removal{.agents = {4, 20}}},
+                  {0.3f, Addition{.arrivals = {{.place = {{-3, 3}, 0}}}}},
+                  {0.3f, Teleport{.herd = 1, .moves = {{4, {{5, -5}, 0}}}}},
+                  {0.4f, Mound{.centre = {0, -100}, .radius = 5, .height = -1}},
+                  {0.4f, SpeedChange{.speed = 3}}};
+  Crowd whole(device(), rollingGround(), scene);
+  simulate(device(), whole, 40);
+  for (const int saved : {0, 11, 12, 23}) {
+    Crowd first(device(), rollingGround(), scene);
+    simulate(device(), first, saved);
+    Crowd again(device(), parseState(first.saveToMemory(), "a state"));
+    simulate(device(), again, 40 - saved);
+    EXPECT_EQ(again.stateHash(), whole.stateHash()) << saved;
+    EXPECT_EQ(again.terrain().heights, whole.terrain().heights) << saved;
+    EXPECT_EQ(again.agentCount(), 40u) << saved;
+  }
+}
+
+TEST_F(EventsTest, BeyondTheMapAreRefusedOrChangeNothing) {
+  const Heightfield ground = flatGround();
+  const auto fault = [&](Event event) -> std::string {
+    Scene scene = sceneOf(2);
+    scene.name = "late.json";
+    scene.events = {{0, Mound{}}, std::move(event)};
+    try {
+      Crowd crowd(device(), ground, scene);
+      simulate(device(), crowd, 2);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_THAT(fault({0, HeightSamples{ground.columns - 1, 0, 2, 1, {0, 0}}}),
+              HasSubstr("late.json: events[1].edit"));
+  EXPECT_THAT(fault({std::numeric_limits<float>::quiet_NaN(), Mound{}}), HasSubstr("events[1].at is nan"));
+  EXPECT_THAT(fault({0, Mound{.radius = 0}}), HasSubstr("events[1].mound"));
+  EXPECT_EQ(fault({0, Mound{.centre = {4000, 4000}}}), "taken");
+}
+
+TEST_F(EventsTest, AboutNobodyAreRefusedWhenTheCrowdIsMade) {
+  const auto faultOf = [&](const decltype(Event::what)& what) -> std::string {
+    Scene scene = twoHerds();
+    scene.events = {{0, Mound{}}, {9, what}};
+    try {
+      Crowd crowd(device(), flatGround(), scene);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+      return error.what();
+    }
+    return "taken";
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::string event = "two.json: events[1]";
+  EXPECT_EQ(faultOf(GoalChange{.herd = 2}), event + ".herd is 2, expected less than 2, the number of herds");
+  EXPECT_EQ(faultOf(GoalChange{.agents = {22, 23}}),
+            event + ".agents[1] is 23, expected less than 23, the places of its herd");
+  EXPECT_EQ(faultOf(GoalChange{.goal = {.speed = nan}}),
+            event + ": goal.speed is nan m/s, expected 0 to 1000");
+  EXPECT_EQ(faultOf(SpeedChange{.herd = 1, .agents = {20}, .speed = 1}),
+            event + ".agents[0] is 20, expected less than 20, the places of its herd");
+  EXPECT_EQ(faultOf(SpeedChange{.speed = -1}), event + ": the speed is -1 m/s, expected 0 to 1000");
+  EXPECT_EQ(faultOf(Teleport{.moves = {{0, {}}, {}}}),
+            event + ".teleport[1].agent is 4294967295, expected less than 23, the places of its herd");
+  EXPECT_EQ(faultOf(Teleport{.moves = {{3, {{33, 0}, 0}}}}),
+            event + ".teleport[0]: x is 33 m, expected -32 to 32");
+  EXPECT_EQ(faultOf(Teleport{}), event + ".teleport has 0 agents, expected 1 to 65536");
+  EXPECT_EQ(faultOf(Addition{.arrivals = {{}, {.place = {{0, 0}, nan}}}}),
+            event + ".add[1]: the heading is nan radians, expected -1000 to 1000");
+  EXPECT_EQ(faultOf(Addition{.arrivals = {{.goal = pointAt(0, 5000)}}}),
+            event + ".add[0]: goal.target z is 5000 m, expected -4096 to 4096");
+  const std::string noReserve =
+      event + ": herd 1: its reserve is 0, expected at least 1 where agents come and go";
+  EXPECT_EQ(faultOf(Addition{.herd = 1, .arrivals = {{}}}), noReserve);
+  EXPECT_EQ(faultOf(Removal{.herd = 1, .agents = {0}}), noReserve);
+  EXPECT_EQ(faultOf(Removal{.agents = {4, 1, 4}}), event + ".remove has agent 4 twice, expected once");
+  EXPECT_EQ(faultOf(Removal{.agents = {4, 22}}), "taken");
+}
+
+// assets/scenes/events.json.
+TEST_F(EventsTest, ExampleRuns) {
+  const Scene scene = loadScene(SKITTER_ROOT "/assets/scenes/events.json");
+  const Heightfield ground = scene.loadTerrain();
+  Crowd crowd(device(), ground, scene);
+  ASSERT_EQ(scene.events.size(), 3u);
+  std::vector<float> before = ground.heights;
+  for (const Event& event : scene.events) {
+    const auto due = static_cast<int>(std::lround(60 * event.at)) - 1;
+    simulate(device(), crowd, due - static_cast<int>(crowd.tick()));
+    EXPECT_EQ(crowd.terrain().heights, before) << event.at;
+    simulate(device(), crowd, 1);
+    EXPECT_NE(crowd.terrain().heights, before) << event.at;
+    before = crowd.terrain().heights;
+  }
+  EXPECT_LT(crowd.fidelity().penetration, 0.01);
+}
+
+// assets/scenes/steered.json.
+TEST_F(EventsTest, ExampleOfAgentsRuns) {
+  const Scene scene = loadScene(SKITTER_ROOT "/assets/scenes/steered.json");
+  Crowd crowd(device(), scene.loadTerrain(), scene);
+  simulate(device(), crowd, 90);
+  EXPECT_EQ(crowd.agentCount(), 36u);
+  const glm::dvec3 teleported = positionOf(crowd.download(0), 3);
+  EXPECT_NEAR(teleported.x, 12, 0.1);
+  EXPECT_NEAR(teleported.z, -12, 0.1);
+  simulate(device(), crowd, 30);
+  EXPECT_EQ(crowd.agentCount(), 33u);
+  EXPECT_FALSE(crowd.has(AgentId(1, 11, 2)));
+  EXPECT_LT(crowd.fidelity().penetration, 0.01);
+}
+
+}  // namespace
+}  // namespace skitter::test

@@ -1,0 +1,151 @@
+import numpy as np
+import pytest
+
+import skitter
+
+
+def velocity(x, z):
+    goal = skitter.Goal()
+    goal.kind, goal.velocity = "velocity", (x, z)
+    return goal
+
+
+def ways(crowd, ticks=60):
+    """How far the four agents go along z in so many ticks."""
+    before = crowd.positions()[:4, 2].copy()
+    crowd.step(ticks)
+    return crowd.positions()[:4, 2] - before
+
+
+def test_goals_are_for_all_for_each_and_for_some(device, standing):
+    crowd = skitter.Crowd(device, standing)
+    crowd.steer(velocity(0, 1))
+    assert (ways(crowd) > 0.3).all()
+    velocities = np.zeros((6, 2))
+    velocities[1] = (0, 0.5)
+    crowd.steer_by(velocities)
+    crowd.step(60)
+    assert ways(crowd) == pytest.approx([0, 0.5, 0, 0], abs=0.1)
+    ids = crowd.agent_ids()
+    crowd.steer_by([[0, 1], [0, 0]], agents=ids[:2])
+    crowd.step(60)
+    assert ways(crowd) == pytest.approx([1, 0, 0, 0], abs=0.2)
+    crowd.steer_to(crowd.positions()[2:4, [0, 2]] + (0, 5), speed=0.5, agents=ids[2:4])
+    crowd.steer(velocity(0, 0), agents=int(ids[0]))
+    crowd.step(60)
+    assert ways(crowd) == pytest.approx([0, 0, 0.5, 0.5], abs=0.1)
+    crowd.steer(velocity(0, 0))
+    crowd.step(60)
+    targets = crowd.positions()[:, [0, 2]]
+    targets[0] += (0, 5)
+    crowd.steer_to(targets)
+    crowd.step(60)
+    assert ways(crowd) == pytest.approx([1, 0, 0, 0], abs=0.2)
+
+
+def test_speeds_are_for_all_for_each_and_for_some(device, standing):
+    crowd = skitter.Crowd(device, standing)
+    crowd.steer(velocity(0, 1))
+    crowd.set_speed(0.25)
+    crowd.step(60)
+    assert ways(crowd) == pytest.approx(np.full(4, 0.25), abs=0.1)
+    ids = crowd.agent_ids()
+    crowd.set_speed(np.full(6, 0.5))
+    crowd.set_speed(0, agents=ids[2])
+    crowd.set_speed([1, 0.25], agents=ids[:2])
+    crowd.step(60)
+    assert ways(crowd) == pytest.approx([1, 0.25, 0, 0.5], abs=0.15)
+
+
+def test_what_cannot_be_changes_nothing(device, standing):
+    crowd, other = skitter.Crowd(device, standing), skitter.Crowd(device, standing)
+    ids = crowd.agent_ids()
+    for call, what in (
+        (lambda: crowd.steer_by(np.zeros((4, 2))), "found 4 goals, expected 6, one a place"),
+        (lambda: crowd.steer_to([1, 2, 3]), r"targets has shape \(3,\), expected \(agents, 2\)"),
+        (lambda: crowd.steer_to(np.zeros((3, 2)), agents=ids[:2]), "3 targets, expected 2, one an agent"),
+        (lambda: crowd.steer(velocity(0, 1), agents=[skitter.no_agent]), "herd 1023"),
+        (lambda: crowd.steer(velocity(0, 1001)), "the length of goal.velocity is 1001 m/s"),
+        (lambda: crowd.steer(velocity(0, 1), 1), "herd 1: expected one of the crowd's 1 herds"),
+        (lambda: crowd.set_speed(-1), "the speed is -1 m/s, expected 0 to 1000"),
+        (lambda: crowd.set_speed([1, 2]), "found 2 speeds, expected 6, one a place"),
+        (lambda: crowd.set_speed([1, 2], agents=ids[:3]), r"speed has shape \(2,\), expected one number or \(3,\)"),
+        (lambda: crowd.teleport(ids[:2], (1, 2)), "1 positions, expected 2, one an agent"),
+        (lambda: crowd.teleport(ids[0], (100, 0)), "x is 100 m, expected -16 to 16"),
+        (lambda: crowd.agent_id(4), "herd 0, agent 4"),
+        (lambda: crowd.remove(skitter.no_agent), "herd 1023"),
+        (lambda: crowd.add_herd(skitter.Herd(2**24)), "expected at most"),
+        (lambda: crowd.remove_herd((1, 0)), "herd 1 of generation 0"),
+        (lambda: crowd.pick((0, 0, 0), (0, 0, 0)), r"direction is \(0, 0, 0\)"),
+        (lambda: crowd.pick((0, 0, 0), (0, 1, 0), -1), "length is -1"),
+        (lambda: crowd.nearest((0, np.inf, 0)), "point is"),
+    ):
+        with pytest.raises(skitter.InputError, match=what):
+            call()
+    crowd.step(2)
+    other.step(2)
+    assert crowd.state_hash() == other.state_hash()
+
+
+def test_agents_are_put_elsewhere(device, standing):
+    crowd = skitter.Crowd(device, standing)
+    crowd.teleport(crowd.agent_id(2), (3, -4), 1)
+    crowd.teleport(crowd.agent_ids()[:2], [[-5, 5], [5, 5]], [0.5, -0.5])
+    crowd.step()
+    assert crowd.positions()[:3, [0, 2]] == pytest.approx(np.array([[-5, 5], [5, 5], [3, -4]]), abs=0.05)
+    assert crowd.headings()[:3] == pytest.approx([0.5, -0.5, 1], abs=0.1)
+    turned = crowd.rotations()[2]
+    assert turned * np.sign(turned[3]) == pytest.approx([0, np.sin(0.5), 0, np.cos(0.5)], abs=0.05)
+
+
+def test_agents_come_and_go(device, standing):
+    crowd = skitter.Crowd(device, standing)
+    ids = crowd.agent_ids()
+    assert (crowd.agents(), crowd.places(), crowd.agent_count) == (4, 6, 4)
+    assert (ids == skitter.no_agent).tolist() == [False] * 4 + [True] * 2 and crowd.agent_id(3) == ids[3]
+    first = crowd.add((5, -5), 1)
+    second = crowd.add((-5, -5), goal=velocity(0, 1))
+    with pytest.raises(skitter.InputError, match="all of its 6 places are taken"):
+        crowd.add((0, 0))
+    crowd.step(60)
+    assert crowd.agents() == 6 and crowd.agent_ids()[4:].tolist() == [first, second]
+    assert crowd.positions()[4, [0, 2]] == pytest.approx((5, -5), abs=0.1)
+    assert crowd.positions()[5, 2] > -4.7
+    crowd.remove(first)
+    assert not crowd.has(first) and crowd.has(second)
+    with pytest.raises(skitter.InputError, match="nobody"):
+        crowd.remove(first)
+    crowd.step()
+    assert crowd.positions()[4, 1] < -9e5 and crowd.agent_ids()[4] == skitter.no_agent
+    again = crowd.add((5, -5))
+    assert again != first and crowd.has(again) and not crowd.has(first)
+
+
+def test_herds_come_and_go(device, standing):
+    crowd = skitter.Crowd(device, standing)
+    crowd.step()
+    picture = crowd.render(64, 36)
+    herd = skitter.Herd(3)
+    herd.controller = "loop"
+    added = crowd.add_herd(herd)
+    assert added == (1, 0) == crowd.herd_id(1) and crowd.has_herd(added) and crowd.has_herd(crowd.herd_id(0))
+    crowd.step()
+    assert (crowd.herd_count, crowd.agent_count) == (2, 7) and crowd.positions(1).shape == (3, 3)
+    assert crowd.render(64, 36).shape == picture.shape
+    crowd.remove_herd(added)
+    assert not crowd.has_herd(added) and crowd.places(1) == 0
+    crowd.step()
+    assert crowd.render(64, 36).shape == picture.shape
+    assert crowd.add_herd(skitter.Herd(1)) == (1, 2)
+
+
+def test_an_agent_is_picked_by_a_ray_or_by_a_point(device, standing):
+    crowd = skitter.Crowd(device, standing)
+    crowd.step()
+    x, y, z = crowd.positions()[2]
+    picked = crowd.pick((x, y + 10, z), (0, -1, 0))
+    assert (picked.herd, picked.agent) == (0, 2) and 5 < picked.distance < 10
+    assert picked.place == pytest.approx((x, y + 10 - picked.distance, z))
+    assert crowd.pick((x, y + 10, z), (0, -1, 0), 1) is None
+    near = crowd.nearest((x, y + 10, z))
+    assert near.agent == 2 and 9 < near.distance < 10

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "crowd/stage_id.h"
+#include "skitter/crowd.h"
+#include "skitter/scene.h"
+#include "validation/replay.h"
+
+// A whole crowd against the reference: the loop of `skitter validate` and of skitter.validate().
+namespace skitter::validation {
+
+// Throws Error(input) for a scene without agents, and for a stage that no herd of it has compared; `what` is
+// where the stages were asked for, for the message.
+void expectComparable(const Scene& scene, std::span<const crowd::StageId> stages, const char* what);
+
+// Replays every herd of a crowd, tick by tick. A crowd without CrowdOptions::footfalls leaves footfall out.
+class Lockstep {
+ public:
+  // The reference takes about a millisecond for an agent. In larger herds every so many-th one is compared,
+  // others in each tick.
+  static constexpr uint32_t agentsATick = 1024;
+
+  // Before the first tick, of `dt` seconds, of a crowd that was made of the scene, and that outlives this.
+  // Compares the stages in `only`; empty: all.
+  Lockstep(Crowd& crowd, const Scene& scene, float dt, std::vector<crowd::StageId> only = {});
+  ~Lockstep();
+
+  // To be called before a tick is recorded. What the scene has for that tick happens now; the states of what
+  // is compared, herd by herd, then show what agents were told.
+  const std::vector<HerdState>& begin();
+  // Between begin() and the tick: as Crowd::editHeights.
+  void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
+  // To be called when the tick has finished; the states after it.
+  const std::vector<HerdState>& end();
+
+  // By stage, all herds that have places in one; the worst herd gives a stage's error.
+  std::vector<StageResult> results() const;
+
+ private:
+  std::vector<HerdState> download() const;
+  void letEventsHappen();
+
+  Crowd& crowd_;
+  uint64_t seed_;
+  std::vector<AgentSample> samples_;  // of each herd, in this tick
+  std::vector<HerdState> before_, after_;
+  std::vector<std::unique_ptr<Replay>> replays_;
+};
+
+}  // namespace skitter::validation
