@@ -11,7 +11,8 @@ struct Moment {
   const HerdState& before;
   const HerdState& after;
   size_t agent;  // of those that the states hold
-  size_t number() const { return after.sample.first + agent * after.sample.stride; }  // in the herd
+  // Among all whom these are a sample of.
+  size_t number() const { return after.sample.first + agent * after.sample.stride; }
 };
 
 // A sleeper's records must be those of before the tick, bit for bit; adds what is not.
@@ -25,8 +26,8 @@ struct Check {
   void (*check)(const Setting& setting, const Moment& moment, Judge& judge);
   std::vector<Record> writes = {};  // that a sleeper keeps; none: it takes part in the stage as ever
 };
-// The checks of a controller's stages, in the order in which a tick makes them; of those in `only` unless that
-// is empty.
+// The checks of a controller's stages, in the order in which a tick makes them; of those in `only` unless
+// that is empty.
 std::vector<const Check*> checksOf(Controller controller, std::span<const crowd::StageId> only = {});
 // Whether the states lack what the stage writes, since nobody asked for it.
 bool isLeftOut(crowd::StageId stage, const HerdState& before, const HerdState& after);

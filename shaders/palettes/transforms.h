@@ -34,6 +34,7 @@ struct TransformConstants {
   uint base;
   uint stride;
   uint plane;
+  float size;  // of the agents, times that of the mesh
 };
 
 #ifdef __cplusplus
