@@ -25,8 +25,8 @@ struct Check {
   void (*check)(const Setting& setting, const Moment& moment, Judge& judge);
   std::vector<Record> writes = {};  // that a sleeper keeps; none: it takes part in the stage as ever
 };
-// The checks of a controller's stages, in the order in which a tick makes them; of those in `only` unless that
-// is empty.
+// The checks of a controller's stages, in the order in which a tick makes them; of those in `only` unless
+// that is empty.
 std::vector<const Check*> checksOf(Controller controller, std::span<const crowd::StageId> only = {});
 // Whether the states lack what the stage writes, since nobody asked for it.
 bool isLeftOut(crowd::StageId stage, const HerdState& before, const HerdState& after);

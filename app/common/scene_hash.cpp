@@ -82,7 +82,7 @@ void add(Hash& hash, Files& files, const Herd& herd) {
     hash.add(to);
   }
   hash.add(uint64_t{keys});
-  // What is new to the engine must not change the hash of a scene that does not set it.
+  // A newer key must not change the hash of a scene that does not set it.
   if (phase) {
     hash.add("phase");
     hash.add(*phase);
@@ -123,7 +123,7 @@ void add(Hash& hash, const Place& place) {
   hash.add(heading);
 }
 
-// What is done to which agents of a herd.
+// Adds what an event does, and to which agents of a herd.
 void add(Hash& hash, std::string_view what, uint32_t herd, const std::vector<uint32_t>& agents) {
   hash.add(what);
   hash.add(uint64_t{herd});

@@ -48,7 +48,7 @@ struct SceneOptions {
   void declare(Files& files, const Scene& loaded) const;
 
  private:
-  // What an option that was given changes in a scene.
+  // A given option changes a scene by this.
   struct Change {
     std::string option;  // "--agents 50"
     std::function<void(Scene& scene)> make;

@@ -12,7 +12,7 @@ namespace skitter::app {
 class Obstacle {
  public:
   explicit Obstacle(const Crowd& crowd);
-  // As it was in a run that was saved; `crowd` is the state's, and `saved` what json() gave.
+  // Goes on where a saved run had it: `crowd` is made of the state, and json() gave `saved`.
   Obstacle(const Crowd& crowd, const nlohmann::ordered_json& saved);
 
   // To where it is in the next tick, `seconds` after the start.

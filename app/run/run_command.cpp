@@ -190,7 +190,7 @@ void Run::afterTick() {
   if (options_.saveEvery && crowd_->tick() % (*options_.saveEvery * options_.ticksPerFrame) == 0) save();
 }
 
-// As it is between two ticks, the obstacle already where the next one finds it.
+// Saves the crowd as it is between two ticks. The obstacle is already where the next one finds it.
 void Run::save() {
   const auto tick = static_cast<int64_t>(crowd_->tick());
   if (options_.save.empty() || savedAt_ == tick) return;

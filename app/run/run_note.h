@@ -9,7 +9,7 @@
 
 namespace skitter::app {
 
-// What a run keeps in a state beside its crowd, so that it can go on without being told anew (docs/state.md).
+// A run keeps this in a state beside its crowd, so that it can go on without being told anew (docs/state.md).
 struct RunNote {
   double dt = 0;
   uint64_t ticksPerFrame = 1;

@@ -20,8 +20,8 @@ struct Kinds {
   std::vector<Rig> rigs;             // of each kind
 };
 
-// Herds are of one kind where they are equal but for agents, spawn, goal, phase and colours. Throws Error(input) where there
-// are more than a device can serve, or a herd's tuning is out of range.
+// Herds are of one kind where they are equal but for agents, spawn, goal, phase and colours. Throws
+// Error(input) where there are more than a device can serve, or a herd's tuning is out of range.
 Kinds kindsOf(const Scene& scene);
 // With rigs that the caller made, one a herd, in place of those that the scene names. Throws Error(input) for
 // another count of them, too.

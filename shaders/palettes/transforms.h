@@ -13,11 +13,11 @@ using uint = uint32_t;
 #define TRANSFORM_CONST const int
 #endif
 
-TRANSFORM_CONST TRANSFORM_BODY = 0;       // LOAD4
-TRANSFORM_CONST TRANSFORM_POSE = 1;       // LOAD4
-TRANSFORM_CONST TRANSFORM_START = 2;      // LOAD4: where each entry's bone starts at rest
-TRANSFORM_CONST TRANSFORM_OUT = 3;        // the host's
-TRANSFORM_CONST CONSTANT_ENTRIES = 0;     // of a palette
+TRANSFORM_CONST TRANSFORM_BODY = 0;           // LOAD4
+TRANSFORM_CONST TRANSFORM_POSE = 1;           // LOAD4
+TRANSFORM_CONST TRANSFORM_START = 2;          // LOAD4: where each entry's bone starts at rest
+TRANSFORM_CONST TRANSFORM_OUT = 3;            // the host's
+TRANSFORM_CONST CONSTANT_ENTRIES = 0;         // of a palette
 TRANSFORM_CONST CONSTANT_JOINTS_STRETCH = 1;  // poses are matrices
 TRANSFORM_CONST CONSTANT_QUATERNIONS = 2;     // are written
 TRANSFORM_CONST CONSTANT_RELATIVE = 3;        // to the instance's transform
@@ -30,7 +30,8 @@ struct TransformConstants {
   vec4 how;
   uint agents;  // that are written
   uint first;   // of them in the page
-  // In vec4: where the first transform begins, from one transform to the next, from one of its vec4 to the next.
+  // In vec4: where the first transform begins, from one transform to the next, from one of its vec4 to the
+  // next.
   uint base;
   uint stride;
   uint plane;

@@ -21,11 +21,10 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(files(), std::vector<std::string>{"run.json"});
   const nlohmann::json run = json("run.json");
-  EXPECT_EQ(keysOf(run),
-            (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
-                                   "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity", "herds",
-                                   "sleeping", "stateHash", "ticksWanted", "interrupted", "manifest",
-                                   "resumedAt"}));
+  EXPECT_EQ(keysOf(run), (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
+                                                "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity",
+                                                "herds", "sleeping", "stateHash", "ticksWanted",
+                                                "interrupted", "manifest", "resumedAt"}));
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
   EXPECT_TRUE(run.at("resumedAt").is_null()) << "it began at the start";
   EXPECT_EQ(run.at("agents"), 20);
