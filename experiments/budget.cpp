@@ -79,7 +79,7 @@ class Timer {
 };
 
 // Agents at which the budget is met between two sizes, if the time grows evenly between them.
-double crossing(double budget, double fewAgents, double few, double manyAgents, double many) {
+double budgetCrossing(double budget, double fewAgents, double few, double manyAgents, double many) {
   if (!(many > few)) return fewAgents;
   return std::clamp(fewAgents + (budget - few) / (many - few) * (manyAgents - fewAgents), 0.0,
                     2 * manyAgents);
@@ -133,8 +133,8 @@ AgentLimit search(Timer& timer, const Settings& settings, uint32_t from, double 
   found.agents = few;
   found.next = many;
   const TickCost high = timer.cost(many), low = few > 0 ? timer.cost(few) : TickCost{};
-  found.lower = crossing(budget, few, low.upper, many, high.upper);
-  found.upper = crossing(budget, few, low.lower, many, high.lower);
+  found.lower = budgetCrossing(budget, few, low.upper, many, high.upper);
+  found.upper = budgetCrossing(budget, few, low.lower, many, high.lower);
   return found;
 }
 

@@ -12,14 +12,14 @@ namespace tolerance = reference::tolerance;
 using reference::ClipTable;
 using reference::Play;
 
-struct Verdict {
+struct PlayVerdict {
   Sample sample;
   bool tie = false;
 };
 
 // One of the two clips. `time` bounds its time; `before` is the floats of its clip and its frame.
 void compare(const Setting& setting, const char* which, const Play::Played& expected, const Play::Played& got,
-             double timeBound, double clipWritten, double frameWritten, Verdict& verdict) {
+             double timeBound, double clipWritten, double frameWritten, PlayVerdict& verdict) {
   Sample& sample = verdict.sample;
   const ClipTable::Clip& clip = setting.clips.clips[static_cast<size_t>(expected.clip)];
   sample.same(which, expected.clip, clipWritten);
@@ -43,13 +43,13 @@ void compare(const Setting& setting, const char* which, const Play::Played& expe
                  {framed.fraction, 0, 0, 0}, {got.fraction, 0, 0, 0});
 }
 
-Verdict compare(const Setting& setting, const Moment& moment, const Play& previous,
-                const reference::ClipResult& result) {
+PlayVerdict compare(const Setting& setting, const Moment& moment, const Play& previous,
+                    const reference::ClipResult& result) {
   const auto written = records(moment.after.play, moment.agent, shared::PLAY_STRIDE);
   const Play got = playOf(moment.after, moment.agent, setting.clips);
   const Play& expected = result.play;
   const auto secondsOf = [&](int clip) { return setting.clips.clips[static_cast<size_t>(clip)].seconds; };
-  Verdict verdict;
+  PlayVerdict verdict;
   verdict.sample.finite("play", written);
   const bool switched = expected.weight == 0;
   double to = tolerance::clipTime(setting.tuning, previous.to.time, expected.to.rate);
@@ -76,7 +76,7 @@ void checkClip(const Setting& setting, const Moment& moment, Judge& judge) {
     return reference::clip(setting.tuning, setting.clips, body, previous, choices);
   };
   const reference::ClipResult result = run({});
-  const Verdict verdict = compare(setting, moment, previous, result);
+  const PlayVerdict verdict = compare(setting, moment, previous, result);
   if (verdict.sample.passes()) {
     return judge.add(moment.n, moment.number(), -1, verdict.sample, verdict.tie);
   }
@@ -92,7 +92,7 @@ void checkClip(const Setting& setting, const Moment& moment, Judge& judge) {
     const double most = ruled.costs[static_cast<size_t>(got.to.clip)];
     const double least = ruled.costs[static_cast<size_t>(ruled.winner)];
     if (most - least <= tolerance::clipCost(most) + tolerance::clipCost(least)) choices.winner = got.to.clip;
-    const Verdict other = compare(setting, moment, previous, run(choices));
+    const PlayVerdict other = compare(setting, moment, previous, run(choices));
     if (other.sample.passes()) return judge.add(moment.n, moment.number(), -1, other.sample, true);
   }
   judge.add(moment.n, moment.number(), -1, verdict.sample);

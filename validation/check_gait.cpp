@@ -56,12 +56,12 @@ double groundBound(const Setting& setting, const Moment& moment, const reference
   return bound + 16 * tolerance::roundoff * std::max(1.0, std::abs(body.y));
 }
 
-struct Verdict {
+struct GaitVerdict {
   Sample sample;
   bool tie = false;
 };
 
-Verdict compare(const Setting& setting, const Moment& moment, const reference::GaitResult& result) {
+GaitVerdict compare(const Setting& setting, const Moment& moment, const reference::GaitResult& result) {
   const reference::Gait got = gaitOf(moment.after, moment.agent);
   const reference::Gait& expected = result.gait;
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
@@ -70,7 +70,7 @@ Verdict compare(const Setting& setting, const Moment& moment, const reference::G
   if (moment.after.watched) bound.ground = groundBound(setting, moment, body);
   const double settleBound = 4 * tolerance::roundoff * (1 + setting.tuning.settleTime);
 
-  Verdict verdict;
+  GaitVerdict verdict;
   Sample& sample = verdict.sample;
   sample.finite("gait", records(moment.after.gait, moment.agent, shared::GAIT_STRIDE));
   sample.compare("phase", phaseDifference(expected.phase, got.phase), bound.phase, {expected.phase, 0, 0, 0},
@@ -124,12 +124,12 @@ void checkGait(const Setting& setting, const Moment& moment, Judge& judge) {
                            moment.after.watched ? &setting.heights : nullptr);
   };
   const reference::GaitResult result = run({});
-  const Verdict verdict = compare(setting, moment, result);
+  const GaitVerdict verdict = compare(setting, moment, result);
   if (!verdict.sample.passes()) {
     const auto bound = tolerance::gait(setting.tuning, result.gait, setting.creature.groups, 0);
     const double duration = gaitOf(moment.after, moment.agent).duration;
     if (result.durationMargin < bound.duration && std::abs(duration - result.gait.duration) == 1) {
-      const Verdict other = compare(setting, moment, run({duration}));
+      const GaitVerdict other = compare(setting, moment, run({duration}));
       if (other.sample.passes()) return judge.add(moment.n, moment.number(), -1, other.sample, true);
     }
   }

@@ -41,7 +41,7 @@ constexpr double elsewhere = 0.05;
 constexpr double zigzag = 0.1;
 
 // J J^T of docs/ik.md, the sum over the columns.
-glm::dmat3 matrixOf(const reference::IkChain& chain, const IkState& start, const glm::dvec3& attached) {
+glm::dmat3 gramMatrixOf(const reference::IkChain& chain, const IkState& start, const glm::dvec3& attached) {
   glm::dmat3 m(0);
   if (chain.free) {
     for (size_t i = 0; i < chain.bones.size(); ++i) {
@@ -64,7 +64,7 @@ double matrixRounding(const reference::IkChain& chain, IkSolver solver, const Ik
                       const glm::dvec3& target) {
   const double e = std::min(start.error(target), 0.5);
   const bool targetAttached = solver == IkSolver::targetAttached;
-  const glm::dmat3 m = matrixOf(chain, start, targetAttached ? target : start.joints.back());
+  const glm::dmat3 m = gramMatrixOf(chain, start, targetAttached ? target : start.joints.back());
   const double trace = m[0][0] + m[1][1] + m[2][2];
   double mu = 0;
   if (solver == IkSolver::pseudoinverse) mu = 1e-6 * trace;
@@ -104,9 +104,9 @@ struct Difference {
   glm::dvec3 expected, got;
 };
 
-class Comparison {
+class BatchComparison {
  public:
-  explicit Comparison(const IkRun& run)
+  explicit BatchComparison(const IkRun& run)
       : run_(run), chain_(referenceOf(run.chain)), layout_(chain_, referenceOf(run.options.solver)) {
     settings_.solver = referenceOf(run.options.solver);
     settings_.tolerance = run.options.tolerance;
@@ -316,6 +316,6 @@ class Comparison {
 
 }  // namespace
 
-IkParity checkIkBatch(const IkRun& run) { return Comparison(run).run(); }
+IkParity checkIkBatch(const IkRun& run) { return BatchComparison(run).run(); }
 
 }  // namespace skitter::validation

@@ -15,9 +15,9 @@ namespace tolerance = reference::tolerance;
 using reference::Metric;
 
 // Sums are compared with the rounding that adding one tick's legs to them costs.
-class Comparison {
+class MetricComparison {
  public:
-  Comparison(Sample& sample, const Metric& expected, const Metric& got, double unit, double legs)
+  MetricComparison(Sample& sample, const Metric& expected, const Metric& got, double unit, double legs)
       : sample_(sample), expected_(expected), got_(got), unit_(unit), legs_(legs) {}
 
   void length(const char* quantity, double Metric::*member, double bound) {
@@ -103,8 +103,8 @@ struct BoundedSum {
 };
 
 // Counts the windows in `want` as the device did, if there is a way to. Whether it is another way.
-bool decideWindows(const Comparison& metric, Metric& want, const BoundedSum& jerk, const BoundedSum& path,
-                   const std::vector<CloseWindow>& windows) {
+bool decideWindows(const MetricComparison& metric, Metric& want, const BoundedSum& jerk,
+                   const BoundedSum& path, const std::vector<CloseWindow>& windows) {
   const Metric exact = want;
   // If there are more windows, only the first ten are decided.
   const size_t ways = size_t{1} << std::min<size_t>(windows.size(), 10);
@@ -231,7 +231,7 @@ bool compareSums(const Setting& setting, const Legs& legs, const reference::Meas
                  const Metric& got, const Bounds& bounds, Sample& sample) {
   const double unit = setting.tuning.legLength;
   Metric want = expected.metric;
-  Comparison metric(sample, want, got, unit, static_cast<double>(legs.feet.size()));
+  MetricComparison metric(sample, want, got, unit, static_cast<double>(legs.feet.size()));
   metric.count("ticks", &Metric::ticks);
   metric.count("planted leg-ticks", &Metric::planted);
   metric.count("leg-ticks planted twice", &Metric::stays);

@@ -12,7 +12,7 @@ using glm::dmat3;
 using glm::dquat;
 using glm::dvec3;
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double infiniteError = std::numeric_limits<double>::infinity();
 // Shorter than this, a bone has no direction that could be measured.
 constexpr double noLength = 1e-12;
 
@@ -131,10 +131,10 @@ IkJudge::Verdict IkJudge::judge(const dvec3& target, std::span<const dvec3> join
                       std::all_of(rotations.begin(), rotations.end(), [](const dquat& q) {
                         return std::isfinite(glm::dot(q, q)) && glm::dot(q, q) > 0;
                       });
-  if (!finite) return {infinite, infinite, infinite};
+  if (!finite) return {infiniteError, infiniteError, infiniteError};
 
   Verdict verdict;
-  verdict.tipError = isFinite(target) ? glm::distance(target, joints.back()) / length_ : infinite;
+  verdict.tipError = isFinite(target) ? glm::distance(target, joints.back()) / length_ : infiniteError;
   verdict.boneLengthError = glm::length(joints[0]) / length_;
   for (size_t i = 0; i < bones_.size(); ++i) {
     const double error = std::abs(glm::distance(joints[i], joints[i + 1]) - bones_[i].length) / length_;

@@ -12,7 +12,7 @@
 namespace skitter::app {
 namespace {
 
-constexpr std::string_view kind = "noise";
+constexpr std::string_view noiseKind = "noise";
 constexpr double minLength = 1e-4;  // minSpacing as messages show it
 static_assert(static_cast<float>(minLength) == minSpacing);
 
@@ -48,12 +48,14 @@ void set(TerrainNoise& noise, const std::string& option, const std::string& key,
 
 }  // namespace
 
-bool isNoise(const std::string& text) { return text == kind || text.rfind(std::string(kind) + ":", 0) == 0; }
+bool isNoise(const std::string& text) {
+  return text == noiseKind || text.rfind(std::string(noiseKind) + ":", 0) == 0;
+}
 
 TerrainNoise parseNoise(const std::string& option, const std::string& text) {
   TerrainNoise noise;
   std::set<std::string> seen;
-  for (size_t at = kind.size(); at < text.size();) {
+  for (size_t at = noiseKind.size(); at < text.size();) {
     const size_t end = std::min(text.find(',', at + 1), text.size());
     const std::string word = text.substr(at + 1, end - at - 1);
     const size_t equals = word.find('=');

@@ -35,7 +35,7 @@ class Hash {
 };
 
 // The hashes of files. Many herds may name one file, which is read once.
-class Files {
+class FileHashes {
  public:
   // That of an empty file where there is none.
   uint64_t hashOf(const std::filesystem::path& file) {
@@ -63,14 +63,14 @@ void add(Hash& hash, const Goal& goal) {
   if (kind == Goal::Kind::velocity) hash.add(velocity);
 }
 
-void add(Hash& hash, Files& files, const Herd& herd) {
+void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
                phase, colour, tint] = herd;
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
-    hash.add(files.hashOf(rig));
-    hash.add(files.hashOf(sidecarOf(rig)));
+    hash.add(fileHashes.hashOf(rig));
+    hash.add(fileHashes.hashOf(sidecarOf(rig)));
   }
   hash.add(uint64_t{clips.size()});
   for (const std::string& clip : clips) hash.add(clip);
@@ -181,11 +181,11 @@ void add(Hash& hash, const Event& event) {
 
 uint64_t sceneHash(const Scene& scene, const Heightfield& terrain) {
   Hash hash;
-  Files files;
+  FileHashes fileHashes;
   const auto& [name, source, herds, camera, events, seed] = scene;
   hash.add(seed);
   hash.add(uint64_t{herds.size()});
-  for (const Herd& herd : herds) add(hash, files, herd);
+  for (const Herd& herd : herds) add(hash, fileHashes, herd);
   for (const Event& event : events) add(hash, event);
   hash.add(uint64_t{terrain.columns});
   hash.add(terrain.spacingX);

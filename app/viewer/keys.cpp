@@ -8,7 +8,7 @@
 namespace skitter::app {
 namespace {
 
-constexpr KeyRow rows[] = {
+constexpr KeyRow keyTable[] = {
     {"Camera", "Left drag", "turn about the middle, or about the agent that is followed"},
     {"Camera", "Right drag", "move sideways"},
     {"Camera", "Wheel", "come closer, go further away"},
@@ -48,12 +48,12 @@ constexpr KeyRow rows[] = {
 
 }  // namespace
 
-std::span<const KeyRow> keyRows() { return rows; }
+std::span<const KeyRow> keyRows() { return keyTable; }
 
 std::optional<Action> actionOf(int key) {
-  const auto row = std::find_if(std::begin(rows), std::end(rows),
+  const auto row = std::find_if(std::begin(keyTable), std::end(keyTable),
                                 [&](const KeyRow& r) { return r.key == key && !r.held; });
-  if (row == std::end(rows) || row->action == Action::none) return std::nullopt;
+  if (row == std::end(keyTable) || row->action == Action::none) return std::nullopt;
   return row->action;
 }
 

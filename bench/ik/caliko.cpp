@@ -8,8 +8,8 @@
 namespace skitter::bench {
 namespace {
 
-constexpr int kJoints = 10, kMostIterations = 20;
-constexpr double kLength = 10 * (kJoints - 1);  // bones of 10
+constexpr int kChainJoints = 10, kMostIterations = 20;
+constexpr double kLength = 10 * (kChainJoints - 1);  // bones of 10
 constexpr double kSolved = 1 / kLength, kLeastGain = 0.01 / kLength;
 
 struct Outcome {
@@ -36,13 +36,14 @@ Outcome solve(const reference::IkChain& chain, reference::IkSolver solver, const
 }  // namespace
 
 nlohmann::ordered_json runCaliko(int count) {
-  const reference::IkChain chain = validation::referenceOf(deviceChain(chainWith("caliko", kJoints)));
-  const Targets targets({baseline::coldTargets(chainWith("none", kJoints), size_t(count), 1)}, size_t(count));
+  const reference::IkChain chain = validation::referenceOf(deviceChain(chainWith("caliko", kChainJoints)));
+  const Targets targets({baseline::coldTargets(chainWith("none", kChainJoints), size_t(count), 1)},
+                        size_t(count));
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   fmt::print(
       "\nCaliko's set-up by its own measure: {} joints, straight rest, balls of 90 degrees, free base,\n"
       "{} targets at 0.2 to 0.95 of the reach, at most {} iterations, solved within {:.4f} of the reach\n",
-      kJoints, count, kMostIterations, kSolved);
+      kChainJoints, count, kMostIterations, kSolved);
   for (const reference::IkSolver solver : {reference::IkSolver::fabrik, reference::IkSolver::activeSet}) {
     int solved = 0, iterations = 0;
     for (const glm::vec3& target : targets.vectors[0]) {

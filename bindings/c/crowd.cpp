@@ -5,12 +5,11 @@
 #include "bindings/common/herd_reader.h"
 
 using namespace skitter;
+using c::crowdOf;
 using c::given;
 using c::guarded;
 
 namespace {
-
-const Crowd& crowdOf(const skitter_crowd* crowd) { return given(crowd, "crowd").crowd; }
 
 // Writes what `ask` says of the crowd.
 template <typename Value, typename Ask>

@@ -117,4 +117,7 @@ inline void checkRoom(const char* name, size_t room, size_t needed) {
   if (room < needed) throw inputError(fmt::format("{} has room for {}, expected {}", name, room, needed));
 }
 
+inline Crowd& crowdOf(skitter_crowd* crowd) { return given(crowd, "crowd").crowd; }
+inline const Crowd& crowdOf(const skitter_crowd* crowd) { return given(crowd, "crowd").crowd; }
+
 }  // namespace skitter::c

@@ -4,6 +4,7 @@
 #include "bindings/common/herd_reader.h"
 
 using namespace skitter;
+using c::crowdOf;
 using c::given;
 using c::guarded;
 using c::listOf;
@@ -15,9 +16,6 @@ static_assert(SKITTER_GOAL_CROSS == static_cast<int>(Goal::Kind::cross) &&
               SKITTER_GOAL_POINT == static_cast<int>(Goal::Kind::point) &&
               SKITTER_GOAL_NONE == static_cast<int>(Goal::Kind::none) &&
               SKITTER_GOAL_VELOCITY == static_cast<int>(Goal::Kind::velocity));
-
-Crowd& crowdOf(skitter_crowd* crowd) { return given(crowd, "crowd").crowd; }
-const Crowd& crowdOf(const skitter_crowd* crowd) { return given(crowd, "crowd").crowd; }
 
 Goal goalOf(const skitter_goal& goal) {
   if (const int kind = static_cast<int>(goal.kind); kind < SKITTER_GOAL_CROSS || kind > SKITTER_GOAL_VELOCITY)

@@ -7,7 +7,7 @@ namespace {
 
 using namespace py::literals;
 
-constexpr std::array starts{"rest", "previous"};
+constexpr std::array startNames{"rest", "previous"};
 
 // Ball and hinge limits; none is free.
 using Limited = std::variant<ik::Cone, ik::Ellipse, ik::Hinge>;
@@ -164,10 +164,10 @@ void bindIk(py::module_& parent) {
                        bool keepRotations) {
              ik::Options options;
              options.solver = bindings::namedOf(allSolvers, "solver", solver);
-             if (start != starts[0] && start != starts[1])
+             if (start != startNames[0] && start != startNames[1])
                throw inputError(
-                   fmt::format("start is \"{}\", expected one of {}", start, fmt::join(starts, ", ")));
-             options.start = start == starts[0] ? ik::Start::rest : ik::Start::previous;
+                   fmt::format("start is \"{}\", expected one of {}", start, fmt::join(startNames, ", ")));
+             options.start = start == startNames[0] ? ik::Start::rest : ik::Start::previous;
              options.tolerance = tolerance;
              options.iterations = iterations;
              options.restarts = restarts;

@@ -13,7 +13,7 @@ constexpr std::array spawnKinds{"lanes", "grid"};
 constexpr std::array goalKinds{"cross", "point", "none", "velocity"};
 constexpr std::array cameraKinds{"follow", "fixed", "orbit", "path"};
 
-PythonScene parse(const py::object& json, const std::filesystem::path& folder) {
+PythonScene parsedScene(const py::object& json, const std::filesystem::path& folder) {
   const auto text = py::isinstance<py::str>(json) ? json : py::module_::import("json").attr("dumps")(json);
   return PythonScene(parseScene(text.cast<std::string>(), "the scene", folder));
 }
@@ -276,7 +276,7 @@ void bindScene(py::module_& module) {
           "load", [](const std::filesystem::path& file) { return PythonScene(loadScene(file)); }, "file"_a,
           "A scene file (docs/scene.md).")
       .def_static(
-          "parse", &parse, "json"_a, "folder"_a = std::filesystem::path(),
+          "parse", &parsedScene, "json"_a, "folder"_a = std::filesystem::path(),
           "What a scene file has in it, as a str or a dict. File names in it are relative to `folder`.")
       .def_property(
           "name", [](const PythonScene& self) { return self.rest.name; },

@@ -15,7 +15,7 @@ py::object noteOf(const State& state) {
   return py::module_::import("json").attr("loads")(state.note);
 }
 
-State parse(const py::buffer& data, const std::string& name) {
+State parsedState(const py::buffer& data, const std::string& name) {
   const py::buffer_info info = data.request();
   if (PyBuffer_IsContiguous(info.view(), 'C') == 0)
     throw inputError("data is not contiguous, expected bytes in a row");
@@ -58,7 +58,7 @@ void bindStates(py::module_& module, CrowdClass& bound) {
                     "A crowd as it was between two ticks, with all that it needs to go on (docs/state.md).")
       .def_static("load", &loadState, "file"_a,
                   "A file that Crowd.save() wrote. It may be replaced meanwhile.")
-      .def_static("parse", &parse, "data"_a, "name"_a = "the state",
+      .def_static("parse", &parsedState, "data"_a, "name"_a = "the state",
                   "The bytes that Crowd.save_to_memory() gave, in any object that holds bytes; they are "
                   "copied. `name` is for "
                   "messages.")

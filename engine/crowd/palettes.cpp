@@ -57,14 +57,6 @@ Arrangement arrangementOf(const TransformRange& range, uint64_t count, const cha
   return made;
 }
 
-// A part's share of a target's range.
-struct Output {
-  gpu::Buffer buffer;
-  gpu::Bindings bindings;
-  shared::TransformConstants constants{};
-  uint32_t groups = 0;
-};
-
 }  // namespace
 
 struct Palettes::Impl {
@@ -79,6 +71,13 @@ struct Palettes::Impl {
     gpu::Kernel instances, palettes;
   };
   std::array<Kernels, 2> kernels;
+  // A part's share of a target's range.
+  struct Output {
+    gpu::Buffer buffer;
+    gpu::Bindings bindings;
+    shared::TransformConstants constants{};
+    uint32_t groups = 0;
+  };
   struct Write {
     const gpu::Kernel* kernel;
     std::vector<Output> outputs;
@@ -204,7 +203,7 @@ void Palettes::record(VkCommandBuffer commandBuffer, const glm::dvec3& origin, u
   const vk::CommandBuffer cmd(commandBuffer);
   gpu::anyToCompute(*palettes.context, cmd);
   for (const Impl::Write& write : palettes.targets[target])
-    for (const Output& output : write.outputs) {
+    for (const Impl::Output& output : write.outputs) {
       shared::TransformConstants constants = output.constants;
       for (int row = 0; row < 3; ++row)
         constants.rows[row] = glm::vec4(turn[0][row], turn[1][row], turn[2][row], local[row]);

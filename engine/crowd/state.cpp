@@ -49,7 +49,7 @@ uint64_t recordsOf(const Impl& crowd, const Kind& kind, Record record, uint64_t 
   return agents;
 }
 
-uint64_t bytesOfChunk(const Impl& crowd, const Kind& kind, Record record) {
+uint64_t bytesOfRecords(const Impl& crowd, const Kind& kind, Record record) {
   return recordsOf(crowd, kind, record, kind.agents) * bytesOfRecord(kind, record);
 }
 
@@ -57,7 +57,7 @@ std::vector<StateChunk> recordChunks(const Impl& crowd, const Kind& kind) {
   std::vector<StateChunk> chunks;
   for (const Record record : allRecords)
     if (keeps(kind, crowd.options, record))
-      chunks.push_back({infoOf(record).name, bytesOfChunk(crowd, kind, record)});
+      chunks.push_back({infoOf(record).name, bytesOfRecords(crowd, kind, record)});
   return chunks;
 }
 
@@ -88,7 +88,7 @@ void writeRecords(const Impl& crowd, const Kind& kind, Record record, StateWrite
   const uint64_t bytes = bytesOfRecord(kind, record);
   std::vector<std::byte> there, here;
   if (infoOf(record).per == Per::watched) {
-    here.resize(bytesOfChunk(crowd, kind, record));
+    here.resize(bytesOfRecords(crowd, kind, record));
     for (const Page& page : kind.pages) {
       there.resize(page.of(record).size());
       gpu::downloadBytes(*crowd.context, page.of(record), there);
@@ -115,7 +115,7 @@ void readRecords(const Impl& crowd, const Kind& kind, Record record, StateReader
   const uint64_t bytes = bytesOfRecord(kind, record);
   std::vector<std::byte> there, here;
   if (infoOf(record).per == Per::watched) {
-    here.resize(bytesOfChunk(crowd, kind, record));
+    here.resize(bytesOfRecords(crowd, kind, record));
     reader.read(here);
     for (const Page& page : kind.pages) {
       there.assign(page.of(record).size(), std::byte{0});
@@ -266,8 +266,8 @@ void giveChanges(const std::vector<StateChange>& all, Kind& kind) {
   }
 }
 
-StateHead headOf(const Impl& crowd, const std::vector<std::vector<Event>>& footfalls,
-                 const std::string& note) {
+StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& footfalls,
+                  const std::string& note) {
   StateHead head;
   head.tick = crowd.tick;
   head.dt = crowd.dt;
@@ -317,7 +317,7 @@ void save(const Impl& crowd, const std::string& note, StateSink sink) {
   crowd.context->waitIdle();
   std::vector<std::vector<Event>> footfalls;
   for (const Kind& kind : crowd.kinds) footfalls.push_back(footfallsOf(crowd, kind));
-  const StateHead head = headOf(crowd, footfalls, note);
+  const StateHead head = headNow(crowd, footfalls, note);
   StateWriter writer(head, std::move(sink));
   for (size_t k = 0; k < crowd.kinds.size(); ++k)
     for (const StateChunk& chunk : head.kinds[k].chunks) {
@@ -425,7 +425,7 @@ void readChunks(Impl& crowd, State::Source& source) {
 }
 
 uint64_t expectedBytes(const Impl& crowd, const Kind& kind, const StateChunk& chunk) {
-  if (const std::optional<Record> record = chunk.record()) return bytesOfChunk(crowd, kind, *record);
+  if (const std::optional<Record> record = chunk.record()) return bytesOfRecords(crowd, kind, *record);
   if (chunk.name == StateChunk::generations) return kind.agents * sizeof(uint32_t);
   return chunk.bytes / sizeof(Event) * sizeof(Event);  // any number of footfalls
 }

@@ -85,11 +85,11 @@ void readHead(State::Source& source) {
   source.chunks = sizeof header + header.headBytes;
 }
 
-uint64_t samplesOf(const Heightfield& terrain) { return uint64_t{terrain.columns} * terrain.rows; }
+uint64_t heightsIn(const Heightfield& terrain) { return uint64_t{terrain.columns} * terrain.rows; }
 
 // That the file ends where its head says.
-void checkSize(const State::Source& source) {
-  uint64_t expected = source.chunks + bytesOfChunk(samplesOf(source.head.terrain) * sizeof(float));
+void checkBytes(const State::Source& source) {
+  uint64_t expected = source.chunks + bytesOfChunk(heightsIn(source.head.terrain) * sizeof(float));
   for (const StateKind& kind : source.head.kinds)
     for (const StateChunk& chunk : kind.chunks) {
       if (chunk.bytes > source.bytes)
@@ -106,9 +106,9 @@ void checkSize(const State::Source& source) {
 
 State openState(std::shared_ptr<State::Source> source) {
   readHead(*source);
-  checkSize(*source);
+  checkBytes(*source);
   State state = source->head;
-  state.terrain.heights.resize(samplesOf(state.terrain));
+  state.terrain.heights.resize(heightsIn(state.terrain));
   StateReader reader(*source);
   reader.read(std::as_writable_bytes(std::span(state.terrain.heights)));
   reader.endChunk("its terrain");

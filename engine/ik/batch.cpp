@@ -64,13 +64,6 @@ void checkOptions(const Chain& chain, uint32_t chains, const Options& options) {
     throw inputError(fmt::format("the rest pull is {}, expected 0 to 1", restPull));
 }
 
-struct Page {
-  uint32_t chains = 0;
-  gpu::Buffer target, base, state, joint, rotation, report, list;
-  gpu::Buffer sink;  // of what is not written; each page has its own, as dispatches of pages may overlap
-  gpu::Bindings bindings;
-};
-
 // What BATCH_LIST begins with; the numbers of the chains follow.
 struct ListHead {
   VkDispatchIndirectCommand dispatch;
@@ -89,21 +82,21 @@ glm::quat turnedBack(const glm::vec4& rotation) {
 }
 
 // No chain listed: an empty dispatch.
-void clearList(const Page& page, vk::CommandBuffer cmd) {
+void clearList(const gpu::Buffer& list, vk::CommandBuffer cmd) {
   constexpr ListHead none = {.dispatch = {.x = 0, .y = 1, .z = 1}, .count = 0};
-  cmd.updateBuffer(page.list.handle(), 0, sizeof none, &none);
-}
-
-std::vector<glm::vec4> widened(std::span<const glm::vec3> values) {
-  std::vector<glm::vec4> wide;
-  wide.reserve(values.size());
-  for (const glm::vec3& v : values) wide.emplace_back(v, 0.0f);
-  return wide;
+  cmd.updateBuffer(list.handle(), 0, sizeof none, &none);
 }
 
 }  // namespace
 
 struct Batch::Impl {
+  struct Page {
+    uint32_t chains = 0;
+    gpu::Buffer target, base, state, joint, rotation, report, list;
+    gpu::Buffer sink;  // of what is not written; each page has its own, as dispatches of pages may overlap
+    gpu::Bindings bindings;
+  };
+
   Impl(Device&, const Chain&, uint32_t chains, const Options&);
 
   const gpu::Context* context;
@@ -367,7 +360,7 @@ uint32_t Batch::iterations() const { return impl_->iterations; }
 
 uint64_t Batch::memoryBytes() const {
   uint64_t bytes = 0;
-  for (const Page& page : impl_->pages)
+  for (const Impl::Page& page : impl_->pages)
     for (const gpu::Buffer* buffer :
          {&page.target, &page.base, &page.state, &page.joint, &page.rotation, &page.report})
       bytes += buffer->size();
@@ -375,7 +368,7 @@ uint64_t Batch::memoryBytes() const {
 }
 
 void Batch::setTargets(std::span<const glm::vec3> targets) {
-  impl_->upload(&Page::target, 0, 1, widened(targets));
+  impl_->upload(&Impl::Page::target, 0, 1, widened(targets));
 }
 
 void Batch::setBases(std::span<const Base> bases) {
@@ -385,11 +378,11 @@ void Batch::setBases(std::span<const Base> bases) {
     records.emplace_back(base.position, 0.0f);
     records.emplace_back(base.rotation.x, base.rotation.y, base.rotation.z, base.rotation.w);
   }
-  impl_->upload(&Page::base, 1, shared::BASE_STRIDE, records);
+  impl_->upload(&Impl::Page::base, 1, shared::BASE_STRIDE, records);
 }
 
 void Batch::reset() {
-  for (Page& page : impl_->pages) impl_->resetPage(page);
+  for (Impl::Page& page : impl_->pages) impl_->resetPage(page);
 }
 
 void Batch::setJoints(std::span<const glm::vec3> joints) {
@@ -397,7 +390,7 @@ void Batch::setJoints(std::span<const glm::vec3> joints) {
   const uint32_t n = batch.bones;
   assert(batch.options.start == Start::previous && joints.size() == size_t{batch.chains} * (n + 1));
   std::vector<glm::vec4> records, bases;
-  if (batch.options.bases) bases = batch.download(&Page::base, 1, shared::BASE_STRIDE);
+  if (batch.options.bases) bases = batch.download(&Impl::Page::base, 1, shared::BASE_STRIDE);
   std::vector<float> states;
   for (uint32_t c = 0; c < batch.chains; ++c) {
     const auto own = joints.subspan(size_t{c} * (n + 1), n + 1);
@@ -420,14 +413,14 @@ void Batch::setJoints(std::span<const glm::vec3> joints) {
 
 std::vector<glm::vec4> Batch::downloadStates() const {
   const auto stride = static_cast<uint32_t>(impl_->stateStride());
-  return impl_->ownState ? impl_->download(&Page::state, 5, stride)
-                         : impl_->download(&Page::joint, 2, stride);
+  return impl_->ownState ? impl_->download(&Impl::Page::state, 5, stride)
+                         : impl_->download(&Impl::Page::joint, 2, stride);
 }
 
 void Batch::setStates(std::span<const glm::vec4> states) {
   const auto stride = static_cast<uint32_t>(impl_->stateStride());
-  impl_->ownState ? impl_->upload(&Page::state, 5, stride, states)
-                  : impl_->upload(&Page::joint, 2, stride, states);
+  impl_->ownState ? impl_->upload(&Impl::Page::state, 5, stride, states)
+                  : impl_->upload(&Impl::Page::joint, 2, stride, states);
 }
 
 std::vector<glm::vec4> Batch::downloadSeeds() const {
@@ -442,22 +435,22 @@ void Batch::record(VkCommandBuffer commandBuffer) const {
   const Impl& batch = *impl_;
   gpu::computeToTransfer(cmd);
   if (batch.quick)
-    for (const Page& page : batch.pages) clearList(page, cmd);
+    for (const Impl::Page& page : batch.pages) clearList(page.list, cmd);
   gpu::transferToCompute(cmd);
   gpu::computeToCompute(cmd);
   const auto forEachPage = [&](const auto& dispatch) {
-    for (const Page& page : batch.pages) {
+    for (const Impl::Page& page : batch.pages) {
       shared::BatchConstants constants = batch.constants;
       constants.count = page.chains;
       dispatch(page, gpu::bytesOf(constants));
     }
   };
-  forEachPage([&](const Page& page, std::span<const std::byte> constants) {
+  forEachPage([&](const Impl::Page& page, std::span<const std::byte> constants) {
     batch.kernel.dispatch(cmd, page.bindings, constants, gpu::groupsFor(page.chains, shared::WORK_GROUP));
   });
   if (batch.quick) {
     gpu::computeToIndirectAndCompute(cmd);
-    forEachPage([&](const Page& page, std::span<const std::byte> constants) {
+    forEachPage([&](const Impl::Page& page, std::span<const std::byte> constants) {
       batch.listed.dispatchIndirect(cmd, page.bindings, constants, page.list);
     });
   }
@@ -471,9 +464,9 @@ void Batch::solve() {
 
 std::vector<glm::vec3> Batch::downloadJoints() const {
   const uint32_t n = impl_->bones;
-  const std::vector<glm::vec4> records = impl_->download(&Page::joint, 2, n);
+  const std::vector<glm::vec4> records = impl_->download(&Impl::Page::joint, 2, n);
   std::vector<glm::vec4> bases;
-  if (impl_->options.bases) bases = impl_->download(&Page::base, 1, shared::BASE_STRIDE);
+  if (impl_->options.bases) bases = impl_->download(&Impl::Page::base, 1, shared::BASE_STRIDE);
   std::vector<glm::vec3> joints;
   joints.reserve(size_t{impl_->chains} * (n + 1));
   for (uint32_t c = 0; c < impl_->chains; ++c) {
@@ -486,14 +479,14 @@ std::vector<glm::vec3> Batch::downloadJoints() const {
 std::vector<glm::quat> Batch::downloadRotations() const {
   assert(impl_->options.rotations);
   std::vector<glm::quat> rotations;
-  for (const glm::vec4& q : impl_->download(&Page::rotation, 3, impl_->bones))
+  for (const glm::vec4& q : impl_->download(&Impl::Page::rotation, 3, impl_->bones))
     rotations.emplace_back(q.w, q.x, q.y, q.z);
   return rotations;
 }
 
 std::vector<Report> Batch::downloadReports() const {
   std::vector<Report> reports;
-  for (const glm::vec4& r : impl_->download(&Page::report, 4, 1))
+  for (const glm::vec4& r : impl_->download(&Impl::Page::report, 4, 1))
     reports.push_back({r.x, static_cast<uint32_t>(r.y),
                        static_cast<Stop>(static_cast<uint32_t>(r.z) % static_cast<uint32_t>(shared::STOPS))});
   return reports;

@@ -25,6 +25,13 @@ void padToVec4(std::vector<float>& records) {
 
 }  // namespace
 
+std::vector<glm::vec4> widened(std::span<const glm::vec3> values) {
+  std::vector<glm::vec4> wide;
+  wide.reserve(values.size());
+  for (const glm::vec3& v : values) wide.emplace_back(v, 0.0f);
+  return wide;
+}
+
 std::vector<float> boneRecords(const Skeleton& skeleton) {
   std::vector<float> records;
   glm::dvec3 start(0);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -9,6 +11,8 @@
 // A chain as the shaders read it: engine/include/skitter/records.h (rig, bone) and shaders/shared/ik_batch.h.
 namespace skitter::ik {
 
+// Points as records: xyz, 0.
+std::vector<glm::vec4> widened(std::span<const glm::vec3>);
 std::vector<float> boneRecords(const Skeleton&);
 // CONSTANT_LIMITS_LOW and CONSTANT_LIMITS_HIGH.
 std::pair<uint32_t, uint32_t> limitWords(const Skeleton&);

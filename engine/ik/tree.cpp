@@ -51,12 +51,6 @@ std::vector<glm::vec4> recordsOf(const Tree& tree, float reach) {
   return records;
 }
 
-std::vector<glm::vec4> widened(std::span<const glm::vec3> values) {
-  std::vector<glm::vec4> wide;
-  for (const glm::vec3& v : values) wide.emplace_back(v, 0.0f);
-  return wide;
-}
-
 std::vector<glm::vec3> narrowed(const std::vector<glm::vec4>& values) {
   return {values.begin(), values.end()};
 }

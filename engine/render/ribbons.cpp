@@ -11,7 +11,7 @@ uint16_t heaviestBone(const SkinVertex& vertex) {
 }
 
 // Sums over a bone's vertices, of which a line through their radii is made.
-struct Surface {
+struct BoneSurface {
   const Bone* bone = nullptr;  // none of the body, and where a leg has fewer bones than others
   double count = 0, along = 0, alongAlong = 0, radius = 0, alongRadius = 0;
   float least = 0, most = 0;
@@ -45,20 +45,20 @@ struct Surface {
 };
 
 // By entry of the palette.
-std::vector<Surface> surfacesOf(const Rig& rig) {
-  std::vector<Surface> surfaces(size_t(rig.paletteSize()));
+std::vector<BoneSurface> boneSurfacesOf(const Rig& rig) {
+  std::vector<BoneSurface> surfaces(size_t(rig.paletteSize()));
   for (size_t leg = 0; leg < rig.legs.size(); ++leg)
     for (size_t b = 0; b < rig.legs[leg].bones.size(); ++b) {
-      Surface& surface = surfaces[1 + leg * size_t(rig.maxBones()) + b];
+      BoneSurface& surface = surfaces[1 + leg * size_t(rig.maxBones()) + b];
       surface.bone = &rig.legs[leg].bones[b];
       surface.most = surface.bone->length;
     }
   for (const SkinVertex& vertex : rig.vertices)
-    if (Surface& surface = surfaces[heaviestBone(vertex)]; surface.bone != nullptr) surface.add(vertex);
+    if (BoneSurface& surface = surfaces[heaviestBone(vertex)]; surface.bone != nullptr) surface.add(vertex);
   return surfaces;
 }
 
-Ribbon::End endOf(const Surface& surface, int i, float along) {
+Ribbon::End endOf(const BoneSurface& surface, int i, float along) {
   return {along, surface.radiusAt(along), surface.colour[i] / surface.share[i]};
 }
 
@@ -66,10 +66,10 @@ Ribbon::End endOf(const Surface& surface, int i, float along) {
 
 Ribbons ribbonsOf(const Rig& rig, float radius) {
   Ribbons found;
-  const std::vector<Surface> surfaces = surfacesOf(rig);
+  const std::vector<BoneSurface> surfaces = boneSurfacesOf(rig);
   std::vector<bool> thin(surfaces.size());
   for (size_t entry = 0; entry < surfaces.size(); ++entry) {
-    const Surface& surface = surfaces[entry];
+    const BoneSurface& surface = surfaces[entry];
     if (surface.count == 0) continue;
     const Ribbon ribbon{uint16_t(entry), surface.bone->direction, endOf(surface, 0, surface.least),
                         endOf(surface, 1, surface.most)};

@@ -24,12 +24,6 @@ namespace {
 
 constexpr uint32_t kMostPageSplines = 1u << 20;
 
-struct Page {
-  uint32_t splines = 0;
-  gpu::Buffer key, given, tangent, length, summary, clock, motion;
-  gpu::Bindings tangents, lengths, travel;
-};
-
 // The caller's buffers, in the order of Buffers.
 enum Given : size_t { givenKeys, givenTangents, givenClocks, givenMotions, givenNone };
 
@@ -39,7 +33,7 @@ glm::vec4 recordOf(const SplineClock& clock) {
   return {start, rest, static_cast<float>(clock.duration), clock.active ? 1.0f : 0.0f};
 }
 
-void checkCount(const char* name, size_t found, size_t expected) {
+void checkBatchCount(const char* name, size_t found, size_t expected) {
   if (found != expected)
     throw inputError(fmt::format("the batch of splines was given {} {}, expected {}", found, name, expected));
 }
@@ -53,6 +47,12 @@ SplineBatch::Options checked(const SplineBatch::Options& options) {
 }  // namespace
 
 struct SplineBatch::Impl {
+  struct Page {
+    uint32_t splines = 0;
+    gpu::Buffer key, given, tangent, length, summary, clock, motion;
+    gpu::Bindings tangents, lengths, travel;
+  };
+
   Impl(Device&, uint32_t splines, const Options&);
 
   const gpu::Context* context;
@@ -251,7 +251,7 @@ uint32_t SplineBatch::keys() const { return impl_->keys; }
 
 uint64_t SplineBatch::memoryBytes() const {
   uint64_t bytes = 0;
-  for (const Page& page : impl_->pages)
+  for (const Impl::Page& page : impl_->pages)
     for (const gpu::Buffer* buffer :
          {&page.key, &page.given, &page.tangent, &page.length, &page.summary, &page.clock, &page.motion})
       bytes += buffer->size();
@@ -261,12 +261,12 @@ uint64_t SplineBatch::memoryBytes() const {
 void SplineBatch::setPoints(std::span<const glm::vec3> points, std::span<const float> knots) {
   Impl& batch = *impl_;
   const uint32_t each = batch.options.points, keys = batch.keys;
-  checkCount("points", points.size(), size_t{batch.splines} * each);
+  checkBatchCount("points", points.size(), size_t{batch.splines} * each);
   const bool own = knots.size() == size_t{batch.splines} * keys;
   std::vector<float> even(keys);
   for (uint32_t k = 0; k < keys; ++k) even[k] = static_cast<float>(k);
   if (knots.empty()) knots = even;
-  if (!own) checkCount("knots", knots.size(), keys);
+  if (!own) checkBatchCount("knots", knots.size(), keys);
   std::vector<glm::vec4> records;
   records.reserve(size_t{batch.splines} * keys);
   for (uint32_t n = 0; n < batch.splines; ++n) {
@@ -277,7 +277,7 @@ void SplineBatch::setPoints(std::span<const glm::vec3> points, std::span<const f
     checkKnots(what, times);
     for (uint32_t k = 0; k < keys; ++k) records.emplace_back(chain[k % each], times[k]);
   }
-  batch.upload(&Page::key, givenKeys, keys, records);
+  batch.upload(&Impl::Page::key, givenKeys, keys, records);
   batch.prepare();
 }
 
@@ -285,9 +285,9 @@ void SplineBatch::setTangents(std::span<const glm::vec3> arriving, std::span<con
   Impl& batch = *impl_;
   if (!batch.hasGiven) throw inputError("tangents were given to a batch of splines that makes them by rule");
   const uint32_t each = batch.options.points;
-  checkCount("arriving tangents", arriving.size(), size_t{batch.splines} * each);
+  checkBatchCount("arriving tangents", arriving.size(), size_t{batch.splines} * each);
   if (leaving.empty()) leaving = arriving;
-  checkCount("leaving tangents", leaving.size(), arriving.size());
+  checkBatchCount("leaving tangents", leaving.size(), arriving.size());
   std::vector<glm::vec4> records;
   records.reserve(size_t{batch.splines} * batch.keys * shared::TANGENT_STRIDE);
   for (uint32_t n = 0; n < batch.splines; ++n) {
@@ -299,18 +299,18 @@ void SplineBatch::setTangents(std::span<const glm::vec3> arriving, std::span<con
       records.emplace_back(leaving[from], 0.0f);
     }
   }
-  batch.upload(&Page::given, givenTangents, shared::TANGENT_STRIDE * batch.keys, records);
+  batch.upload(&Impl::Page::given, givenTangents, shared::TANGENT_STRIDE * batch.keys, records);
   batch.prepare();
 }
 
 void SplineBatch::setClocks(std::span<const SplineClock> clocks) {
-  checkCount("clocks", clocks.size(), impl_->splines);
+  checkBatchCount("clocks", clocks.size(), impl_->splines);
   std::vector<glm::vec4> records;
   for (size_t n = 0; n < clocks.size(); ++n) {
     checkClock(fmt::format("spline {}", n), clocks[n]);
     records.push_back(recordOf(clocks[n]));
   }
-  impl_->upload(&Page::clock, givenClocks, 1, records);
+  impl_->upload(&Impl::Page::clock, givenClocks, 1, records);
 }
 
 void SplineBatch::recordPrepare(VkCommandBuffer cmd) const { impl_->recordPrepare(cmd); }
@@ -321,7 +321,7 @@ void SplineBatch::record(VkCommandBuffer commandBuffer, double now) const {
   gpu::transferToCompute(cmd);
   // A motion may still be copied from.
   gpu::computeToTransfer(cmd);
-  for (const Page& page : impl_->pages) {
+  for (const Impl::Page& page : impl_->pages) {
     shared::SplineConstants own = impl_->constants;
     own.count = page.splines;
     own.now = static_cast<float>(now);
@@ -338,7 +338,8 @@ void SplineBatch::travel(double now) {
 }
 
 std::vector<SplineMotion> SplineBatch::downloadMotions() const {
-  const std::vector<glm::vec4> records = impl_->download(&Page::motion, givenMotions, shared::MOTION_STRIDE);
+  const std::vector<glm::vec4> records =
+      impl_->download(&Impl::Page::motion, givenMotions, shared::MOTION_STRIDE);
   std::vector<SplineMotion> motions;
   motions.reserve(impl_->splines);
   for (size_t r = 0; r < records.size(); r += shared::MOTION_STRIDE)
@@ -349,7 +350,7 @@ std::vector<SplineMotion> SplineBatch::downloadMotions() const {
 
 std::vector<float> SplineBatch::downloadLengths() const {
   std::vector<float> lengths;
-  for (const glm::vec4& summary : impl_->download(&Page::summary, givenNone, 1))
+  for (const glm::vec4& summary : impl_->download(&Impl::Page::summary, givenNone, 1))
     lengths.push_back(summary.w > 0 ? 0.0f : summary.x);
   return lengths;
 }

@@ -9,13 +9,13 @@
 namespace skitter::test {
 namespace {
 
-constexpr uint64_t ticks = 120, perSecond = 20, agents = 2, legs = 4;
+constexpr uint64_t kTicks = 120, perSecond = 20, kAgents = 2, kLegs = 4;
 constexpr double dt = 1.0 / perSecond, legLength = 2;
 
 // A second is one cycle, in which each leg is in the air for four ticks, one leg after another.
-constexpr std::array<uint64_t, legs> firstTickInAir = {0, 10, 5, 15};
+constexpr std::array<uint64_t, kLegs> firstTickInAir = {0, 10, 5, 15};
 constexpr uint64_t ticksInAir = 4;
-constexpr std::array<std::array<double, 2>, legs> homes = {{{1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
+constexpr std::array<std::array<double, 2>, kLegs> homes = {{{1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
 
 uint64_t sinceLift(uint64_t tick, uint64_t leg) {
   return (tick + perSecond - firstTickInAir[leg]) % perSecond;
@@ -24,17 +24,17 @@ uint64_t sinceLift(uint64_t tick, uint64_t leg) {
 class TraceFigures : public AppTest {
  protected:
   TraceFigures() {
-    nlohmann::json herd = {{"rig", "table"},           {"agents", agents},
+    nlohmann::json herd = {{"rig", "table"},           {"agents", kAgents},
                            {"legLength", legLength},   {"legNames", {"a", "b", "c", "d"}},
                            {"groupNames", {"A", "B"}}, {"groups", {0, 1, 1, 0}}};
-    for (uint64_t leg = 0; leg < legs; ++leg) {
+    for (uint64_t leg = 0; leg < kLegs; ++leg) {
       herd["boneLengths"].push_back({legLength});
       herd["restDirections"].push_back({{0, -1, 0}});
       herd["limits"].push_back({0.1});
     }
     const nlohmann::json trace = {
         {"dt", dt},
-        {"ticks", ticks},
+        {"ticks", kTicks},
         {"terrain", {{"originX", -100}, {"originZ", -300}, {"spacingX", 50}, {"spacingZ", 100}}},
         {"herds", {herd}}};
     write("trace.json", trace.dump());
@@ -45,10 +45,10 @@ class TraceFigures : public AppTest {
         heights.at({row, column}) = 5 * static_cast<float>(column) - 10;
     writeNpy(file("heights.npy"), heights);
 
-    for (uint64_t tick = 0; tick < ticks; ++tick)
-      for (uint64_t agent = 0; agent < agents; ++agent) {
+    for (uint64_t tick = 0; tick < kTicks; ++tick)
+      for (uint64_t agent = 0; agent < kAgents; ++agent) {
         putBody(tick, agent, 0, 0);
-        for (uint64_t leg = 0; leg < legs; ++leg)
+        for (uint64_t leg = 0; leg < kLegs; ++leg)
           put(tick, agent, leg, homes[leg][0], 0, homes[leg][1], sinceLift(tick, leg) >= ticksInAir);
       }
   }
@@ -98,10 +98,10 @@ class TraceFigures : public AppTest {
     return numbers;
   }
 
-  Npy joints{"<f4", {ticks, agents, legs, 2, 3}, std::vector<float>(ticks* agents* legs * 6)};
-  Npy rotations{"<f4", {ticks, agents, legs, 1, 4}, std::vector<float>(ticks* agents* legs * 4)};
-  Npy stance{"|u1", {ticks, agents, legs}, std::vector<float>(ticks* agents* legs)};
-  Npy body{"<f4", {ticks, agents, 7}, std::vector<float>(ticks* agents * 7)};
+  Npy joints{"<f4", {kTicks, kAgents, kLegs, 2, 3}, std::vector<float>(kTicks* kAgents* kLegs * 6)};
+  Npy rotations{"<f4", {kTicks, kAgents, kLegs, 1, 4}, std::vector<float>(kTicks* kAgents* kLegs * 4)};
+  Npy stance{"|u1", {kTicks, kAgents, kLegs}, std::vector<float>(kTicks* kAgents* kLegs)};
+  Npy body{"<f4", {kTicks, kAgents, 7}, std::vector<float>(kTicks* kAgents * 7)};
 };
 
 TEST_F(TraceFigures, OfFeetThatStayAreNone) {
@@ -124,28 +124,28 @@ TEST_F(TraceFigures, OfFeetThatStayAreNone) {
 
 TEST_F(TraceFigures, SlipIsOfPlantedFeetAndPerStance) {
   // Leg a of agent 1 slides by 4 cm in one interval of each second, and on its way through the air by more.
-  for (uint64_t tick = 0; tick < ticks; ++tick) {
+  for (uint64_t tick = 0; tick < kTicks; ++tick) {
     const uint64_t since = sinceLift(tick, 0);
     put(tick, 1, 0, since >= 10 ? 1.04 : 1, 0, 1, since >= ticksInAir);
     if (since == 2) put(tick, 1, 0, 1.5, 0, 1, false);
   }
   const std::string text = figures();
   // There are six slides. Leg a is in the air at first, so 5 of its stances end, and 6 of each other leg.
-  EXPECT_NEAR(row(text, "slip").at(0), 100 * 6 * 0.04 / legLength / (agents * 23), 1e-4);
+  EXPECT_NEAR(row(text, "slip").at(0), 100 * 6 * 0.04 / legLength / (kAgents * 23), 1e-4);
   EXPECT_NEAR(row(text, "worst slide").at(0), 100 * 0.04 / legLength, 1e-3);
   // Leg a stands at both ends of 90 intervals, each other leg of 89.
-  EXPECT_NEAR(row(text, "skating").at(0), 100.0 * 6 / (agents * 357), 1e-3);
+  EXPECT_NEAR(row(text, "skating").at(0), 100.0 * 6 / (kAgents * 357), 1e-3);
 }
 
 TEST_F(TraceFigures, DepthIsOfAllFeetAndHeightOfPlantedOnes) {
-  for (uint64_t tick = 0; tick < ticks; ++tick) {
+  for (uint64_t tick = 0; tick < kTicks; ++tick) {
     const bool stands = sinceLift(tick, 1) >= ticksInAir;
     put(tick, 0, 1, 1, stands ? 0.03 : 0.5, -1, stands);
     put(tick, 0, 2, -1, sinceLift(tick, 2) == 2 ? -0.06 : 0, 1, sinceLift(tick, 2) >= ticksInAir);
   }
   const std::string text = figures();
-  const double all = ticks * legs * agents, planted = 0.8 * all, swung = 0.2 * all;
-  EXPECT_NEAR(row(text, "float").at(0), 100 * 0.03 / legLength * 0.8 * ticks / planted, 1e-4);
+  const double all = kTicks * kLegs * kAgents, planted = 0.8 * all, swung = 0.2 * all;
+  EXPECT_NEAR(row(text, "float").at(0), 100 * 0.03 / legLength * 0.8 * kTicks / planted, 1e-4);
   EXPECT_NEAR(row(text, "penetration").at(0), 100 * 0.06 / legLength * 6 / all, 1e-4);
   const std::vector<double> swing = row(text, "swing penetration");
   EXPECT_NEAR(swing.at(0), 3, 1e-2);
@@ -167,9 +167,9 @@ TEST_F(TraceFigures, LimitsAndBonesAreHeldAgainstTheRig) {
 }
 
 TEST_F(TraceFigures, SpeedLeavesTheFirstSecondOut) {
-  const double speeds[agents] = {1.2, 2.8};
-  for (uint64_t tick = perSecond; tick < ticks; ++tick)
-    for (uint64_t agent = 0; agent < agents; ++agent)
+  const double speeds[kAgents] = {1.2, 2.8};
+  for (uint64_t tick = perSecond; tick < kTicks; ++tick)
+    for (uint64_t agent = 0; agent < kAgents; ++agent)
       putBody(tick, agent, 0, speeds[agent] * dt * static_cast<double>(tick - perSecond));
   const std::vector<double> speed = row(figures({"4"}), "speed achieved");
   ASSERT_EQ(speed.size(), 4u);
@@ -183,8 +183,8 @@ TEST_F(TraceFigures, SpeedLeavesTheFirstSecondOut) {
 // one in the air it is the diagonal: 0.7 m / sqrt(2) outside (a) or inside (d), 0.1 m / sqrt(2) inside (b) or
 // outside (c), each for as long.
 TEST_F(TraceFigures, MarginIsTheDistanceFromTheHullsEdge) {
-  for (uint64_t tick = 0; tick < ticks; ++tick)
-    for (uint64_t agent = 0; agent < agents; ++agent) putBody(tick, agent, 0.3, 0.4);
+  for (uint64_t tick = 0; tick < kTicks; ++tick)
+    for (uint64_t agent = 0; agent < kAgents; ++agent) putBody(tick, agent, 0.3, 0.4);
   putBody(18, 1, 1.96, 1.28);  // in the first second 1 m beyond the corner a
   const std::vector<double> margin = row(figures(), "stability margin");
   ASSERT_EQ(margin.size(), 4u);
@@ -197,7 +197,7 @@ TEST_F(TraceFigures, MarginIsTheDistanceFromTheHullsEdge) {
 // A body that goes to and fro by 2 A every tick has third differences of 8 A, whatever A is: 16 W^4. The
 // other one halts at each end, which is 8 W^4, and goes less far than counts.
 TEST_F(TraceFigures, JerkIsOfThoseWhoMove) {
-  for (uint64_t tick = 0; tick < ticks; ++tick) {
+  for (uint64_t tick = 0; tick < kTicks; ++tick) {
     putBody(tick, 0, 0, tick % 2 == 0 ? 0.05 : -0.05);
     putBody(tick, 1, 0, tick % 4 < 2 ? 0.01 : -0.01);
   }

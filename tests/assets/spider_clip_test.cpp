@@ -9,7 +9,7 @@
 namespace skitter {
 namespace {
 
-const ClipSet& spider() {
+const ClipSet& clips() {
   static const ClipSet set = spiderClips();
   return set;
 }
@@ -36,35 +36,35 @@ double liftPhase(const Clip& clip, size_t leg) {
 
 TEST(SpiderClips, WalkAndIdleOnTheRigsSkin) {
   const Rig rig = spiderRig();
-  ASSERT_EQ(spider().clips.size(), 2u);
-  EXPECT_TRUE(spider().notes.empty());
-  EXPECT_EQ(spider().clip("walk").name, "walk");
-  EXPECT_NEAR(spider().clip("idle").seconds, 3, 1e-6);
-  ASSERT_EQ(spider().vertices.size(), rig.vertices.size());
-  EXPECT_EQ(spider().indices, rig.indices);
+  ASSERT_EQ(clips().clips.size(), 2u);
+  EXPECT_TRUE(clips().notes.empty());
+  EXPECT_EQ(clips().clip("walk").name, "walk");
+  EXPECT_NEAR(clips().clip("idle").seconds, 3, 1e-6);
+  ASSERT_EQ(clips().vertices.size(), rig.vertices.size());
+  EXPECT_EQ(clips().indices, rig.indices);
   for (size_t v = 0; v < rig.vertices.size(); ++v) {
-    EXPECT_LT(glm::length(spider().vertices[v].position - rig.vertices[v].position), 1e-6f);
-    EXPECT_LT(glm::length(spider().vertices[v].normal - rig.vertices[v].normal), 1e-5f);
-    EXPECT_EQ(spider().vertices[v].colour, rig.vertices[v].colour);
+    EXPECT_LT(glm::length(clips().vertices[v].position - rig.vertices[v].position), 1e-6f);
+    EXPECT_LT(glm::length(clips().vertices[v].normal - rig.vertices[v].normal), 1e-5f);
+    EXPECT_EQ(clips().vertices[v].colour, rig.vertices[v].colour);
   }
   for (size_t l = 0; l < 8; ++l) {
-    ASSERT_EQ(spider().legs[l].joints.size(), 5u);
+    ASSERT_EQ(clips().legs[l].joints.size(), 5u);
     for (size_t i = 0; i < 5; ++i) {
-      const ClipJoint& joint = spider().joints[spider().legs[l].joints[i]];
+      const ClipJoint& joint = clips().joints[clips().legs[l].joints[i]];
       EXPECT_EQ(joint.leg, static_cast<int>(l));
       EXPECT_EQ(joint.bone, static_cast<int>(std::min(i, size_t{3})));
       if (i < 4) {
         EXPECT_EQ(joint.name, rig.legs[l].bones[i].joint);
-        EXPECT_LT(glm::length(spider().legs[l].starts[i] - rig.legs[l].bones[i].start), 1e-6f);
+        EXPECT_LT(glm::length(clips().legs[l].starts[i] - rig.legs[l].bones[i].start), 1e-6f);
       }
     }
-    EXPECT_LT(glm::length(spider().legs[l].starts[4] - rig.legs[l].home), 1e-6f);
+    EXPECT_LT(glm::length(clips().legs[l].starts[4] - rig.legs[l].home), 1e-6f);
   }
-  EXPECT_EQ(spider().joints[0].leg, -1);
+  EXPECT_EQ(clips().joints[0].leg, -1);
 }
 
 TEST(SpiderClips, StanceFeetGoStraightBackOnTheGround) {
-  const Clip& walk = spider().clip("walk");
+  const Clip& walk = clips().clip("walk");
   const Rig rig = spiderRig();
   EXPECT_NEAR(walk.speed, 1, 1e-3);
   EXPECT_NEAR(walk.ground, 0, 1e-3);
@@ -91,7 +91,7 @@ TEST(SpiderClips, StanceFeetGoStraightBackOnTheGround) {
 }
 
 TEST(SpiderClips, TetrapodsAlternateInTheOrderOfRealSpiders) {
-  const Clip& walk = spider().clip("walk");
+  const Clip& walk = clips().clip("walk");
   const Rig rig = spiderRig();
   std::map<std::string, double> lift;
   for (size_t leg = 0; leg < 8; ++leg) lift[rig.legs[leg].name] = liftPhase(walk, leg);
@@ -113,14 +113,14 @@ TEST(SpiderClips, TetrapodsAlternateInTheOrderOfRealSpiders) {
 // The bones keep their lengths, and each its cone about where the bone before carries its rest direction.
 TEST(SpiderClips, PosesAreWithinTheRigsLimits) {
   const Rig rig = spiderRig();
-  const size_t joints = spider().joints.size();
-  for (const Clip& clip : spider().clips) {
+  const size_t joints = clips().joints.size();
+  for (const Clip& clip : clips().clips) {
     for (size_t f = 0; f < clip.frames(); ++f) {
       for (size_t l = 0; l < 8; ++l) {
         std::vector<glm::vec3> points;
         for (size_t i = 0; i < 5; ++i) {
-          const glm::vec4* rows = clip.rows.data() + 3 * (f * joints + spider().legs[l].joints[i]);
-          const glm::vec4 start(spider().legs[l].starts[i], 1);
+          const glm::vec4* rows = clip.rows.data() + 3 * (f * joints + clips().legs[l].joints[i]);
+          const glm::vec4 start(clips().legs[l].starts[i], 1);
           points.emplace_back(glm::dot(rows[0], start), glm::dot(rows[1], start), glm::dot(rows[2], start));
         }
         EXPECT_LT(glm::length(points[4] - clip.feet[f * 8 + l]), 1e-6f);
@@ -131,7 +131,7 @@ TEST(SpiderClips, PosesAreWithinTheRigsLimits) {
           EXPECT_NEAR(glm::length(along), bone.length, 2e-4) << clip.name << " " << f;
           const float cosine = glm::dot(glm::normalize(along), before * bone.direction);
           EXPECT_GT(cosine, std::cos(bone.coneHalfAngle));
-          const glm::vec4* rows = clip.rows.data() + 3 * (f * joints + spider().legs[l].joints[i]);
+          const glm::vec4* rows = clip.rows.data() + 3 * (f * joints + clips().legs[l].joints[i]);
           before = glm::transpose(glm::mat3(glm::vec3(rows[0]), glm::vec3(rows[1]), glm::vec3(rows[2])));
         }
         // Knees up.
@@ -143,17 +143,17 @@ TEST(SpiderClips, PosesAreWithinTheRigsLimits) {
 
 TEST(SpiderClips, BodyIsSteadyAndIdleFeetStand) {
   const size_t body = 0;
-  for (const Clip& clip : spider().clips) {
+  for (const Clip& clip : clips().clips) {
     float least = 10, most = -10;
     for (size_t f = 0; f < clip.frames(); ++f) {
-      const float y = clip.rows[3 * f * spider().joints.size() + 3 * body + 1].w;
+      const float y = clip.rows[3 * f * clips().joints.size() + 3 * body + 1].w;
       least = std::min(least, y);
       most = std::max(most, y);
     }
     EXPECT_GT(most - least, 0.005f);
     EXPECT_LE(most - least, 0.0125f) << clip.name;
   }
-  const Clip& idle = spider().clip("idle");
+  const Clip& idle = clips().clip("idle");
   EXPECT_EQ(idle.speed, 0);
   for (size_t k = 0; k < idle.feet.size(); ++k) {
     EXPECT_LT(glm::length(idle.feet[k] - idle.feet[k % 8]), 1e-4f);

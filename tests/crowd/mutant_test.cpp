@@ -9,7 +9,7 @@
 namespace skitter::test {
 namespace {
 
-using Case = std::tuple<LoadPath, size_t>;
+using SituationCase = std::tuple<LoadPath, size_t>;
 
 // Every situation with every controller that can be in it.
 struct Sound {
@@ -26,7 +26,7 @@ const std::vector<Sound>& sound() {
   return all;
 }
 
-class SituationTest : public GpuTest, public ::testing::WithParamInterface<Case> {
+class SituationTest : public GpuTest, public ::testing::WithParamInterface<SituationCase> {
  protected:
   SituationTest() : GpuTest(std::get<0>(GetParam())) {}
 };

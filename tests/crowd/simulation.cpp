@@ -1,6 +1,7 @@
 #include "crowd/simulation.h"
 
 #include <algorithm>
+#include <cstring>
 #include <memory>
 
 #include "crowd/herd.h"
@@ -151,5 +152,9 @@ glm::dvec3 positionOf(const HerdState& state, size_t agent) {
 }
 
 bool plantedOf(const HerdState& state, size_t leg) { return state.foot.at(leg * 4 + 3) >= 1; }
+
+bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
 
 }  // namespace skitter::test

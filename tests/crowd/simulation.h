@@ -54,4 +54,6 @@ void expectBeganAlike(const Crowd& anew, const Crowd& began);
 glm::dvec3 positionOf(const HerdState& state, size_t agent);
 bool plantedOf(const HerdState& state, size_t leg);
 
+bool sameBits(const std::vector<float>& a, const std::vector<float>& b);
+
 }  // namespace skitter::test

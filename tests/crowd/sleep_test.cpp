@@ -76,12 +76,6 @@ std::vector<float> recordsOf(const HerdState& state, size_t agent) {
   }
   return records;
 }
-bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](float x, float y) {
-    return std::bit_cast<uint32_t>(x) == std::bit_cast<uint32_t>(y);
-  });
-}
-
 using Case = std::tuple<LoadPath, Controller>;
 
 class SleepTest : public GpuTest, public ::testing::WithParamInterface<Case> {

@@ -15,10 +15,6 @@ namespace {
 
 constexpr int kBefore = 70, kAfter = 50;
 
-bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
-}
-
 bool sameFootfall(const Footfall& a, const Footfall& b) {
   return a.agent == b.agent && a.leg == b.leg && a.tick == b.tick && a.seconds == b.seconds &&
          a.place == b.place && a.speed == b.speed;

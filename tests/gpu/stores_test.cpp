@@ -12,11 +12,11 @@ namespace {
 using test::Environment;
 using ::testing::HasSubstr;
 
-StoreChoice measured(double bits32, double bits64) {
+StoreChoice measuredStores(double bits32, double bits64) {
   return chooseStores(LoadPath::texel, {}, [&] { return StoreCost{bits32, bits64}; });
 }
 
-StoreChoice unmeasured(LoadPath loads, std::optional<StoreWidth> wanted) {
+StoreChoice unmeasuredStores(LoadPath loads, std::optional<StoreWidth> wanted) {
   return chooseStores(loads, wanted, []() -> std::optional<StoreCost> {
     ADD_FAILURE() << "it was measured";
     return {};
@@ -24,13 +24,13 @@ StoreChoice unmeasured(LoadPath loads, std::optional<StoreWidth> wanted) {
 }
 
 TEST(StoreChoice, TheQuickerWidthIsTaken) {
-  EXPECT_EQ(measured(5, 4).width, StoreWidth::bits64);
-  EXPECT_EQ(measured(4, 5).width, StoreWidth::bits32);
-  EXPECT_EQ(measured(4, 4).width, StoreWidth::bits32);
+  EXPECT_EQ(measuredStores(5, 4).width, StoreWidth::bits64);
+  EXPECT_EQ(measuredStores(4, 5).width, StoreWidth::bits32);
+  EXPECT_EQ(measuredStores(4, 4).width, StoreWidth::bits32);
 }
 
 TEST(StoreChoice, TellsWhatWasMeasured) {
-  const StoreChoice choice = measured(5, 2);
+  const StoreChoice choice = measuredStores(5, 2);
   ASSERT_TRUE(choice.cost);
   EXPECT_EQ(choice.cost->bits32, 5);
   EXPECT_EQ(choice.cost->bits64, 2);
@@ -39,7 +39,7 @@ TEST(StoreChoice, TellsWhatWasMeasured) {
 
 TEST(StoreChoice, WhatIsAskedForIsTaken) {
   for (const StoreWidth width : {StoreWidth::bits32, StoreWidth::bits64}) {
-    const StoreChoice choice = unmeasured(LoadPath::texel, width);
+    const StoreChoice choice = unmeasuredStores(LoadPath::texel, width);
     EXPECT_EQ(choice.width, width);
     EXPECT_EQ(choice.why, "asked for");
     EXPECT_FALSE(choice.cost);
@@ -47,8 +47,8 @@ TEST(StoreChoice, WhatIsAskedForIsTaken) {
 }
 
 TEST(StoreChoice, WithStorageLoadsThereIsOneWidth) {
-  EXPECT_EQ(unmeasured(LoadPath::storage, {}).width, StoreWidth::bits32);
-  EXPECT_EQ(unmeasured(LoadPath::storage, StoreWidth::bits64).width, StoreWidth::bits32);
+  EXPECT_EQ(unmeasuredStores(LoadPath::storage, {}).width, StoreWidth::bits32);
+  EXPECT_EQ(unmeasuredStores(LoadPath::storage, StoreWidth::bits64).width, StoreWidth::bits32);
 }
 
 TEST(StoreChoice, WithoutAClockItIs32) {

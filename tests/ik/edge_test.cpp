@@ -28,7 +28,7 @@ std::vector<vec3> targetsIn(double radius, size_t count, uint64_t seed) {
   return targets;
 }
 
-std::vector<vec3> legalTargets(const ik::Chain& chain, size_t count, Random& random) {
+std::vector<vec3> edgeTargets(const ik::Chain& chain, size_t count, Random& random) {
   const reference::IkChain expected = validation::referenceOf(chain);
   std::vector<vec3> targets;
   for (size_t c = 0; c < count; ++c) targets.emplace_back(expected.length * legalTarget(expected, random));
@@ -125,7 +125,7 @@ TEST_F(TargetTest, NotFiniteKeepsThePoseToTheBit) {
     Random random(1);
     const ik::Chain chain = stretched(evenChain(5, 0.4, limit), 1.7f);
     ik::Batch batch(device(), chain, 3, {.start = ik::Start::previous, .iterations = 64});
-    batch.setTargets(legalTargets(chain, 3, random));
+    batch.setTargets(edgeTargets(chain, 3, random));
     batch.solve();
     const std::vector<glm::vec4> before = batch.downloadStates();
     const Solved seen = resultOf(batch);
@@ -141,7 +141,7 @@ TEST_F(TargetTest, NotFiniteKeepsThePoseToTheBit) {
       EXPECT_EQ(report.iterations, 0u);
     }
     // And nothing of it stays: the next solve arrives.
-    batch.setTargets(legalTargets(chain, 3, random));
+    batch.setTargets(edgeTargets(chain, 3, random));
     batch.solve();
     for (const ik::Report& report : batch.downloadReports()) EXPECT_LE(report.error, 1e-3);
   }
@@ -159,7 +159,7 @@ TEST_F(ChainTest, BonesWithoutLengthDoNotMatter) {
                           {.direction = {0, 0, 1}, .limit = wide});
     if (std::string(limits) == "free")
       for (ik::Bone& bone : padded.bones) bone.limit = ik::Free{};
-    const std::vector<vec3> targets = legalTargets(plain, 32, random);
+    const std::vector<vec3> targets = edgeTargets(plain, 32, random);
     for (const ik::Solver solver : {ik::Solver::automatic, ik::Solver::fabrik}) {
       const ik::Options options{.solver = solver, .iterations = 3, .restarts = false};
       const Solved a = solve(device(), plain, options, targets),
@@ -176,7 +176,7 @@ TEST_F(ChainTest, FromTwoJointsToSixteen) {
     for (const size_t joints : {2, 16}) {
       const ik::Chain chain = evenChain(joints, 0.3, limit);
       Random random(7);
-      const std::vector<vec3> targets = legalTargets(chain, 64, random);
+      const std::vector<vec3> targets = edgeTargets(chain, 64, random);
       const Solved solved = solve(device(), chain, {}, targets);
       expectSound(chain, solved);
       for (const ik::Report& report : solved.report) EXPECT_LE(report.error, 1e-3) << joints;
@@ -214,7 +214,7 @@ TEST_F(ChainTest, ForwardKinematicsOfTheRotationsGiveTheJoints) {
     Random random(11);
     const ik::Chain chain = randomChain(limits, 5, random);
     const reference::IkChain expected = validation::referenceOf(chain);
-    const std::vector<vec3> targets = legalTargets(chain, 32, random);
+    const std::vector<vec3> targets = edgeTargets(chain, 32, random);
     const Solved solved = solve(device(), chain, {.rotations = true}, targets);
     for (size_t c = 0; c < targets.size(); ++c) {
       glm::dvec3 p(0);

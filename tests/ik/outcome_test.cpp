@@ -11,7 +11,7 @@ namespace skitter::test {
 namespace {
 
 constexpr size_t cold = 2000, paths = 200, manyPaths = 4000, ticks = 50;
-constexpr float degree = 0.0174532925f;
+constexpr float kDegree = 0.0174532925f;
 
 class OutcomeTest : public GpuTest {
  protected:
@@ -94,7 +94,7 @@ TEST_F(OutcomeTest, FreeChains) {
 
 TEST_F(OutcomeTest, Cones) {
   for (const int angle : {90, 60, 30}) {
-    const ik::Chain chain = evenChain(5, 0.35, ik::Cone{degree * static_cast<float>(angle)});
+    const ik::Chain chain = evenChain(5, 0.35, ik::Cone{kDegree * static_cast<float>(angle)});
     expectCold("cones" + std::to_string(angle), chain, 0.9999);
     if (angle == 60) expectTracking("cones60.track", chain);
   }
@@ -112,7 +112,7 @@ TEST_F(OutcomeTest, TheSpidersHinges) {
 }
 
 TEST_F(OutcomeTest, HingesOnAFreeBall) {
-  ik::Chain chain = evenChain(5, 0.35, ik::Hinge{{0, 0, 1}, -60 * degree, 60 * degree});
+  ik::Chain chain = evenChain(5, 0.35, ik::Hinge{{0, 0, 1}, -60 * kDegree, 60 * kDegree});
   chain.bones[0].limit = ik::Free{};
   expectCold("free-base", chain, 0.9999);
   expectTracking("free-base.track", chain, 0.9998);
@@ -120,7 +120,7 @@ TEST_F(OutcomeTest, HingesOnAFreeBall) {
 
 // Ball joints of 90 degrees, straight at rest, the base free: what Caliko's examples are made of.
 TEST_F(OutcomeTest, BallJointsOnAFreeBase) {
-  ik::Chain chain = evenChain(6, 0, ik::Cone{90 * degree});
+  ik::Chain chain = evenChain(6, 0, ik::Cone{90 * kDegree});
   chain.bones[0].limit = ik::Free{};
   Random random(14);
   expectSolved("balls", solveCold(device(), chain, {}, shellTargets(0.2, 0.95, cold, random)), 0.9999);

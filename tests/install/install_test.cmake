@@ -29,7 +29,7 @@ run(out ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
 run(out ${prefix}/bin/skitter --version)
 expect("the installed command" "${out}" "${VERSION}")
 
-foreach(example minimal:walked ik:reach splines:travellers)
+foreach(example minimal:walked ik:reach splines:way)
   string(REGEX MATCH "(.+):(.+)" whole ${example})
   set(name ${CMAKE_MATCH_1})
   set(word ${CMAKE_MATCH_2})

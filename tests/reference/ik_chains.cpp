@@ -155,6 +155,12 @@ std::vector<glm::dmat3> rotationsOf(const reference::IkChain& chain, const refer
   return chain.free ? reference::rotationsOf(chain, state.joints) : reference::rotationsOf(chain, state.pose);
 }
 
+reference::IkResult solve(const reference::IkChain& chain, const reference::IkSettings& settings,
+                          const glm::dvec3& target) {
+  reference::IkMemory memory;
+  return reference::solveIk(chain, settings, target, reference::restState(chain), memory);
+}
+
 glm::dvec3 randomPoint(std::mt19937_64& random, double low, double high) {
   std::uniform_real_distribution<double> unit(0, 1);
   const double z = 2 * unit(random) - 1, around = glm::two_pi<double>() * unit(random),

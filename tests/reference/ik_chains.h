@@ -47,6 +47,9 @@ Verdict judge(const ChainSpec& spec, const reference::Joints& joints,
 
 std::vector<glm::dmat3> rotationsOf(const reference::IkChain& chain, const reference::IkState& state);
 
+// From rest, without memory.
+reference::IkResult solve(const reference::IkChain&, const reference::IkSettings&, const glm::dvec3& target);
+
 // Uniform in the shell of distances low to high.
 glm::dvec3 randomPoint(std::mt19937_64& random, double low, double high);
 

@@ -20,11 +20,6 @@ constexpr IkSolver allSolvers[] = {
     IkSolver::dls,          IkSolver::targetAttached,   IkSolver::twoBone,
     IkSolver::stretchAlign, IkSolver::activeSet};
 
-IkResult solve(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target) {
-  IkMemory memory;
-  return solveIk(chain, settings, target, restState(chain), memory);
-}
-
 bool isFinite(const IkState& state) {
   for (const glm::dvec3& joint : state.joints) {
     if (!std::isfinite(joint.x + joint.y + joint.z)) return false;

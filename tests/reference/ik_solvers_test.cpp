@@ -14,17 +14,11 @@ namespace skitter::test {
 namespace {
 
 using reference::IkChain;
-using reference::IkMemory;
 using reference::IkResult;
 using reference::IkSettings;
 using reference::IkSolver;
 using reference::IkState;
 using reference::IkStop;
-
-IkResult solve(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target) {
-  IkMemory memory;
-  return reference::solveIk(chain, settings, target, reference::restState(chain), memory);
-}
 
 double length(const glm::dvec3& v) { return glm::length(v); }
 

@@ -33,7 +33,7 @@ class IkTies : public testing::Test {
   }
   reference::Chain solve(const reference::Foot& foot, reference::Arithmetic& arithmetic) const {
     return reference::ik(setting.tuning, limb, bodyOf(herd.state(), 0), foot,
-                         chainOf(before, leg, herd.bones()), setting.ik, arithmetic);
+                         validation::chainOf(before, leg, herd.bones()), setting.ik, arithmetic);
   }
   std::vector<bool> decisionsAt(const glm::dvec3& moved) const {
     reference::Arithmetic exact;

@@ -44,7 +44,7 @@ RawLayout rawLayout(SampleType type, const std::filesystem::path& file, const He
   return layout;
 }
 
-HeightSamples readSamples(const std::filesystem::path& file, const HeightfieldUnits& units,
+StoredHeights readSamples(const std::filesystem::path& file, const HeightfieldUnits& units,
                           const HeightSidecar& sidecar, std::optional<double> voidValue) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -63,7 +63,7 @@ HeightSamples readSamples(const std::filesystem::path& file, const HeightfieldUn
 }
 
 // A size told beside the file must be the file's own. Where the caller tells it, the sidecar's is not asked.
-void checkSize(const std::filesystem::path& file, const HeightSamples& samples, const HeightfieldUnits& units,
+void checkSize(const std::filesystem::path& file, const StoredHeights& samples, const HeightfieldUnits& units,
                const HeightSidecar& sidecar) {
   if (units.columns.value_or(samples.columns) != samples.columns ||
       units.rows.value_or(samples.rows) != samples.rows) {
@@ -81,7 +81,7 @@ void checkSize(const std::filesystem::path& file, const HeightSamples& samples, 
 }
 
 // The range of the samples that are no voids.
-std::pair<float, float> rangeOf(const std::string& name, const HeightSamples& samples) {
+std::pair<float, float> rangeOf(const std::string& name, const StoredHeights& samples) {
   float low = HUGE_VALF, high = -HUGE_VALF;
   for (size_t k = 0; k < samples.values.size(); ++k) {
     const float value = samples.values[k];
@@ -99,7 +99,7 @@ std::pair<float, float> rangeOf(const std::string& name, const HeightSamples& sa
 }
 
 // Metres become codes of the range from the lowest sample to the highest.
-void encode(HeightSamples& samples, float low, float high) {
+void encode(StoredHeights& samples, float low, float high) {
   const float range = high - low;
   for (float& value : samples.values) {
     if (!std::isnan(value)) value = range > 0 ? (value - low) / range : 0.0f;
@@ -112,7 +112,7 @@ Heightfield load(const std::filesystem::path& file, const HeightfieldUnits& unit
   const HeightSidecar sidecar = readHeightSidecar(file);
   const auto either = [](const auto& first, const auto& second) { return first ? first : second; };
   const auto voidValue = either(units.voidValue, sidecar.voidValue);
-  HeightSamples samples = readSamples(file, units, sidecar, voidValue);
+  StoredHeights samples = readSamples(file, units, sidecar, voidValue);
   checkSize(file, samples, units, sidecar);
 
   const float scale = units.scale.value_or(1.0f), exaggeration = units.exaggeration.value_or(1.0f);

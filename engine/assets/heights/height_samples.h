@@ -9,7 +9,7 @@
 namespace skitter {
 
 // What a height file holds, before units are applied and voids are filled.
-struct HeightSamples {
+struct StoredHeights {
   uint32_t columns = 0, rows = 0;
   std::vector<float> values;                // rows * columns, row-major; NaN marks a void
   bool areCodes = false;                    // 0 to 1 of a range; metres otherwise
@@ -40,10 +40,10 @@ struct RawLayout {
   std::optional<uint32_t> columns, rows;
 };
 
-HeightSamples readPngHeights(const std::filesystem::path& file, std::optional<double> voidValue);
-HeightSamples readRawHeights(const std::filesystem::path& file, RawLayout, std::optional<double> voidValue);
+StoredHeights readPngHeights(const std::filesystem::path& file, std::optional<double> voidValue);
+StoredHeights readRawHeights(const std::filesystem::path& file, RawLayout, std::optional<double> voidValue);
 // 1201 or 3601 samples a side; the spacing comes from the latitude in the name, where there is one.
-HeightSamples readHgtHeights(const std::filesystem::path& file, std::optional<double> voidValue);
-HeightSamples readNpyHeights(const std::filesystem::path& file, std::optional<double> voidValue);
+StoredHeights readHgtHeights(const std::filesystem::path& file, std::optional<double> voidValue);
+StoredHeights readNpyHeights(const std::filesystem::path& file, std::optional<double> voidValue);
 
 }  // namespace skitter

@@ -42,7 +42,7 @@ std::optional<double> latitudeOf(const std::string& stem) {
 
 }  // namespace
 
-HeightSamples readHgtHeights(const std::filesystem::path& file, std::optional<double> voidValue) {
+StoredHeights readHgtHeights(const std::filesystem::path& file, std::optional<double> voidValue) {
   const SampleType type{SampleType::Kind::i2, true};
   const uint64_t size = FileStream(file).size();
   const auto isTile = [&](uint64_t side) { return size == side * side * type.bytes(); };
@@ -51,7 +51,7 @@ HeightSamples readHgtHeights(const std::filesystem::path& file, std::optional<do
         fmt::format("{}: has {} bytes, expected {} (SRTM3, 1201 x 1201 samples) or {} (SRTM1, 3601 x 3601)",
                     file.string(), size, 1201 * 1201 * 2, 3601 * 3601 * 2));
   }
-  HeightSamples samples = readRawHeights(file, {type, {}, {}}, voidValue);
+  StoredHeights samples = readRawHeights(file, {type, {}, {}}, voidValue);
   if (const auto degrees = latitudeOf(file.stem().string())) {
     // Metres a degree of latitude and of longitude on WGS 84, good to a centimetre: National Imagery and
     // Mapping Agency, "The American Practical Navigator" (2002).

@@ -164,7 +164,7 @@ SampleType typeOf(const std::string& descr, const std::string& name) {
 
 }  // namespace
 
-HeightSamples readNpyHeights(const std::filesystem::path& file, std::optional<double> voidValue) {
+StoredHeights readNpyHeights(const std::filesystem::path& file, std::optional<double> voidValue) {
   const std::string name = file.string();
   FileStream stream(file);
   uint64_t headerBytes = 0;
@@ -183,7 +183,7 @@ HeightSamples readNpyHeights(const std::filesystem::path& file, std::optional<do
                                  found, columns, rows, type.bytes(), expected));
   }
 
-  HeightSamples samples{
+  StoredHeights samples{
       static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), {}, type.isCode(), {}, {}};
   samples.values.resize(rows * columns);
   const uint64_t lines = header.fortranOrder ? columns : rows,

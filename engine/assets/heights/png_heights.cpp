@@ -77,7 +77,7 @@ class PngReader {
 
 }  // namespace
 
-HeightSamples readPngHeights(const std::filesystem::path& file, std::optional<double> voidValue) {
+StoredHeights readPngHeights(const std::filesystem::path& file, std::optional<double> voidValue) {
   const std::string name = file.string();
   const std::vector<uint8_t> bytes = readFile(file);
   if (bytes.size() < 8 || png_sig_cmp(bytes.data(), 0, 8) != 0) {
@@ -94,7 +94,7 @@ HeightSamples readPngHeights(const std::filesystem::path& file, std::optional<do
   if (bits != 8 && bits != 16)
     throw inputError(fmt::format("{}: has {}-bit grey, expected 8 or 16", name, bits));
 
-  HeightSamples samples{reader.columns(), reader.rows(), {}, true, {}, {}};
+  StoredHeights samples{reader.columns(), reader.rows(), {}, true, {}, {}};
   checkSampleCounts(name, samples.columns, samples.rows);
   const size_t rowBytes = size_t{samples.columns} * static_cast<size_t>(bits / 8);
   // Deflate expands at most 1032 times, so a small file that declares a huge image is cut off or a lie.

@@ -18,7 +18,7 @@ uint64_t squareRoot(uint64_t count) {
 
 }  // namespace
 
-HeightSamples readRawHeights(const std::filesystem::path& file, RawLayout layout,
+StoredHeights readRawHeights(const std::filesystem::path& file, RawLayout layout,
                              std::optional<double> voidValue) {
   const std::string name = file.string();
   FileStream stream(file);
@@ -46,7 +46,7 @@ HeightSamples readRawHeights(const std::filesystem::path& file, RawLayout layout
                                  columns, rows, sampleBytes, columns * rows * sampleBytes));
   }
 
-  HeightSamples samples{
+  StoredHeights samples{
       static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), {}, layout.type.isCode(), {}, {}};
   samples.values.resize(columns * rows);
   std::vector<uint8_t> row(columns * sampleBytes);

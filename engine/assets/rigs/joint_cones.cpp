@@ -12,11 +12,11 @@ namespace {
 constexpr double leastCone = 45, mostCone = 120, rootCone = 60, rootMargin = 40;  // degrees
 constexpr double foldShare =
     0.25;  // of the reach, root to foot: gait lets feet come as near (crowd/tuning.cpp)
-constexpr double degrees = 180 / std::numbers::pi;
+constexpr double inDegrees = 180 / std::numbers::pi;
 
 double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
   const double lengths = glm::length(a) * glm::length(b);
-  return lengths > 0 ? std::acos(std::clamp(glm::dot(a, b) / lengths, -1.0, 1.0)) * degrees : 0;
+  return lengths > 0 ? std::acos(std::clamp(glm::dot(a, b) / lengths, -1.0, 1.0)) * inDegrees : 0;
 }
 
 // The least distance from root to foot, a share of the reach, as every joint bends on the way it bends at
@@ -31,7 +31,7 @@ double foldedSpan(const Leg& leg, const std::vector<double>& cones) {
       const glm::dvec3 bone(leg.bones[i].direction);
       if (i > 0) {
         const glm::dvec3 axis = glm::cross(glm::dvec3(leg.bones[i - 1].direction), bone);
-        const double angle = cones[i] / degrees * step / steps;
+        const double angle = cones[i] / inDegrees * step / steps;
         if (glm::length(axis) > 1e-6) turn = turn * glm::angleAxis(angle, glm::normalize(axis));
       }
       tip += turn * bone * double{leg.bones[i].length};

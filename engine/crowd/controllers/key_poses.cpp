@@ -3,7 +3,7 @@
 namespace skitter::crowd {
 namespace {
 
-void prepare(const gpu::Context& context, const skitter::Herd& from, Kind& kind) {
+void prepareKeyPoses(const gpu::Context& context, const skitter::Herd& from, Kind& kind) {
   kind.keyPoses = keyPoses(clipSetOf(from, kind.rig), clipNames(from), from.keys, kind.rig, kind.rigRecords);
   kind.keyBuffer = constantBuffer(context, kind.keyPoses.records, "key poses");
 }
@@ -17,7 +17,7 @@ const ControllerStages keyPoseController = {
           return std::vector{navigateStage(),     wakeStage(), blindBodyStage(), keyPoseGaitStage(),
                              keyPoseSwingStage(), poseStage(), measureStage(),   footfallStage()};
         },
-    .prepare = prepare,
+    .prepare = prepareKeyPoses,
 };
 
 }  // namespace skitter::crowd

@@ -6,7 +6,7 @@
 namespace skitter::crowd {
 namespace {
 
-void prepare(const gpu::Context& context, const skitter::Herd& from, Kind& kind) {
+void preparePlanted(const gpu::Context& context, const skitter::Herd& from, Kind& kind) {
   if (from.solver != Solver::activeSet)
     throw inputError(fmt::format("a herd's solver is {}, expected {}: its controller is {}",
                                  nameOf(from.solver), nameOf(Solver::activeSet), nameOf(from.controller)));
@@ -24,7 +24,7 @@ const ControllerStages plantedController = {
                              plantedPoseStage(), measureStage(),      footfallStage()};
         },
     .specialise = addClips,
-    .prepare = prepare,
+    .prepare = preparePlanted,
 };
 
 }  // namespace skitter::crowd

@@ -9,7 +9,7 @@
 namespace skitter::crowd {
 namespace {
 
-void specialise(const StageNeeds& needs, StageKernels& kernels) { addRigLegs(needs.kind, kernels.first); }
+void specialiseBody(const StageNeeds& needs, StageKernels& kernels) { addRigLegs(needs.kind, kernels.first); }
 
 }  // namespace
 
@@ -27,7 +27,7 @@ Stage bodyStage() {
            {BINDING_BODY, load4},
            {BINDING_BODY_OUT, store}},
           Stage::Over::agents,
-          specialise};
+          specialiseBody};
 }
 
 Stage blindBodyStage() {
@@ -41,7 +41,7 @@ Stage blindBodyStage() {
            {BINDING_BODY, load4},
            {BINDING_BODY_OUT, store}},
           Stage::Over::agents,
-          specialise};
+          specialiseBody};
 }
 
 }  // namespace skitter::crowd

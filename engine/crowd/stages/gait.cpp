@@ -15,7 +15,7 @@
 namespace skitter::crowd {
 namespace {
 
-void specialise(const StageNeeds& needs, StageKernels& kernels) {
+void specialiseGait(const StageNeeds& needs, StageKernels& kernels) {
   addRigLegs(needs.kind, kernels.first);
   kernels.first.constants.emplace_back(shared::CONSTANT_REACH, needs.kind.reachTriggered ? 1 : 0);
   kernels.afterEdit = kernels.first;
@@ -40,7 +40,7 @@ Stage gaitStage() {
            {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::agents,
-          specialise};
+          specialiseGait};
 }
 
 Stage bodyAndGaitStage() {
@@ -61,7 +61,7 @@ Stage bodyAndGaitStage() {
            {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::agents,
-          specialise};
+          specialiseGait};
 }
 
 Stage navigateBodyAndGaitStage() {

@@ -36,7 +36,7 @@ bool addRigBones(const Kind& kind, gpu::KernelInfo& info) {
   return true;
 }
 
-void specialise(const StageNeeds& needs, StageKernels& kernels) {
+void specialiseSolve(const StageNeeds& needs, StageKernels& kernels) {
   using namespace shared;
   const Kind& kind = needs.kind;
   gpu::KernelInfo& info = kernels.first;
@@ -62,13 +62,13 @@ void specialise(const StageNeeds& needs, StageKernels& kernels) {
 void specialiseIk(const StageNeeds& needs, StageKernels& kernels) {
   if (needs.kind.ik.solver != shared::SOLVER_FABRIK)
     kernels.first.code = {embedded::ik_compared_comp_texel(), embedded::ik_compared_comp_storage()};
-  specialise(needs, kernels);
+  specialiseSolve(needs, kernels);
 }
 void specialiseSwingAndIk(const StageNeeds& needs, StageKernels& kernels) {
   if (needs.kind.ik.solver != shared::SOLVER_FABRIK)
     kernels.first.code = {embedded::swing_ik_compared_comp_texel(),
                           embedded::swing_ik_compared_comp_storage()};
-  specialise(needs, kernels);
+  specialiseSolve(needs, kernels);
 }
 
 }  // namespace
@@ -131,7 +131,7 @@ Stage plantedIkStage() {
            {BINDING_LIST, store},
            {BINDING_COUNTERS, store}},
           Stage::Over::legs,
-          specialise,
+          specialiseSolve,
           COUNTER_IK_DISPATCH_X};
 }
 
