@@ -11,7 +11,8 @@ struct Moment {
   const HerdState& before;
   const HerdState& after;
   size_t agent;  // of those that the states hold
-  size_t number() const { return after.sample.first + agent * after.sample.stride; }  // in the herd
+  // Among all whom these are a sample of.
+  size_t number() const { return after.sample.first + agent * after.sample.stride; }
 };
 
 // A sleeper's records must be those of before the tick, bit for bit; adds what is not.

@@ -13,4 +13,11 @@ inline HerdFacts herdFacts(const crowd::Kind& kind, const Heightfield& terrain) 
           kind.ik,  kind.controller, kind.clips,      kind.keyPoses};
 }
 
+// The same of a herd's agents that have one size, who are replayed by themselves.
+inline HerdFacts herdFacts(const Crowd::Impl& crowd, const crowd::HerdRun& of) {
+  HerdFacts facts = herdFacts(crowd.kinds[of.run->kind], crowd.terrain);
+  facts.firstAgent = of.run->firstOfHerd;
+  return facts;
+}
+
 }  // namespace skitter::validation

@@ -65,8 +65,8 @@ void Judge::add(uint64_t tick, uint64_t agent, int leg, const Sample& sample, bo
   ratio_ = sample.ratio_;
   result_.maxError = sample.error_;
   result_.tolerance = sample.tolerance_;
-  result_.worst = std::string(sample.quantity_) + ": " + placeOf(tick, agent, leg) + ", expected " +
-                  textOf(sample.expected_) + ", got " + textOf(sample.got_);
+  result_.worst = std::string(sample.quantity_) + ": " + placeOf(tick, firstAgent_ + agent, leg) +
+                  ", expected " + textOf(sample.expected_) + ", got " + textOf(sample.got_);
 }
 
 StageResult Judge::result() const {

@@ -46,7 +46,10 @@ class Sample {
 // Gathers the samples of one stage.
 class Judge {
  public:
-  explicit Judge(std::string name) { result_.name = std::move(name); }
+  // Messages number agents from `firstAgent` on.
+  explicit Judge(std::string name, uint64_t firstAgent = 0) : firstAgent_(firstAgent) {
+    result_.name = std::move(name);
+  }
   // leg < 0: the sample is a whole agent.
   void add(uint64_t tick, uint64_t agent, int leg, const Sample& sample, bool tie = false);
   // A record had to stay as it was, and did; where it did not, it is a sample that fails.
@@ -55,6 +58,7 @@ class Judge {
   StageResult result() const;
 
  private:
+  uint64_t firstAgent_;
   StageResult result_;
   double ratio_ = -1;
 };

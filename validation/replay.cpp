@@ -99,7 +99,8 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
 
 Replay::Replay(const HerdFacts& herd, std::vector<crowd::StageId> only)
     : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)), only_(std::move(only)) {
-  for (const Check* check : checksOf(herd.controller, only_)) judges_.emplace_back(nameOf(check->stage));
+  for (const Check* check : checksOf(herd.controller, only_))
+    judges_.emplace_back(nameOf(check->stage), herd.firstAgent);
 }
 
 void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {

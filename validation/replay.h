@@ -29,6 +29,7 @@ struct HerdFacts {
   Controller controller = Controller::adaptive;
   crowd::ClipRecords clips = {};  // where clips are played
   crowd::KeyPoses keyPoses = {};  // of controller key-poses
+  uint32_t firstAgent = 0;        // the number in the herd of agent 0 of the states, for messages
 };
 
 // What every check needs to know about the herd.

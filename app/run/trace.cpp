@@ -140,6 +140,17 @@ nlohmann::ordered_json describe(const Rig& rig, uint32_t agents) {
           {"limits", limits}};
 }
 
+// Which agents of a herd of several sizes are how large. The herd is described at the first size.
+void addSizes(const Crowd::Impl& crowd, uint32_t herd, nlohmann::ordered_json& described) {
+  const std::vector<crowd::SizeRun>& runs = crowd.herdAt(herd).runs;
+  if (runs.size() == 1) return;
+  for (const crowd::SizeRun& run : runs)
+    described["sizes"].push_back({{"firstAgent", run.firstOfHerd},
+                                  {"agents", run.agents},
+                                  {"size", crowd.kinds[run.kind].size},
+                                  {"legLength", crowd.kinds[run.kind].rig.legLength}});
+}
+
 }  // namespace
 
 Trace::Trace(const fs::path& folder, const Crowd& crowd, const Scene& scene, double dt)
@@ -176,8 +187,8 @@ void Trace::append(const Crowd& crowd) {
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
     const HerdState state = crowd.download(h);
     Values values;
-    for (size_t agent = 0; agent < state.agents; ++agent)
-      appendAgent(state, implOf(crowd).kindOf(h), agent, values);
+    for (uint32_t agent = 0; agent < state.agents; ++agent)
+      appendAgent(state, implOf(crowd).kindOf(h, agent), agent, values);
     herds_[h].joints.append(std::span<const float>(values.joints));
     herds_[h].rotations.append(std::span<const float>(values.rotations));
     herds_[h].stance.append(std::span<const uint8_t>(values.stance));
@@ -197,6 +208,7 @@ size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manif
     herds_[h].stance.finish(entries_);
     herds_[h].body.finish(entries_);
     herds.push_back(describe(crowd.rig(h), herds_[h].agents));
+    addSizes(implOf(crowd), h, herds.back());
   }
   const nlohmann::ordered_json json = {{"dt", dt_},
                                        {"firstTick", firstTick_},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crowd/herd.h"
 #include "skitter/records.h"
 
 namespace skitter::app {
@@ -10,7 +11,7 @@ namespace {
 
 constexpr double kEvery = 0.25;                                             // seconds
 constexpr uint64_t kTimes = 4, kCycle = 16;                                 // times out of so many
-constexpr uint32_t kAtOnce = 16;                                            // of a herd
+constexpr uint32_t kAtOnce = 16;                                            // of a herd's size
 constexpr uint32_t kMostSamples = 64;                                       // a side
 constexpr float kAway = 1, kLeast = 0.15f, kMost = 0.75f, kHeight = 0.25f;  // leg lengths
 
@@ -20,7 +21,8 @@ GroundEdits::GroundEdits(const Crowd& crowd, uint64_t seed, double dt)
     : ground_(crowd.terrain()),
       every_(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(kEvery / dt)))),
       random_(seed) {
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h) legLengths_.push_back(crowd.rig(h).legLength);
+  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd)))
+    legLengths_.push_back(implOf(crowd).kinds[of.run->kind].rig.legLength);
 }
 
 // Not a standard distribution: those differ from library to library.

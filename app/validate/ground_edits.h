@@ -19,7 +19,7 @@ class GroundEdits {
  public:
   GroundEdits(const Crowd& crowd, uint64_t seed, double dt);
 
-  // The edits to make before tick n; places are near agents of `herds`.
+  // The edits to make before tick n; places are near agents of `herds`, which are crowd::allRuns().
   std::vector<HeightEdit> before(uint64_t n, const std::vector<HerdState>& herds);
 
  private:

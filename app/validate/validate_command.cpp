@@ -18,7 +18,7 @@
 #include "app/validate/ground_edits.h"
 #include "app/validate/outcome.h"
 #include "crowd/events.h"
-#include "crowd/herd.h"
+#include "crowd/readback.h"
 #include "gpu/submit.h"
 #include "skitter/error.h"
 #include "validation/free_run.h"
@@ -43,25 +43,28 @@ struct ValidateOptions {
   uint32_t pageAgents = 0;  // 0: as many as the device allows
 };
 
-// Beside the device's crowd: the same herds walked by the reference alone, from the same first state.
+// Beside the device's crowd: the same herds walked by the reference alone, from the same first state. States
+// are those of crowd::allRuns().
 class FreeRuns {
  public:
   FreeRuns(const Crowd& crowd, const std::vector<HerdState>& first) {
-    for (uint32_t h = 0; h < first.size(); ++h)
-      runs_.push_back(std::make_unique<validation::FreeRun>(
-          validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), first[h]));
+    for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd)))
+      runs_.push_back(std::make_unique<validation::FreeRun>(validation::herdFacts(implOf(crowd), of),
+                                                            first[runs_.size()]));
   }
   void follow(const std::vector<HerdState>& before, const std::vector<HerdState>& after) {
-    for (size_t h = 0; h < runs_.size(); ++h) runs_[h]->follow(before[h], after[h]);
+    for (size_t r = 0; r < runs_.size(); ++r) runs_[r]->follow(before[r], after[r]);
   }
   void tick(const std::vector<HerdState>& device) {
-    for (size_t h = 0; h < runs_.size(); ++h) runs_[h]->tick(device[h].watched);
+    for (size_t r = 0; r < runs_.size(); ++r) runs_[r]->tick(device[r].watched);
   }
   double shareWithin(const Crowd& crowd, const std::vector<HerdState>& device) const {
+    const std::vector<crowd::HerdRun> runs = crowd::allRuns(implOf(crowd));
     double agents = 0, within = 0;
-    for (uint32_t h = 0; h < runs_.size(); ++h) {
-      agents += crowd.agentCount(h);
-      within += runs_[h]->shareWithin(device[h], freeRunTolerance) * crowd.agentCount(h);
+    for (size_t r = 0; r < runs_.size(); ++r) {
+      const double here = runs[r].agentCount();
+      agents += here;
+      within += runs_[r]->shareWithin(device[r], freeRunTolerance) * here;
     }
     return agents > 0 ? within / agents : 1;
   }
@@ -73,7 +76,8 @@ class FreeRuns {
 // Everybody who is there.
 std::vector<HerdState> download(const Crowd& crowd) {
   std::vector<HerdState> states;
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h) states.push_back(crowd.download(h));
+  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd)))
+    states.push_back(crowd::download(implOf(crowd), *of.run));
   return states;
 }
 
@@ -267,7 +271,7 @@ void addValidate(CLI::App& app, Command& chosen) {
       ->type_name("N");
   command->add_flag("--quiet", options->quiet, "no progress on stderr");
   command->footer(fmt::format(
-      "Of herds of more than {} agents a part is compared, another one in each tick.\n"
+      "Of more than {} agents of one size in a herd a part is compared, another one in each tick.\n"
       "\n"
       "A stage passes if all of its samples are within their tolerances and there was something to "
       "compare. Samples are agents or legs, or joints of a clip's skin, in a tick; kept are "

@@ -60,9 +60,9 @@ std::optional<AgentId> agentAt(const Crowd& crowd, const Lens& lens, const glm::
   std::optional<AgentId> best;
   float least = std::numeric_limits<float>::infinity();
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
-    const Rig& rig = crowd.rig(h);
     const std::vector<glm::vec3> places = placesOf(crowd, h);
     for (uint32_t a = 0; a < places.size(); ++a) {
+      const Rig& rig = crowd.rig(h, a);
       const glm::vec3 middle = places[a] + glm::vec3(0, rig.bodyHeight, 0);
       const std::optional<glm::vec2> at = lens.pixel(middle);
       if (!at) continue;
@@ -93,9 +93,9 @@ AgentId neighbourOf(const Crowd& crowd, AgentId id, bool after) {
 
 Followed::Followed(const Crowd& crowd, AgentId id)
     : id_(id),
-      creature_(creatureOf(implOf(crowd).kindOf(id.herd))),
-      legLength_(crowd.rig(id.herd).legLength),
-      bodyHeight_(crowd.rig(id.herd).bodyHeight) {
+      creature_(creatureOf(implOf(crowd).kindOf(id.herd, id.agent))),
+      legLength_(crowd.rig(id.herd, id.agent).legLength),
+      bodyHeight_(crowd.rig(id.herd, id.agent).bodyHeight) {
   legs_.resize(crowd.rig(id.herd).legs.size());
   look(crowd);
 }
@@ -107,7 +107,7 @@ void Followed::look(const Crowd& crowd) {
 }
 
 void Followed::lookAtLeg(const Crowd& crowd, size_t leg) {
-  const crowd::Kind& kind = implOf(crowd).kindOf(id_.herd);
+  const crowd::Kind& kind = implOf(crowd).kindOf(id_.herd, id_.agent);
   const reference::Limb& limb = creature_.limbs[leg];
   const reference::AgentBody body = validation::bodyOf(now_, 0);
   const glm::dvec3 origin = originOf(body);

@@ -26,7 +26,7 @@ constexpr uint32_t kTicksAWatchedOne = 4;
 // The reference takes about a millisecond for one of them.
 constexpr uint32_t kAgentsChecked = 1024;
 
-// A tick's states before and after, of every herd.
+// A tick's states before and after, of every herd, size by size (crowd::allRuns).
 struct Witness {
   std::vector<HerdState> before, after;
 };
@@ -43,18 +43,20 @@ struct Corner {
 std::vector<HerdState> statesOf(const Crowd& crowd, const Contestant& contestant, uint64_t tick,
                                 uint64_t seed) {
   std::vector<HerdState> states;
-  for (const crowd::Herd& herd : implOf(crowd).herds)
+  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd)))
     states.push_back(contestant.state(static_cast<uint32_t>(states.size()),
-                                      validation::sampleAt(seed, tick, herd.agents, kAgentsChecked)));
+                                      validation::sampleAt(seed, tick, of.run->agents, kAgentsChecked)));
   return states;
 }
 
 std::vector<validation::StageResult> judge(const Crowd& crowd, const Witness& witness,
                                            const std::vector<StageDemand>& timed) {
+  const Crowd::Impl& impl = implOf(crowd);
+  const std::vector<crowd::HerdRun> runs = crowd::allRuns(impl);
   std::vector<validation::StageResult> results;
-  for (uint32_t h = 0; h < witness.before.size(); ++h) {
-    validation::Replay replay(validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain));
-    replay.tick(witness.after[h].tick, witness.before[h], witness.after[h]);
+  for (size_t r = 0; r < runs.size(); ++r) {
+    validation::Replay replay(validation::herdFacts(impl, runs[r]));
+    replay.tick(witness.after[r].tick, witness.before[r], witness.after[r]);
     for (const validation::StageResult& result : replay.results())
       if (std::any_of(timed.begin(), timed.end(),
                       [&](const StageDemand& d) { return crowd::makes(d.stage, result.name); }))

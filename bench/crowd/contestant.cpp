@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "bench/cpu_crowd/crowd.h"
-#include "crowd/herd.h"
+#include "crowd/readback.h"
 #include "shared/ik_batch.h"
 #include "validation/herd_facts.h"
 
@@ -26,8 +26,8 @@ class DeviceContestant : public Contestant {
     finish();
     for (const StageTime& time : crowd_.stageTimes()) add(times_, time.stage, time.milliseconds);
   }
-  HerdState state(uint32_t herd, const AgentSample& sample) const override {
-    return crowd_.download(herd, sample);
+  HerdState state(uint32_t run, const AgentSample& sample) const override {
+    return crowd::download(implOf(crowd_), *crowd::allRuns(implOf(crowd_))[run].run, sample);
   }
   void finish() override { ring_.waitAll(); }
   void timeStages(bool on) override {
@@ -49,9 +49,10 @@ class CpuContestant : public Contestant {
  public:
   CpuContestant(const Crowd& crowd, const cpu_crowd::Options& options)
       : options_(options), tick_(crowd.tick()) {
-    for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-      herds_.push_back(std::make_unique<cpu_crowd::CpuCrowd>(
-          validation::herdFacts(implOf(crowd).kindOf(h), implOf(crowd).terrain), crowd.download(h), options));
+    const Crowd::Impl& impl = implOf(crowd);
+    for (const crowd::HerdRun& of : crowd::allRuns(impl))
+      runs_.push_back(std::make_unique<cpu_crowd::CpuCrowd>(validation::herdFacts(impl, of),
+                                                            crowd::download(impl, *of.run), options));
   }
 
   std::string name() const override {
@@ -61,18 +62,18 @@ class CpuContestant : public Contestant {
   int threads() const override { return options_.threads; }
   void tick() override {
     ++tick_;
-    for (const auto& herd : herds_) herd->tick(tick_);
+    for (const auto& run : runs_) run->tick(tick_);
   }
-  HerdState state(uint32_t herd, const AgentSample& sample) const override {
-    return validation::sampled(herds_[herd]->state(), sample);
+  HerdState state(uint32_t run, const AgentSample& sample) const override {
+    return validation::sampled(runs_[run]->state(), sample);
   }
   void timeStages(bool on) override {
-    for (const auto& herd : herds_) herd->timeStages(on);
+    for (const auto& run : runs_) run->timeStages(on);
   }
   std::vector<StageTime> stageTimes() const override {
     std::vector<StageTime> times;
-    for (const auto& herd : herds_)
-      for (const cpu_crowd::StageSeconds& stage : herd->stageSeconds())
+    for (const auto& run : runs_)
+      for (const cpu_crowd::StageSeconds& stage : run->stageSeconds())
         add(times, stage.stage, 1e3 * stage.seconds);
     return times;
   }
@@ -80,7 +81,7 @@ class CpuContestant : public Contestant {
  private:
   cpu_crowd::Options options_;
   uint64_t tick_;
-  std::vector<std::unique_ptr<cpu_crowd::CpuCrowd>> herds_;
+  std::vector<std::unique_ptr<cpu_crowd::CpuCrowd>> runs_;
 };
 
 }  // namespace

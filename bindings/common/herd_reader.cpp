@@ -90,12 +90,12 @@ std::vector<glm::dvec3> jointsOf(const Crowd& crowd, uint32_t herd) {
   const HerdState state = stateOf(crowd, herd, std::array{Record::body, Record::pose});
   if (state.pose.empty() && state.agents > 0)
     throw inputError("joints are known only of a crowd that was made with poses (the option pose)");
-  const crowd::Kind& kind = implOf(crowd).kindOf(herd);
-  const auto bones = static_cast<size_t>(kind.bones), legs = static_cast<size_t>(kind.legs);
+  const size_t bones = bonesOf(crowd, herd), legs = legsOf(crowd, herd);
   std::vector<glm::dvec3> joints(state.agents * legs * (bones + 1),
                                  glm::dvec3(std::numeric_limits<double>::quiet_NaN()));
   auto* chain = joints.data();
-  for (size_t agent = 0; agent < state.agents; ++agent) {
+  for (uint32_t agent = 0; agent < state.agents; ++agent) {
+    const crowd::Kind& kind = implOf(crowd).kindOf(herd, agent);
     const glm::dvec3 position = bodyAt(state, agent).position;
     for (size_t leg = 0; leg < legs; ++leg, chain += bones + 1) {
       const size_t own = kind.rig.legs[leg].bones.size();

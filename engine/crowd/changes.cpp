@@ -110,9 +110,9 @@ class Standing {
     }
   }
 
-  void write(const Spawner& spawner, uint32_t agentOfHerd, const Place& place, const Page& page,
+  void write(const Spawner& spawner, uint32_t agentOfRun, const Place& place, const Page& page,
              uint32_t agent, Writes& writes) {
-    spawner.stand(agentOfHerd, place, 0, spans_);
+    spawner.stand(agentOfRun, place, 0, spans_);
     for (const Record record : kept_) {
       const bool ofLegs = infoOf(record).per == Per::leg;
       const int legs = ofLegs ? kind_.legs : 1;
@@ -129,11 +129,11 @@ class Standing {
   }
 
   // Every watched one's trail alone, of agents that begin before the next tick.
-  void beginWatch(const Spawner& spawner, uint32_t agentOfHerd, const Page& page, uint32_t agent,
+  void beginWatch(const Spawner& spawner, uint32_t agentOfRun, const Page& page, uint32_t agent,
                   Writes& writes) {
     if (!page.watch || !slotOf(crowd_.tick + 1, page, agent)) return;
-    const auto start = spawner.place(agentOfHerd);
-    spawner.stand(agentOfHerd, {{start.x, start.z}, start.heading}, 0, spans_);
+    const auto start = spawner.place(agentOfRun);
+    spawner.stand(agentOfRun, {{start.x, start.z}, start.heading}, 0, spans_);
     forget(crowd_.tick + 1, page, agent, writes);
   }
 
@@ -168,10 +168,6 @@ class Standing {
   SpawnRecords spans_;
   std::vector<Record> kept_;
 };
-
-bool isOf(const Crowd::Impl& crowd, const Kind& kind, const Herd& herd, uint32_t agent) {
-  return &crowd.kinds[herd.kind] == &kind && agent - herd.firstAgent < herd.agents;
-}
 
 // Lists the legs of a page's agents for ik's second dispatch.
 void list(const Kind& kind, const Page& page, std::span<const uint32_t> agents, Writes& writes) {
@@ -216,12 +212,14 @@ void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
   if (!changesWait(crowd)) return;
   Writes writes(cmd, crowd.edits.staging());
   std::vector<Stood> stood;
-  for (Kind& kind : crowd.kinds) {
+  for (uint32_t k = 0; k < crowd.kinds.size(); ++k) {
+    Kind& kind = crowd.kinds[k];
     if (kind.changes.empty()) continue;
     Standing standing(crowd, kind);
     const bool settles = solverOf(kind).has_value();
     auto page = kind.pages.begin();
-    auto herd = crowd.herds.begin();  // of a kind they are in the order of their agents
+    const std::vector<HerdRun> runs = runsOf(crowd, k);
+    auto of = runs.begin();
     for (const AgentChange& change : kind.changes.take()) {
       while (change.agent >= page->firstAgent + page->agents) ++page;
       const uint32_t agent = change.agent - page->firstAgent;
@@ -232,8 +230,8 @@ void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
         writes.add(page->goal, goal + 4 * sizeof(float), std::span(change.record).subspan(4, 1));
       if (change.leaves) writes.add(page->body, uint64_t{agent} * sizeof(BodyRecord), absentBody());
       if (!change.stands) continue;
-      while (!isOf(crowd, kind, *herd, change.agent)) ++herd;
-      standing.write(Spawner(herd->from, kind, crowd.terrain, herd->seed), change.agent - herd->firstAgent,
+      while (change.agent >= of->run->firstAgent + of->run->agents) ++of;
+      standing.write(spawnerOf(crowd, *of->herd, *of->run), change.agent - of->run->firstAgent,
                      *change.stands, *page, agent, writes);
       if (!settles) continue;
       if (stood.empty() || stood.back().page != &*page) stood.push_back({&kind, &*page, {}});
@@ -256,16 +254,14 @@ void applyChanges(Crowd::Impl& crowd) {
   --crowd.tick;
 }
 
-void beginWatch(const Crowd::Impl& crowd, const Kind& kind, vk::CommandBuffer cmd) {
+void beginWatch(const Crowd::Impl& crowd, uint32_t kind, vk::CommandBuffer cmd) {
   Writes writes(cmd, crowd.edits.staging());
-  Standing standing(crowd, kind);
-  for (const Herd& herd : crowd.herds) {
-    if (&crowd.kinds[herd.kind] != &kind) continue;
-    const Spawner spawner(herd.from, kind, crowd.terrain, herd.seed);
-    for (const Page& page : kind.pages)
-      for (uint32_t agent = 0; agent < page.agents; ++agent)
-        if (isOf(crowd, kind, herd, page.firstAgent + agent))
-          standing.beginWatch(spawner, page.firstAgent + agent - herd.firstAgent, page, agent, writes);
+  Standing standing(crowd, crowd.kinds[kind]);
+  for (const HerdRun& of : runsOf(crowd, kind)) {
+    const Spawner spawner = spawnerOf(crowd, *of.herd, *of.run);
+    for (const Part& part : partsOf(crowd, *of.run))
+      for (uint32_t i = 0; i < part.agents; ++i)
+        standing.beginWatch(spawner, part.firstAgent + i, *part.page, part.first + i, writes);
   }
   writes.flush();
 }

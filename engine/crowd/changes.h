@@ -48,6 +48,6 @@ bool changesWait(const Crowd::Impl& crowd);
 void applyChanges(Crowd::Impl& crowd);
 
 // So that measure sees no jump in the next tick, of any of the kind's agents, who all began this moment.
-void beginWatch(const Crowd::Impl& crowd, const Kind& kind, vk::CommandBuffer cmd);
+void beginWatch(const Crowd::Impl& crowd, uint32_t kind, vk::CommandBuffer cmd);
 
 }  // namespace skitter::crowd

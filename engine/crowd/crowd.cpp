@@ -20,6 +20,7 @@
 #include "crowd/kinds.h"
 #include "crowd/page.h"
 #include "crowd/rig_records.h"
+#include "crowd/scale.h"
 #include "crowd/setup.h"
 #include "crowd/spawn.h"
 #include "crowd/stage.h"
@@ -107,12 +108,13 @@ void checkTick(const crowd::Kind& kind, float dt) {
   if (check != nullptr && !kind.stages.empty()) check(kind, dt);
 }
 
-// All of a kind but its agents.
-crowd::Kind makeKind(const Impl& crowd, const Herd& from, Rig rig) {
+// All of a kind but its agents; `loaded` is its rig at size 1.
+crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, float size) {
   const gpu::Context& context = *crowd.context;
   crowd::Kind kind;
   kind.controller = from.controller;
-  kind.rig = std::move(rig);
+  kind.size = size;
+  kind.rig = crowd::scaled(loaded, size);
   kind.legs = kind.rig.legCount();
   kind.bones = kind.rig.maxBones();
   kind.groups = kind.rig.groupCount();
@@ -125,7 +127,7 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, Rig rig) {
   kind.rigBuffer = gpu::Buffer(context, kind.rigRecords.size() * sizeof(float), "rig");
   gpu::upload(context, kind.rigBuffer, kind.rigRecords);
   const auto prepare = crowd::controllerStages(kind.controller).prepare;
-  if (prepare != nullptr) prepare(context, from, kind);
+  if (prepare != nullptr) prepare(context, from, loaded, kind);
   kind.parameterBlock =
       gpu::HostBuffer(context, sizeof(shared::Parameters), gpu::HostUse::upload, "parameters");
   crowd::setParameters(crowd, crowd::usualDt, kind);
@@ -135,8 +137,6 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, Rig rig) {
   for (const Stage& stage : crowd::stagesOf(kind.controller, asked)) kind.stages.push_back({stage});
   return kind;
 }
-
-uint64_t seedOf(const Impl& crowd, size_t herd) { return crowd.seed + (uint64_t{herd} << 32); }
 
 void expectMemory(const gpu::Context& context, uint64_t agents, uint64_t needed) {
   const gpu::FreeMemory available = gpu::availableMemory(context.physical());
@@ -149,15 +149,13 @@ void expectMemory(const gpu::Context& context, uint64_t agents, uint64_t needed)
 // Of the agents of a kind that some herd has coloured.
 void uploadTints(const Impl& crowd, uint32_t kind) {
   const float lightness = crowd::meanLightness(crowd.kinds[kind]);
-  for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
-    const crowd::Herd& herd = crowd.herds[h];
-    if (herd.kind != kind) continue;
-    for (const crowd::Part& part : crowd::partsOf(crowd, h)) {
-      const std::vector<glm::vec4> tints = crowd::tintsOf(herd.from, part, herd.seed, lightness);
+  for (const crowd::HerdRun& of : crowd::runsOf(crowd, kind))
+    for (const crowd::Part& part : crowd::partsOf(crowd, of.number)) {
+      if (part.kind != &crowd.kinds[kind]) continue;
+      const std::vector<glm::vec4> tints = crowd::tintsOf(of.herd->from, part, of.herd->seed, lightness);
       gpu::uploadBytes(*crowd.context, part.page->tint, std::as_bytes(std::span(tints)),
                        part.first * sizeof(glm::vec4));
     }
-  }
 }
 
 // The kind's pipelines, and its agents: where they begin, or zeros.
@@ -166,8 +164,9 @@ void fill(Impl& crowd, uint32_t k, bool spawns = true) {
   for (crowd::ReadyStage& stage : kind.stages)
     crowd::makeKernels({*crowd.context, crowd.options, kind}, stage);
   std::vector<crowd::Spawner> spawners;
-  for (const crowd::Herd& herd : crowd.herds)
-    if (herd.kind == k && spawns) spawners.emplace_back(herd.from, kind, crowd.terrain, herd.seed);
+  if (spawns)
+    for (const crowd::HerdRun& of : crowd::runsOf(crowd, k))
+      spawners.push_back(crowd::spawnerOf(crowd, *of.herd, *of.run));
   kind.pages = crowd::makePages(crowd, kind, spawners);
   if (kind.tinted) uploadTints(crowd, k);
 }
@@ -220,27 +219,52 @@ void fillAll(Impl& crowd, bool spawn) {
     if (!crowd.kinds[k].stages.empty()) fill(crowd, k, spawn);
 }
 
+// A herd of those kinds, one a size. `generation`, which is even, is that of places where somebody is.
+crowd::Herd herdFrom(const Herd& from, uint64_t seed, std::span<const uint32_t> kinds,
+                     uint32_t generation = 0) {
+  crowd::Numbering numbering = crowd::numberingOf(from, seed);
+  crowd::Herd herd{.runs = {},
+                   .agents = from.agents + from.reserve,
+                   .starts = std::move(numbering.starts),
+                   .from = from,
+                   .seed = seed};
+  uint32_t first = 0;
+  for (size_t i = 0; i < kinds.size(); ++i) {
+    herd.runs.push_back({.kind = kinds[i], .firstOfHerd = first, .agents = numbering.counts[i]});
+    first += numbering.counts[i];
+  }
+  std::vector<uint32_t> generations(herd.agents, generation);
+  for (uint32_t agent = 0; agent < herd.agents; ++agent)
+    if ((herd.starts.empty() ? agent : herd.starts[agent]) >= from.agents) ++generations[agent];
+  herd.presence = crowd::Presence(std::move(generations));
+  return herd;
+}
+
+// The run's agents follow those that the kind has.
+void enrol(const Impl& crowd, const Herd& from, crowd::SizeRun& run, crowd::Kind& kind) {
+  run.place = static_cast<uint32_t>(kind.firstAgents.size());
+  run.firstAgent = static_cast<uint32_t>(kind.agents);
+  kind.firstAgents.push_back(kind.agents);
+  kind.agents += run.agents;
+  kind.tinted = kind.tinted || (crowd.options.pose && crowd::isTinted(from));
+}
+
 std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
-                                crowd::Kinds kinds, const CrowdOptions& options) {
+                                const crowd::Kinds& kinds, const CrowdOptions& options) {
   // A state's were checked when its crowd began, with the herds that there were then.
   crowd::checkEvents(scene, terrain);
   auto made = beginCrowd(device, terrain, scene, options);
   Impl& crowd = *made;
-  for (size_t k = 0; k < kinds.rigs.size(); ++k)
-    crowd.kinds.push_back(makeKind(crowd, scene.herds[kinds.firstHerds[k]], std::move(kinds.rigs[k])));
+  for (size_t k = 0; k < kinds.rigs.size(); ++k) {
+    const crowd::SizedHerd& first = kinds.herds[kinds.firstHerds[k]];
+    crowd.kinds.push_back(makeKind(crowd, scene.herds[first.herd], kinds.rigs[k], first.size));
+  }
+  std::vector<std::vector<uint32_t>> ofHerds(scene.herds.size());
+  for (const crowd::SizedHerd& sized : kinds.herds) ofHerds[sized.herd].push_back(sized.kind);
   for (size_t h = 0; h < scene.herds.size(); ++h) {
-    crowd::Kind& kind = crowd.kinds[kinds.ofHerds[h]];
-    crowd.herds.push_back(
-        {.kind = kinds.ofHerds[h],
-         .place = static_cast<uint32_t>(kind.firstAgents.size()),
-         .firstAgent = static_cast<uint32_t>(kind.agents),
-         .agents = scene.herds[h].agents + scene.herds[h].reserve,
-         .presence = {scene.herds[h].agents, scene.herds[h].agents + scene.herds[h].reserve},
-         .from = scene.herds[h],
-         .seed = seedOf(crowd, h)});
-    kind.tinted = kind.tinted || (options.pose && crowd::isTinted(scene.herds[h]));
-    kind.firstAgents.push_back(kind.agents);
-    kind.agents += crowd.herds.back().agents;
+    const Herd& from = scene.herds[h];
+    crowd::Herd& herd = crowd.herds.emplace_back(herdFrom(from, crowd::seedOf(crowd.seed, h), ofHerds[h]));
+    for (crowd::SizeRun& run : herd.runs) enrol(crowd, from, run, crowd.kinds[run.kind]);
   }
   fillAll(crowd, true);
   settle(crowd, crowd.kinds);
@@ -261,20 +285,18 @@ std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
   Impl& crowd = *made;
   crowd::restoreHerds(crowd, state);
   for (uint32_t k = 0; k < crowd.kinds.size(); ++k) {
-    const auto first = std::ranges::find_if(
-        crowd.herds, [&](const crowd::Herd& herd) { return herd.kind == k && herd.generation % 2 == 0; });
-    if (first == crowd.herds.end()) continue;
-    const auto h = static_cast<size_t>(first - crowd.herds.begin());
-    crowd::Kind kind = makeKind(crowd, first->from,
-                                state.options.rigs.empty() ? rigFor(first->from) : state.options.rigs[h]);
+    const std::vector<crowd::HerdRun> runs = crowd::runsOf(crowd, k);
+    if (runs.empty()) continue;
+    const auto& [h, herd, run] = runs.front();
+    const float size = crowd::sizesOf(herd->from)[static_cast<size_t>(run - herd->runs.data())];
+    crowd::Kind kind = makeKind(
+        crowd, herd->from, state.options.rigs.empty() ? rigFor(herd->from) : state.options.rigs[h], size);
     kind.firstAgents = std::move(crowd.kinds[k].firstAgents);
     kind.agents = crowd.kinds[k].agents;
-    for (const crowd::Herd& herd : crowd.herds)
-      if (herd.kind == k && herd.generation % 2 == 0)
-        kind.tinted = kind.tinted || (state.options.pose && crowd::isTinted(herd.from));
+    for (const crowd::HerdRun& of : runs)
+      kind.tinted = kind.tinted || (state.options.pose && crowd::isTinted(of.herd->from));
     crowd.kinds[k] = std::move(kind);
   }
-  for (size_t h = 0; h < crowd.herds.size(); ++h) crowd.herds[h].seed = seedOf(crowd, h);
   crowd::checkState(crowd, state);
   fillAll(crowd, false);
   warmUp(crowd, crowd.kinds);
@@ -282,33 +304,48 @@ std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
   return made;
 }
 
-// A kind for that herd alone, without its pipelines and agents.
-crowd::Kind kindFor(const Impl& crowd, const Herd& from) {
-  crowd::Kind kind = makeKind(crowd, from, rigFor(from));
+// A kind for those agents alone, without its pipelines.
+crowd::Kind kindFor(const Impl& crowd, const Herd& from, const Rig& loaded, float size, crowd::SizeRun& run) {
+  crowd::Kind kind = makeKind(crowd, from, loaded, size);
   if (crowd.dt > 0) {
     checkTick(kind, crowd.dt);
     crowd::setParameters(crowd, crowd.dt, kind);
   }
-  kind.tinted = crowd.options.pose && crowd::isTinted(from);
-  kind.firstAgents = {0};
-  kind.agents = uint64_t{from.agents} + from.reserve;
+  enrol(crowd, from, run, kind);
   kind.herdSteps = crowd::herdStepsOf(crowd, kind);
   return kind;
 }
 
-bool isGone(const crowd::Herd& herd) { return herd.generation % 2 == 1; }
+bool isGone(const crowd::Herd& herd) { return herd.isGone(); }
+bool isGone(const crowd::Kind& kind) { return kind.stages.empty(); }
 
-// The first of them that is free, or a new last one.
-template <class List, class IsFree>
-uint32_t slotIn(List& list, const IsFree& isFree) {
-  const auto at = static_cast<uint32_t>(std::ranges::find_if(list, isFree) - list.begin());
-  if (at == list.size()) list.emplace_back();
-  return at;
+// The lowest numbers that are free: of those that are gone, and of new ones at the end.
+template <class List>
+std::vector<uint32_t> freeIn(const List& list, size_t count) {
+  std::vector<uint32_t> numbers;
+  for (uint32_t i = 0; numbers.size() < count; ++i)
+    if (i >= list.size() || isGone(list[i])) numbers.push_back(i);
+  return numbers;
+}
+template <class List>
+size_t countIn(const List& list) {
+  return static_cast<size_t>(std::ranges::count_if(list, [](const auto& each) { return !isGone(each); }));
+}
+
+// Beyond its end the list grows.
+template <class List, class Item>
+void put(List& list, uint32_t number, Item item) {
+  if (number >= list.size()) list.resize(number + 1);
+  list[number] = std::move(item);
 }
 
 void vacate(Impl& crowd, uint32_t number) {
   crowd::Herd& herd = crowd.herds[number];
+  herd.runs = {crowd::SizeRun{.kind = herd.runs.front().kind}};
   herd.agents = herd.presence.count = 0;
+  herd.starts = {};
+  herd.from = {};  // its files may go, too
+  herd.from.agents = 0;
   ++herd.generation;
   ++crowd.revision;
 }
@@ -397,11 +434,6 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   gpu::computeToTransfer(cmd);
 }
 
-const crowd::Herd& Crowd::Impl::herdAt(uint32_t herd) const {
-  if (herd < herds.size()) return herds[herd];
-  throw inputError(fmt::format("herd {}: expected one of the crowd's {} herds", herd, herds.size()));
-}
-
 HerdId Crowd::addHerd(const Herd& from) {
   Impl& crowd = *impl_;
   const uint64_t places = uint64_t{from.agents} + from.reserve, held = capacity();
@@ -409,43 +441,51 @@ HerdId Crowd::addHerd(const Herd& from) {
     throw inputError(
         fmt::format("a new herd: {} agents and reserve beside {} places, expected at most {} in all", places,
                     held, Scene::maxAgents));
-  const auto live = std::ranges::count_if(crowd.herds, [](const auto& herd) { return !isGone(herd); });
-  if (static_cast<size_t>(live) >= Scene::maxHerds)
+  if (const size_t live = countIn(crowd.herds); live >= Scene::maxHerds)
     throw inputError(fmt::format("a new herd beside {}, expected at most {} in all", live, Scene::maxHerds));
-  const auto kinds =
-      std::ranges::count_if(crowd.kinds, [](const auto& kind) { return !kind.stages.empty(); });
-  if (static_cast<size_t>(kinds) >= crowd::mostKinds)
-    throw inputError(
-        fmt::format("a new herd, which is of a kind of its own, beside {} kinds, expected at most {}", kinds,
-                    crowd::mostKinds));
-  crowd::Kind made = kindFor(crowd, from);
-  expectMemory(*crowd.context, places, crowd::bytesOf(crowd, made));
+  const Rig loaded = rigFor(from);
+  const std::vector<float> sizes = crowd::sizesOf(from);
+  if (const size_t kinds = countIn(crowd.kinds); kinds + sizes.size() > crowd::mostKinds)
+    throw inputError(fmt::format(
+        "a new herd, which has {} kinds of its own, one a size, beside {}, expected at most {} in "
+        "all",
+        sizes.size(), kinds, crowd::mostKinds));
 
-  const uint32_t k = slotIn(crowd.kinds, [](const auto& kind) { return kind.stages.empty(); });
-  const uint32_t number = slotIn(crowd.herds, isGone);
-  crowd.kinds[k] = std::move(made);
-  crowd::Herd& herd = crowd.herds[number];
-  herd = {.kind = k,
-          .agents = static_cast<uint32_t>(places),
-          .presence = {from.agents, static_cast<uint32_t>(places), herd.presence.nextGeneration()},
-          .from = from,
-          .seed = seedOf(crowd, number),
-          .generation = (herd.generation + 1) / 2 * 2};
+  const uint32_t number = freeIn(crowd.herds, 1).front();
+  const std::vector<uint32_t> slots = freeIn(crowd.kinds, sizes.size());
+  const crowd::Herd none;
+  const crowd::Herd& before = number < crowd.herds.size() ? crowd.herds[number] : none;
+  crowd::Herd herd =
+      herdFrom(from, crowd::seedOf(crowd.seed, number), slots, before.presence.nextGeneration());
+  herd.generation = (before.generation + 1) / 2 * 2;
+  std::vector<crowd::Kind> made;
+  uint64_t needed = 0;
+  for (size_t i = 0; i < sizes.size(); ++i) {
+    made.push_back(kindFor(crowd, from, loaded, sizes[i], herd.runs[i]));
+    needed += crowd::bytesOf(crowd, made.back());
+  }
+  expectMemory(*crowd.context, places, needed);
+
+  const HerdId id{number, herd.generation};
+  for (size_t i = 0; i < slots.size(); ++i) put(crowd.kinds, slots[i], std::move(made[i]));
+  put(crowd.herds, number, std::move(herd));
   try {
-    fill(crowd, k);
-    settle(crowd, std::span(&crowd.kinds[k], 1));
-    gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
-      gpu::allToAll(cmd);
-      crowd::beginWatch(crowd, crowd.kinds[k], cmd);
-      gpu::allToAll(cmd);
-    });
+    for (const uint32_t k : slots) {
+      fill(crowd, k);
+      settle(crowd, std::span(&crowd.kinds[k], 1));
+      gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
+        gpu::allToAll(cmd);
+        crowd::beginWatch(crowd, k, cmd);
+        gpu::allToAll(cmd);
+      });
+    }
   } catch (...) {
-    crowd.kinds[k] = {};
+    for (const uint32_t k : slots) crowd.kinds[k] = {};
     vacate(crowd, number);
     throw;
   }
   ++crowd.revision;
-  return {number, herd.generation};
+  return id;
 }
 
 void Crowd::removeHerd(HerdId id) {
@@ -453,20 +493,21 @@ void Crowd::removeHerd(HerdId id) {
   if (!has(id))
     throw inputError(fmt::format("herd {} of generation {}: expected one of those that are there", id.index,
                                  id.generation));
-  const uint32_t k = crowd.herds[id.index].kind;
-  const bool alone = std::ranges::count_if(crowd.herds, [&](const crowd::Herd& herd) {
-                       return herd.kind == k && !isGone(herd);
-                     }) == 1;
-  if (!alone && !crowd.kinds[k].reserves)
+  const crowd::Herd& herd = crowd.herds[id.index];
+  const auto isAlone = [&](const crowd::SizeRun& run) { return crowd::runsOf(crowd, run.kind).size() == 1; };
+  if (!std::ranges::all_of(herd.runs, isAlone) && herd.from.reserve == 0)
     throw inputError(fmt::format(
         "herd {}: shares pages with other herds, expected a herd of another kind or one with a reserve",
         id.index));
   crowd.context->waitIdle();
-  if (alone)
-    crowd.kinds[k] = {};
-  else
-    for (uint32_t agent = 0; agent < places(id.index); ++agent)
-      if (crowd.herds[id.index].presence.has(agent)) remove(agentId(id.index, agent));
+  for (const crowd::SizeRun& run : herd.runs) {
+    if (isAlone(run)) {
+      crowd.kinds[run.kind] = {};
+      continue;
+    }
+    for (uint32_t agent = run.firstOfHerd; agent < run.firstOfHerd + run.agents; ++agent)
+      if (herd.presence.has(agent)) remove(agentId(id.index, agent));
+  }
   vacate(crowd, id.index);
 }
 
@@ -485,6 +526,8 @@ uint64_t Crowd::tick() const { return impl_->tick; }
 uint32_t Crowd::watchEvery() const { return impl_->watchEvery; }
 uint32_t Crowd::herdCount() const { return static_cast<uint32_t>(impl_->herds.size()); }
 const Rig& Crowd::rig(uint32_t herd) const { return impl_->kindOf(herd).rig; }
+const Rig& Crowd::rig(uint32_t herd, uint32_t agent) const { return impl_->kindOf(herd, agent).rig; }
+float Crowd::size(uint32_t herd, uint32_t agent) const { return impl_->kindOf(herd, agent).size; }
 
 uint64_t Crowd::agentCount() const {
   uint64_t count = 0;
@@ -499,16 +542,22 @@ uint64_t Crowd::capacity() const {
 }
 
 std::vector<MemoryUse> Crowd::memoryUse(uint32_t herdIndex) const {
-  const crowd::Herd& herd = impl_->herdAt(herdIndex);
-  const crowd::Kind& kind = impl_->kinds[herd.kind];
   std::vector<MemoryUse> uses;
-  for (const crowd::PageBuffer& each : crowd::pageBuffers(*impl_, kind)) {
-    uint64_t bytes = 0;
-    for (const Page& page : kind.pages) bytes += each.in(page).size();
-    // What agents before the herd's end take, less what those before its beginning do: all shares are the
-    // whole.
-    const auto upTo = [&](uint64_t agents) { return kind.agents > 0 ? bytes * agents / kind.agents : 0; };
-    uses.push_back({each.name, upTo(herd.firstAgent + herd.agents) - upTo(herd.firstAgent)});
+  for (const crowd::SizeRun& run : impl_->herdAt(herdIndex).runs) {
+    const crowd::Kind& kind = impl_->kinds[run.kind];
+    for (const crowd::PageBuffer& each : crowd::pageBuffers(*impl_, kind)) {
+      uint64_t bytes = 0;
+      for (const Page& page : kind.pages) bytes += each.in(page).size();
+      // What agents before the run's end take, less what those before its beginning do: all shares are the
+      // whole.
+      const auto upTo = [&](uint64_t agents) { return kind.agents > 0 ? bytes * agents / kind.agents : 0; };
+      const uint64_t share = upTo(run.firstAgent + run.agents) - upTo(run.firstAgent);
+      const auto same = std::ranges::find(uses, each.name, &MemoryUse::name);
+      if (same == uses.end())
+        uses.push_back({each.name, share});
+      else
+        same->bytes += share;
+    }
   }
   return uses;
 }

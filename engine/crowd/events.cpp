@@ -111,7 +111,7 @@ class Rehearsal {
   // The host may have removed the herd, and may have made another one of that number.
   const Herd& herdAt(uint32_t number, const std::string& name) const {
     const Herd& herd = crowd_.herdAt(number);
-    if (herd.generation % 2 == 1)
+    if (herd.isGone())
       throw inputError(fmt::format("{}: herd {} was removed, expected one that is there", name, number));
     return herd;
   }
@@ -125,7 +125,8 @@ class Rehearsal {
                                    agent, presence.count));
   }
   void expectItsReserve(uint32_t herd, const std::string& name) const {
-    expectReserve([&] { return fmt::format("{}: herd {}", name, herd); }, crowd_.kindOf(herd).reserves);
+    expectReserve([&] { return fmt::format("{}: herd {}", name, herd); },
+                  herdAt(herd, name).from.reserve > 0);
   }
 
   const Crowd::Impl& crowd_;

@@ -22,7 +22,7 @@ struct Rectangle {
 };
 Rectangle groundOf(const Event& event, const Heightfield& terrain);
 
-// Whether it names agents by number, whom a herd of another size may not have.
+// Whether it names agents by number, whom a herd of fewer agents may not have.
 bool namesAgents(const Event& event);
 
 // The scene's events before the next tick happen, as if the host did it all now; Crowd::record does not

@@ -121,7 +121,7 @@ Fidelity figuresOf(const Crowd::Impl& crowd, uint32_t first, uint32_t end) {
   uint64_t lastResorts = 0, notFinite = 0;
   for (uint32_t h = first; h < end; ++h)
     for (const crowd::Part& part : crowd::partsOf(crowd, h)) {
-      eachAgent(crowd, part, [&](std::span<const float, kFloats> m) { sums.add(m, crowd.kindOf(h)); });
+      eachAgent(crowd, part, [&](std::span<const float, kFloats> m) { sums.add(m, *part.kind); });
       if (part.page->histogram) {
         std::array<uint32_t, shared::HISTOGRAM_BUCKETS> counts;
         gpu::downloadBytes(*crowd.context, part.page->histogram, std::as_writable_bytes(std::span(counts)),
@@ -150,12 +150,11 @@ Fidelity Crowd::fidelity(uint32_t herd) const {
 
 std::vector<Fidelity> Crowd::agentFidelity(uint32_t herd) const {
   impl_->context->waitIdle();
-  const crowd::Kind& kind = impl_->kindOf(herd);
   std::vector<Fidelity> agents;
   for (const crowd::Part& part : crowd::partsOf(*impl_, herd))
     eachAgent(*impl_, part, [&](std::span<const float, kFloats> m) {
-      Sums sums(crowd::traitsOf(kind.controller).keepsLimits);
-      sums.add(m, kind);
+      Sums sums(crowd::traitsOf(part.kind->controller).keepsLimits);
+      sums.add(m, *part.kind);
       agents.push_back(sums.figures());
     });
   return agents;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "crowd/clip_records.h"
 #include "crowd/edit.h"
 #include "crowd/key_poses.h"
+#include "crowd/size_run.h"
 #include "crowd/stage.h"
 #include "crowd/tuning.h"
 #include "gpu/buffer.h"
@@ -39,14 +41,15 @@ struct Page : ForRecords<gpu::Buffer> {
   std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
-// What equal herds have in common, and their agents: herd after herd in the same pages, so that a tick's
-// dispatches do not grow with their number.
+// What equal herds have in common, and their agents of one size: herd after herd in the same pages, so that a
+// tick's dispatches do not grow with their number.
 struct Kind {
   std::vector<uint64_t> firstAgents;  // the first agent of each of its herds
   uint64_t agents = 0;                // places for them
   bool reserves = false;              // places may be empty
   int herdSteps = 0;                  // 2 to their power is at least the number of herds in a page
-  Rig rig;
+  float size = 1;                     // of its creatures, times the rig that was loaded
+  Rig rig;                            // of that size
   Controller controller = Controller::adaptive;
   int legs = 0, bones = 0, groups = 0;  // bones of the longest chain
   IkPlan ik{};
@@ -78,8 +81,8 @@ struct Presence {
   std::vector<uint32_t> generations;
   uint32_t count = 0;  // who are there
 
-  // Places for so many agents, of whom the first are there; `generation` is even.
-  Presence(uint32_t agents, uint32_t places, uint32_t generation = 0);
+  // Of places with those generations.
+  explicit Presence(std::vector<uint32_t> made);
   Presence() = default;
   bool has(uint32_t place) const { return generations[place] % 2 == 0; }
   // The lowest empty place, none where all are taken.
@@ -93,16 +96,30 @@ struct Presence {
   uint32_t firstEmpty_ = 0;  // no lower place is empty
 };
 
-// A herd of the scene: a run of its kind's agents.
+// A herd of the scene: agents of one size or several, numbered size after size.
 struct Herd {
-  uint32_t kind = 0;                    // which of the crowd's
-  uint32_t place = 0;                   // among the kind's herds
-  uint32_t firstAgent = 0, agents = 0;  // its places
-  Presence presence;
-  skitter::Herd from;  // as in the scene
-  uint64_t seed = 0;   // its own
+  // One for each of its sizes, at least one, in the order of their agents. No two are of one kind.
+  std::vector<SizeRun> runs = {SizeRun{}};
+  uint32_t agents = 0;                // its places
+  std::vector<uint32_t> starts = {};  // Numbering::starts
+  Presence presence = {};
+  skitter::Herd from = {};  // as in the scene
+  uint64_t seed = 0;        // its own
   // How often its number was freed: even while there is a herd.
   uint32_t generation = 0;
+
+  bool isGone() const { return generation % 2 == 1; }
+  // The run that one of its places is in.
+  const SizeRun& runOf(uint32_t agent) const;
+};
+
+// A run, and the herd that it is of.
+struct HerdRun {
+  uint32_t number;  // of the herd
+  const Herd* herd;
+  const SizeRun* run;
+
+  uint32_t agentCount() const;  // of those who are there
 };
 
 }  // namespace skitter::crowd
@@ -115,7 +132,7 @@ struct Crowd::Impl {
   Heightfield terrain;  // heights in memory too: cameras and tools look up the ground
   gpu::Image heights;   // R32F, columns x rows, in state sampled; what every stage and the picture read
   std::vector<crowd::Kind> kinds;
-  std::vector<crowd::Herd> herds;  // as in the scene
+  std::vector<crowd::Herd> herds;  // by number, as in the scene; those that are gone among them
   uint32_t watchEvery = 1;         // measure watches one agent of this many
   uint64_t seed = 0;               // of the scene
   uint32_t revision = 0;           // of kinds and herds: a renderer that has seen another looks again
@@ -133,9 +150,21 @@ struct Crowd::Impl {
   // Throws Error(input) where there is no such herd.
   const crowd::Herd& herdAt(uint32_t herd) const;
   crowd::Herd& herdAt(uint32_t herd) { return const_cast<crowd::Herd&>(std::as_const(*this).herdAt(herd)); }
-  crowd::Kind& kindOf(uint32_t herd) { return kinds[herdAt(herd).kind]; }
-  const crowd::Kind& kindOf(uint32_t herd) const { return kinds[herdAt(herd).kind]; }
+  // Of the herd's first size: those of its other sizes differ in lengths alone.
+  crowd::Kind& kindOf(uint32_t herd) { return kinds[herdAt(herd).runs.front().kind]; }
+  const crowd::Kind& kindOf(uint32_t herd) const { return kinds[herdAt(herd).runs.front().kind]; }
+  // Of an agent. Throws Error(input) where the herd has no such place.
+  const crowd::Kind& kindOf(uint32_t herd, uint32_t agent) const;
 };
+
+namespace crowd {
+
+// Those of all herds, herd after herd: each is validated by itself.
+std::vector<HerdRun> allRuns(const Crowd::Impl& crowd);
+// Those of a kind's agents, in their order.
+std::vector<HerdRun> runsOf(const Crowd::Impl& crowd, uint32_t kind);
+
+}  // namespace crowd
 
 inline Crowd::Impl& implOf(Crowd& crowd) { return *crowd.impl_; }
 inline const Crowd::Impl& implOf(const Crowd& crowd) { return *crowd.impl_; }

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <string>
 #include <tuple>
-#include <utility>
 
 #include "crowd/controller.h"
+#include "crowd/spawn.h"
 #include "skitter/error.h"
 
 namespace skitter::crowd {
@@ -16,13 +16,25 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               phase, colour, tint] = herd;
+               sizes, phase, colour, tint] = herd;
   return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning),
                         std::tuple(reserve > 0));
 }
 
 void check(const skitter::Herd& herd, const std::string& what) {
+  using skitter::Herd;
   checkTuning(herd.tuning, what + ".tuning");
+  if (herd.sizes.size() > Herd::maxSizes)
+    throw inputError(
+        fmt::format("{}.sizes are {}, expected at most {}", what, herd.sizes.size(), Herd::maxSizes));
+  for (size_t s = 0; s < herd.sizes.size(); ++s)
+    if (!(herd.sizes[s] >= Herd::minSize && herd.sizes[s] <= Herd::maxSize))
+      throw inputError(fmt::format("{}.sizes[{}] is {}, expected {} to {}", what, s, herd.sizes[s],
+                                   Herd::minSize, Herd::maxSize));
+  if (const uint64_t places = uint64_t{herd.agents} + herd.reserve;
+      herd.sizes.size() > 1 && places > Scene::maxAgents)
+    throw inputError(fmt::format("{}: {} agents and reserve of several sizes, expected at most {}", what,
+                                 places, Scene::maxAgents));
   if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
     throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
   if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))
@@ -35,24 +47,27 @@ void check(const skitter::Herd& herd, const std::string& what) {
 // `areEqual` compares what the rigs of two herds, by number, are.
 template <class Equal>
 Kinds grouped(const Scene& scene, const Equal& areEqual) {
-  for (size_t h = 0; h < scene.herds.size(); ++h)
-    check(scene.herds[h], fmt::format("{}: herds[{}]", scene.name, h));
   Kinds kinds;
   for (uint32_t h = 0; h < scene.herds.size(); ++h) {
-    const auto isOfIt = [&](uint32_t first) {
-      return membersOf(scene.herds[first]) == membersOf(scene.herds[h]) && areEqual(first, h);
+    check(scene.herds[h], fmt::format("{}: herds[{}]", scene.name, h));
+    for (const float size : sizesOf(scene.herds[h])) kinds.herds.push_back({.herd = h, .size = size});
+  }
+  for (uint32_t i = 0; i < kinds.herds.size(); ++i) {
+    const auto isOfIt = [&](uint32_t other) {
+      const SizedHerd &a = kinds.herds[other], &b = kinds.herds[i];
+      return a.size == b.size && membersOf(scene.herds[a.herd]) == membersOf(scene.herds[b.herd]) &&
+             areEqual(a.herd, b.herd);
     };
     const auto found = std::ranges::find_if(kinds.firstHerds, isOfIt);
-    kinds.ofHerds.push_back(static_cast<uint32_t>(found - kinds.firstHerds.begin()));
-    if (found == kinds.firstHerds.end()) kinds.firstHerds.push_back(h);
+    kinds.herds[i].kind = static_cast<uint32_t>(found - kinds.firstHerds.begin());
+    if (found == kinds.firstHerds.end()) kinds.firstHerds.push_back(i);
   }
   if (kinds.firstHerds.size() > mostKinds)
     throw inputError(
-        scene.name + ": " + std::to_string(kinds.firstHerds.size()) +
-        " herds differ in rig, controller, clips, cuts, keys, solver, stepping or tuning, expected at most " +
-        std::to_string(mostKinds) +
-        ": each of them has pipelines of its own; equal herds share them, whatever their agents, "
-        "spawn and goal");
+        fmt::format("{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning or "
+                    "size, expected at most {}: each of them, and each size of one, has pipelines of its "
+                    "own; equal herds share them, whatever their agents, spawn and goal",
+                    scene.name, kinds.firstHerds.size(), mostKinds));
   return kinds;
 }
 
@@ -68,10 +83,13 @@ Rig rigOf(const skitter::Herd& herd) {
 
 Kinds kindsOf(const Scene& scene) {
   Kinds kinds = grouped(scene, [](uint32_t, uint32_t) { return true; });
+  const auto herdOf = [&](uint32_t sized) -> const skitter::Herd& {
+    return scene.herds[kinds.herds[sized].herd];
+  };
   for (size_t k = 0; k < kinds.firstHerds.size(); ++k) {
-    const skitter::Herd& herd = scene.herds[kinds.firstHerds[k]];
+    const skitter::Herd& herd = herdOf(kinds.firstHerds[k]);
     const auto hasItsRig = [&](uint32_t other) {
-      return scene.herds[other].rig == herd.rig && proposes(scene.herds[other]) == proposes(herd);
+      return herdOf(other).rig == herd.rig && proposes(herdOf(other)) == proposes(herd);
     };
     const auto earlier =
         static_cast<size_t>(std::ranges::find_if(kinds.firstHerds, hasItsRig) - kinds.firstHerds.begin());
@@ -80,12 +98,12 @@ Kinds kindsOf(const Scene& scene) {
   return kinds;
 }
 
-Kinds kindsOf(const Scene& scene, std::vector<Rig> rigs) {
+Kinds kindsOf(const Scene& scene, const std::vector<Rig>& rigs) {
   if (rigs.size() != scene.herds.size())
     throw inputError(fmt::format("{}: {} rigs were given, expected one for each of {} herds", scene.name,
                                  rigs.size(), scene.herds.size()));
   Kinds kinds = grouped(scene, [&](uint32_t a, uint32_t b) { return rigs[a] == rigs[b]; });
-  for (const uint32_t h : kinds.firstHerds) kinds.rigs.push_back(std::move(rigs[h]));
+  for (const uint32_t first : kinds.firstHerds) kinds.rigs.push_back(rigs[kinds.herds[first].herd]);
   return kinds;
 }
 

@@ -13,18 +13,26 @@ namespace skitter::crowd {
 // some anew in every tick, which then takes 20 times as long.
 constexpr size_t mostKinds = 100;
 
-// The kinds of a scene's herds, in the order of each one's first herd.
-struct Kinds {
-  std::vector<uint32_t> ofHerds;     // the kind of each herd
-  std::vector<uint32_t> firstHerds;  // the first herd of each kind
-  std::vector<Rig> rigs;             // of each kind
+// A herd's agents of one size.
+struct SizedHerd {
+  uint32_t herd = 0;  // of the scene
+  float size = 1;
+  uint32_t kind = 0;
 };
 
-// Herds are of one kind where they are equal but for agents, spawn, goal, phase and colours. Throws
-// Error(input) where there are more than a device can serve, or a herd's tuning is out of range.
+// The kinds of a scene's herds, in the order of each one's first herd.
+struct Kinds {
+  std::vector<SizedHerd> herds;      // herd after herd, and of a herd size after size
+  std::vector<uint32_t> firstHerds;  // the first of these of each kind
+  std::vector<Rig> rigs;             // of each kind, at size 1
+};
+
+// Herds are of one kind where their size is equal, and all but agents, spawn, goal, other sizes, phase and
+// colours. Throws Error(input) where there are more than a device can serve, or a herd's tuning, sizes, phase
+// or colours are out of range.
 Kinds kindsOf(const Scene& scene);
 // With rigs that the caller made, one a herd, in place of those that the scene names. Throws Error(input) for
 // another count of them, too.
-Kinds kindsOf(const Scene& scene, std::vector<Rig> rigs);
+Kinds kindsOf(const Scene& scene, const std::vector<Rig>& rigs);
 
 }  // namespace skitter::crowd

@@ -89,8 +89,12 @@ Part partOf(const Kind& kind, uint32_t herd, const Page& page) {
   const auto end =
       static_cast<uint32_t>(herd + 1 < kind.firstAgents.size() ? kind.firstAgents[herd + 1] : kind.agents);
   const uint32_t from = std::max(begin, page.firstAgent), to = std::min(end, page.firstAgent + page.agents);
-  return {&page, from - begin, from - page.firstAgent, to > from ? to - from : 0,
-          herd - kind.herdOf(page.firstAgent)};
+  return {.kind = &kind,
+          .page = &page,
+          .firstAgent = from - begin,
+          .first = from - page.firstAgent,
+          .agents = to > from ? to - from : 0,
+          .row = herd - kind.herdOf(page.firstAgent)};
 }
 
 // Where the page's herds begin, for shaders to look up an agent's.
@@ -263,12 +267,22 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::spa
   return pages;
 }
 
-std::vector<Part> partsOf(const Crowd::Impl& crowd, uint32_t herd) {
-  const Kind& kind = crowd.kindOf(herd);
+std::vector<Part> partsOf(const Crowd::Impl& crowd, const SizeRun& run) {
   std::vector<Part> parts;
-  if (crowd.herds[herd].agents == 0) return parts;
+  if (run.agents == 0) return parts;
+  const Kind& kind = crowd.kinds[run.kind];
   for (const Page& page : kind.pages)
-    if (const Part part = partOf(kind, crowd.herds[herd].place, page); part.agents > 0) parts.push_back(part);
+    if (const Part part = partOf(kind, run.place, page); part.agents > 0) parts.push_back(part);
+  return parts;
+}
+
+std::vector<Part> partsOf(const Crowd::Impl& crowd, uint32_t herd) {
+  std::vector<Part> parts;
+  for (const SizeRun& run : crowd.herdAt(herd).runs)
+    for (Part& part : partsOf(crowd, run)) {
+      part.firstAgent += run.firstOfHerd;
+      parts.push_back(part);
+    }
   return parts;
 }
 

@@ -67,13 +67,15 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::spa
 
 // A herd's agents that are in one page.
 struct Part {
+  const Kind* kind;
   const Page* page;
-  uint32_t firstAgent;     // of the herd
+  uint32_t firstAgent;     // of the herd, or of the run whose parts these are
   uint32_t first, agents;  // where in the page, and how many
   uint32_t row;            // the herd's in what the page counts for each of its herds
 };
 // In order.
 std::vector<Part> partsOf(const Crowd::Impl& crowd, uint32_t herd);
+std::vector<Part> partsOf(const Crowd::Impl& crowd, const SizeRun& run);
 
 // What the page has counted for the part's herd, ROW_ by ROW_. Waits for the device.
 using CounterRow = std::array<uint32_t, shared::ROW_COUNTERS>;

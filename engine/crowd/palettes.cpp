@@ -65,7 +65,7 @@ struct Palettes::Impl {
   Controller controller = Controller::adaptive;
   uint32_t herd = 0, entries = 0;
   PaletteOptions options;
-  gpu::Buffer starts;
+  std::vector<gpu::Buffer> starts;  // at each of the herd's sizes
   // Of each format that a target asks for.
   struct Kernels {
     gpu::Kernel instances, palettes;
@@ -125,10 +125,17 @@ void Palettes::Impl::add(std::vector<Write>& writes, const TransformRange& range
         fmt::format("palettes of herd {}: controller {} poses by matrices, which may stretch, "
                     "expected TransformFormat::matrix",
                     herd, nameOf(controller)));
+  const crowd::Herd& from = crowd->herds[herd];
+  if (ofPalettes && range.format == TransformFormat::quaternion && from.runs.size() > 1)
+    throw inputError(
+        fmt::format("palettes of herd {}: its agents have {} sizes, expected TransformFormat::matrix", herd,
+                    from.runs.size()));
   const uint64_t each = ofPalettes ? entries : 1;
-  const Arrangement arrangement = arrangementOf(range, each * crowd->herds[herd].agents, what);
+  const Arrangement arrangement = arrangementOf(range, each * from.agents, what);
+  const float sizeOfMesh = crowd->kindOf(herd).size;
   Write write{.kernel = &kernelOf(range.format, ofPalettes), .outputs = {}};
   for (const Part& part : crowd::partsOf(*crowd, herd)) {
+    const auto run = static_cast<size_t>(&from.runOf(part.firstAgent) - from.runs.data());
     // The transforms begin within the binding, whose own beginning is aligned.
     const uint64_t begin = range.offset + 16 * arrangement.stride * each * part.firstAgent;
     const uint64_t slack = begin % std::max<uint64_t>(16, context->limits().minStorageBufferOffsetAlignment);
@@ -140,7 +147,7 @@ void Palettes::Impl::add(std::vector<Write>& writes, const TransformRange& range
                                    {shared::TRANSFORM_OUT, &output.buffer}};
     if (ofPalettes) {
       list.push_back({shared::TRANSFORM_POSE, &part.page->pose});
-      list.push_back({shared::TRANSFORM_START, &starts});
+      list.push_back({shared::TRANSFORM_START, &starts[run]});
     }
     output.bindings = write.kernel->bind(*context, list);
     output.constants = {.rows = {},
@@ -149,7 +156,8 @@ void Palettes::Impl::add(std::vector<Write>& writes, const TransformRange& range
                         .first = part.first,
                         .base = static_cast<uint32_t>(slack / 16),
                         .stride = static_cast<uint32_t>(arrangement.stride),
-                        .plane = static_cast<uint32_t>(arrangement.plane)};
+                        .plane = static_cast<uint32_t>(arrangement.plane),
+                        .size = ofPalettes ? part.kind->size / sizeOfMesh : 1};
     output.groups = gpu::groupsFor(static_cast<uint32_t>(count), shared::WORK_GROUP);
     write.outputs.push_back(std::move(output));
   }
@@ -170,13 +178,17 @@ Palettes::Palettes(Device& device, const Crowd& crowd, uint32_t herd,
   if (!(options.space.metresPerUnit > 0) || !std::isfinite(options.space.metresPerUnit))
     throw inputError(
         fmt::format("metresPerUnit {}, expected a finite length above 0", options.space.metresPerUnit));
-  std::vector<glm::vec4> starts(made.entries, glm::vec4(0));
-  if (!crowd::traitsOf(made.controller).playsClips) {
-    const std::vector<glm::vec3> rest = kind.rig.restStarts();
-    std::ranges::transform(rest, starts.begin(), [](const glm::vec3& start) { return glm::vec4(start, 0); });
+  for (const crowd::SizeRun& run : made.crowd->herds[herd].runs) {
+    std::vector<glm::vec4> starts(made.entries, glm::vec4(0));
+    if (!crowd::traitsOf(made.controller).playsClips) {
+      const std::vector<glm::vec3> rest = made.crowd->kinds[run.kind].rig.restStarts();
+      std::ranges::transform(rest, starts.begin(),
+                             [](const glm::vec3& start) { return glm::vec4(start, 0); });
+    }
+    gpu::Buffer& buffer =
+        made.starts.emplace_back(*made.context, starts.size() * sizeof(glm::vec4), "rest starts");
+    gpu::upload(*made.context, buffer, starts);
   }
-  made.starts = gpu::Buffer(*made.context, starts.size() * sizeof(glm::vec4), "rest starts");
-  gpu::upload(*made.context, made.starts, starts);
   for (const PaletteTarget& target : targets) {
     std::vector<Impl::Write>& writes = made.targets.emplace_back();
     made.add(writes, target.instances, false);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "crowd/page.h"
@@ -14,16 +15,16 @@ namespace skitter {
 namespace crowd {
 namespace {
 
-// Calls with herd, agent and the middle of its sphere.
+// Calls with run, agent of the herd and the middle of its sphere.
 template <typename Call>
-void eachSphere(std::span<const PickHerd> herds, const glm::dvec3& origin, const Call& call) {
+void eachSphere(std::span<const PickRun> runs, const glm::dvec3& origin, const Call& call) {
   constexpr size_t floats = 4 * shared::BODY_STRIDE;
-  for (const PickHerd& herd : herds)
-    for (size_t agent = 0; agent < herd.bodies.size() / floats; ++agent) {
-      const BodyState body = bodyOf(herd.bodies.subspan(agent * floats, floats), origin);
+  for (const PickRun& run : runs)
+    for (size_t i = 0; i < run.bodies.size() / floats; ++i) {
+      const BodyState body = bodyOf(run.bodies.subspan(i * floats, floats), origin);
       if (!body.present) continue;
-      call(herd, static_cast<uint32_t>(agent),
-           body.position + glm::dvec3(body.rotation * glm::vec3(0, herd.sphere.height, 0)));
+      call(run, run.firstAgent + static_cast<uint32_t>(i),
+           body.position + glm::dvec3(body.rotation * glm::vec3(0, run.sphere.height, 0)));
     }
 }
 
@@ -41,24 +42,24 @@ double along(const Ray& ray, const glm::dvec3& direction, const glm::dvec3& midd
 
 PickSphere pickSphereOf(const Rig& rig) { return {rig.bodyHeight, std::max(rig.bodyRadius, rig.bodyHeight)}; }
 
-std::optional<Picked> pick(std::span<const PickHerd> herds, const Ray& ray, const glm::dvec3& origin) {
+std::optional<Picked> pick(std::span<const PickRun> runs, const Ray& ray, const glm::dvec3& origin) {
   assert(glm::length(ray.direction) > 0);
   std::optional<Picked> best;
   const glm::dvec3 direction = glm::normalize(ray.direction);
-  eachSphere(herds, origin, [&](const PickHerd& herd, uint32_t agent, const glm::dvec3& middle) {
-    const double distance = along(ray, direction, middle, double{herd.sphere.radius});
+  eachSphere(runs, origin, [&](const PickRun& run, uint32_t agent, const glm::dvec3& middle) {
+    const double distance = along(ray, direction, middle, double{run.sphere.radius});
     if (distance > ray.length || !std::isfinite(distance) || (best && best->distance <= distance)) return;
-    best = {herd.herd, agent, distance, ray.start + distance * direction};
+    best = {run.herd, agent, distance, ray.start + distance * direction};
   });
   return best;
 }
 
-std::optional<Picked> nearest(std::span<const PickHerd> herds, const glm::dvec3& point,
+std::optional<Picked> nearest(std::span<const PickRun> runs, const glm::dvec3& point,
                               const glm::dvec3& origin) {
   std::optional<Picked> best;
-  eachSphere(herds, origin, [&](const PickHerd& herd, uint32_t agent, const glm::dvec3& middle) {
+  eachSphere(runs, origin, [&](const PickRun& run, uint32_t agent, const glm::dvec3& middle) {
     const double distance = glm::distance(point, middle);
-    if (!best || distance < best->distance) best = {herd.herd, agent, distance, middle};
+    if (!best || distance < best->distance) best = {run.herd, agent, distance, middle};
   });
   return best;
 }
@@ -67,38 +68,35 @@ std::optional<Picked> nearest(std::span<const PickHerd> herds, const glm::dvec3&
 
 namespace {
 
-// The body records of all herds, and who they are of.
+// The body records of all herds, a vector a part, and who they are of.
 struct Bodies {
   std::vector<std::vector<float>> records;
-  std::vector<crowd::PickHerd> herds;
+  std::vector<crowd::PickRun> runs;
 };
 Bodies bodiesOf(const Crowd& crowd) {
   const Crowd::Impl& impl = implOf(crowd);
   impl.context->waitIdle();
   Bodies bodies;
-  for (uint32_t herd = 0; herd < crowd.herdCount(); ++herd) {
-    std::vector<float>& records = bodies.records.emplace_back();
+  for (uint32_t herd = 0; herd < crowd.herdCount(); ++herd)
     for (const crowd::Part& part : crowd::partsOf(impl, herd)) {
       const uint64_t agentBytes = 16 * shared::BODY_STRIDE;
-      const size_t end = records.size();
-      records.resize(end + part.agents * agentBytes / sizeof(float));
-      gpu::downloadBytes(*impl.context, part.page->body,
-                         std::as_writable_bytes(std::span(records).subspan(end)), part.first * agentBytes);
+      std::vector<float> records(part.agents * agentBytes / sizeof(float));
+      gpu::downloadBytes(*impl.context, part.page->body, std::as_writable_bytes(std::span(records)),
+                         part.first * agentBytes);
+      bodies.runs.push_back({herd, part.firstAgent, records, crowd::pickSphereOf(part.kind->rig)});
+      bodies.records.push_back(std::move(records));
     }
-  }
-  for (uint32_t herd = 0; herd < crowd.herdCount(); ++herd)
-    bodies.herds.push_back({herd, bodies.records[herd], crowd::pickSphereOf(impl.kindOf(herd).rig)});
   return bodies;
 }
 
 }  // namespace
 
 std::optional<Picked> Crowd::pick(const Ray& ray, const glm::dvec3& origin) const {
-  return crowd::pick(bodiesOf(*this).herds, ray, origin);
+  return crowd::pick(bodiesOf(*this).runs, ray, origin);
 }
 
 std::optional<Picked> Crowd::nearest(const glm::dvec3& point, const glm::dvec3& origin) const {
-  return crowd::nearest(bodiesOf(*this).herds, point, origin);
+  return crowd::nearest(bodiesOf(*this).runs, point, origin);
 }
 
 }  // namespace skitter

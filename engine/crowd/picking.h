@@ -15,15 +15,15 @@ struct PickSphere {
 };
 PickSphere pickSphereOf(const Rig& rig);
 
-// A herd's body records, agent by agent.
-struct PickHerd {
-  uint32_t herd = 0;
+// Body records of a herd's agents that are picked by one sphere, agent by agent.
+struct PickRun {
+  uint32_t herd = 0, firstAgent = 0;  // the latter of the herd
   std::span<const float> bodies;
   PickSphere sphere;
 };
 
-std::optional<Picked> pick(std::span<const PickHerd> herds, const Ray& ray, const glm::dvec3& origin);
-std::optional<Picked> nearest(std::span<const PickHerd> herds, const glm::dvec3& point,
+std::optional<Picked> pick(std::span<const PickRun> runs, const Ray& ray, const glm::dvec3& origin);
+std::optional<Picked> nearest(std::span<const PickRun> runs, const glm::dvec3& point,
                               const glm::dvec3& origin);
 
 }  // namespace skitter::crowd

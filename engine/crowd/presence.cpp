@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "crowd/herd.h"
 
@@ -11,10 +12,10 @@ constexpr uint32_t kLastGeneration = (1u << 30) - 2;
 
 }  // namespace
 
-Presence::Presence(uint32_t agents, uint32_t places, uint32_t generation)
-    : generations(places, generation + 1), count(agents), firstEmpty_(agents) {
-  std::fill_n(generations.begin(), agents, generation);
-}
+Presence::Presence(std::vector<uint32_t> made)
+    : generations(std::move(made)),
+      count(static_cast<uint32_t>(
+          std::ranges::count_if(generations, [](uint32_t generation) { return generation % 2 == 0; }))) {}
 
 uint32_t Presence::nextGeneration() const {
   if (generations.empty()) return 0;

@@ -48,4 +48,10 @@ float radiusOf(const Kind& kind) {
   return traitsOf(kind.controller).playsClips ? radiusOf(kind.clipSet) : radiusOf(kind.rig);
 }
 
+float radiusOf(const Crowd::Impl& crowd, const Herd& herd) {
+  float radius = 0;
+  for (const SizeRun& run : herd.runs) radius = std::max(radius, radiusOf(crowd.kinds[run.kind]));
+  return radius;
+}
+
 }  // namespace skitter::crowd

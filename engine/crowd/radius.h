@@ -8,5 +8,6 @@ namespace skitter::crowd {
 float radiusOf(const Rig&);
 float radiusOf(const ClipSet&);  // where clips move the skin
 float radiusOf(const Kind&);
+float radiusOf(const Crowd::Impl&, const Herd&);  // of its largest size
 
 }  // namespace skitter::crowd

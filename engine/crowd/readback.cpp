@@ -61,10 +61,9 @@ void appendRecords(const gpu::Context& context, const Part& part, const gpu::Buf
 }
 
 // A page's watched agents come from its start; in the herd each has the place of its number.
-void appendWatch(const Crowd::Impl& crowd, const crowd::Kind& kind, const Part& part, uint32_t offset,
-                 std::vector<float>& watch) {
+void appendWatch(const Crowd::Impl& crowd, const Part& part, uint32_t offset, std::vector<float>& watch) {
   const crowd::Watch now = crowd::watchAt(crowd.tick, crowd.watchEvery, *part.page);
-  const auto floats = static_cast<size_t>(4 * shared::watchStride(kind.legs));
+  const auto floats = static_cast<size_t>(4 * shared::watchStride(part.kind->legs));
   const std::vector<float> slots = gpu::download<float>(*crowd.context, part.page->watch);
   const auto placeOf = [&](uint32_t agent) {
     return (size_t{offset} + part.firstAgent + agent - part.first) / crowd.watchEvery * floats;
@@ -78,60 +77,48 @@ void appendWatch(const Crowd::Impl& crowd, const crowd::Kind& kind, const Part& 
   }
 }
 
-}  // namespace
-
-namespace crowd {
-
-HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<const Record> records,
-                          const AgentSample& sample) {
+HerdState recordsOf(const Crowd::Impl& crowd, std::span<const Part> parts, std::span<const Record> records,
+                    const AgentSample& sample) {
   assert(sample.stride > 0);
   crowd.context->waitIdle();
   HerdState state;
   state.tick = crowd.tick;
   state.sample = sample;
-  const Kind& kind = crowd.kindOf(herd);
-  for (const Part& part : partsOf(crowd, herd)) {
-    state.agents += sampleOf(part.firstAgent, part.agents, sample).count;
+  for (const Part& part : parts) {
+    state.agents += crowd::sampleOf(part.firstAgent, part.agents, sample).count;
     for (const Record record : records) {
-      const Per per = infoOf(record).per;
-      if (per == Per::watched || !keeps(kind, crowd.options, record)) continue;
-      appendRecords(*crowd.context, part, part.page->of(record), per == Per::leg ? kind.legs : 0, sample,
-                    state.of(record));
+      const crowd::Per per = crowd::infoOf(record).per;
+      if (per == crowd::Per::watched || !crowd::keeps(*part.kind, crowd.options, record)) continue;
+      appendRecords(*crowd.context, part, part.page->of(record), per == crowd::Per::leg ? part.kind->legs : 0,
+                    sample, state.of(record));
     }
   }
   return state;
 }
 
-}  // namespace crowd
-
-HerdState Crowd::download(uint32_t herdIndex, const AgentSample& sample) const {
-  HerdState state = crowd::downloadRecords(*impl_, herdIndex, allRecords, sample);
-  state.watchEvery = impl_->watchEvery;
-  state.sleep = impl_->options.sleep;
-  state.watched = impl_->tick > 0 && impl_->tick <= impl_->watchUntil;
-  state.watchOffset = impl_->herds[herdIndex].firstAgent % impl_->watchEvery;
-  for (const Part& part : crowd::partsOf(*impl_, herdIndex))
-    if (part.page->watch) appendWatch(*impl_, impl_->kindOf(herdIndex), part, state.watchOffset, state.watch);
-  state.footfallsKept = impl_->options.footfalls > 0 && droppedFootfalls(herdIndex) == 0;
-  if (state.footfallsKept) state.footfalls = footfalls(herdIndex);
-  return state;
+uint64_t droppedFootfallsOf(const Crowd::Impl& crowd, std::span<const Part> parts) {
+  crowd.context->waitIdle();
+  uint64_t dropped = 0;
+  for (const Part& part : parts) dropped += crowd::rowOf(*crowd.context, part)[shared::ROW_FOOTFALLS_DROPPED];
+  return dropped;
 }
 
-std::vector<Footfall> Crowd::footfalls(uint32_t herdIndex) const {
-  const gpu::Context& context = *impl_->context;
-  const crowd::Herd& herd = impl_->herdAt(herdIndex);
+std::vector<Footfall> footfallsOf(const Crowd::Impl& crowd, std::span<const Part> parts) {
+  const gpu::Context& context = *crowd.context;
   context.waitIdle();
   std::vector<Footfall> all;
-  if (impl_->options.footfalls == 0) return all;
-  for (const Part& part : crowd::partsOf(*impl_, herdIndex)) {
+  if (crowd.options.footfalls == 0) return all;
+  for (const Part& part : parts) {
     const Page& page = *part.page;
     const uint32_t count = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_FOOTFALLS];
     std::vector<float> events(size_t{std::min(count, page.footfallRoom)} * 4 * shared::FOOTFALL_STRIDE);
     gpu::downloadBytes(context, page.footfall, std::as_writable_bytes(std::span(events)));
     for (size_t i = 0; i < std::min(count, page.footfallRoom); ++i) {
-      const Footfall footfall =
-          footfallOf(std::span(events).subspan(i * 4 * shared::FOOTFALL_STRIDE), herd.firstAgent, impl_->dt);
-      if (footfall.agent < herd.agents) all.push_back(footfall);
+      Footfall footfall = footfallOf(std::span(events).subspan(i * 4 * shared::FOOTFALL_STRIDE),
+                                     page.firstAgent + part.first, crowd.dt);
+      if (footfall.agent >= part.agents) continue;
+      footfall.agent += part.firstAgent;
+      all.push_back(footfall);
     }
   }
   // The device appends them in any order.
@@ -141,20 +128,62 @@ std::vector<Footfall> Crowd::footfalls(uint32_t herdIndex) const {
   return all;
 }
 
-uint64_t Crowd::droppedFootfalls(uint32_t herd) const {
-  impl_->context->waitIdle();
-  uint64_t dropped = 0;
-  for (const Part& part : crowd::partsOf(*impl_, herd))
-    dropped += crowd::rowOf(*impl_->context, part)[shared::ROW_FOOTFALLS_DROPPED];
-  return dropped;
+// All but what measure keeps of those whom it watches.
+HerdState stateOf(const Crowd::Impl& crowd, std::span<const Part> parts, const AgentSample& sample) {
+  HerdState state = recordsOf(crowd, parts, allRecords, sample);
+  state.watchEvery = crowd.watchEvery;
+  state.sleep = crowd.options.sleep;
+  state.watched = crowd.tick > 0 && crowd.tick <= crowd.watchUntil;
+  state.footfallsKept = crowd.options.footfalls > 0 && droppedFootfallsOf(crowd, parts) == 0;
+  if (state.footfallsKept) state.footfalls = footfallsOf(crowd, parts);
+  return state;
 }
 
-std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herdIndex) const {
-  const crowd::Herd& herd = impl_->herdAt(herdIndex);
+}  // namespace
+
+namespace crowd {
+
+HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<const Record> records,
+                          const AgentSample& sample) {
+  return recordsOf(crowd, partsOf(crowd, herd), records, sample);
+}
+
+HerdState download(const Crowd::Impl& crowd, const SizeRun& run, const AgentSample& sample) {
+  const std::vector<Part> parts = partsOf(crowd, run);
+  HerdState state = stateOf(crowd, parts, sample);
+  state.watchOffset = run.firstAgent % crowd.watchEvery;
+  for (const Part& part : parts)
+    if (part.page->watch) appendWatch(crowd, part, state.watchOffset, state.watch);
+  return state;
+}
+
+}  // namespace crowd
+
+HerdState Crowd::download(uint32_t herd, const AgentSample& sample) const {
+  const std::vector<crowd::SizeRun>& runs = impl_->herdAt(herd).runs;
+  if (runs.size() == 1) return crowd::download(*impl_, runs.front(), sample);
+  return stateOf(*impl_, crowd::partsOf(*impl_, herd), sample);
+}
+
+std::vector<Footfall> Crowd::footfalls(uint32_t herd) const {
+  return footfallsOf(*impl_, crowd::partsOf(*impl_, herd));
+}
+
+uint64_t Crowd::droppedFootfalls(uint32_t herd) const {
+  return droppedFootfallsOf(*impl_, crowd::partsOf(*impl_, herd));
+}
+
+std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herd) const {
   std::vector<FootfallBuffer> buffers;
-  for (const Part& part : crowd::partsOf(*impl_, herdIndex))
-    buffers.push_back({part.page->footfall.handle(), part.page->counters.handle(),
-                       shared::COUNTER_FOOTFALLS * 4, part.page->footfallRoom, herd.firstAgent, herd.agents});
+  for (const crowd::SizeRun& run : impl_->herdAt(herd).runs)
+    for (const Part& part : crowd::partsOf(*impl_, run))
+      buffers.push_back({.events = part.page->footfall.handle(),
+                         .counters = part.page->counters.handle(),
+                         .countOffset = shared::COUNTER_FOOTFALLS * 4,
+                         .room = part.page->footfallRoom,
+                         .firstAgent = run.firstAgent,
+                         .agents = run.agents,
+                         .firstOfHerd = run.firstOfHerd});
   return buffers;
 }
 
@@ -174,15 +203,14 @@ uint64_t Crowd::stateHash() const {
   std::vector<float> records;
   uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, a word at a time
   for (uint32_t herd = 0; herd < herdCount(); ++herd) {
-    const crowd::Kind& kind = impl_->kindOf(herd);
     const std::vector<Part> parts = crowd::partsOf(*impl_, herd);
     // Record by record over the herd, not page by page: how agents are paged must not show.
     for (const Record record : allRecords)
       for (const Part& part : parts) {
-        if (!crowd::isHashed(record, kind.controller)) continue;
+        if (!crowd::isHashed(record, part.kind->controller)) continue;
         records.clear();
         appendRecords(context, part, part.page->of(record),
-                      crowd::infoOf(record).per == crowd::Per::leg ? kind.legs : 0, kAll, records);
+                      crowd::infoOf(record).per == crowd::Per::leg ? part.kind->legs : 0, kAll, records);
         for (const float value : records) {
           hash = (hash ^ std::bit_cast<uint32_t>(value)) * 0x100000001b3ull;
           hash ^= hash >> 32;

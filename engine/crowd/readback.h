@@ -7,8 +7,13 @@
 
 namespace skitter::crowd {
 
-// Of what Crowd::download gives, those records alone and how many agents there are. Waits for the device.
+// Each waits for the device.
+
+// Of what Crowd::download gives, those records alone and how many agents there are.
 HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<const Record> records,
                           const AgentSample& sample = {});
+
+// As Crowd::download, of a herd's agents that have one size; they are counted from 0.
+HerdState download(const Crowd::Impl& crowd, const SizeRun& run, const AgentSample& sample = {});
 
 }  // namespace skitter::crowd

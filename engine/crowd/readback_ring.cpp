@@ -22,18 +22,25 @@ constexpr size_t bodyFloats = 4 * shared::BODY_STRIDE;
 
 // Where each herd's bodies are in a slot; a herd that is not read has none.
 struct Snapshot::Layout {
+  struct Run {
+    uint32_t firstAgent, agents;  // of the herd
+    crowd::PickSphere sphere;
+  };
   struct Herd {
     size_t first = 0;  // floats
     uint32_t agents = 0;
     float radius = 0;  // metres, that holds every pose; 0: not read
-    crowd::PickSphere sphere;
+    std::vector<Run> runs = {};
   };
   std::vector<Herd> herds;
 
-  std::vector<crowd::PickHerd> pickHerds(const Snapshot& snapshot) const {
-    std::vector<crowd::PickHerd> picks;
+  std::vector<crowd::PickRun> pickRuns(const Snapshot& snapshot) const {
+    std::vector<crowd::PickRun> picks;
     for (uint32_t herd = 0; herd < herds.size(); ++herd)
-      if (herds[herd].agents > 0) picks.push_back({herd, snapshot.bodies(herd), herds[herd].sphere});
+      for (const Run& run : herds[herd].runs)
+        picks.push_back({herd, run.firstAgent,
+                         snapshot.bodies(herd).subspan(run.firstAgent * bodyFloats, run.agents * bodyFloats),
+                         run.sphere});
     return picks;
   }
 };
@@ -68,11 +75,11 @@ std::optional<Box> Snapshot::bounds(uint32_t herd, const glm::dvec3& origin) con
 }
 
 std::optional<Picked> Snapshot::pick(const Ray& ray, const glm::dvec3& origin) const {
-  return crowd::pick(layout_->pickHerds(*this), ray, origin);
+  return crowd::pick(layout_->pickRuns(*this), ray, origin);
 }
 
 std::optional<Picked> Snapshot::nearest(const glm::dvec3& point, const glm::dvec3& origin) const {
-  return crowd::nearest(layout_->pickHerds(*this), point, origin);
+  return crowd::nearest(layout_->pickRuns(*this), point, origin);
 }
 
 struct Readback::Impl {
@@ -119,11 +126,12 @@ Readback::Readback(Device& device, const Crowd& crowd, ReadbackOptions options)
   impl_->layout.herds.resize(crowd.herdCount());
   uint64_t bytes = 0;
   for (const uint32_t herd : options.herds) {
-    const crowd::Kind& kind = read.kindOf(herd);
+    const crowd::Herd& from = read.herdAt(herd);
     Snapshot::Layout::Herd& place = impl_->layout.herds[herd];
     if (place.radius > 0) throw inputError(fmt::format("readback: herd {} is named twice", herd));
-    place = {bytes / sizeof(float), read.herds[herd].agents, crowd::radiusOf(kind),
-             crowd::pickSphereOf(kind.rig)};
+    place = {bytes / sizeof(float), from.agents, crowd::radiusOf(read, from)};
+    for (const crowd::SizeRun& run : from.runs)
+      place.runs.push_back({run.firstOfHerd, run.agents, crowd::pickSphereOf(read.kinds[run.kind].rig)});
     for (const RecordBuffer& each : crowd.buffers(herd, Record::body)) {
       impl_->copies.push_back({each.buffer, {each.offset, bytes, each.bytes}});
       bytes += each.bytes;

@@ -18,6 +18,9 @@ float uniform(uint64_t seed, uint64_t agent, uint64_t purpose) {
   return static_cast<float>(drawn >> 40) * 0x1p-24f;
 }
 
+// Purposes 0 and 1 are the place, 2 is the phase.
+constexpr uint64_t kSizePurpose = 3;
+
 // Below that many a thread costs more than it saves.
 constexpr uint32_t kAgentsAThread = 4096;
 
@@ -46,6 +49,39 @@ float kindOf(const Goal& goal) {
 
 }  // namespace
 
+std::vector<float> sizesOf(const skitter::Herd& herd) {
+  std::vector<float> sizes;
+  for (const float size : herd.sizes)
+    if (std::ranges::find(sizes, size) == sizes.end()) sizes.push_back(size);
+  if (sizes.empty()) sizes.push_back(1);
+  return sizes;
+}
+
+Numbering numberingOf(const skitter::Herd& herd, uint64_t seed) {
+  const uint32_t places = herd.agents + herd.reserve;
+  const std::vector<float> sizes = sizesOf(herd);
+  if (sizes.size() == 1) return {.counts = {places}};
+  std::vector<std::vector<uint32_t>> placesOf(sizes.size());
+  for (uint32_t place = 0; place < places; ++place) {
+    const float drawn = uniform(seed, place, kSizePurpose) * static_cast<float>(herd.sizes.size());
+    const auto size = std::ranges::find(sizes, herd.sizes[static_cast<size_t>(drawn)]);
+    placesOf[static_cast<size_t>(size - sizes.begin())].push_back(place);
+  }
+  Numbering made;
+  made.starts.reserve(places);
+  for (const std::vector<uint32_t>& each : placesOf) {
+    made.counts.push_back(static_cast<uint32_t>(each.size()));
+    made.starts.insert(made.starts.end(), each.begin(), each.end());
+  }
+  return made;
+}
+
+Spawner spawnerOf(const Crowd::Impl& crowd, const Herd& herd, const SizeRun& run) {
+  std::span<const uint32_t> starts = herd.starts;
+  if (!starts.empty()) starts = starts.subspan(run.firstOfHerd, run.agents);
+  return {herd.from, crowd.kinds[run.kind], crowd.terrain, herd.seed, starts};
+}
+
 BodyRecord absentBody() {
   return {0, shared::ABSENT_HEIGHT, 0, shared::packedTile(0, 0), 0, 1, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0};
 }
@@ -66,14 +102,16 @@ class Spawner::Writer {
   float* at_ = records_;
 };
 
-Spawner::Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield& terrain, uint64_t seed)
+Spawner::Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield& terrain, uint64_t seed,
+                 std::span<const uint32_t> starts)
     : herd_(from),
       rig_(kind.rig),
       clips_(kind.clips),
       keyPoses_(kind.keyPoses),
       terrain_(terrain),
       tuning_(kind.parameters),
-      seed_(seed) {
+      seed_(seed),
+      starts_(starts) {
   // A block about as deep as wide; closer together only where the terrain has no room.
   const float spacing = from.spawn.spacing;
   const float roomX = terrain.extentX() - 4 * tuning_.edgeMargin;
@@ -103,7 +141,7 @@ void Spawner::pushDirections(size_t leg, Writer& chain) const {
 }
 
 Place Spawner::startOf(uint32_t agent) const {
-  const uint32_t row = agent / lanes_, lane = agent % lanes_;
+  const uint32_t spot = spotOf(agent), row = spot / lanes_, lane = spot % lanes_;
   const auto centred = [](uint32_t i, uint32_t n, float spacing) {
     return (static_cast<float>(i) - 0.5f * static_cast<float>(n - 1)) * spacing;
   };
@@ -112,8 +150,8 @@ Place Spawner::startOf(uint32_t agent) const {
   float z = spawn.centre.y + centred(row, rows_, rowSpacing_);
   if (spawn.kind == Spawn::Kind::lanes) {
     // Nobody walks in step or in file: every agent is a little off its place.
-    x += 0.4f * laneSpacing_ * (uniform(seed_, agent, 0) - 0.5f);
-    z = -limitZ_ + static_cast<float>(row) * rowSpacing_ + 0.5f * rowSpacing_ * uniform(seed_, agent, 1);
+    x += 0.4f * laneSpacing_ * (uniform(seed_, spot, 0) - 0.5f);
+    z = -limitZ_ + static_cast<float>(row) * rowSpacing_ + 0.5f * rowSpacing_ * uniform(seed_, spot, 1);
   }
   return {{std::clamp(x, -limitX_, limitX_), std::clamp(z, -limitZ_, limitZ_)},
           spawn.kind == Spawn::Kind::lanes ? 0 : spawn.heading};
@@ -166,7 +204,7 @@ void Spawner::writeRun(uint32_t first, uint32_t count, uint32_t at, const SpawnR
     const GoalRecord goal = goalRecord(first + i, herd_.goal);
     std::ranges::copy(goal, records.goal.begin() + static_cast<ptrdiff_t>(goal.size()) * (at + i));
     stand(first + i, startOf(first + i), at + i, records);
-    if (first + i < herd_.agents) continue;
+    if (spotOf(first + i) < herd_.agents) continue;
     const BodyRecord absent = absentBody();
     std::ranges::copy(absent, records.body.begin() + static_cast<ptrdiff_t>(absent.size()) * (at + i));
   }
@@ -179,7 +217,8 @@ void Spawner::stand(uint32_t agent, const Place& place, uint32_t at, const Spawn
       foot(records.foot, FOOT_STRIDE), chain(records.chain, chainStride(rig_.maxBones())),
       tip(records.tip, TIP_STRIDE), play(records.play, PLAY_STRIDE);
   for (Writer* each : {&body, &gait, &play}) each->seek(record);
-  const float phase = herd_.phase ? *herd_.phase - std::floor(*herd_.phase) : uniform(seed_, agent, 2);
+  const float phase =
+      herd_.phase ? *herd_.phase - std::floor(*herd_.phase) : uniform(seed_, spotOf(agent), 2);
 
   // Standing on the plane through the ground a leg length around.
   const glm::vec2 p = place.position;

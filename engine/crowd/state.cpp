@@ -217,34 +217,26 @@ uint32_t fingerprintOf(const Kind& kind) {
   return sum;
 }
 
-bool isGone(const Herd& herd) { return herd.generation % 2 == 1; }
-
-// Whether everybody is there who was there at first, and nobody else.
-bool isFirstGeneration(const Impl& crowd, uint32_t kind) {
-  return std::ranges::all_of(crowd.herds, [&](const Herd& herd) {
-    return herd.kind != kind || isGone(herd) ||
-           std::ranges::all_of(herd.presence.generations,
-                               [](uint32_t generation) { return generation == 0; });
-  });
-}
-
 // Of each of the kind's places.
 std::vector<uint32_t> generationsOf(const Impl& crowd, uint32_t kind) {
   std::vector<uint32_t> all(crowd.kinds[kind].agents);
-  for (const Herd& herd : crowd.herds)
-    if (herd.kind == kind && !isGone(herd))
-      std::ranges::copy(herd.presence.generations, all.begin() + herd.firstAgent);
+  for (const HerdRun& of : runsOf(crowd, kind))
+    std::ranges::copy(std::span(of.herd->presence.generations).subspan(of.run->firstOfHerd, of.run->agents),
+                      all.begin() + of.run->firstAgent);
   return all;
 }
 
+// Whether everybody is there who was there at first, and nobody else.
+bool isFirstGeneration(const Impl& crowd, uint32_t kind) {
+  return std::ranges::all_of(generationsOf(crowd, kind), [](uint32_t generation) { return generation == 0; });
+}
+
 void giveGenerations(Impl& crowd, uint32_t kind, std::span<const uint32_t> all) {
-  for (Herd& herd : crowd.herds) {
-    if (herd.kind != kind || isGone(herd)) continue;
-    const auto own = all.subspan(herd.firstAgent, herd.agents);
-    herd.presence = Presence();
-    herd.presence.generations.assign(own.begin(), own.end());
-    herd.presence.count = static_cast<uint32_t>(
-        std::ranges::count_if(own, [](uint32_t generation) { return generation % 2 == 0; }));
+  for (const HerdRun& of : runsOf(crowd, kind)) {
+    std::vector<uint32_t> generations = of.herd->presence.generations;
+    const auto own = all.subspan(of.run->firstAgent, of.run->agents);
+    std::ranges::copy(own, generations.begin() + of.run->firstOfHerd);
+    crowd.herds[of.number].presence = Presence(std::move(generations));
   }
 }
 
@@ -297,18 +289,11 @@ StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& foot
   for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
     const Herd& herd = crowd.herds[h];
     head.scene.herds.push_back(herd.from);
-    if (isGone(herd)) {
-      head.scene.herds.back() = {};  // its files may be gone, too
-      head.scene.herds.back().agents = 0;
-    }
     const std::vector<uint32_t>& generations = herd.presence.generations;
-    head.herds.push_back({.kind = herd.kind,
-                          .place = herd.place,
-                          .firstAgent = herd.firstAgent,
-                          .agents = herd.agents,
+    head.herds.push_back({.runs = herd.runs,
                           .generation = herd.generation,
                           .lastGeneration = generations.empty() ? 0 : std::ranges::max(generations)});
-    if (!isGone(herd)) addCounts(crowd, h, head.herds.back());
+    if (!herd.isGone()) addCounts(crowd, h, head.herds.back());
   }
   return head;
 }
@@ -421,7 +406,7 @@ void readChunks(Impl& crowd, State::Source& source) {
     }
   }
   for (uint32_t herd = 0; herd < crowd.herds.size(); ++herd)
-    if (!isGone(crowd.herds[herd])) giveCounts(crowd, herd, source.head.herds[herd]);
+    if (!crowd.herds[herd].isGone()) giveCounts(crowd, herd, source.head.herds[herd]);
 }
 
 uint64_t expectedBytes(const Impl& crowd, const Kind& kind, const StateChunk& chunk) {
@@ -435,6 +420,16 @@ void checkChunk(const Impl& crowd, const Kind& kind, const StateChunk& chunk, co
   if (chunk.bytes != expected)
     throw inputError(fmt::format("{}: record {} of herds of rig {} has {} bytes, expected {}", state,
                                  chunk.name, kind.rig.name, chunk.bytes, expected));
+}
+
+bool isNumberedSo(const std::vector<SizeRun>& runs, const Numbering& numbering) {
+  if (runs.size() != numbering.counts.size()) return false;
+  uint32_t first = 0;
+  for (size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].firstOfHerd != first || runs[i].agents != numbering.counts[i]) return false;
+    first += runs[i].agents;
+  }
+  return true;
 }
 
 }  // namespace
@@ -451,16 +446,20 @@ void restoreHerds(Impl& crowd, const State& state) {
   for (size_t h = 0; h < head.herds.size(); ++h) {
     const StateHerd& saved = head.herds[h];
     Herd& herd = crowd.herds.emplace_back();
-    herd.kind = saved.kind;
-    herd.place = saved.place;
-    herd.firstAgent = saved.firstAgent;
-    herd.agents = saved.agents;
     herd.from = state.scene.herds.at(h);
+    herd.seed = seedOf(crowd.seed, h);
     herd.generation = saved.generation;
-    if (isGone(herd))
+    if (herd.isGone()) {
       herd.presence.generations = {saved.lastGeneration};
-    else
-      herd.presence = Presence(saved.agents, saved.agents);
+      continue;
+    }
+    Numbering numbering = numberingOf(herd.from, herd.seed);
+    if (!isNumberedSo(saved.runs, numbering))
+      throw inputError(fmt::format("{}: herd {} has other sizes than in its scene", name, h));
+    herd.runs = saved.runs;
+    herd.agents = herd.from.agents + herd.from.reserve;
+    herd.starts = std::move(numbering.starts);
+    herd.presence = Presence(std::vector<uint32_t>(herd.agents));
   }
   crowd.kinds.resize(head.kinds.size());
   for (size_t k = 0; k < head.kinds.size(); ++k) {

@@ -47,14 +47,20 @@ void eachKey(StateKind& kind, const Visit& visit) {
   visit("chunks", chunks);
 }
 template <class Visit>
-void eachKey(StateHerd& herd, const Visit& visit) {
-  auto& [kind, place, firstAgent, agents, generation, lastGeneration, counts, reachErrors] = herd;
+void eachKey(SizeRun& run, const Visit& visit) {
+  auto& [kind, place, firstAgent, firstOfHerd, agents] = run;
   visit("kind", kind);
   visit("place", place);
+  visit("firstAgent", firstAgent);
+  visit("firstOfHerd", firstOfHerd);
+  visit("agents", agents);
+}
+template <class Visit>
+void eachKey(StateHerd& herd, const Visit& visit) {
+  auto& [runs, generation, lastGeneration, counts, reachErrors] = herd;
+  visit("runs", runs);
   visit("generation", generation);
   visit("lastGeneration", lastGeneration);
-  visit("firstAgent", firstAgent);
-  visit("agents", agents);
   visit("counts", counts);
   visit("reachErrors", reachErrors);
 }
@@ -142,12 +148,14 @@ Json noteOf(const std::string& note) {
 }
 
 void checkHerds(const StateHead& head, const std::string& name) {
+  const auto isOfItsKind = [&](const SizeRun& run) {
+    if (run.kind >= head.kinds.size()) return false;
+    const StateKind& kind = head.kinds[run.kind];
+    return run.place < kind.firstAgents.size() && kind.firstAgents[run.place] == run.firstAgent &&
+           uint64_t{run.firstAgent} + run.agents <= kind.agents;
+  };
   const auto fits = [&](const StateHerd& herd) {
-    if (herd.generation % 2 == 1) return true;
-    if (herd.kind >= head.kinds.size()) return false;
-    const StateKind& kind = head.kinds[herd.kind];
-    return herd.place < kind.firstAgents.size() && kind.firstAgents[herd.place] == herd.firstAgent &&
-           uint64_t{herd.firstAgent} + herd.agents <= kind.agents;
+    return herd.generation % 2 == 1 || std::ranges::all_of(herd.runs, isOfItsKind);
   };
   if (head.herds.size() != head.scene.herds.size() || !std::ranges::all_of(head.herds, fits))
     throw inputError(fmt::format("{}: its herds are others than those of its scene", name));

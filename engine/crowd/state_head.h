@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "crowd/size_run.h"
 #include "skitter/records.h"
 #include "skitter/state.h"
 
@@ -42,7 +43,7 @@ struct StateKind {
 };
 
 struct StateHerd {
-  uint32_t kind = 0, place = 0, firstAgent = 0, agents = 0;
+  std::vector<SizeRun> runs;
   uint32_t generation = 0;      // odd: the herd is gone
   uint32_t lastGeneration = 0;  // the highest of its places
   // What the device has counted since the start.

@@ -10,7 +10,7 @@
 namespace skitter {
 namespace {
 
-using crowd::AgentChange, crowd::expectGoal, crowd::expectPlace, crowd::expectSpeed;
+using crowd::AgentChange, crowd::SizeRun, crowd::expectGoal, crowd::expectPlace, crowd::expectSpeed;
 
 std::string nameOf(uint32_t herd) { return fmt::format("herd {}", herd); }
 std::string nameOf(uint32_t herd, uint32_t agent) { return fmt::format("herd {}, agent {}", herd, agent); }
@@ -21,11 +21,15 @@ void expectOneEach(const crowd::Herd& herd, uint32_t number, size_t found, const
         fmt::format("herd {}: found {} {}, expected {}, one a place", number, found, what, herd.agents));
 }
 
-// Of everybody who is there.
+// Calls each(agent) with everybody who is there.
+template <class Each>
+void forEach(const crowd::Herd& herd, const SizeRun& run, const Each& each) {
+  for (uint32_t agent = run.firstOfHerd; agent < run.firstOfHerd + run.agents; ++agent)
+    if (herd.presence.has(agent)) each(agent);
+}
 template <class Each>
 void forEach(const crowd::Herd& herd, const Each& each) {
-  for (uint32_t agent = 0; agent < herd.agents; ++agent)
-    if (herd.presence.has(agent)) each(agent);
+  for (const SizeRun& run : herd.runs) forEach(herd, run, each);
 }
 
 bool isThere(const crowd::Herd& herd, AgentId id) {
@@ -40,34 +44,43 @@ void expectSomebody(const Crowd::Impl& crowd, AgentId id) {
                                  id.herd(), id.agent(), id.generation(), herd.presence.count));
 }
 
-AgentChange& changeOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agent) {
-  crowd::Kind& kind = crowd.kinds[herd.kind];
-  return kind.changes.of(herd.firstAgent + agent, kind.agents);
+AgentChange& changeOf(Crowd::Impl& crowd, const SizeRun& run, uint32_t agent) {
+  crowd::Kind& kind = crowd.kinds[run.kind];
+  return kind.changes.of(run.ofKind(agent), kind.agents);
 }
 
-void expectReserve(const Crowd::Impl& crowd, uint32_t herd) {
-  crowd::expectReserve([&] { return nameOf(herd); }, crowd.kindOf(herd).reserves);
+void expectReserve(const crowd::Herd& herd, uint32_t number) {
+  crowd::expectReserve([&] { return nameOf(number); }, herd.from.reserve > 0);
 }
 
-// Sets goals of a herd's agents.
+// Sets goals of a herd's agents that have one size.
 class Steerer {
  public:
-  Steerer(Crowd::Impl& crowd, const crowd::Herd& herd)
-      : crowd_(crowd), herd_(herd), spawner_(herd.from, crowd.kinds[herd.kind], crowd.terrain, herd.seed) {}
+  Steerer(Crowd::Impl& crowd, const crowd::Herd& herd, const SizeRun& run)
+      : crowd_(crowd), run_(run), spawner_(crowd::spawnerOf(crowd, herd, run)) {}
   void steer(uint32_t agent, const Goal& goal) const {
-    AgentChange& change = changeOf(crowd_, herd_, agent);
+    AgentChange& change = changeOf(crowd_, run_, agent);
     change.goal = true;
-    change.record = spawner_.goalRecord(agent, goal);
+    change.record = spawner_.goalRecord(agent - run_.firstOfHerd, goal);
   }
 
  private:
   Crowd::Impl& crowd_;
-  const crowd::Herd& herd_;
+  const SizeRun& run_;
   crowd::Spawner spawner_;
 };
 
+// `goalOf` gives each agent's.
+template <class GoalOf>
+void steerAll(Crowd::Impl& crowd, const crowd::Herd& herd, const GoalOf& goalOf) {
+  for (const SizeRun& run : herd.runs) {
+    const Steerer steerer(crowd, herd, run);
+    forEach(herd, run, [&](uint32_t agent) { steerer.steer(agent, goalOf(agent)); });
+  }
+}
+
 void setSpeedOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agent, float speed) {
-  AgentChange& change = changeOf(crowd, herd, agent);
+  AgentChange& change = changeOf(crowd, herd.runOf(agent), agent);
   change.speed = true;
   change.record[4] = speed;
 }
@@ -77,16 +90,14 @@ void setSpeedOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agent, flo
 void Crowd::steer(uint32_t number, const Goal& goal) {
   const crowd::Herd& herd = impl_->herdAt(number);
   expectGoal([&] { return nameOf(number); }, goal);
-  const Steerer steerer(*impl_, herd);
-  forEach(herd, [&](uint32_t agent) { steerer.steer(agent, goal); });
+  steerAll(*impl_, herd, [&](uint32_t) -> const Goal& { return goal; });
 }
 
 void Crowd::steer(uint32_t number, std::span<const Goal> goals) {
   const crowd::Herd& herd = impl_->herdAt(number);
   expectOneEach(herd, number, goals.size(), "goals");
   forEach(herd, [&](uint32_t agent) { expectGoal([&] { return nameOf(number, agent); }, goals[agent]); });
-  const Steerer steerer(*impl_, herd);
-  forEach(herd, [&](uint32_t agent) { steerer.steer(agent, goals[agent]); });
+  steerAll(*impl_, herd, [&](uint32_t agent) -> const Goal& { return goals[agent]; });
 }
 
 void Crowd::steer(std::span<const AgentGoal> goals) {
@@ -94,7 +105,10 @@ void Crowd::steer(std::span<const AgentGoal> goals) {
     expectSomebody(*impl_, id);
     expectGoal([&] { return nameOf(id.herd(), id.agent()); }, goal);
   }
-  for (const auto& [id, goal] : goals) Steerer(*impl_, impl_->herds[id.herd()]).steer(id.agent(), goal);
+  for (const auto& [id, goal] : goals) {
+    const crowd::Herd& herd = impl_->herds[id.herd()];
+    Steerer(*impl_, herd, herd.runOf(id.agent())).steer(id.agent(), goal);
+  }
 }
 
 void Crowd::setSpeed(uint32_t number, float speed) {
@@ -125,7 +139,8 @@ void Crowd::teleport(std::span<const AgentPlace> places) {
     expectSomebody(*impl_, id);
     expectPlace([&] { return nameOf(id.herd(), id.agent()); }, impl_->terrain, place);
   }
-  for (const auto& [id, place] : places) changeOf(*impl_, impl_->herds[id.herd()], id.agent()).stands = place;
+  for (const auto& [id, place] : places)
+    changeOf(*impl_, impl_->herds[id.herd()].runOf(id.agent()), id.agent()).stands = place;
 }
 
 void Crowd::teleport(AgentId agent, const Place& place) {
@@ -162,7 +177,7 @@ AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
   const auto name = [&] { return fmt::format("herd {}, a new agent", number); };
   expectGoal(name, goal);
   expectPlace(name, impl_->terrain, place);
-  expectReserve(*impl_, number);
+  expectReserve(herd, number);
   const std::optional<uint32_t> empty = herd.presence.lowestEmpty();
   if (!empty)
     throw inputError(
@@ -170,10 +185,10 @@ AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
                     "has more",
                     number, herd.agents));
   herd.presence.come(*empty);
-  AgentChange& change = changeOf(*impl_, herd, *empty);
-  const crowd::Spawner spawner(herd.from, impl_->kinds[herd.kind], impl_->terrain, herd.seed);
+  const SizeRun& run = herd.runOf(*empty);
+  AgentChange& change = changeOf(*impl_, run, *empty);
   change.goal = true;
-  change.record = spawner.goalRecord(place.position.x, goal);
+  change.record = crowd::spawnerOf(*impl_, herd, run).goalRecord(place.position.x, goal);
   change.stands = place;
   change.leaves = false;
   return agentId(number, *empty);
@@ -185,10 +200,10 @@ AgentId Crowd::add(uint32_t herd, const Place& place) {
 
 void Crowd::remove(AgentId id) {
   expectSomebody(*impl_, id);
-  expectReserve(*impl_, id.herd());
   crowd::Herd& herd = impl_->herds[id.herd()];
+  expectReserve(herd, id.herd());
   herd.presence.leave(id.agent());
-  AgentChange& change = changeOf(*impl_, herd, id.agent());
+  AgentChange& change = changeOf(*impl_, herd.runOf(id.agent()), id.agent());
   change = {.agent = change.agent, .leaves = true};
 }
 

@@ -37,7 +37,7 @@ SkinMesh skinMeshOf(const Crowd& crowd, uint32_t herd, const HostSpace& space) {
             : render::surfacesOf(kind.rig.vertices, kind.rig.indices);
   SkinMesh mesh;
   mesh.entries = Palettes::entriesOf(crowd, herd);
-  mesh.radius = crowd::radiusOf(kind);
+  mesh.radius = crowd::radiusOf(implOf(crowd), implOf(crowd).herdAt(herd));
   for (size_t level = 0; level < surfaces.size(); ++level)
     append(mesh, surfaces[level], level < render::kLodPixels.size() ? render::kLodPixels[level] : 0);
   move(mesh, space);

@@ -26,8 +26,10 @@ void writeVec4(uint transform, uint part, vec4 value) {
   STORE4(transforms, at, value);
 }
 
+// `linear` turns the agents, who may be larger or smaller than the mesh.
 void writeMatrix(uint transform, mat3 linear, vec3 position) {
-  mat3x4 rows = transpose(mat4x3(linear[0], linear[1], linear[2], position));
+  mat3 sized = constants.size * linear;
+  mat3x4 rows = transpose(mat4x3(sized[0], sized[1], sized[2], position));
   for (uint i = 0u; i < 3u; ++i) writeVec4(transform, i, rows[i]);
 }
 

@@ -35,6 +35,7 @@ struct TransformConstants {
   uint base;
   uint stride;
   uint plane;
+  float size;  // of the agents, times that of the mesh
 };
 
 #ifdef __cplusplus

@@ -137,6 +137,27 @@ TEST_F(TraceFigures, SlipIsOfPlantedFeetAndPerStance) {
   EXPECT_NEAR(row(text, "skating").at(0), 100.0 * 6 / (kAgents * 357), 1e-3);
 }
 
+// Agent 1 is half as large; its leg a slides by 4 cm in one interval of each second.
+TEST_F(TraceFigures, SizesAreMeasuredByThemselves) {
+  nlohmann::json trace = json("trace.json");
+  trace["herds"][0]["sizes"] = {
+      {{"firstAgent", 0}, {"agents", 1}, {"size", 1}, {"legLength", legLength}},
+      {{"firstAgent", 1}, {"agents", 1}, {"size", 0.5}, {"legLength", legLength / 2}}};
+  write("trace.json", trace.dump());
+  for (uint64_t tick = 0; tick < ticks; ++tick) {
+    const uint64_t since = sinceLift(tick, 0);
+    put(tick, 1, 0, since >= 10 ? 1.04 : 1, 0, 1, since >= ticksInAir);
+  }
+  const std::string text = figures();
+  const size_t second = text.find("herd 0: table, size 0.5, 1 agents");
+  ASSERT_NE(second, std::string::npos) << text;
+  EXPECT_NE(text.find("herd 0: table, size 1, 1 agents"), std::string::npos) << text;
+  EXPECT_NEAR(row(text.substr(0, second), "worst slide").at(0), 0, 1e-4);
+  EXPECT_NEAR(row(text.substr(second), "worst slide").at(0), 100 * 0.04 / (legLength / 2), 1e-3);
+  // Its legs are drawn as long as those of agent 0.
+  EXPECT_NEAR(row(text.substr(second), "bone length error").at(0), 1, 1e-6);
+}
+
 TEST_F(TraceFigures, DepthIsOfAllFeetAndHeightOfPlantedOnes) {
   for (uint64_t tick = 0; tick < kTicks; ++tick) {
     const bool stands = sinceLift(tick, 1) >= ticksInAir;

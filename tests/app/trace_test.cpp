@@ -343,6 +343,35 @@ TEST_F(Trace, ShorterLegsArePaddedWithNaN) {
   }
 }
 
+// Each agent's bones are as long as those of its size, which the herd lists.
+TEST_F(Trace, SizesAreListed) {
+  write("sized.json", R"({"herds": [{"agents": 9, "sizes": [2, 0.5]}, {"agents": 2, "sizes": [3]}]})");
+  const Result result =
+      skitter({"run", file("sized.json"), "--headless", "--frames", "3", "--trace", file("trace")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const nlohmann::json herds = json("trace/trace.json").at("herds");
+  EXPECT_FALSE(herds[1].contains("sizes"));
+  EXPECT_NEAR(herds[1].at("legLength").get<double>(), 3, 1e-6);
+  const nlohmann::json& herd = herds[0];
+  const Npy joints = readNpy(file("trace/herd0/joints.npy"));
+  uint64_t next = 0;
+  ASSERT_EQ(herd.at("sizes").size(), 2u);
+  for (const nlohmann::json& size : herd.at("sizes")) {
+    EXPECT_EQ(size.at("firstAgent"), next);
+    EXPECT_NEAR(size.at("legLength").get<double>(), size.at("size").get<double>(), 1e-6);
+    const double larger = size.at("size").get<double>() / 2;
+    for (const uint64_t end = next + size.at("agents").get<uint64_t>(); next < end; ++next) {
+      double length = 0;
+      for (uint64_t k = 0; k < 3; ++k) {
+        const double along = double{joints.at({2, next, 0, 1, k})} - double{joints.at({2, next, 0, 0, k})};
+        length += along * along;
+      }
+      EXPECT_NEAR(std::sqrt(length), larger * herd.at("boneLengths")[0][0].get<double>(), 1e-4) << next;
+    }
+  }
+  EXPECT_EQ(next, 9u);
+}
+
 TEST_F(Trace, NoTicksAreNoEntries) {
   ASSERT_EQ(skitter({"run", "--headless", "--agents", "2", "--frames", "0", "--trace", file("trace")}).code,
             0);

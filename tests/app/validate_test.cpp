@@ -131,6 +131,17 @@ TEST_F(Validate, WhoComesLaterIsCompared) {
   EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({"adaptive"}));
 }
 
+TEST_F(Validate, EverySizeOfAHerdIsReplayed) {
+  write("sized.json", R"({"herds": [{"sizes": [0.6, 1.5, 1]}]})");
+  const Result result = skitter({"validate", file("sized.json"), "--agents", "30", "--frames", "60",
+                                 "--edits", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  for (const nlohmann::json& stage : json("v.json").at("stages"))
+    if (stage.at("name") == "navigate") {
+      EXPECT_EQ(stage.at("samples"), 30 * 60);
+    }
+}
+
 TEST_F(Validate, NothingToCompareIsAWrongInput) {
   expectRefusal(skitter({"validate", "--frames", "0"}), 2, {"--frames", "0", "1"});
   expectRefusal(skitter({"validate", "--agents", "0"}), 2, {"no agents", "at least one"});

@@ -147,6 +147,8 @@ TEST(Scene, LooksOfAHerd) {
   const auto herd = [](const char* keys) {
     return parseScene(fmt::format(R"({{"herds": [{{{}}}]}})", keys), "looks.json", "").herds.at(0);
   };
+  EXPECT_TRUE(herd("").sizes.empty());
+  EXPECT_EQ(herd(R"("sizes": [0.6, 1, 0.05, 20])").sizes, (std::vector<float>{0.6f, 1, 0.05f, 20}));
   EXPECT_FALSE(herd(R"("phase": "random")").phase);
   EXPECT_EQ(herd(R"("phase": "together")").phase, 0);
   EXPECT_EQ(herd(R"("phase": 0.25)").phase, 0.25f);
@@ -207,6 +209,11 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"herds": [{"phase": "togeter"}]})",
        "\"togeter\"; did you mean together? Expected one of \"random\""},
       {R"({"herds": [{"phase": 1.5}]})", "herds[0].phase is 1.5, expected a number from 0 to 1"},
+      {R"({"herds": [{"sizes": 2}]})", "herds[0].sizes is 2, expected an array of at most 16 numbers"},
+      {R"({"herds": [{"sizes": [1, 0.04]}]})",
+       "herds[0].sizes[1] is 0.04, expected a number from 0.05 to 20"},
+      {R"({"herds": [{"sizes": [20.1]}]})", "herds[0].sizes[0] is 20.1"},
+      {R"({"herds": [{"sizes": [1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1]}]})", "herds[0].sizes is an array of 17"},
       {R"({"herds": [{"tint": -1}]})", "herds[0].tint is -1"},
       {R"({"herds": [{"colour": "red"}]})", "herds[0].colour is \"red\", expected \"#rrggbb\""},
       {R"({"herds": [{"colour": "#12345g"}]})", "herds[0].colour is \"#12345g\""},
@@ -418,8 +425,8 @@ class RandomScenes {
   }
   Herd herd() {
     Herd made;
-    auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, phase,
-           colour, tint] = made;
+    auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
+           phase, colour, tint] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -438,6 +445,8 @@ class RandomScenes {
     heading = real(-10, 10);
     reserve = static_cast<uint32_t>(whole(0, 1000));
     goal = this->goal();
+    sizes.resize(whole(0, Herd::maxSizes));
+    for (float& size : sizes) size = real(0.1, 10);
     maybe(phase, 0, 1);
     if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
     maybe(tint, 0, 1);

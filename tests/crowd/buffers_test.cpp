@@ -69,6 +69,7 @@ TEST_F(BuffersTest, HoldWhatIsDownloaded) {
     scene.herds.resize(4, scene.herds[0]);
     scene.herds[1].agents = 0;
     scene.herds[2].agents = 61;
+    scene.herds[2].sizes = {0.5f, 1};
     scene.herds[3].controller = controller == Controller::loop ? Controller::adaptive : Controller::loop;
     const CrowdOptions options{.feet = true, .footfalls = 10, .pageAgents = 24};
     Crowd crowd(device(), rollingGround(), scene, options), same(device(), rollingGround(), scene, options);

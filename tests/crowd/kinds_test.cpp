@@ -230,8 +230,8 @@ TEST(KindsRefusalTest, NamesWhatDiffersAndTheMost) {
   }
   const crowd::Kinds kinds = crowd::kindsOf(scene);
   EXPECT_EQ(kinds.rigs.size(), 100u);
-  EXPECT_EQ(kinds.ofHerds.front(), 0u);
-  EXPECT_EQ(kinds.ofHerds.back(), 99u);
+  EXPECT_EQ(kinds.herds.front().kind, 0u);
+  EXPECT_EQ(kinds.herds.back().kind, 99u);
   EXPECT_EQ(kinds.firstHerds.back(), 197u);
   scene.herds.back().keys = 5;
   try {

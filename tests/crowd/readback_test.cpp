@@ -13,7 +13,7 @@ namespace {
 
 using ReadbackTest = GpuTest;
 
-// Two kinds, nobody in one herd, pages that end within herds; no two agents touch.
+// Three kinds, nobody in one herd, two sizes in one, pages that end within herds; no two agents touch.
 Scene severalHerds() {
   Scene scene = sceneOf(5);
   scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 3, .centre = {-30, 0}};
@@ -21,6 +21,7 @@ Scene severalHerds() {
   scene.herds[1].agents = 0;
   scene.herds[2].agents = 37;
   scene.herds[2].spawn.centre = {0, 20};
+  scene.herds[2].sizes = {0.6f, 1};
   scene.herds[3].spawn.centre = {30, 0};
   scene.herds[3].controller = Controller::loop;
   return scene;
@@ -157,10 +158,10 @@ TEST_F(ReadbackTest, PicksTheAgentUnderTheRay) {
   const Snapshot snapshot = readback.latest().value();
   ASSERT_EQ(snapshot.tick(), crowd.tick());
   const glm::dvec3 origin(-8.5, 2, 31);
-  const Rig& rig = crowd.rig(0);
-  const double radius = std::max(rig.bodyRadius, rig.bodyHeight);
   for (const uint32_t herd : {0u, 2u, 3u})
     for (uint32_t agent = 0; agent < snapshot.agents(herd); ++agent) {
+      const Rig& rig = crowd.rig(herd, agent);
+      const double radius = std::max(rig.bodyRadius, rig.bodyHeight);
       const BodyState body = snapshot.body(herd, agent, origin);
       const glm::dvec3 middle = body.position + glm::dvec3(body.rotation * glm::vec3(0, rig.bodyHeight, 0));
       const glm::dvec3 beside = 0.9 * radius * glm::dvec3(1, 0, 0);
@@ -183,6 +184,7 @@ TEST_F(ReadbackTest, PicksTheAgentUnderTheRay) {
       EXPECT_NEAR(snapshot.nearest(point, origin)->distance, 0.15, 1e-9);
     }
   // Through two agents: the nearer one.
+  const Rig& rig = crowd.rig(0);
   const glm::dvec3 first = snapshot.body(0, 0).position, second = snapshot.body(0, 1).position;
   const glm::dvec3 start = first + 3.0 * (first - second) + glm::dvec3(0, rig.bodyHeight, 0);
   EXPECT_EQ(snapshot.pick({start, second - first})->agent, 0u);

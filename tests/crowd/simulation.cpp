@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "crowd/herd.h"
+#include "crowd/readback.h"
 #include "gpu/submit.h"
 #include "validation/herd_facts.h"
 
@@ -92,17 +93,19 @@ std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crow
   if (crowd.tick() == 0) simulate(device, crowd, 1, dt);
   std::vector<std::unique_ptr<validation::Replay>> replays;
   std::vector<HerdState> before;
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
-    before.push_back(crowd.download(h));
+  const Crowd::Impl& impl = implOf(crowd);
+  const std::vector<crowd::HerdRun> runs = crowd::allRuns(impl);
+  for (const crowd::HerdRun& of : runs) {
+    before.push_back(crowd::download(impl, *of.run));
     replays.push_back(
-        std::make_unique<validation::Replay>(validation::herdFacts(implOf(crowd).kindOf(h), terrain)));
+        std::make_unique<validation::Replay>(validation::herdFacts(impl.kinds[of.run->kind], terrain)));
   }
   for (int i = 0; i < ticks; ++i) {
     simulate(device, crowd, 1, dt);
-    for (uint32_t h = 0; h < replays.size(); ++h) {
-      HerdState after = crowd.download(h);
-      replays[h]->tick(crowd.tick(), before[h], after);
-      before[h] = std::move(after);
+    for (size_t r = 0; r < runs.size(); ++r) {
+      HerdState after = crowd::download(impl, *runs[r].run);
+      replays[r]->tick(crowd.tick(), before[r], after);
+      before[r] = std::move(after);
     }
   }
   std::vector<std::vector<validation::StageResult>> results;

@@ -40,7 +40,7 @@ std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const 
                                             int ticks, float dt = kTick);
 void expectAllPass(const std::vector<validation::StageResult>& results);
 
-// The same of every herd.
+// The same of every herd, size after size.
 std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crowd& crowd,
                                                             const Heightfield& terrain, int ticks,
                                                             float dt = kTick);

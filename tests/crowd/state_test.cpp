@@ -48,7 +48,7 @@ void expectSame(const Crowd& a, const Crowd& b) {
   }
 }
 
-// Herds of every kind: two that share pages, one without agents, another rig.
+// Herds of every kind: two that share pages, one of them of two sizes, one without agents, another rig.
 Scene manyHerds(Controller controller) {
   Scene scene = sceneOf(21, 1, 5, controller);
   scene.herds.resize(4, scene.herds[0]);
@@ -58,6 +58,7 @@ Scene manyHerds(Controller controller) {
   scene.herds[2].agents = 0;
   scene.herds[3].agents = 13;
   scene.herds[3].goal = {.kind = Goal::Kind::point, .target = {3, -4}, .speed = 2};
+  scene.herds[3].sizes = {0.5f, 1};
   return scene;
 }
 

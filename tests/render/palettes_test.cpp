@@ -197,6 +197,50 @@ TEST_P(PalettesTest, SkinTheMeshAsThePosesDo) {
   }
 }
 
+// A herd of several sizes has one mesh, at the first of them.
+TEST_P(PalettesTest, BringTheMeshToTheSizeOfEachAgent) {
+  constexpr uint64_t agents = 20;
+  const glm::dvec3 origin(-70.3, 12.25, 3.7);
+  for (const Controller controller : {Controller::adaptive, Controller::clip})
+    for (const bool relative : {false, true}) {
+      SCOPED_TRACE(testing::Message() << nameOf(controller) << ' ' << relative);
+      Scene scene;
+      scene.herds[0].controller = controller;
+      scene.herds[0].agents = agents;
+      scene.herds[0].sizes = {2, 0.5f, 1};
+      Crowd crowd(device(), ground(), scene, CrowdOptions{.measure = false, .pageAgents = 8});
+      const SkinMesh mesh = skinMeshOf(crowd, 0);
+      const uint64_t entries = mesh.entries;
+      const gpu::Buffer buffer(context(), agents * (1 + entries) * 48, "the caller's");
+      const TransformRange instances{buffer.handle(), 0, agents * 48};
+      const TransformRange palettes{buffer.handle(), agents * 48, agents * entries * 48};
+      const Palettes writer(device(), crowd, 0, {{instances, palettes}}, {{}, relative});
+      const std::vector<float> floats = written(crowd, writer, buffer, origin);
+      const HerdState state = crowd.download(0);
+      Reader bodies{floats, instances, agents}, bones{floats, palettes, agents * entries};
+      double furthest = 0;
+      for (uint32_t agent = 0; agent < agents; ++agent) {
+        const BodyState body =
+            bodyOf(std::span(state.body).subspan(size_t{agent} * 4 * shared::BODY_STRIDE), origin);
+        const size_t poseFloats = state.pose.size() / agents;
+        const auto pose = std::span(state.pose).subspan(agent * poseFloats, poseFloats);
+        const std::vector<glm::vec3> starts = crowd.rig(0, agent).restStarts();
+        for (size_t v = agent; v < mesh.vertices.size(); v += 41) {
+          SkinVertex vertex = mesh.vertices[v];
+          glm::dvec3 place(0);
+          for (int i = 0; i < 4; ++i)
+            place += double{vertex.weights[i]} *
+                     bones.transform(agent * entries + vertex.bones[i]).moved(vertex.position);
+          if (relative) place = bodies.transform(agent).moved(place);
+          vertex.position *= crowd.size(0, agent) / 2;
+          const glm::dvec3 expected = skinned(vertex, body, pose, controller == Controller::clip, starts);
+          furthest = std::max(furthest, glm::distance(place, expected) / mesh.radius);
+        }
+      }
+      EXPECT_LT(furthest, 1e-4);
+    }
+}
+
 // On the other side of the map, where a float32 of the world is 2.4e-4 m off.
 TEST_P(PalettesTest, AreExactFarFromTheWorldsOrigin) {
   Heightfield wide = generateHeightfield({.columns = 129, .rows = 129, .spacing = 62});
@@ -274,7 +318,9 @@ TEST_P(PalettesTest, RefuseWhatCannotBe) {
   Scene scene;
   scene.herds[0].agents = 3;
   scene.herds.push_back(scene.herds[0]);
+  scene.herds.push_back(scene.herds[0]);
   scene.herds[1].controller = Controller::clip;
+  scene.herds[2].sizes = {1, 2};
   const Crowd crowd(device(), ground(), scene, CrowdOptions{.measure = false});
   const Crowd poseless(device(), ground(), scene, CrowdOptions{.pose = false, .measure = false});
   const gpu::Buffer buffer(context(), 1 << 20, "the caller's");
@@ -298,6 +344,8 @@ TEST_P(PalettesTest, RefuseWhatCannotBe) {
                 "stride 64 of planar transforms, expected 0");
   expectRefused(crowd, 1, {.palettes = {own, 0, 1 << 19, TransformFormat::quaternion}},
                 "palettes of herd 1: controller clip poses by matrices");
+  expectRefused(crowd, 2, {.palettes = {own, 0, 1 << 19, TransformFormat::quaternion}},
+                "palettes of herd 2: its agents have 2 sizes, expected TransformFormat::matrix");
   expectRefused(poseless, 0, {.palettes = {own, 0, 1 << 19}}, "expected CrowdOptions::pose");
   expectRefused(crowd, 0, {}, "metresPerUnit 0, expected a finite length above 0", 0);
 }

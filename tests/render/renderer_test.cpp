@@ -232,6 +232,27 @@ TEST_P(RendererTest, aHerdHasTheColourThatItsSceneSays) {
   }
 }
 
+// A creature of size 2 is drawn twice as large.
+TEST_P(RendererTest, sizesShow) {
+  Scene scene = smallScene(1);
+  scene.herds[0].spawn.kind = Spawn::Kind::grid;
+  scene.herds[0].goal.kind = Goal::Kind::none;
+  const Heightfield flat = groundOf(129, 129, [](float, float) { return 0.0f; });
+  const View view{.eye = {0, 12, -16}, .target = {0, 0.5f, 0}};
+  const auto pixels = [&](std::vector<float> sizes) {
+    scene.herds[0].sizes = std::move(sizes);
+    Scene empty = scene;
+    empty.herds[0].agents = 0;
+    Stage stage(device(), scene, flat, 320, 180), none(device(), empty, flat, 320, 180);
+    stage.tick(1);
+    return double(differing(stage.draw(view), none.draw(view)));
+  };
+  const double small = pixels({1}), large = pixels({2});
+  EXPECT_GT(small, 100);
+  EXPECT_GT(large, 2.5 * small);
+  EXPECT_LT(large, 5 * small);
+}
+
 TEST_P(RendererTest, theSamePictureTwiceAndAnotherWhenAgentsMove) {
   Stage stage(device(), smallScene(70), 200, 120);
   stage.tick(1);

@@ -8,7 +8,7 @@
 
 #include "crowd/changes.h"
 #include "crowd/events.h"
-#include "crowd/herd.h"
+#include "crowd/readback.h"
 #include "crowd/setup.h"
 #include "skitter/error.h"
 #include "validation/herd_facts.h"
@@ -28,6 +28,11 @@ void add(const StageResult& result, StageResult& sum) {
   sum.ties += result.ties;
   sum.pass = sum.pass && result.pass;
   if (!result.pass) sum.why += (sum.why.empty() ? "" : "; ") + result.why;
+}
+
+std::string nameOf(const Crowd::Impl& crowd, const crowd::HerdRun& of) {
+  if (of.herd->runs.size() == 1) return fmt::format("herd {}", of.number);
+  return fmt::format("herd {}, size {}", of.number, crowd.kinds[of.run->kind].size);
 }
 
 }  // namespace
@@ -52,8 +57,8 @@ Lockstep::Lockstep(Crowd& crowd, const Scene& scene, float dt, std::vector<crowd
     : crowd_(crowd), seed_(scene.seed) {
   Crowd::Impl& impl = implOf(crowd_);
   crowd::setTick(impl, dt);  // which herds' parameters depend on
-  for (uint32_t h = 0; h < crowd_.herdCount(); ++h)
-    replays_.push_back(std::make_unique<Replay>(herdFacts(impl.kindOf(h), impl.terrain), only));
+  for (const crowd::HerdRun& of : crowd::allRuns(impl))
+    replays_.push_back(std::make_unique<Replay>(herdFacts(impl, of), only));
 }
 
 Lockstep::~Lockstep() = default;
@@ -61,8 +66,8 @@ Lockstep::~Lockstep() = default;
 const std::vector<HerdState>& Lockstep::begin() {
   letEventsHappen();
   samples_.clear();
-  for (uint32_t h = 0; h < crowd_.herdCount(); ++h)
-    samples_.push_back(sampleAt(seed_, crowd_.tick() + 1, crowd_.places(h), agentsATick));
+  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd_)))
+    samples_.push_back(sampleAt(seed_, crowd_.tick() + 1, of.run->agents, agentsATick));
   return before_ = download();
 }
 
@@ -74,22 +79,24 @@ void Lockstep::edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows,
 
 const std::vector<HerdState>& Lockstep::end() {
   after_ = download();
-  for (size_t h = 0; h < replays_.size(); ++h) replays_[h]->tick(crowd_.tick(), before_[h], after_[h]);
+  for (size_t r = 0; r < replays_.size(); ++r) replays_[r]->tick(crowd_.tick(), before_[r], after_[r]);
   return after_;
 }
 
 std::vector<StageResult> Lockstep::results() const {
+  const Crowd::Impl& impl = implOf(crowd_);
+  const std::vector<crowd::HerdRun> runs = crowd::allRuns(impl);
   std::vector<StageResult> all;
   for (const crowd::StageId stage : crowd::allStages) {
     const char* name = nameOf(stage);
     StageResult* sum = nullptr;
-    for (size_t h = 0; h < replays_.size(); ++h) {
-      if (crowd_.places(static_cast<uint32_t>(h)) == 0) continue;
-      for (StageResult result : replays_[h]->results()) {
+    for (size_t r = 0; r < replays_.size(); ++r) {
+      if (runs[r].run->agents == 0) continue;
+      for (StageResult result : replays_[r]->results()) {
         if (result.name != name) continue;
         if (replays_.size() > 1) {
-          result.worst = fmt::format("herd {}: {}", h, result.worst);
-          if (!result.pass) result.why = fmt::format("herd {}: {}", h, result.why);
+          result.worst = fmt::format("{}: {}", nameOf(impl, runs[r]), result.worst);
+          if (!result.pass) result.why = fmt::format("{}: {}", nameOf(impl, runs[r]), result.why);
         }
         if (sum != nullptr)
           add(result, *sum);
@@ -103,7 +110,8 @@ std::vector<StageResult> Lockstep::results() const {
 
 std::vector<HerdState> Lockstep::download() const {
   std::vector<HerdState> states;
-  for (uint32_t h = 0; h < crowd_.herdCount(); ++h) states.push_back(crowd_.download(h, samples_[h]));
+  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd_)))
+    states.push_back(crowd::download(implOf(crowd_), *of.run, samples_[states.size()]));
   return states;
 }
 

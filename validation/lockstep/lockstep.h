@@ -17,11 +17,12 @@ namespace skitter::validation {
 // where the stages were asked for, for the message.
 void expectComparable(const Scene& scene, std::span<const crowd::StageId> stages, const char* what);
 
-// Replays every herd of a crowd, tick by tick. A crowd without CrowdOptions::footfalls leaves footfall out.
+// Replays every herd of a crowd, size by size (crowd::allRuns), tick by tick. A crowd without
+// CrowdOptions::footfalls leaves footfall out. Herds must not come or go meanwhile.
 class Lockstep {
  public:
-  // The reference takes about a millisecond for an agent. In larger herds every so many-th one is compared,
-  // others in each tick.
+  // The reference takes about a millisecond for an agent. Of more agents of one size in a herd every so
+  // many-th one is compared, others in each tick.
   static constexpr uint32_t agentsATick = 1024;
 
   // Before the first tick, of `dt` seconds, of a crowd that was made of the scene, and that outlives this.
@@ -30,14 +31,15 @@ class Lockstep {
   ~Lockstep();
 
   // To be called before a tick is recorded. What the scene has for that tick happens now; the states of what
-  // is compared, herd by herd, then show what agents were told.
+  // is compared, size by size of herd after herd, then show what agents were told.
   const std::vector<HerdState>& begin();
   // Between begin() and the tick: as Crowd::editHeights.
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
   // To be called when the tick has finished; the states after it.
   const std::vector<HerdState>& end();
 
-  // By stage, all herds that have places in one; the worst herd gives a stage's error.
+  // By stage, all sizes of herds that have places in one; the worst gives a stage's error. Messages name it,
+  // and agents by their numbers in the herd.
   std::vector<StageResult> results() const;
 
  private:
@@ -46,7 +48,7 @@ class Lockstep {
 
   Crowd& crowd_;
   uint64_t seed_;
-  std::vector<AgentSample> samples_;  // of each herd, in this tick
+  std::vector<AgentSample> samples_;  // of each size of each herd, in this tick
   std::vector<HerdState> before_, after_;
   std::vector<std::unique_ptr<Replay>> replays_;
 };

@@ -10,7 +10,7 @@ namespace {
 // Metres, so that nobody goes half of STEP_TILES tiles while a foot stands.
 constexpr float longestLeg = 100;
 
-void prepareGait(const gpu::Context&, const skitter::Herd& from, Kind& kind) {
+void prepareGait(const gpu::Context&, const skitter::Herd& from, const Rig&, Kind& kind) {
   if (kind.rig.legLength > longestLeg)
     throw inputError(fmt::format("{}: legs of {:.4g} m, expected at most {:.4g} m: scale the rig down",
                                  kind.rig.name, kind.rig.legLength, longestLeg));

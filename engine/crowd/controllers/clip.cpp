@@ -5,8 +5,8 @@
 
 namespace skitter::crowd {
 
-void loadClips(const gpu::Context& context, const skitter::Herd& from, Kind& kind) {
-  kind.clipSet = clipSetOf(from, kind.rig);
+void loadClips(const gpu::Context& context, const skitter::Herd& from, const Rig& loaded, Kind& kind) {
+  kind.clipSet = clipSetOf(from, loaded, kind.size);
   kind.clips = clipRecords(kind.clipSet, clipNames(from), kind.bones);
   for (Clip& clip : kind.clipSet.clips) clip.rows = {};
   kind.clipHeads = constantBuffer(context, kind.clips.heads, "clips");

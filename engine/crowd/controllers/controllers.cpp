@@ -1,5 +1,6 @@
 #include "crowd/controllers/controllers.h"
 
+#include "crowd/scale.h"
 #include "gpu/transfer.h"
 
 namespace skitter::crowd {
@@ -20,8 +21,8 @@ const ControllerStages& controllerStages(Controller controller) {
   return adaptiveController;
 }
 
-ClipSet clipSetOf(const skitter::Herd& from, const Rig& rig) {
-  return from.rig == "spider" ? spiderClips() : skitter::loadClips(from.rig, rig, from.cuts);
+ClipSet clipSetOf(const skitter::Herd& from, const Rig& loaded, float size) {
+  return scaled(from.rig == "spider" ? spiderClips() : skitter::loadClips(from.rig, loaded, from.cuts), size);
 }
 
 std::vector<std::string> clipNames(const skitter::Herd& from) {

@@ -17,8 +17,10 @@ struct ControllerStages {
   std::vector<Stage> (*fused)() = nullptr;
   // Adds what the shaders of all its stages are specialised by.
   void (*specialise)(const Kind& kind, gpu::KernelInfo& info) = nullptr;
-  // Loads what the controller needs for a kind that has its rig. Refuses what cannot be by Error(input).
-  void (*prepare)(const gpu::Context& context, const skitter::Herd& from, Kind& kind) = nullptr;
+  // Loads what the controller needs for a kind that has its rig; `loaded` is the rig at size 1. Refuses what
+  // cannot be by Error(input).
+  void (*prepare)(const gpu::Context& context, const skitter::Herd& from, const Rig& loaded,
+                  Kind& kind) = nullptr;
   // Refuses ticks of that length by Error(input).
   void (*checkTick)(const Kind& kind, float dt) = nullptr;
 };
@@ -32,11 +34,11 @@ extern const ControllerStages plantedController;
 extern const ControllerStages keyPoseController;
 
 // What those that need clips have in common.
-ClipSet clipSetOf(const skitter::Herd& from, const Rig& rig);
+ClipSet clipSetOf(const skitter::Herd& from, const Rig& loaded, float size);
 std::vector<std::string> clipNames(const skitter::Herd& from);
 gpu::Buffer constantBuffer(const gpu::Context& context, const std::vector<float>& records, const char* name);
 // And those that play them.
-void loadClips(const gpu::Context& context, const skitter::Herd& from, Kind& kind);
+void loadClips(const gpu::Context& context, const skitter::Herd& from, const Rig& loaded, Kind& kind);
 void addClips(const Kind& kind, gpu::KernelInfo& info);
 
 }  // namespace skitter::crowd

@@ -3,8 +3,9 @@
 namespace skitter::crowd {
 namespace {
 
-void prepareKeyPoses(const gpu::Context& context, const skitter::Herd& from, Kind& kind) {
-  kind.keyPoses = keyPoses(clipSetOf(from, kind.rig), clipNames(from), from.keys, kind.rig, kind.rigRecords);
+void prepareKeyPoses(const gpu::Context& context, const skitter::Herd& from, const Rig& loaded, Kind& kind) {
+  kind.keyPoses =
+      keyPoses(clipSetOf(from, loaded, kind.size), clipNames(from), from.keys, kind.rig, kind.rigRecords);
   kind.keyBuffer = constantBuffer(context, kind.keyPoses.records, "key poses");
 }
 

@@ -6,11 +6,11 @@
 namespace skitter::crowd {
 namespace {
 
-void preparePlanted(const gpu::Context& context, const skitter::Herd& from, Kind& kind) {
+void preparePlanted(const gpu::Context& context, const skitter::Herd& from, const Rig& loaded, Kind& kind) {
   if (from.solver != Solver::activeSet)
     throw inputError(fmt::format("a herd's solver is {}, expected {}: its controller is {}",
                                  nameOf(from.solver), nameOf(Solver::activeSet), nameOf(from.controller)));
-  loadClips(context, from, kind);
+  loadClips(context, from, loaded, kind);
 }
 
 }  // namespace

@@ -107,7 +107,8 @@ struct HerdState : ForRecords<std::vector<float>> {
   AgentSample sample;       // which of the herd they are
   uint32_t watchEvery = 1;  // measure watches one agent of this many at a time
   // Equal herds take turns as one, the herd's agent g as number watchOffset + g; number n that is being
-  // watched has its records at place n / watchEvery of `watch`, which is of all agents.
+  // watched has its records at place n / watchEvery of `watch`, which is of all agents. Empty for a herd of
+  // several sizes, for these do not take turns as one.
   uint32_t watchOffset = 0;
   std::vector<Footfall> footfalls;  // of the last tick and of all agents, by agent and leg
   bool footfallsKept = false;       // they are all here: CrowdOptions::footfalls left room for them
@@ -117,14 +118,15 @@ struct HerdState : ForRecords<std::vector<float>> {
 
 // The touchdowns of the last tick on the device, for shaders of the caller's: FOOTFALL_STRIDE vec4 each
 // (engine/include/skitter/records.h), min(count, room) of them in any order. Equal herds share buffers, and
-// events number agents through all of them. Owned by the crowd, rewritten by each recorded tick; both buffers
-// can be read from as storage buffers.
+// events number agents through all of them; the sizes of a herd (Herd::sizes) have buffers of their own.
+// Owned by the crowd, rewritten by each recorded tick; both buffers can be read from as storage buffers.
 struct FootfallBuffer {
   VkBuffer events = VK_NULL_HANDLE;
   VkBuffer counters = VK_NULL_HANDLE;  // holds count, a uint32
   uint32_t countOffset = 0;            // bytes
   uint32_t room = 0;
-  uint32_t firstAgent = 0, agents = 0;  // the herd's, of those that events number
+  uint32_t firstAgent = 0, agents = 0;  // the herd's, at one of its sizes, of those that events number
+  uint32_t firstOfHerd = 0;             // the number in the herd of firstAgent
 };
 
 // Device memory of one kind of records, of all of a herd's agents: its share of the pages, where equal herds
@@ -139,16 +141,16 @@ struct StageTime {
   double milliseconds = 0;  // of the last tick that has finished on the device
 };
 
-// The herds on one terrain, living on one device. Herds that are equal but for agents, spawn and goal share
-// pipelines and dispatches, so that any number of them costs what one of as many agents does. Not
-// thread-safe; one crowd may be recorded while another is.
+// The herds on one terrain, living on one device. Herds that are equal but for agents, spawn, goal, sizes,
+// phase and colours share pipelines and dispatches, so that any number of them costs what one of as many
+// agents does; each size among them has its own. Not thread-safe; one crowd may be recorded while another is.
 class SKITTER_API Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
   // cannot be (an unknown rig or controller, a count of rigs that is not that of herds, tuning out of its
-  // range, more than 100 herds that differ, legs of an adaptive herd above 100 m, a terrain that reaches
-  // beyond 4 km from the origin, an event that names nobody) and, before any agent is made, Error(device)
-  // when memory does not suffice (as DeviceLimits::availableBytes, but now).
+  // range, more than 100 herds that differ and sizes of these, legs of an adaptive herd above 100 m, a
+  // terrain that reaches beyond 4 km from the origin, an event that names nobody) and, before any agent is
+  // made, Error(device) when memory does not suffice (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // As it was when it was saved; on another device and in other pages, too: every record has the bits that it
   // had. What the state's options ask for and the state lacks (poses, feet, footfalls) follows from it.
@@ -207,7 +209,8 @@ class SKITTER_API Crowd {
   AgentId agentId(uint32_t herd, uint32_t agent) const;
 
   // Agents that come and go, in herds with a reserve (Herd::reserve): a herd has `places` for its agents and
-  // its reserve, and the lowest empty one is taken first. Handles of who is gone are of nobody.
+  // its reserve, and the lowest empty one is taken first. Who comes has the size of its place (Herd::sizes).
+  // Handles of who is gone are of nobody.
   //
   // Throw Error(input) where no place is left, or where the herd has no reserve.
   AgentId add(uint32_t herd, const Place& place, const Goal& goal);
@@ -220,8 +223,9 @@ class SKITTER_API Crowd {
   // Herds that come and go, between ticks: both calls make or free device memory at once, and take as long.
   //
   // The herd is there in the next recorded tick, as one of the scene in a crowd that begins. It has pipelines
-  // and pages of its own (about 0.3 s), and the lowest number that no herd has. A renderer of the crowd
-  // follows at its next picture. Throws as the constructor does, and Error(input) beyond Scene::maxHerds.
+  // and pages of its own (about 0.3 s a size), and the lowest number that no herd has. A renderer of the
+  // crowd follows at its next picture. Throws as the constructor does, and Error(input) beyond
+  // Scene::maxHerds.
   HerdId addHerd(const Herd& herd);
   // Waits for the device, frees the herd's memory, and its number is of a herd without places. Command
   // buffers that were recorded before must not be submitted any more. A herd that shares its kind with others
@@ -246,7 +250,11 @@ class SKITTER_API Crowd {
   uint64_t capacity() const;     // places for agents, empty ones among them
   uint64_t memoryBytes() const;  // device memory of all records
   std::vector<MemoryUse> memoryUse(uint32_t herd) const;
+  // At the first of the herd's sizes, and at that of an agent, which is `size` times the rig as loaded. Throw
+  // Error(input) where the herd has no such place.
   const Rig& rig(uint32_t herd) const;
+  const Rig& rig(uint32_t herd, uint32_t agent) const;
+  float size(uint32_t herd, uint32_t agent) const;
 
   // The nearest agent under a ray; the one nearest to a point. Positions are relative to `origin`. Both wait
   // for the device and read every agent's body; Snapshot (skitter/readback.h) has the same without waiting.

@@ -65,7 +65,8 @@ SKITTER_API BonePose bonePoseOf(std::span<const float> pose, uint32_t entry);
 SKITTER_API glm::mat3x4 jointRowsOf(std::span<const float> pose, uint32_t joint);
 
 // Of an event of Crowd::footfallBuffers(). `firstAgent` is FootfallBuffer's; Footfall::agent is of the herd
-// if it is less than FootfallBuffer::agents, else the event is another herd's.
+// if it is less than FootfallBuffer::agents, else the event is another herd's. Its number in the herd is then
+// FootfallBuffer::firstOfHerd more.
 SKITTER_API Footfall footfallOf(std::span<const float> event, uint32_t firstAgent, double dt);
 
 }  // namespace skitter

@@ -38,7 +38,7 @@ struct TransformRange {
 // What one frame of the caller's reads.
 struct PaletteTarget {
   // A transform an agent: from model space at rest, with its origin on the ground below the body, to the
-  // host's space.
+  // host's space. It turns and moves: in a herd of several sizes an agent's own is in its palette.
   TransformRange instances = {};
   // entries() transforms an agent, for the bones that SkinMesh::vertices name.
   TransformRange palettes = {};
@@ -62,8 +62,9 @@ class SKITTER_API Palettes {
  public:
   // A target for each frame that may be in flight. Throws Error(input) for a herd that is not there, a range
   // that is too small or not aligned, palettes of a crowd without poses (CrowdOptions::pose), and quaternions
-  // for palettes of controllers whose matrices stretch (clip, planted); Error(device) where a range is more
-  // than one binding of the device reaches.
+  // for palettes of controllers whose matrices stretch (clip, planted) or of a herd of several sizes, to
+  // which palettes bring the mesh; Error(device) where a range is more than one binding of the device
+  // reaches.
   Palettes(Device& device, const Crowd& crowd, uint32_t herd, const std::vector<PaletteTarget>& targets,
            const PaletteOptions& options = {});
   ~Palettes();

@@ -52,6 +52,8 @@ struct Goal {
 
 struct Herd {
   static constexpr uint32_t minKeys = 2, maxKeys = 8;
+  static constexpr size_t maxSizes = 16;
+  static constexpr double minSize = 0.05, maxSize = 20;
 
   std::string rig =
       "spider";  // "spider", a model (.glb, .gltf) or a sidecar (.rig.json), relative to the scene
@@ -68,6 +70,10 @@ struct Herd {
   uint32_t reserve = 0;  // places for more, who come and go while the crowd runs (Crowd::add)
   Spawn spawn;
   Goal goal;
+  // How large its creatures are, times the rig, at most maxSizes from minSize to maxSize; empty: all as the
+  // rig is. Each agent draws one by the seed; one that is there twice is drawn twice as often. Agents are
+  // numbered size after size, in the order of the first ones here.
+  std::vector<float> sizes = {};
   // Where in the cycle of its gait or clip each agent begins, 0 to 1; none: drawn by the seed.
   std::optional<float> phase = {};
   // What the model's colours are turned into: this, lighter or darker as they are. Linear RGB, 0 to 1; none:

@@ -10,9 +10,10 @@
 
 namespace skitter {
 
-// What a host needs of a herd's model to draw it by itself: the mesh at rest, in model space, which the
-// palettes of skitter/palettes.h move. `bones` of a vertex are entries of an agent's palette. Colours are the
-// model's vertex colours times its materials' base colours.
+// What a host needs of a herd's model to draw it by itself: the mesh at rest, in model space, at the first of
+// the herd's sizes, which the palettes of skitter/palettes.h move and bring to each agent's size. `bones` of
+// a vertex are entries of an agent's palette. Colours are the model's vertex colours times its materials'
+// base colours.
 struct SkinMesh {
   struct Level {
     uint32_t firstIndex = 0, indexCount = 0;
@@ -24,7 +25,7 @@ struct SkinMesh {
   std::vector<uint32_t> indices;     // into `vertices`: triangles, counter-clockwise as seen from outside
   std::vector<Level> levels;         // finest first; none of a model without triangles
   uint32_t entries = 0;              // of an agent's palette
-  float radius = 0;                  // of a sphere about an agent's position that holds every pose
+  float radius = 0;  // of a sphere about an agent's position that holds every pose, at the largest size
 };
 
 // In the host's axes and unit, to go with palettes of the same HostSpace. Takes a while: levels are

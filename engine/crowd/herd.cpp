@@ -1,0 +1,53 @@
+#include "crowd/herd.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "skitter/error.h"
+
+namespace skitter {
+namespace crowd {
+
+const SizeRun& Herd::runOf(uint32_t agent) const {
+  return *(std::ranges::upper_bound(runs, agent, {}, &SizeRun::firstOfHerd) - 1);
+}
+
+uint32_t HerdRun::agentCount() const {
+  uint32_t count = 0;
+  for (uint32_t agent = run->firstOfHerd; agent < run->firstOfHerd + run->agents; ++agent)
+    count += herd->presence.has(agent);
+  return count;
+}
+
+std::vector<HerdRun> allRuns(const Crowd::Impl& crowd) {
+  std::vector<HerdRun> all;
+  for (uint32_t h = 0; h < crowd.herds.size(); ++h)
+    for (const SizeRun& run : crowd.herds[h].runs) all.push_back({h, &crowd.herds[h], &run});
+  return all;
+}
+
+std::vector<HerdRun> runsOf(const Crowd::Impl& crowd, uint32_t kind) {
+  std::vector<HerdRun> runs;
+  for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
+    const Herd& herd = crowd.herds[h];
+    const auto run = std::ranges::find(herd.runs, kind, &SizeRun::kind);
+    if (!herd.isGone() && run != herd.runs.end()) runs.push_back({h, &herd, &*run});
+  }
+  return runs;
+}
+
+}  // namespace crowd
+
+const crowd::Herd& Crowd::Impl::herdAt(uint32_t herd) const {
+  if (herd < herds.size()) return herds[herd];
+  throw inputError(fmt::format("herd {}: expected one of the crowd's {} herds", herd, herds.size()));
+}
+
+const crowd::Kind& Crowd::Impl::kindOf(uint32_t herd, uint32_t agent) const {
+  const crowd::Herd& of = herdAt(herd);
+  if (agent < of.agents) return kinds[of.runOf(agent).kind];
+  throw inputError(fmt::format("herd {}, agent {}: expected one of its {} places", herd, agent, of.agents));
+}
+
+}  // namespace skitter
