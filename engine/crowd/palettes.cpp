@@ -126,13 +126,11 @@ void Palettes::Impl::add(std::vector<Write>& writes, const TransformRange& range
                     "expected TransformFormat::matrix",
                     herd, nameOf(controller)));
   const crowd::Herd& from = crowd->herds[herd];
-  if (ofPalettes && range.format == TransformFormat::quaternion && from.runs.size() > 1)
-    throw inputError(
-        fmt::format("palettes of herd {}: its agents have {} sizes, expected TransformFormat::matrix", herd,
-                    from.runs.size()));
   const uint64_t each = ofPalettes ? entries : 1;
   const Arrangement arrangement = arrangementOf(range, each * from.agents, what);
   const float sizeOfMesh = crowd->kindOf(herd).size;
+  // Else the instance's transform scales after them.
+  const bool scales = !ofPalettes || !options.relative;
   Write write{.kernel = &kernelOf(range.format, ofPalettes), .outputs = {}};
   for (const Part& part : crowd::partsOf(*crowd, herd)) {
     const auto run = static_cast<size_t>(&from.runOf(part.firstAgent) - from.runs.data());
@@ -150,14 +148,16 @@ void Palettes::Impl::add(std::vector<Write>& writes, const TransformRange& range
       list.push_back({shared::TRANSFORM_START, &starts[run]});
     }
     output.bindings = write.kernel->bind(*context, list);
+    const float size = part.kind->size / sizeOfMesh;
+    const float units = 1 / options.space.metresPerUnit;
     output.constants = {.rows = {},
-                        .how = {},
+                        .how = {0, 0, scales ? units : units / size, options.space.isMirrored() ? -1 : 1},
                         .agents = part.agents,
                         .first = part.first,
                         .base = static_cast<uint32_t>(slack / 16),
                         .stride = static_cast<uint32_t>(arrangement.stride),
                         .plane = static_cast<uint32_t>(arrangement.plane),
-                        .size = ofPalettes ? part.kind->size / sizeOfMesh : 1};
+                        .size = scales ? size : 1};
     output.groups = gpu::groupsFor(static_cast<uint32_t>(count), shared::WORK_GROUP);
     write.outputs.push_back(std::move(output));
   }
@@ -208,8 +208,7 @@ uint32_t Palettes::entriesOf(const Crowd& crowd, uint32_t herd) {
 void Palettes::record(VkCommandBuffer commandBuffer, const glm::dvec3& origin, uint32_t target) const {
   const Impl& palettes = *impl_;
   assert(target < palettes.targets.size());
-  const HostSpace& space = palettes.options.space;
-  const glm::dmat3 turn = space.turned();
+  const glm::dmat3 turn = palettes.options.space.turned();
   const glm::dvec2 tile = glm::floor(glm::dvec2(origin.x, origin.z) / double{shared::TILE_SIZE});
   const glm::dvec3 local = origin - double{shared::TILE_SIZE} * glm::dvec3(tile.x, 0, tile.y);
   const vk::CommandBuffer cmd(commandBuffer);
@@ -219,7 +218,7 @@ void Palettes::record(VkCommandBuffer commandBuffer, const glm::dvec3& origin, u
       shared::TransformConstants constants = output.constants;
       for (int row = 0; row < 3; ++row)
         constants.rows[row] = glm::vec4(turn[0][row], turn[1][row], turn[2][row], local[row]);
-      constants.how = glm::vec4(tile, 1 / space.metresPerUnit, space.isMirrored() ? -1 : 1);
+      constants.how = glm::vec4(tile, constants.how.z, constants.how.w);
       write.kernel->dispatch(cmd, output.bindings, gpu::bytesOf(constants), output.groups);
     }
   gpu::computeToAny(*palettes.context, cmd);

@@ -26,7 +26,6 @@ void writeVec4(uint transform, uint part, vec4 value) {
   STORE4(transforms, at, value);
 }
 
-// `linear` turns the agents, who may be larger or smaller than the mesh.
 void writeMatrix(uint transform, mat3 linear, vec3 position) {
   mat3 sized = constants.size * linear;
   mat3x4 rows = transpose(mat4x3(sized[0], sized[1], sized[2], position));
@@ -39,7 +38,7 @@ void writeRotation(uint transform, vec4 rotation, vec3 position) {
   vec3 place = constants.how.z * turnedToHost(position);
   if (QUATERNIONS) {
     writeVec4(transform, 0u, turned);
-    writeVec4(transform, 1u, vec4(place, 0.0));
+    writeVec4(transform, 1u, vec4(place, constants.size));
   } else {
     writeMatrix(transform, matrixOf(turned), place);
   }

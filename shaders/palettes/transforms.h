@@ -26,7 +26,7 @@ TRANSFORM_CONST CONSTANT_RELATIVE = 3;        // to the instance's transform
 struct TransformConstants {
   // Rows of the turn to the host's axes; the origin within its tile (metres, world).
   vec4 rows[3];
-  // The origin's tile x and z; the host's units a metre; -1 where the host's axes mirror, else 1.
+  // The origin's tile x and z; units a metre where it leads to; -1 where the host's axes mirror, else 1.
   vec4 how;
   uint agents;  // that are written
   uint first;   // of them in the page
@@ -35,7 +35,7 @@ struct TransformConstants {
   uint base;
   uint stride;
   uint plane;
-  float size;  // of the agents, times that of the mesh
+  float size;  // by which the transforms scale
 };
 
 #ifdef __cplusplus

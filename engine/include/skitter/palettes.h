@@ -16,7 +16,7 @@ namespace skitter {
 
 enum class TransformFormat {
   matrix,      // 12 floats: the rows of a 3x4 matrix, the translation in the fourth column
-  quaternion,  // 8 floats: rotation x, y, z, w; translation x, y, z; 0
+  quaternion,  // 8 floats: rotation x, y, z, w; translation x, y, z; scale, 1 but in a herd of several sizes
 };
 constexpr uint32_t bytesOf(TransformFormat format) { return format == TransformFormat::matrix ? 48 : 32; }
 
@@ -37,8 +37,8 @@ struct TransformRange {
 
 // What one frame of the caller's reads.
 struct PaletteTarget {
-  // A transform an agent: from model space at rest, with its origin on the ground below the body, to the
-  // host's space. It turns and moves: in a herd of several sizes an agent's own is in its palette.
+  // A transform an agent: from the model space of the mesh at rest, with its origin on the ground below the
+  // body, to the host's space. In a herd of several sizes it scales the mesh to the agent's size.
   TransformRange instances = {};
   // entries() transforms an agent, for the bones that SkinMesh::vertices name.
   TransformRange palettes = {};
@@ -46,8 +46,9 @@ struct PaletteTarget {
 
 struct PaletteOptions {
   HostSpace space;
-  // Palettes lead from the mesh at rest to the agent's model space, so that its instance transform comes
-  // after them, as most engines have it. Else they lead to the host's space at once.
+  // Palettes lead from the mesh at rest to its model space, so that the agent's instance transform comes
+  // after them, as most engines have it. Else they lead to the host's space at once, and scale as instance
+  // transforms do.
   bool relative = false;
 };
 
@@ -62,9 +63,8 @@ class SKITTER_API Palettes {
  public:
   // A target for each frame that may be in flight. Throws Error(input) for a herd that is not there, a range
   // that is too small or not aligned, palettes of a crowd without poses (CrowdOptions::pose), and quaternions
-  // for palettes of controllers whose matrices stretch (clip, planted) or of a herd of several sizes, to
-  // which palettes bring the mesh; Error(device) where a range is more than one binding of the device
-  // reaches.
+  // for palettes of controllers whose matrices stretch (clip, planted); Error(device) where a range is more
+  // than one binding of the device reaches.
   Palettes(Device& device, const Crowd& crowd, uint32_t herd, const std::vector<PaletteTarget>& targets,
            const PaletteOptions& options = {});
   ~Palettes();

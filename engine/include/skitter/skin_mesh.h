@@ -11,8 +11,8 @@
 namespace skitter {
 
 // What a host needs of a herd's model to draw it by itself: the mesh at rest, in model space, at the first of
-// the herd's sizes, which the palettes of skitter/palettes.h move and bring to each agent's size. `bones` of
-// a vertex are entries of an agent's palette. Colours are the model's vertex colours times its materials'
+// the herd's sizes, which the transforms of skitter/palettes.h move and bring to each agent's size. `bones`
+// of a vertex are entries of an agent's palette. Colours are the model's vertex colours times its materials'
 // base colours.
 struct SkinMesh {
   struct Level {

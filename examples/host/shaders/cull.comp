@@ -4,7 +4,7 @@ layout(local_size_x = 64) in;
 struct Draw {
   uint indexCount, instanceCount, firstIndex, vertexOffset, firstInstance;
 };
-layout(std430, binding = 0) readonly buffer Instances { vec4 instances[]; };  // rotation; position
+layout(std430, binding = 0) readonly buffer Instances { vec4 instances[]; };  // rotation; position, scale
 layout(std430, binding = 1) writeonly buffer Visible { uint visible[]; };     // a list a level
 layout(std430, binding = 2) buffer Draws { Draw draws[]; };
 layout(push_constant) uniform Constants {
