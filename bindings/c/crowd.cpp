@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -150,6 +151,15 @@ skitter_result skitter_crowd_herd_legs(const skitter_crowd* crowd, uint32_t herd
 
 skitter_result skitter_crowd_herd_bones(const skitter_crowd* crowd, uint32_t herd, uint32_t* bones) {
   return tell(crowd, bones, "bones", [&](const Crowd& c) { return bindings::bonesOf(c, herd); });
+}
+
+skitter_result skitter_crowd_sizes(const skitter_crowd* crowd, uint32_t herd, float* sizes, size_t room) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(sizes, "sizes");
+    c::checkRoom("sizes", room, asked.places(herd));
+    std::ranges::copy(bindings::sizesOf(asked, herd), sizes);
+  });
 }
 
 skitter_result skitter_crowd_positions(const skitter_crowd* crowd, uint32_t herd, double* xyz, size_t room) {

@@ -155,6 +155,10 @@ SKITTER_C skitter_result skitter_crowd_herd_places(const skitter_crowd* crowd, u
                                                    uint32_t* places);
 SKITTER_C skitter_result skitter_crowd_herd_legs(const skitter_crowd* crowd, uint32_t herd, uint32_t* legs);
 SKITTER_C skitter_result skitter_crowd_herd_bones(const skitter_crowd* crowd, uint32_t herd, uint32_t* bones);
+/* How large the creature of each place of the herd is, times its rig, to `sizes`, which has room for `room`
+ * of them. A herd whose scene has `sizes` numbers its places size after size. */
+SKITTER_C skitter_result skitter_crowd_sizes(const skitter_crowd* crowd, uint32_t herd, float* sizes,
+                                             size_t room);
 
 /* Replaces a rectangle of the ground's samples before the next tick: `columns` from column `x` and `rows`
  * from row `z` on, row after row, metres above mid height as made. Feet whose ground moves step anew. */
@@ -281,8 +285,9 @@ SKITTER_C skitter_result skitter_crowd_set_speed_agents(skitter_crowd* crowd, co
 SKITTER_C skitter_result skitter_crowd_teleport(skitter_crowd* crowd, const skitter_agent_id* agents,
                                                 const skitter_place* places, size_t count);
 
-/* Adds an agent to a herd with a reserve, in its lowest empty place, and removes one from such a herd.
- * `goal`: NULL: the herd's. `id` may be NULL. No empty place and no reserve are SKITTER_ERROR_INPUT. */
+/* Adds an agent to a herd with a reserve, in its lowest empty place, which says how large it is, and removes
+ * one from such a herd. `goal`: NULL: the herd's. `id` may be NULL. No empty place and no reserve are
+ * SKITTER_ERROR_INPUT. */
 SKITTER_C skitter_result skitter_crowd_add(skitter_crowd* crowd, uint32_t herd, const skitter_place* place,
                                            const skitter_goal* goal, skitter_agent_id* id);
 SKITTER_C skitter_result skitter_crowd_remove(skitter_crowd* crowd, skitter_agent_id agent);
@@ -292,8 +297,8 @@ typedef struct skitter_herd_id {
   uint32_t herd, generation;
 } skitter_herd_id;
 /* Adds a herd of a scene, under the lowest number that no herd has, and removes one, between two ticks. Both
- * make or free device memory at once; adding takes about 0.3 s. No command buffer that was recorded before a
- * herd was removed may be submitted any more. `id` may be NULL. */
+ * make or free device memory at once; adding takes about 0.3 s a size. No command buffer that was recorded
+ * before a herd was removed may be submitted any more. `id` may be NULL. */
 SKITTER_C skitter_result skitter_crowd_add_herd(skitter_crowd* crowd, const skitter_scene* scene,
                                                 uint32_t herd, skitter_herd_id* id);
 SKITTER_C skitter_result skitter_crowd_remove_herd(skitter_crowd* crowd, skitter_herd_id herd);

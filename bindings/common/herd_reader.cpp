@@ -45,6 +45,13 @@ uint32_t bonesOf(const Crowd& crowd, uint32_t herd) {
   return static_cast<uint32_t>(crowd.rig(herd).maxBones());
 }
 
+std::vector<float> sizesOf(const Crowd& crowd, uint32_t herd) {
+  std::vector<float> sizes;
+  for (const crowd::SizeRun& run : implOf(crowd).herdAt(herd).runs)
+    sizes.insert(sizes.end(), run.agents, implOf(crowd).kinds[run.kind].size);
+  return sizes;
+}
+
 std::vector<uint64_t> agentIdsOf(const Crowd& crowd, uint32_t herd) {
   std::vector<uint64_t> ids(crowd.places(herd), AgentId().bits());
   const crowd::Presence& presence = implOf(crowd).herdAt(herd).presence;

@@ -17,6 +17,9 @@ float dtOf(const Crowd& crowd);
 uint32_t legsOf(const Crowd& crowd, uint32_t herd);
 uint32_t bonesOf(const Crowd& crowd, uint32_t herd);  // of the longest leg
 
+// How large the creature of each place is, times the rig that was loaded.
+std::vector<float> sizesOf(const Crowd& crowd, uint32_t herd);
+
 // AgentId::bits() of who is in each place of the herd; those of AgentId() where nobody is.
 std::vector<uint64_t> agentIdsOf(const Crowd& crowd, uint32_t herd);
 

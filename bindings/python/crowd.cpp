@@ -213,10 +213,21 @@ void bindFacts(CrowdClass& bound) {
           "Places of the herd: its agents and its reserve. Arrays have a row for each, also where nobody is.")
       .def(
           "rig",
-          [](PythonCrowd& self, uint32_t herd) {
-            return self.told([&](const Crowd& c) { return std::make_shared<Rig>(c.rig(herd)); });
+          [](PythonCrowd& self, uint32_t herd, std::optional<uint32_t> agent) {
+            return self.told([&](const Crowd& c) {
+              return std::make_shared<Rig>(agent ? c.rig(herd, *agent) : c.rig(herd));
+            });
           },
-          "herd"_a = 0, "The herd's rig.")
+          "herd"_a = 0, "agent"_a = py::none(),
+          "The herd's rig, at the first of its sizes or at the size of an agent.")
+      .def(
+          "sizes",
+          [](PythonCrowd& self, uint32_t herd) {
+            return listOf(self.told([&](const Crowd& c) { return bindings::sizesOf(c, herd); }));
+          },
+          "herd"_a = 0,
+          "How large the creature of each place is, times the rig that was loaded: float32 of shape "
+          "(places,). A herd with Herd.sizes numbers its places size after size.")
       .def_property_readonly(
           "watch_every",
           [](PythonCrowd& self) { return self.told([](const Crowd& c) { return c.watchEvery(); }); },

@@ -69,6 +69,10 @@ void bindHerd(py::module_& module) {
       .def_readwrite("reserve", &Herd::reserve, "Places for more, who come and go while the crowd runs.")
       .def_readwrite("spawn", &Herd::spawn, "Where they start.")
       .def_readwrite("goal", &Herd::goal, "Where they go.")
+      .def_property(
+          "sizes", [](const Herd& self) { return py::tuple(py::cast(self.sizes)); },
+          [](Herd& self, std::vector<float> sizes) { self.sizes = std::move(sizes); },
+          "How large its creatures are, times the rig: each draws one of at most 16; empty: 1.")
       .def_readwrite("phase", &Herd::phase,
                      "Where in its gait or clip each agent begins, 0 to 1; None: drawn by the seed.")
       .def_readwrite("colour", &Herd::colour, "Linear red, green and blue, 0 to 1; None: the model's.")

@@ -161,8 +161,8 @@ void bindAgents(CrowdClass& bound) {
            "without speed; `headings` as headings(), one for all or one each. Goals stay.")
       .def(
           "add", &add, "position"_a, "heading"_a = 0.0f, "herd"_a = 0, "goal"_a = py::none(),
-          "Adds an agent at x and z, metres, to a herd with a reserve, and returns its handle. `goal`: None: "
-          "the herd's.")
+          "Adds an agent at x and z, metres, to a herd with a reserve, in its lowest empty place, which says "
+          "how large it is, and returns its handle. `goal`: None: the herd's.")
       .def(
           "remove",
           [](PythonCrowd& self, uint64_t agent) {
@@ -174,8 +174,8 @@ void bindAgents(CrowdClass& bound) {
 void bindHerds(CrowdClass& bound) {
   bound
       .def("add_herd", &addHerd, "herd"_a,
-           "Adds a herd, which takes about 0.3 s, and returns its handle: the lowest number that no herd "
-           "has, and which one it is of those that have had it.")
+           "Adds a herd, which takes about 0.3 s a size, and returns its handle: the lowest number that no "
+           "herd has, and which one it is of those that have had it.")
       .def("remove_herd", &removeHerd, "herd"_a, "Removes the herd of that handle.")
       .def(
           "has_herd",

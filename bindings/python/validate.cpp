@@ -102,9 +102,9 @@ void bindValidation(py::module_& module) {
       "page_agents"_a = 0,
       R"(Holds every stage of so many ticks against the CPU reference in double precision, as `skitter validate` does.
 
-The reference takes about a millisecond for an agent and tick; of herds of more than 1,024 agents a part is
-compared, another one in each tick. stages: names of those to compare; None: all that the herds have. device: None:
-the best one. terrain, sleep, fuse, page_agents: as for a Crowd. Ctrl-C ends it between two ticks.)");
+The reference takes about a millisecond for an agent and tick; of more than 1,024 agents of one size in a herd
+a part is compared, another one in each tick. stages: names of those to compare; None: all that the herds have.
+device: None: the best one. terrain, sleep, fuse, page_agents: as for a Crowd. Ctrl-C ends it between two ticks.)");
 }
 
 }  // namespace skitter::python

@@ -126,6 +126,7 @@ static void testErrors(void) {
   REFUSED(skitter_crowd_herd_agents(NULL, 0, &n), "crowd is NULL");
   REFUSED(skitter_crowd_herd_legs(NULL, 0, &n), "crowd is NULL");
   REFUSED(skitter_crowd_herd_bones(NULL, 0, &n), "crowd is NULL");
+  REFUSED(skitter_crowd_sizes(NULL, 0, numbers, 1), "crowd is NULL");
   REFUSED(skitter_crowd_positions(NULL, 0, places, 1), "crowd is NULL");
   REFUSED(skitter_crowd_headings(NULL, 0, numbers, 1), "crowd is NULL");
   REFUSED(skitter_crowd_joints(NULL, 0, places, 1), "crowd is NULL");
@@ -356,6 +357,36 @@ static void testCrowd(void) {
   }
   OK(skitter_device_destroy(device));
   OK(skitter_crowd_destroy(crowd));
+}
+
+/* The length of each bone is as the size of its agent's place says. */
+static void testSizes(void) {
+  static const char* const sized =
+      "{\"terrain\": {\"columns\": 65, \"rows\": 65}, \"herds\": [{\"agents\": 20, \"sizes\": [2, 0.5]}]}";
+  skitter_device* device = openDevice();
+  skitter_crowd* crowd = makeCrowdOf(sized, device, NULL);
+  static double joints[20 * 8 * 5 * 3];
+  float sizes[20];
+  int i, k;
+  REFUSED(skitter_crowd_sizes(crowd, 0, sizes, 19), "sizes has room for 19, expected 20");
+  REFUSED(skitter_crowd_sizes(crowd, 1, sizes, 20), "herd 1");
+  REFUSED(skitter_crowd_sizes(crowd, 0, NULL, 20), "sizes is NULL");
+  OK(skitter_crowd_sizes(crowd, 0, sizes, 20));
+  CHECK(sizes[0] == 2 && sizes[19] == 0.5f);
+  OK(skitter_crowd_step(crowd, 30, dt));
+  OK(skitter_crowd_joints(crowd, 0, joints, 20 * 8 * 5));
+  for (i = 0; i < 20; ++i) {
+    const double *first = joints + 3 * 8 * 5 * i, *large = joints;
+    double length = 0, largest = 0;
+    CHECK(i == 0 || sizes[i] <= sizes[i - 1]);
+    for (k = 0; k < 3; ++k) {
+      length += (first[3 + k] - first[k]) * (first[3 + k] - first[k]);
+      largest += (large[3 + k] - large[k]) * (large[3 + k] - large[k]);
+    }
+    CHECK(fabs(sqrt(length) - sizes[i] / 2 * sqrt(largest)) < 1e-3);
+  }
+  OK(skitter_crowd_destroy(crowd));
+  OK(skitter_device_destroy(device));
 }
 
 /* The ways that four agents go in so many ticks. */
@@ -1004,9 +1035,10 @@ int main(int argc, char** argv) {
   static const struct {
     const char* name;
     void (*run)(void);
-  } tests[] = {{"errors", testErrors},     {"scene", testScene}, {"crowd", testCrowd},
-               {"steering", testSteering}, {"herds", testHerds}, {"state", testState},
-               {"adoption", testAdoption}, {"ik", testIk},       {"splines", testSplines}};
+  } tests[] = {{"errors", testErrors},  {"scene", testScene},       {"crowd", testCrowd},
+               {"sizes", testSizes},    {"steering", testSteering}, {"herds", testHerds},
+               {"state", testState},    {"adoption", testAdoption}, {"ik", testIk},
+               {"splines", testSplines}};
   size_t i;
   for (i = 0; argc == 2 && i < COUNT(tests); ++i) {
     if (strcmp(argv[1], tests[i].name) != 0) continue;

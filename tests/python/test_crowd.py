@@ -41,6 +41,24 @@ def test_joints_are_bones_apart_and_feet_are_where_the_device_has_them(device, s
         bare.joints()
 
 
+def test_agents_have_the_sizes_of_their_places(device, scene):
+    assert skitter.Crowd(device, scene).sizes().tolist() == [1] * 20
+    scene.herds[0].sizes = [2, 0.5]
+    crowd = skitter.Crowd(device, scene)
+    sizes = crowd.sizes()
+    assert sizes.dtype == np.float32 and set(sizes.tolist()) == {2, 0.5} and (np.diff(sizes) <= 0).all()
+    assert (crowd.rig().legLength, crowd.rig(0, 19).legLength) == pytest.approx((2, 0.5))
+    crowd.step(30)
+    lengths = np.linalg.norm(np.diff(crowd.joints(), axis=2), axis=3)
+    large = np.array([leg.lengths for leg in crowd.rig().legs])
+    assert lengths == pytest.approx(sizes[:, None, None] / 2 * large, abs=1e-3)
+    with pytest.raises(skitter.InputError, match="herd 0, agent 20: expected one of its 20 places"):
+        crowd.rig(0, 20)
+    scene.herds[0].sizes = [30]
+    with pytest.raises(skitter.InputError, match=r"herds\[0\].sizes\[0\] is 30, expected 0.05 to 20"):
+        skitter.Crowd(device, scene)
+
+
 def test_ticks_at_once_and_one_by_one_are_the_same(device, scene):
     first, second = skitter.Crowd(device, scene), skitter.Crowd(device, scene, pose=False, measure=False)
     first.step(20)
@@ -109,9 +127,9 @@ def test_records_are_copies_by_name(device, scene):
 def test_herds_that_are_not_there_are_refused(device, scene):
     crowd = skitter.Crowd(device, scene, footfalls=10)
     for ask in (
-        crowd.agents, crowd.places, crowd.agent_ids, crowd.herd_id, crowd.rig, crowd.positions, crowd.headings,
-        crowd.speeds, crowd.rotations, crowd.joints, crowd.footfalls, crowd.dropped_footfalls, crowd.fidelity,
-        crowd.agent_fidelity, crowd.records, crowd.memory_use,
+        crowd.agents, crowd.places, crowd.agent_ids, crowd.herd_id, crowd.rig, crowd.sizes, crowd.positions,
+        crowd.headings, crowd.speeds, crowd.rotations, crowd.joints, crowd.footfalls, crowd.dropped_footfalls,
+        crowd.fidelity, crowd.agent_fidelity, crowd.records, crowd.memory_use,
     ):  # fmt: skip
         with pytest.raises(skitter.InputError, match="herd 2: expected one of the crowd's 2 herds"):
             ask(2)

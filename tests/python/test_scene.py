@@ -36,11 +36,13 @@ def test_what_is_set_is_what_a_crowd_is_made_of(scene):
     herd.spawn.spacing = 2
     herd.spawn.heading = 0.25
     herd.tuning.stepHeight = 0.25
+    assert herd.sizes == ()
+    herd.sizes = [1, 0.5]
     assert (herd.phase, herd.colour, herd.tint) == (None, None, None)
     herd.phase, herd.colour, herd.tint = 0.5, (1, 0.5, 0), 0.75
     again = scene.herds[0]
     assert (again.agents, again.controller, again.solver, again.stepping, again.keys) == (5, "loop", "ccd", "reach", 3)
-    assert again.clips == ("walk",) and len(again.cuts) == 1
+    assert again.clips == ("walk",) and len(again.cuts) == 1 and again.sizes == (1, 0.5)
     assert (again.goal.kind, again.goal.target, again.goal.speed) == ("point", (1, 2), 0.5)
     assert (again.spawn.kind, again.spawn.centre, again.spawn.heading) == ("grid", (3, 4), 0.25)
     assert again.tuning.stepHeight == 0.25

@@ -1,3 +1,4 @@
+import re
 import signal
 import threading
 
@@ -34,6 +35,14 @@ def test_events_and_other_ground_are_replayed(device):
     )
     ground = skitter.Scene.parse({"terrain": {"columns": 65, "rows": 65, "amplitude": 2}}).load_terrain()
     assert skitter.validate(scene, 30, device, terrain=ground)
+
+
+def test_sizes_are_replayed_by_themselves(device, scene):
+    scene.herds[0].sizes = [0.6, 1.5]
+    result = skitter.validate(scene, 30, device)
+    assert result, str(result)
+    assert result.stages["navigate"].samples == 30 * 23
+    assert re.match(r"herd 0, size (0\.6|1\.5): ", result.stages["foothold"].worst)
 
 
 @pytest.mark.parametrize(
