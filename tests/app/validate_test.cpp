@@ -132,14 +132,19 @@ TEST_F(Validate, WhoComesLaterIsCompared) {
 }
 
 TEST_F(Validate, EverySizeOfAHerdIsReplayed) {
-  write("sized.json", R"({"herds": [{"sizes": [0.6, 1.5, 1]}]})");
-  const Result result = skitter({"validate", file("sized.json"), "--agents", "30", "--frames", "60",
-                                 "--edits", "--json", file("v.json")});
-  EXPECT_EQ(result.code, 0) << result.out << result.err;
-  for (const nlohmann::json& stage : json("v.json").at("stages"))
-    if (stage.at("name") == "navigate") {
-      EXPECT_EQ(stage.at("samples"), 30 * 60);
-    }
+  write("sized.json", R"({"herds": [{"agents": 30, "sizes": [0.6, 1.5, 1]}], "events": [
+    {"at": 0.2, "agents": [0, 29], "speed": 0.5},
+    {"at": 0.3, "teleport": [{"agent": 29, "position": [3, 4]}, {"agent": 0, "position": [-3, 4]}]}]})");
+  for (const char* option : {"--edits", "--free-run"}) {
+    const Result result =
+        skitter({"validate", file("sized.json"), "--frames", "60", option, "--json", file("v.json")});
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    for (const nlohmann::json& stage : json("v.json").at("stages"))
+      if (stage.at("name") == "navigate") {
+        EXPECT_EQ(stage.at("samples"), 30 * 60);
+      }
+  }
+  EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
 }
 
 TEST_F(Validate, NothingToCompareIsAWrongInput) {

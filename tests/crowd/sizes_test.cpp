@@ -179,8 +179,8 @@ TEST_F(SizesTest, AgentsStandWhereTheSpawnHasThem) {
     EXPECT_EQ(here.x, there.x) << agent;
     EXPECT_EQ(here.z, there.z) << agent;
   }
-  EXPECT_EQ(crowd.rig(0).legLength, 2);
-  EXPECT_EQ(crowd.rig(0, 59).legLength, 0.5f);
+  EXPECT_FLOAT_EQ(crowd.rig(0).legLength, 2);
+  EXPECT_FLOAT_EQ(crowd.rig(0, 59).legLength, 0.5f);
 }
 
 TEST_F(SizesTest, AgentsAreNumberedSizeAfterSize) {
@@ -333,6 +333,42 @@ TEST_F(SizesTest, AgentsComeAndGo) {
   }
   for (const auto& each : replayAll(device(), crowd, ground, 60)) expectAllPass(each);
   EXPECT_EQ(crowd.agentCount(), 22u);
+}
+
+// A scene's events number agents as the host does.
+TEST_F(SizesTest, EventsAreWhatTheCallerCouldDo) {
+  const Heightfield ground = rollingGround();
+  Scene plain = sizedGrid(20, {2, 0.5f});
+  plain.herds[0].reserve = 6;
+  std::vector<uint32_t> here;
+  const crowd::Numbering numbering = crowd::numberingOf(plain.herds[0], plain.seed);
+  for (uint32_t place = 0; place < 26; ++place)
+    if (numbering.starts[place] < 20) here.push_back(place);
+  const uint32_t first = here.front(), last = here.back();
+  const Goal goal{.kind = Goal::Kind::point, .target = {6, -3}, .speed = 0.5f};
+  Scene scene = plain;
+  scene.events = {{0.1f, GoalChange{.agents = {first, last}, .goal = goal}},
+                  {0.1f, SpeedChange{.speed = 0.25f}},
+                  {0.1f, Teleport{.moves = {{last, {{7, 8}, 1}}}}},
+                  {0.1f, Removal{.agents = {first}}},
+                  {0.1f, Addition{.arrivals = {{.place = {{3, 3}, 0}}, {.place = {{-3, 3}, 0}}}}}};
+  Crowd crowd(device(), ground, scene, kEverything), other(device(), ground, plain, kEverything);
+  for (Crowd* each : {&crowd, &other}) simulate(device(), *each, 5);
+  const std::vector<AgentGoal> goals{{other.agentId(0, first), goal}, {other.agentId(0, last), goal}};
+  other.steer(goals);
+  other.setSpeed(0, 0.25f);
+  other.teleport(other.agentId(0, last), {{7, 8}, 1});
+  other.remove(other.agentId(0, first));
+  other.add(0, {{3, 3}, 0});
+  other.add(0, {{-3, 3}, 0});
+  for (const int ticks : {1, 20}) {
+    for (Crowd* each : {&crowd, &other}) simulate(device(), *each, ticks);
+    expectSame(crowd, other);
+    EXPECT_EQ(crowd.agentCount(), 21u);
+  }
+  const HerdState state = crowd.download(0);
+  EXPECT_NEAR(positionOf(state, last).x, 7, 0.5);
+  EXPECT_NEAR(positionOf(state, last).z, 8, 0.5);
 }
 
 TEST_F(SizesTest, AHerdThatComesIsAsOneThatWasThere) {

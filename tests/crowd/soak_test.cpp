@@ -50,7 +50,8 @@ class Soak {
         crowd_(device, rollingGround(), sceneFor(other), CrowdOptions{.sleep = true}),
         saves_(saves) {
     for (uint32_t h = 0; h < crowd_.herdCount(); ++h)
-      for (uint32_t i = 0; i < crowd_.agentCount(h); ++i) here_.push_back(crowd_.agentId(h, i));
+      for (uint32_t i = 0; i < crowd_.places(h); ++i)
+        if (crowd_.has(AgentId(h, i))) here_.push_back(AgentId(h, i));
   }
 
   Soaked run(int ticks) {
@@ -80,6 +81,7 @@ class Soak {
     Scene scene = sceneOf(24);
     scene.herds[0].reserve = 16;
     scene.herds.push_back(scene.herds[0]);
+    scene.herds[0].sizes = {0.8f, 1.2f};
     scene.herds[1].controller = other;
     for (Herd& herd : scene.herds) herd.spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
     return scene;
@@ -159,6 +161,7 @@ class Soak {
     Herd herd;
     herd.agents = 6;
     herd.controller = Controller::loop;
+    herd.sizes = {1, 0.7f};
     guest_ = crowd_.addHerd(herd);
     for (uint32_t i = 0; i < 6; ++i) here_.push_back(crowd_.agentId(guest_->index, i));
   }

@@ -362,6 +362,15 @@ TEST(Replay, saysWhyAStageFailed) {
   EXPECT_NE(validation::table({judge.result()}).find("FAIL\n           " + why + "\n"), std::string::npos);
 }
 
+// The agents of one size in a herd have numbers from some other than 0 on.
+TEST(Replay, MessagesNumberAgentsAsTheirHerdDoes) {
+  validation::Judge judge("stage", 20);
+  validation::Sample bad;
+  bad.compare("quantity", 2, 1, {}, {});
+  judge.add(5, 6, 1, bad);
+  EXPECT_NE(judge.result().why.find("quantity: tick 5, agent 26, leg 1"), std::string::npos);
+}
+
 TEST(Replay, worstIsRelativeToItsOwnTolerance) {
   validation::Judge judge("stage");
   validation::Sample a, b;

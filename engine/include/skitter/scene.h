@@ -166,7 +166,7 @@ struct Teleport {
 
   bool operator==(const Teleport&) const = default;
 };
-// To the lowest empty places of a herd with a reserve.
+// To the lowest empty places of a herd with a reserve, which say how large who comes is.
 struct Addition {
   struct Arrival {
     Place place = {};
