@@ -124,9 +124,9 @@ glm::dvec2 contactOf(const Clip& clip, size_t leg, size_t legs) {
 
 KeyPoses keyPoses(const ClipSet& set, const std::vector<std::string>& names, uint32_t keys, const Rig& rig,
                   const std::vector<float>& rigRecords) {
-  if (keys < Herd::minKeys || keys > Herd::maxKeys)
-    throw inputError("keys " + std::to_string(keys) + ": expected " + std::to_string(Herd::minKeys) + " to " +
-                     std::to_string(Herd::maxKeys) + " key poses");
+  if (keys < skitter::Herd::minKeys || keys > skitter::Herd::maxKeys)
+    throw inputError("keys " + std::to_string(keys) + ": expected " + std::to_string(skitter::Herd::minKeys) +
+                     " to " + std::to_string(skitter::Herd::maxKeys) + " key poses");
   const std::vector<const Clip*> clips = chosenClips(set, names);
   const auto moving = std::find_if(clips.begin(), clips.end(), [](const Clip* c) { return c->speed > 0; });
   const auto still = std::find_if(clips.begin(), clips.end(), [](const Clip* c) { return c->speed == 0; });

@@ -144,7 +144,7 @@ TEST_F(TraceFigures, SizesAreMeasuredByThemselves) {
       {{"firstAgent", 0}, {"agents", 1}, {"size", 1}, {"legLength", legLength}},
       {{"firstAgent", 1}, {"agents", 1}, {"size", 0.5}, {"legLength", legLength / 2}}};
   write("trace.json", trace.dump());
-  for (uint64_t tick = 0; tick < ticks; ++tick) {
+  for (uint64_t tick = 0; tick < kTicks; ++tick) {
     const uint64_t since = sinceLift(tick, 0);
     put(tick, 1, 0, since >= 10 ? 1.04 : 1, 0, 1, since >= ticksInAir);
   }

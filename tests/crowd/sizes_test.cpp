@@ -45,7 +45,7 @@ float goalOf(const HerdState& state, size_t agent, size_t number) {
   return state.goal[agent * 4 * shared::GOAL_STRIDE + number];
 }
 
-void expectSame(const Crowd& a, const Crowd& b) {
+void expectSameAgents(const Crowd& a, const Crowd& b) {
   EXPECT_EQ(a.stateHash(), b.stateHash());
   ASSERT_EQ(a.herdCount(), b.herdCount());
   for (uint32_t h = 0; h < a.herdCount(); ++h) {
@@ -102,9 +102,9 @@ TEST_P(SizedControllersTest, GoOnFromAState) {
   EXPECT_TRUE(state.scene.herds == scene.herds);
   state.options.pageAgents = 0;
   Crowd again(device(), state);
-  expectSame(crowd, again);
+  expectSameAgents(crowd, again);
   for (Crowd* each : {&crowd, &again}) simulate(device(), *each, 30);
-  expectSame(crowd, again);
+  expectSameAgents(crowd, again);
   for (uint32_t h = 0; h < 2; ++h)
     EXPECT_EQ(crowd.add(h, {{-3, 4}, 1}).bits(), again.add(h, {{-3, 4}, 1}).bits());
 }
@@ -363,7 +363,7 @@ TEST_F(SizesTest, EventsAreWhatTheCallerCouldDo) {
   other.add(0, {{-3, 3}, 0});
   for (const int ticks : {1, 20}) {
     for (Crowd* each : {&crowd, &other}) simulate(device(), *each, ticks);
-    expectSame(crowd, other);
+    expectSameAgents(crowd, other);
     EXPECT_EQ(crowd.agentCount(), 21u);
   }
   const HerdState state = crowd.download(0);
@@ -379,7 +379,7 @@ TEST_F(SizesTest, AHerdThatComesIsAsOneThatWasThere) {
   const uint64_t bytes = came.memoryBytes();
   const HerdId herd = came.addHerd(two.herds[1]);
   for (Crowd* crowd : {&there, &came}) simulate(device(), *crowd, 20);
-  expectSame(there, came);
+  expectSameAgents(there, came);
   EXPECT_EQ(came.memoryBytes(), there.memoryBytes());
   const AgentId agent = came.agentId(1, 13);
   came.removeHerd(herd);
