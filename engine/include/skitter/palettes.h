@@ -83,7 +83,7 @@ class SKITTER_API Palettes {
               uint32_t target = 0) const;
 
  private:
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -78,7 +78,7 @@ class SKITTER_API Readback {
   uint64_t skipped() const;
 
  private:
-  struct Impl;
+  struct SKITTER_LOCAL Impl;
   std::unique_ptr<Impl> impl_;
 };
 
