@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "bindings/c/handles.h"
 #include "bindings/common/herd_reader.h"
@@ -12,16 +12,6 @@ using c::guarded;
 
 namespace {
 
-// Writes what `ask` says of the crowd.
-template <typename Value, typename Ask>
-skitter_result tell(const skitter_crowd* crowd, Value* value, const char* name, Ask ask) {
-  return guarded([&] {
-    const Crowd& asked = crowdOf(crowd);
-    given(value, name);
-    *value = ask(asked);
-  });
-}
-
 CrowdOptions optionsOf(const skitter_crowd_options& asked) {
   CrowdOptions options;
   options.pose = asked.no_poses == 0;
@@ -32,20 +22,9 @@ CrowdOptions optionsOf(const skitter_crowd_options& asked) {
   return options;
 }
 
-glm::dvec3 vectorOf(const double* xyz, const char* name) {
-  given(xyz, name);
-  return {xyz[0], xyz[1], xyz[2]};
-}
-
-// Writes the agent that `ask` finds, if any.
-template <typename Ask>
-void tellOf(skitter_picked* picked, int* found, Ask ask) {
-  given(picked, "picked");
-  given(found, "found");
-  const std::optional<Picked> agent = ask();
-  *found = agent ? 1 : 0;
-  if (agent)
-    *picked = {agent->herd, agent->agent, agent->distance, {agent->place.x, agent->place.y, agent->place.z}};
+skitter_crowd* handleOf(const std::shared_ptr<Device>& device, Crowd crowd) {
+  std::shared_ptr<c::LiveCrowd> live(new c::LiveCrowd{device, std::move(crowd), bindings::Walk(*device)});
+  return new skitter_crowd{std::move(live)};
 }
 
 skitter_fidelity convert(const Fidelity& f) {
@@ -83,7 +62,7 @@ skitter_result skitter_crowd_create(skitter_device* device, const skitter_scene*
     const Scene& from = given(scene, "scene").scene;
     given(crowd, "crowd");
     const CrowdOptions made = options != nullptr ? optionsOf(*options) : CrowdOptions{};
-    *crowd = new skitter_crowd{on, Crowd(*on, from.loadTerrain(), from, made), bindings::Walk(*on)};
+    *crowd = handleOf(on, Crowd(*on, from.loadTerrain(), from, made));
   });
 }
 
@@ -99,58 +78,50 @@ skitter_result skitter_crowd_resume(skitter_device* device, const skitter_state*
       from.options.footfalls = asked.footfalls;
       from.options.sleep = asked.sleep;
     }
-    *crowd = new skitter_crowd{on, Crowd(*on, from), bindings::Walk(*on)};
+    *crowd = handleOf(on, Crowd(*on, from));
   });
 }
 
 skitter_result skitter_crowd_record(skitter_crowd* crowd, VkCommandBuffer commands, float dt) {
   return guarded([&] {
     given(commands, "commands");
-    given(crowd, "crowd").crowd.record(commands, dt);
+    crowdOf(crowd).record(commands, dt);
   });
 }
 
 skitter_result skitter_crowd_step(skitter_crowd* crowd, uint64_t ticks, float dt) {
   return guarded([&] {
-    skitter_crowd& walker = given(crowd, "crowd");
+    c::LiveCrowd& walker = *given(crowd, "crowd").live;
     walker.walk.step(walker.crowd, ticks, dt);
   });
 }
 
-skitter_result skitter_crowd_edit_heights(skitter_crowd* crowd, uint32_t x, uint32_t z, uint32_t columns,
-                                          uint32_t rows, const float* heights) {
-  return guarded([&] {
-    Crowd& edited = given(crowd, "crowd").crowd;
-    edited.editHeights(x, z, columns, rows, c::listOf(heights, size_t{columns} * rows, "heights"));
-  });
-}
-
 skitter_result skitter_crowd_tick(const skitter_crowd* crowd, uint64_t* tick) {
-  return tell(crowd, tick, "tick", [](const Crowd& c) { return c.tick(); });
+  return c::tell(crowd, tick, "tick", [](const Crowd& asked) { return asked.tick(); });
 }
 
 skitter_result skitter_crowd_herds(const skitter_crowd* crowd, uint32_t* herds) {
-  return tell(crowd, herds, "herds", [](const Crowd& c) { return c.herdCount(); });
+  return c::tell(crowd, herds, "herds", [](const Crowd& asked) { return asked.herdCount(); });
 }
 
 skitter_result skitter_crowd_agent_count(const skitter_crowd* crowd, uint64_t* agents) {
-  return tell(crowd, agents, "agents", [](const Crowd& c) { return c.agentCount(); });
+  return c::tell(crowd, agents, "agents", [](const Crowd& asked) { return asked.agentCount(); });
 }
 
 skitter_result skitter_crowd_herd_agents(const skitter_crowd* crowd, uint32_t herd, uint32_t* agents) {
-  return tell(crowd, agents, "agents", [&](const Crowd& c) { return c.agentCount(herd); });
+  return c::tell(crowd, agents, "agents", [&](const Crowd& asked) { return asked.agentCount(herd); });
 }
 
 skitter_result skitter_crowd_herd_places(const skitter_crowd* crowd, uint32_t herd, uint32_t* places) {
-  return tell(crowd, places, "places", [&](const Crowd& c) { return c.places(herd); });
+  return c::tell(crowd, places, "places", [&](const Crowd& asked) { return asked.places(herd); });
 }
 
 skitter_result skitter_crowd_herd_legs(const skitter_crowd* crowd, uint32_t herd, uint32_t* legs) {
-  return tell(crowd, legs, "legs", [&](const Crowd& c) { return bindings::legsOf(c, herd); });
+  return c::tell(crowd, legs, "legs", [&](const Crowd& asked) { return bindings::legsOf(asked, herd); });
 }
 
 skitter_result skitter_crowd_herd_bones(const skitter_crowd* crowd, uint32_t herd, uint32_t* bones) {
-  return tell(crowd, bones, "bones", [&](const Crowd& c) { return bindings::bonesOf(c, herd); });
+  return c::tell(crowd, bones, "bones", [&](const Crowd& asked) { return bindings::bonesOf(asked, herd); });
 }
 
 skitter_result skitter_crowd_sizes(const skitter_crowd* crowd, uint32_t herd, float* sizes, size_t room) {
@@ -193,12 +164,12 @@ skitter_result skitter_crowd_joints(const skitter_crowd* crowd, uint32_t herd, d
 }
 
 skitter_result skitter_crowd_state_hash(const skitter_crowd* crowd, uint64_t* hash) {
-  return tell(crowd, hash, "hash", [](const Crowd& c) { return c.stateHash(); });
+  return c::tell(crowd, hash, "hash", [](const Crowd& asked) { return asked.stateHash(); });
 }
 
 skitter_result skitter_crowd_fidelity(const skitter_crowd* crowd, uint32_t herd, skitter_fidelity* fidelity) {
-  return tell(crowd, fidelity, "fidelity", [&](const Crowd& c) {
-    return convert(herd == SKITTER_ALL_HERDS ? c.fidelity() : c.fidelity(herd));
+  return c::tell(crowd, fidelity, "fidelity", [&](const Crowd& asked) {
+    return convert(herd == SKITTER_ALL_HERDS ? asked.fidelity() : asked.fidelity(herd));
   });
 }
 
@@ -206,16 +177,8 @@ skitter_result skitter_crowd_footfalls(const skitter_crowd* crowd, uint32_t herd
                                        size_t room, size_t* count) {
   return guarded([&] {
     const Crowd& asked = crowdOf(crowd);
-    given(count, "count");
-    if (room > 0) given(footfalls, "footfalls");
-    const std::vector<Footfall> all = asked.footfalls(herd);
-    for (size_t i = 0; i < all.size() && i < room; ++i)
-      footfalls[i] = {all[i].tick,
-                      all[i].agent,
-                      all[i].leg,
-                      {all[i].place.x, all[i].place.y, all[i].place.z},
-                      all[i].speed};
-    *count = all.size();
+    c::Told<skitter_footfall> told(footfalls, room, "footfalls", count);
+    told.write(asked.footfalls(herd), c::toC);
   });
 }
 
@@ -224,8 +187,8 @@ skitter_result skitter_crowd_pick(const skitter_crowd* crowd, const double start
                                   int* found) {
   return guarded([&] {
     const Crowd& asked = crowdOf(crowd);
-    const glm::dvec3 from = vectorOf(start, "start"), along = vectorOf(direction, "direction");
-    tellOf(picked, found, [&] { return bindings::pick(asked, from, along, length); });
+    const glm::dvec3 from = c::vectorOf(start, "start"), along = c::vectorOf(direction, "direction");
+    c::tellPicked(picked, found, [&] { return bindings::pick(asked, from, along, length); });
   });
 }
 
@@ -233,8 +196,8 @@ skitter_result skitter_crowd_nearest(const skitter_crowd* crowd, const double po
                                      skitter_picked* picked, int* found) {
   return guarded([&] {
     const Crowd& asked = crowdOf(crowd);
-    const glm::dvec3 to = vectorOf(point, "point");
-    tellOf(picked, found, [&] { return bindings::nearest(asked, to); });
+    const glm::dvec3 to = c::vectorOf(point, "point");
+    c::tellPicked(picked, found, [&] { return bindings::nearest(asked, to); });
   });
 }
 

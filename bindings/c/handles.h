@@ -7,20 +7,37 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
 
 #include "bindings/c/skitter.h"
+#include "bindings/common/herd_reader.h"
 #include "bindings/common/walk.h"
 #include "skitter/crowd.h"
 #include "skitter/error.h"
 #include "skitter/ik.h"
+#include "skitter/palettes.h"
+#include "skitter/readback.h"
+#include "skitter/renderer.h"
+#include "skitter/skin_mesh.h"
 #include "skitter/spline.h"
 #include "skitter/state.h"
 
 // What is behind the handles. Members are destroyed last first: what is made on a device before its share of
 // it.
+
+namespace skitter::c {
+
+// A crowd, with what makes its ticks. The handles of whatever reads and draws it share it.
+struct LiveCrowd {
+  std::shared_ptr<Device> device;
+  Crowd crowd;
+  bindings::Walk walk;
+};
+
+}  // namespace skitter::c
 
 struct skitter_device {
   std::shared_ptr<skitter::Device> device;
@@ -31,9 +48,29 @@ struct skitter_scene {
 };
 
 struct skitter_crowd {
-  std::shared_ptr<skitter::Device> device;
-  skitter::Crowd crowd;
-  skitter::bindings::Walk walk;
+  std::shared_ptr<skitter::c::LiveCrowd> live;
+};
+
+struct skitter_readback {
+  std::shared_ptr<skitter::c::LiveCrowd> live;
+  skitter::Readback readback;
+  std::optional<skitter::Snapshot> taken = {};
+};
+
+struct skitter_palettes {
+  std::shared_ptr<skitter::c::LiveCrowd> live;
+  skitter::Palettes palettes;
+  size_t targets;
+};
+
+struct skitter_skin_mesh {
+  skitter::SkinMesh mesh;
+};
+
+struct skitter_renderer {
+  std::shared_ptr<skitter::c::LiveCrowd> live;
+  skitter::Renderer renderer;
+  bool drawn = false;
 };
 
 struct skitter_state {
@@ -117,7 +154,71 @@ inline void checkRoom(const char* name, size_t room, size_t needed) {
   if (room < needed) throw inputError(fmt::format("{} has room for {}, expected {}", name, room, needed));
 }
 
-inline Crowd& crowdOf(skitter_crowd* crowd) { return given(crowd, "crowd").crowd; }
-inline const Crowd& crowdOf(const skitter_crowd* crowd) { return given(crowd, "crowd").crowd; }
+inline Crowd& crowdOf(skitter_crowd* crowd) { return given(crowd, "crowd").live->crowd; }
+inline const Crowd& crowdOf(const skitter_crowd* crowd) { return given(crowd, "crowd").live->crowd; }
+
+inline glm::dvec3 vectorOf(const double* xyz, const char* name) {
+  given(xyz, name);
+  return {xyz[0], xyz[1], xyz[2]};
+}
+// NULL: the world's.
+inline glm::dvec3 originOf(const double* origin) {
+  if (origin == nullptr) return glm::dvec3(0);
+  const glm::dvec3 place = vectorOf(origin, "origin");
+  bindings::expectFinite("origin", place);
+  return place;
+}
+template <typename Number, glm::length_t Size>
+void copyVector(const glm::vec<Size, Number>& vector, Number* to) {
+  for (glm::length_t k = 0; k < Size; ++k) to[k] = vector[k];
+}
+
+inline skitter_footfall toC(const Footfall& footfall) {
+  return {.tick = footfall.tick,
+          .agent = footfall.agent,
+          .leg = footfall.leg,
+          .place = {footfall.place.x, footfall.place.y, footfall.place.z},
+          .speed = footfall.speed};
+}
+
+// Writes what `ask` says of the crowd.
+template <typename Value, typename Ask>
+skitter_result tell(const skitter_crowd* crowd, Value* value, const char* name, Ask ask) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(value, name);
+    *value = ask(asked);
+  });
+}
+
+// Writes the agent that `ask` finds, if any.
+template <typename Ask>
+void tellPicked(skitter_picked* picked, int* found, Ask ask) {
+  given(picked, "picked");
+  given(found, "found");
+  const std::optional<Picked> agent = ask();
+  *found = agent ? 1 : 0;
+  if (agent)
+    *picked = {agent->herd, agent->agent, agent->distance, {agent->place.x, agent->place.y, agent->place.z}};
+}
+
+// The caller's room for a list, and for how many elements it has. Throws Error(input) for NULL.
+template <typename Element>
+struct Told {
+  Told(Element* first, size_t space, const char* name, size_t* counter)
+      : list(first), room(space), count(given(counter, "count")) {
+    if (room > 0) given(list, name);
+  }
+  // As many as there is room for, each as `convert` has it.
+  template <typename From, typename Convert>
+  void write(const std::vector<From>& all, Convert convert) {
+    for (size_t i = 0; i < all.size() && i < room; ++i) list[i] = convert(all[i]);
+    count = all.size();
+  }
+
+  Element* list;
+  size_t room;
+  size_t& count;
+};
 
 }  // namespace skitter::c

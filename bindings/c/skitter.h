@@ -7,7 +7,7 @@
  * - Pointers must not be NULL where nothing else is said: that is SKITTER_ERROR_INPUT.
  * - Handles are opaque. Each is made by a function whose last argument is the handle, and ended by its
  * ..._destroy, for which NULL is nothing to do. A device lives until all that was made on it has been
- * destroyed as well.
+ * destroyed as well, and so does a crowd.
  * - Lengths are metres, times seconds, angles radians. The world is right-handed, +Y is up, and an unturned
  * creature faces +Z.
  * - Herds and agents are numbered from 0; agents within their herd.
@@ -165,6 +165,20 @@ SKITTER_C skitter_result skitter_crowd_sizes(const skitter_crowd* crowd, uint32_
 SKITTER_C skitter_result skitter_crowd_edit_heights(skitter_crowd* crowd, uint32_t x, uint32_t z,
                                                     uint32_t columns, uint32_t rows, const float* heights);
 
+/* The ground: samples at the corners of a regular grid, bilinear in between. Columns run to +x and rows to
+ * +z; the grid is centred on the world's origin. */
+typedef struct skitter_terrain {
+  uint32_t columns, rows;
+  float spacing_x, spacing_z; /* metres a sample */
+} skitter_terrain;
+SKITTER_C skitter_result skitter_crowd_terrain(const skitter_crowd* crowd, skitter_terrain* terrain);
+/* Its samples as edited, row after row, metres above mid height as made. There is room for `room` of them. */
+SKITTER_C skitter_result skitter_crowd_heights(const skitter_crowd* crowd, float* heights, size_t room);
+/* Height and unit normal of the ground, as edited, at x, z in world metres. Beyond its edge it goes on as at
+ * the edge. `height` or `normal` may be NULL. */
+SKITTER_C skitter_result skitter_crowd_ground(const skitter_crowd* crowd, float x, float z, float* height,
+                                              float normal[3]);
+
 /* The functions below wait for the device. */
 
 /* Where bodies are: x, y, z of each place of the herd in world metres, to `xyz`, which has room for `room`
@@ -306,6 +320,337 @@ SKITTER_C skitter_result skitter_crowd_herd_id(const skitter_crowd* crowd, uint3
                                                skitter_herd_id* id);
 SKITTER_C skitter_result skitter_crowd_has_herd(const skitter_crowd* crowd, skitter_herd_id herd, int* has);
 
+/* ---- Records ---- */
+
+/* Everything that the stages exchange, as arrays of vec4 on the device (docs/reading.md). The layouts are in
+ * skitter/records.h, which C99 can include. An `origin` is a point in world metres that positions are
+ * relative to; NULL: the world's. */
+
+typedef enum skitter_record {
+  SKITTER_RECORD_GOAL = 0,
+  SKITTER_RECORD_STEER = 1,
+  SKITTER_RECORD_BODY = 2,
+  SKITTER_RECORD_GAIT = 3,
+  SKITTER_RECORD_STEP = 4,
+  SKITTER_RECORD_ARC = 5,
+  SKITTER_RECORD_FOOT = 6,
+  SKITTER_RECORD_CHAIN = 7,
+  SKITTER_RECORD_MISS = 8,
+  SKITTER_RECORD_TIP = 9,
+  SKITTER_RECORD_POSE = 10,
+  SKITTER_RECORD_PLAY = 11,
+  SKITTER_RECORD_START = 12,
+  SKITTER_RECORD_FIX = 13,
+  SKITTER_RECORD_SPRING = 14,
+  SKITTER_RECORD_METRIC = 15,
+  SKITTER_RECORD_WATCH = 16, /* neither handed out nor downloaded */
+  SKITTER_RECORD_FLIGHT = 17
+} skitter_record;
+
+/* A herd's records in one page. The buffer is the crowd's and stays the same as long as it has the herd;
+ * usage STORAGE_BUFFER, TRANSFER_SRC, TRANSFER_DST. Equal herds share pages, so other herds' records may lie
+ * before and after. skitter_crowd_record() waits for vertex, fragment, compute and transfer work recorded
+ * before it, and makes the records visible to such work after it: reads need no barrier of the caller's. */
+typedef struct skitter_record_buffer {
+  VkBuffer buffer;
+  VkDeviceSize offset, bytes;   /* of what holds the herd's records, and of legs perhaps other herds' too */
+  uint32_t first_agent, agents; /* of the herd, in this page */
+  uint32_t first;               /* first_agent's place in the page */
+  uint32_t stride;              /* vec4 a record */
+  uint32_t legs;                /* of an agent, for leg records; 0: the records are one an agent */
+} skitter_record_buffer;
+/* One a page of the herd; does not wait. Writes up to `room` of them to `buffers`, which may be NULL where
+ * `room` is 0, and to `count` how many there are: 0 where the herd keeps no such records. */
+SKITTER_C skitter_result skitter_crowd_buffers(const skitter_crowd* crowd, uint32_t herd,
+                                               skitter_record record, skitter_record_buffer* buffers,
+                                               size_t room, size_t* count);
+/* The vec4 of the buffer with which a record begins. The agent is of the herd and in this page; `leg` is 0
+ * where records are one an agent. */
+SKITTER_C skitter_result skitter_record_at(const skitter_record_buffer* buffer, uint32_t agent, uint32_t leg,
+                                           uint32_t* at);
+
+/* The touchdowns of the last tick on the device: 2 vec4 each, min(count, room) of them in any order. Equal
+ * herds share buffers, and events number agents through all of them. */
+typedef struct skitter_footfall_buffer {
+  VkBuffer events;
+  VkBuffer counters;            /* holds count, a uint32 */
+  uint32_t count_offset;        /* bytes */
+  uint32_t room;                /* events */
+  uint32_t first_agent, agents; /* the herd's, of those that events number */
+  uint32_t first_of_herd;       /* the number in the herd of first_agent */
+} skitter_footfall_buffer;
+/* As skitter_crowd_buffers(). Their room is 0 in a crowd that was made without footfalls. */
+SKITTER_C skitter_result skitter_crowd_footfall_buffers(const skitter_crowd* crowd, uint32_t herd,
+                                                        skitter_footfall_buffer* buffers, size_t room,
+                                                        size_t* count);
+
+/* Goals on the device, for shaders of the caller's, which may write them (docs/steering.md): that of agent
+ * first_agent + i begins with vec4 2 * (first + i). */
+typedef struct skitter_goal_buffer {
+  VkBuffer goals;
+  uint32_t first;               /* record of first_agent */
+  uint32_t first_agent, agents; /* of the herd */
+} skitter_goal_buffer;
+SKITTER_C skitter_result skitter_crowd_goal_buffers(const skitter_crowd* crowd, uint32_t herd,
+                                                    skitter_goal_buffer* buffers, size_t room, size_t* count);
+
+/* A herd's records of one kind, place after place and of an agent leg after leg, to `numbers`, which has room
+ * for `room` floats, and to `count` how many they are. Too little room is an error, but no room (then
+ * `numbers` may be NULL) asks for the count alone. Waits for the device. */
+SKITTER_C skitter_result skitter_crowd_records(const skitter_crowd* crowd, uint32_t herd,
+                                               skitter_record record, float* numbers, size_t room,
+                                               size_t* count);
+
+/* Records as numbers with a meaning, of a download, of a readback or of the caller's own copy. */
+
+typedef struct skitter_body {
+  double position[3]; /* on the ground below the body; exact to 1e-6 m, wherever it is */
+  float rotation[4];  /* world from model, quaternion x, y, z, w */
+  float heading[2];   /* x, z, unit */
+  float velocity[3];  /* metres a second, horizontal */
+  float turn_rate;    /* radians a second */
+  int present;        /* 0: nobody is in this place of the herd */
+} skitter_body;
+SKITTER_C skitter_result skitter_decode_body(const float record[16], const double* origin,
+                                             skitter_body* body);
+
+/* How a leg goes from where it left the ground to where it lands, of adaptive herds. */
+typedef struct skitter_step {
+  double lift_off[3], landing[3];
+  float first_tick, ticks;
+  int last_resort; /* nothing better was found to land on */
+} skitter_step;
+/* `body`: the record of the leg's agent, after the same tick. */
+SKITTER_C skitter_result skitter_decode_step(const float record[8], const float body[16],
+                                             const double* origin, skitter_step* step);
+
+/* Where a foot should be, and where it is. `body` is the agent's, whose origin they have. */
+typedef struct skitter_foot {
+  double place[3];
+  float progress; /* of its step; 1: planted */
+} skitter_foot;
+typedef struct skitter_tip {
+  double place[3];
+  float error; /* metres from where it should be */
+} skitter_tip;
+SKITTER_C skitter_result skitter_decode_foot(const float record[4], const skitter_body* body,
+                                             skitter_foot* foot);
+SKITTER_C skitter_result skitter_decode_tip(const float record[4], const skitter_body* body,
+                                            skitter_tip* tip);
+
+/* A bone of a pose record of `floats` numbers: entry 0 is the body, 1 + leg * bones + bone a leg's bone,
+ * where the longest leg has so many bones. A vertex v of it is at position + rotation (v - rest start),
+ * relative to the body's position along world axes. */
+typedef struct skitter_bone {
+  float rotation[4]; /* quaternion x, y, z, w */
+  float position[3]; /* of the joint at its start */
+} skitter_bone;
+SKITTER_C skitter_result skitter_decode_bone(const float* pose, size_t floats, uint32_t entry,
+                                             skitter_bone* bone);
+/* A joint of a pose record of the controllers clip and planted: the rows of the 3x4 matrix that takes a
+ * vertex of the clips' skin to world axes about the body's position. */
+SKITTER_C skitter_result skitter_decode_joint(const float* pose, size_t floats, uint32_t joint,
+                                              float rows[12]);
+
+/* An event of a footfall buffer. `of_herd` becomes 0, and `footfall` stays as it is, where it is of another
+ * herd than the buffer was asked for. */
+SKITTER_C skitter_result skitter_decode_footfall(const float event[8], const skitter_footfall_buffer* buffer,
+                                                 skitter_footfall* footfall, int* of_herd);
+
+/* ---- Readback ---- */
+
+/* Where agents are, some ticks late and without waiting: a ring of copies, which the device makes after a
+ * tick. Herds that are read must not be removed while the readback is there, and what was recorded into the
+ * caller's command buffers has finished before it is destroyed. */
+typedef struct skitter_readback skitter_readback;
+
+/* All zero: the defaults. */
+typedef struct skitter_readback_options {
+  const uint32_t* herds; /* whose agents are read */
+  uint32_t herd_count;   /* 0: all herds */
+  uint32_t slots;        /* copies that there is room for, at least 2; 0: 3. 64 bytes an agent each */
+} skitter_readback_options;
+
+/* `options` may be NULL. */
+SKITTER_C skitter_result skitter_readback_create(skitter_crowd* crowd,
+                                                 const skitter_readback_options* options,
+                                                 skitter_readback** readback);
+/* Records a copy after skitter_crowd_record() in the same command buffer, outside a render pass. Each is
+ * submitted once, in order. Nothing is recorded, and the tick is counted as skipped, where every slot is
+ * still on its way. */
+SKITTER_C skitter_result skitter_readback_record(skitter_readback* readback, VkCommandBuffer commands);
+/* Makes so many ticks on the device's queue, with a copy after the last one, and does not wait for them, but
+ * where two ticks are still on their way. */
+SKITTER_C skitter_result skitter_readback_step(skitter_readback* readback, uint64_t ticks, float dt);
+SKITTER_C skitter_result skitter_readback_skipped(const skitter_readback* readback, uint64_t* skipped);
+
+/* Takes the newest copy that has been made, of the crowd after `tick`. `found` becomes 0, and `tick` stays as
+ * it is, where there is none yet. The functions below read what was taken last; it is gone with the next
+ * ..._record() or ..._step(), and until something is taken again they are SKITTER_ERROR_INPUT. */
+SKITTER_C skitter_result skitter_readback_take(skitter_readback* readback, uint64_t* tick, int* found);
+
+/* Places of the herd; 0 of one that is not read. */
+SKITTER_C skitter_result skitter_readback_places(const skitter_readback* readback, uint32_t herd,
+                                                 uint32_t* places);
+/* As skitter_crowd_positions(), relative to an origin; NULL: the world's. */
+SKITTER_C skitter_result skitter_readback_positions(const skitter_readback* readback, uint32_t herd,
+                                                    const double* origin, double* xyz, size_t room);
+/* Body records where they lie, 16 floats a place, for skitter_decode_body(). They are there as long as what
+ * was taken. */
+SKITTER_C skitter_result skitter_readback_bodies(const skitter_readback* readback, uint32_t herd,
+                                                 const float** records);
+/* Holds the herd's agents in whatever pose they are. `found` becomes 0, and the rest stays as it is, where
+ * there are none. */
+SKITTER_C skitter_result skitter_readback_bounds(const skitter_readback* readback, uint32_t herd,
+                                                 const double* origin, double least[3], double most[3],
+                                                 int* found);
+/* As skitter_crowd_pick() and skitter_crowd_nearest(), of the agents that were read. */
+SKITTER_C skitter_result skitter_readback_pick(const skitter_readback* readback, const double start[3],
+                                               const double direction[3], double length,
+                                               skitter_picked* picked, int* found);
+SKITTER_C skitter_result skitter_readback_nearest(const skitter_readback* readback, const double point[3],
+                                                  skitter_picked* picked, int* found);
+SKITTER_C skitter_result skitter_readback_destroy(skitter_readback* readback);
+
+/* ---- Drawing by yourself ---- */
+
+/* Where the host's axes point, as seen by a creature in Skitter's own. */
+typedef enum skitter_axes {
+  SKITTER_AXES_RIGHT_Y_UP = 0, /* x, y, z: faces +Z, its left is +X: glTF, OpenGL, Godot */
+  SKITTER_AXES_LEFT_Y_UP = 1,  /* -x, y, z: faces +Z, its left is -X: Unity */
+  SKITTER_AXES_RIGHT_Z_UP = 2, /* x, -z, y: faces -Y, its left is +X: Blender */
+  SKITTER_AXES_LEFT_Z_UP = 3   /* z, -x, y: faces +X, its left is -Y: Unreal */
+} skitter_axes;
+/* All zero: Skitter's own. */
+typedef struct skitter_space {
+  skitter_axes axes;
+  float metres_per_unit; /* 0.01: the host counts centimetres; 0: 1 */
+} skitter_space;
+
+typedef enum skitter_transform_format {
+  SKITTER_TRANSFORM_MATRIX = 0,    /* 12 floats: the rows of a 3x4 matrix */
+  SKITTER_TRANSFORM_QUATERNION = 1 /* 8 floats: rotation x, y, z, w; translation x, y, z; scale */
+} skitter_transform_format;
+
+/* Where transforms are written: a range of a buffer of the caller's, with usage STORAGE_BUFFER. Transforms
+ * follow each other agent by agent and, of palettes, entry by entry. What is between and beyond them stays as
+ * it is. */
+typedef struct skitter_transform_range {
+  VkBuffer buffer;     /* VK_NULL_HANDLE: these transforms are not written */
+  VkDeviceSize offset; /* bytes, a multiple of 16 */
+  VkDeviceSize bytes;  /* that may be written */
+  skitter_transform_format format;
+  VkDeviceSize stride; /* bytes from one transform to the next, a multiple of 16; 0: no gap */
+  int planar;          /* an array for each vec4 of the transforms, one after the other; with stride 0 */
+} skitter_transform_range;
+
+/* What one frame of the caller's reads: a transform an agent, from the model space of the mesh at rest to the
+ * host's space; and for each agent as many as skitter_crowd_palette_entries() says, for the bones of
+ * skitter_skin_vertex. */
+typedef struct skitter_palette_target {
+  skitter_transform_range instances, palettes;
+} skitter_palette_target;
+
+/* All zero: the defaults. */
+typedef struct skitter_palette_options {
+  skitter_space space;
+  int relative; /* palettes lead to the mesh's model space, and the agent's instance transform comes after */
+} skitter_palette_options;
+
+/* Writes a herd's transforms into buffers of the caller's, on the device, after a tick. A vertex is then at
+ * the sum of weight[i] * palette[bone[i]] * vertex. An agent that is not there has transforms of zeros. The
+ * buffers outlive it, the herd must not be removed while it is there, and what was recorded has finished
+ * before it is destroyed. */
+typedef struct skitter_palettes skitter_palettes;
+
+SKITTER_C skitter_result skitter_crowd_palette_entries(const skitter_crowd* crowd, uint32_t herd,
+                                                       uint32_t* entries);
+/* A target for each frame that may be in flight. `options` may be NULL. Palettes need a crowd with poses, and
+ * matrices where the controller is clip or planted. */
+SKITTER_C skitter_result skitter_palettes_create(skitter_crowd* crowd, uint32_t herd,
+                                                 const skitter_palette_target* targets, uint32_t target_count,
+                                                 const skitter_palette_options* options,
+                                                 skitter_palettes** palettes);
+/* Records the writes of one target, after skitter_crowd_record() in the same or an earlier submission,
+ * outside a render pass, with barriers against vertex, fragment, compute and transfer work before and after
+ * them. `origin` is the point of the world that the host's space has its own origin in; NULL: the world's. */
+SKITTER_C skitter_result skitter_palettes_record(const skitter_palettes* palettes, VkCommandBuffer commands,
+                                                 const double* origin, uint32_t target);
+SKITTER_C skitter_result skitter_palettes_destroy(skitter_palettes* palettes);
+
+/* What the transforms move: the mesh at rest, in model space, at the first of the herd's sizes. It is a copy,
+ * which needs no crowd. */
+typedef struct skitter_skin_mesh skitter_skin_mesh;
+
+typedef struct skitter_skin_vertex {
+  float position[3];
+  float normal[3];
+  float colour[3];   /* linear RGB: the model's vertex colours times its materials' base colours */
+  uint16_t bones[4]; /* entries of an agent's palette */
+  float weights[4];  /* they sum to 1 */
+} skitter_skin_vertex;
+typedef struct skitter_skin_level {
+  uint32_t first_index, index_count;
+  float pixels; /* it serves where the mesh's radius covers at least so many pixels; 0 of the last one */
+} skitter_skin_level;
+
+/* `space`: that of the palettes; NULL: Skitter's own. Takes a while: levels are simplified here. */
+SKITTER_C skitter_result skitter_skin_mesh_create(const skitter_crowd* crowd, uint32_t herd,
+                                                  const skitter_space* space, skitter_skin_mesh** mesh);
+/* Vertices of all levels; triangles, three indices into the vertices each, counter-clockwise as seen from
+ * outside; levels, finest first. Each writes up to `room` of them, and to `count` how many there are. The
+ * list may be NULL where `room` is 0. */
+SKITTER_C skitter_result skitter_skin_mesh_vertices(const skitter_skin_mesh* mesh,
+                                                    skitter_skin_vertex* vertices, size_t room,
+                                                    size_t* count);
+SKITTER_C skitter_result skitter_skin_mesh_indices(const skitter_skin_mesh* mesh, uint32_t* indices,
+                                                   size_t room, size_t* count);
+SKITTER_C skitter_result skitter_skin_mesh_levels(const skitter_skin_mesh* mesh, skitter_skin_level* levels,
+                                                  size_t room, size_t* count);
+/* Of a sphere about an agent's position that holds every pose, at the largest size, in the host's unit. */
+SKITTER_C skitter_result skitter_skin_mesh_radius(const skitter_skin_mesh* mesh, float* radius);
+SKITTER_C skitter_result skitter_skin_mesh_destroy(skitter_skin_mesh* mesh);
+
+/* ---- Pictures ---- */
+
+/* Where a picture is taken from. World metres; the projection is reversed-Z with an infinite far plane. */
+typedef struct skitter_view {
+  float eye[3];
+  float target[3];     /* elsewhere than the eye */
+  float field_of_view; /* radians, vertical, above 0 and below pi; 0: 0.8 */
+} skitter_view;
+/* The camera of a scene at a time, any number of seconds. The crowd was made of the scene, or of the state
+ * that the scene is of. A herd that was removed has no agents in the scene (skitter_scene_set_agents). */
+SKITTER_C skitter_result skitter_scene_view(const skitter_scene* scene, const skitter_crowd* crowd,
+                                            double seconds, skitter_view* view);
+
+/* Draws a crowd and its ground into an image of its own. It needs a crowd with poses, and a queue with
+ * graphics. What was recorded has finished before it is destroyed. */
+typedef struct skitter_renderer skitter_renderer;
+
+SKITTER_C skitter_result skitter_renderer_create(skitter_crowd* crowd, uint32_t width, uint32_t height,
+                                                 skitter_renderer** renderer);
+/* Draws the crowd as it is on the device's queue, and waits. */
+SKITTER_C skitter_result skitter_renderer_draw(skitter_renderer* renderer, const skitter_view* view);
+/* Records a picture into the caller's command buffer, after the crowd's tick in the same or an earlier
+ * submission. `over`, or NULL, draws on top of it: it is called within dynamic rendering into one colour
+ * attachment of VK_FORMAT_R8G8B8A8_SRGB and the picture's size, without depth, one sample a pixel. */
+SKITTER_C skitter_result skitter_renderer_record(skitter_renderer* renderer, VkCommandBuffer commands,
+                                                 const skitter_view* view,
+                                                 void (*over)(VkCommandBuffer commands, void* user),
+                                                 void* user);
+/* The image of the last picture, VK_FORMAT_R8G8B8A8_SRGB in TRANSFER_SRC_OPTIMAL; the renderer's own. */
+SKITTER_C skitter_result skitter_renderer_image(const skitter_renderer* renderer, VkImage* image);
+/* The last picture that was drawn or, once submitted, recorded: RGBA8 sRGB, rows without gaps, top row first,
+ * to `rgba`, which has room for `room` bytes. Waits for the device. */
+SKITTER_C skitter_result skitter_renderer_pixels(const skitter_renderer* renderer, uint8_t* rgba,
+                                                 size_t room);
+SKITTER_C skitter_result skitter_renderer_destroy(skitter_renderer* renderer);
+
+/* Writes such pixels, 4 bytes each, as an opaque PNG. The file takes its name once it is whole. */
+SKITTER_C skitter_result skitter_write_png(const char* file, uint32_t width, uint32_t height,
+                                           const uint8_t* rgba);
+
 /* ---- States ---- */
 
 /* Saving waits for the device. What was recorded must have been submitted. `note` is JSON of the caller's
@@ -327,6 +672,8 @@ SKITTER_C skitter_result skitter_state_tick(const skitter_state* state, uint64_t
 SKITTER_C skitter_result skitter_state_dt(const skitter_state* state, float* dt);
 /* The note with which the state was saved, as JSON; empty without one. It lives as long as the state. */
 SKITTER_C skitter_result skitter_state_note(const skitter_state* state, const char** note);
+/* A copy of the scene, with the herds that were there, also those that had come. */
+SKITTER_C skitter_result skitter_state_scene(const skitter_state* state, skitter_scene** scene);
 SKITTER_C skitter_result skitter_state_destroy(skitter_state* state);
 
 /* ---- Inverse kinematics ---- */

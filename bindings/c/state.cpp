@@ -5,6 +5,7 @@
 #include "bindings/c/handles.h"
 
 using namespace skitter;
+using c::crowdOf;
 using c::given;
 using c::guarded;
 
@@ -16,7 +17,7 @@ std::string noteOf(const char* note) { return note != nullptr ? note : ""; }
 
 skitter_result skitter_crowd_save(const skitter_crowd* crowd, const char* file, const char* note) {
   return guarded([&] {
-    const Crowd& saved = given(crowd, "crowd").crowd;
+    const Crowd& saved = crowdOf(crowd);
     given(file, "file");
     saved.save(file, noteOf(note));
   });
@@ -25,7 +26,7 @@ skitter_result skitter_crowd_save(const skitter_crowd* crowd, const char* file, 
 skitter_result skitter_crowd_save_to_memory(const skitter_crowd* crowd, const char* note, void* bytes,
                                             size_t room, size_t* size) {
   return guarded([&] {
-    const Crowd& saved = given(crowd, "crowd").crowd;
+    const Crowd& saved = crowdOf(crowd);
     given(size, "size");
     auto* const to = static_cast<std::byte*>(bytes);
     if (room > 0) given(to, "bytes");
@@ -71,6 +72,14 @@ skitter_result skitter_state_note(const skitter_state* state, const char** note)
   return guarded([&] {
     given(note, "note");
     *note = given(state, "state").state.note.c_str();
+  });
+}
+
+skitter_result skitter_state_scene(const skitter_state* state, skitter_scene** scene) {
+  return guarded([&] {
+    const Scene& kept = given(state, "state").state.scene;
+    given(scene, "scene");
+    *scene = new skitter_scene{kept};
   });
 }
 

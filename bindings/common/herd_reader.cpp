@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "crowd/herd.h"
 #include "crowd/places.h"
@@ -27,11 +28,6 @@ BodyState bodyAt(const HerdState& state, size_t agent) {
 }
 
 std::string textOf(const glm::dvec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
-
-void expectFinite(const char* name, const glm::dvec3& vector) {
-  if (!std::isfinite(glm::dot(vector, vector)))
-    throw inputError(fmt::format("{} is {}, expected finite numbers", name, textOf(vector)));
-}
 
 }  // namespace
 
@@ -60,14 +56,23 @@ std::vector<uint64_t> agentIdsOf(const Crowd& crowd, uint32_t herd) {
   return ids;
 }
 
-std::optional<Picked> pick(const Crowd& crowd, const glm::dvec3& start, const glm::dvec3& direction,
-                           double length) {
+void expectFinite(const char* name, const glm::dvec3& vector) {
+  if (!std::isfinite(glm::dot(vector, vector)))
+    throw inputError(fmt::format("{} is {}, expected finite numbers", name, textOf(vector)));
+}
+
+Ray rayOf(const glm::dvec3& start, const glm::dvec3& direction, double length) {
   expectFinite("start", start);
   expectFinite("direction", direction);
   if (!(glm::length(direction) > 0))
     throw inputError(fmt::format("direction is {}, expected any length but 0", textOf(direction)));
   if (!(length >= 0)) throw inputError(fmt::format("length is {:g}, expected at least 0", length));
-  return crowd.pick({start, direction, length});
+  return {start, direction, length};
+}
+
+std::optional<Picked> pick(const Crowd& crowd, const glm::dvec3& start, const glm::dvec3& direction,
+                           double length) {
+  return crowd.pick(rayOf(start, direction, length));
 }
 
 std::optional<Picked> nearest(const Crowd& crowd, const glm::dvec3& point) {
@@ -76,6 +81,9 @@ std::optional<Picked> nearest(const Crowd& crowd, const glm::dvec3& point) {
 }
 
 HerdState recordsOf(const Crowd& crowd, uint32_t herd) { return stateOf(crowd, herd, allRecords); }
+std::vector<float> recordsOf(const Crowd& crowd, uint32_t herd, Record record) {
+  return std::move(stateOf(crowd, herd, std::array{record}).of(record));
+}
 
 std::vector<glm::dvec3> positionsOf(const Crowd& crowd, uint32_t herd) {
   const HerdState state = stateOf(crowd, herd, std::array{Record::body});

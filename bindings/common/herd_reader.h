@@ -25,8 +25,9 @@ std::vector<uint64_t> agentIdsOf(const Crowd& crowd, uint32_t herd);
 
 // Each of these waits for the device. Lists have an entry for each place, the reserve's among them.
 
-// Every record but those of watched agents.
+// Every record but those of watched agents, and one kind of them.
 HerdState recordsOf(const Crowd& crowd, uint32_t herd);
+std::vector<float> recordsOf(const Crowd& crowd, uint32_t herd, Record record);
 
 // World metres.
 std::vector<glm::dvec3> positionsOf(const Crowd& crowd, uint32_t herd);
@@ -39,8 +40,13 @@ float headingOf(const BodyState& body);
 // NaN fills up the legs with fewer bones. Throws Error(input) for a crowd without poses.
 std::vector<glm::dvec3> jointsOf(const Crowd& crowd, uint32_t herd);
 
-// As Crowd::pick() and Crowd::nearest(), in world metres. Numbers that are not finite, but for an infinite
-// length, a length below 0 and a direction of length 0 are an Error(input).
+// Throws Error(input) for numbers that are not finite.
+void expectFinite(const char* name, const glm::dvec3& vector);
+// Throws Error(input) for numbers that are not finite, but for an infinite length, a length below 0 and a
+// direction of length 0.
+Ray rayOf(const glm::dvec3& start, const glm::dvec3& direction, double length);
+
+// As Crowd::pick() and Crowd::nearest(), in world metres. They throw as the two above.
 std::optional<Picked> pick(const Crowd& crowd, const glm::dvec3& start, const glm::dvec3& direction,
                            double length);
 std::optional<Picked> nearest(const Crowd& crowd, const glm::dvec3& point);

@@ -37,9 +37,13 @@ uint64_t Walk::step(Crowd& crowd, uint64_t ticks, float dt, const std::function<
   return done;
 }
 
+void Walk::submit(const std::function<void(VkCommandBuffer)>& record) { impl_->submit(record); }
+
 void Walk::run(const std::function<void(VkCommandBuffer)>& record) {
   impl_->submit(record);
   impl_->ring.waitAll();
 }
+
+void Walk::wait() { impl_->ring.waitAll(); }
 
 }  // namespace skitter::bindings

@@ -18,8 +18,13 @@ class Walk {
   // ticks so far are waited for and their number is returned. Throws what Crowd::record and `goOn` throw; the
   // ticks so far are done then, and the crowd stays usable.
   uint64_t step(Crowd& crowd, uint64_t ticks, float dt, const std::function<bool()>& goOn = {});
-  // Records commands, submits them and waits.
+  // Records commands and submits them. Waits only where the last two submissions are still on their way, for
+  // the earlier one.
+  void submit(const std::function<void(VkCommandBuffer)>& record);
+  // The same, and waits.
   void run(const std::function<void(VkCommandBuffer)>& record);
+  // For all that was submitted.
+  void wait();
 
  private:
   struct Impl;

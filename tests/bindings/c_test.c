@@ -65,6 +65,103 @@ static skitter_crowd* makeCrowd(skitter_device* device, const skitter_crowd_opti
   return makeCrowdOf(twoHerds, device, options);
 }
 
+/* Reading and drawing nothing. */
+static void testNothingRead(void) {
+  static const float record[16] = {0};
+  const double place[3] = {0, 0, 0};
+  const skitter_body none = {{0}, {0}, {0}, {0}, 0, 0};
+  const skitter_record_buffer empty = {0};
+  const skitter_footfall_buffer noFootfalls = {0};
+  skitter_view view = {{0, 1, 0}, {0, 0, 0}, 0};
+  skitter_terrain terrain;
+  skitter_record_buffer buffer;
+  skitter_footfall_buffer footfallBuffer;
+  skitter_goal_buffer goalBuffer;
+  skitter_body body;
+  skitter_step step;
+  skitter_foot foot;
+  skitter_tip tip;
+  skitter_bone bone;
+  skitter_footfall footfall;
+  skitter_picked picked;
+  skitter_readback* readback = NULL;
+  skitter_palettes* palettes = NULL;
+  skitter_skin_mesh* mesh = NULL;
+  skitter_renderer* renderer = NULL;
+  VkImage image;
+  const float* records;
+  float numbers[16];
+  double least[3], most[3];
+  uint8_t pixels[4];
+  uint64_t m;
+  uint32_t n;
+  size_t s;
+  int is;
+
+  REFUSED(skitter_crowd_terrain(NULL, &terrain), "crowd is NULL");
+  REFUSED(skitter_crowd_heights(NULL, numbers, 1), "crowd is NULL");
+  REFUSED(skitter_crowd_ground(NULL, 0, 0, numbers, NULL), "crowd is NULL");
+
+  REFUSED(skitter_crowd_buffers(NULL, 0, SKITTER_RECORD_BODY, &buffer, 1, &s), "crowd is NULL");
+  REFUSED(skitter_record_at(NULL, 0, 0, &n), "buffer is NULL");
+  REFUSED(skitter_record_at(&empty, 0, 0, &n), "agent is 0, expected one of the page's 0");
+  REFUSED(skitter_crowd_footfall_buffers(NULL, 0, &footfallBuffer, 1, &s), "crowd is NULL");
+  REFUSED(skitter_crowd_goal_buffers(NULL, 0, &goalBuffer, 1, &s), "crowd is NULL");
+  REFUSED(skitter_crowd_records(NULL, 0, SKITTER_RECORD_BODY, numbers, 1, &s), "crowd is NULL");
+  REFUSED(skitter_decode_body(NULL, NULL, &body), "record is NULL");
+  REFUSED(skitter_decode_body(record, NULL, NULL), "body is NULL");
+  REFUSED(skitter_decode_step(NULL, record, NULL, &step), "record is NULL");
+  REFUSED(skitter_decode_step(record, NULL, NULL, &step), "body is NULL");
+  REFUSED(skitter_decode_step(record, record, NULL, NULL), "step is NULL");
+  REFUSED(skitter_decode_foot(NULL, &none, &foot), "record is NULL");
+  REFUSED(skitter_decode_foot(record, NULL, &foot), "body is NULL");
+  REFUSED(skitter_decode_foot(record, &none, NULL), "foot is NULL");
+  REFUSED(skitter_decode_tip(NULL, &none, &tip), "record is NULL");
+  REFUSED(skitter_decode_tip(record, &none, NULL), "tip is NULL");
+  REFUSED(skitter_decode_bone(NULL, 8, 0, &bone), "pose is NULL");
+  REFUSED(skitter_decode_bone(NULL, 0, 0, &bone), "pose has 0 floats");
+  REFUSED(skitter_decode_bone(record, 8, 0, NULL), "bone is NULL");
+  REFUSED(skitter_decode_joint(NULL, 12, 0, numbers), "pose is NULL");
+  REFUSED(skitter_decode_joint(record, 12, 0, NULL), "rows is NULL");
+  REFUSED(skitter_decode_footfall(NULL, &noFootfalls, &footfall, &is), "event is NULL");
+  REFUSED(skitter_decode_footfall(record, NULL, &footfall, &is), "buffer is NULL");
+  REFUSED(skitter_decode_footfall(record, &noFootfalls, NULL, &is), "footfall is NULL");
+  REFUSED(skitter_decode_footfall(record, &noFootfalls, &footfall, NULL), "of_herd is NULL");
+
+  REFUSED(skitter_readback_create(NULL, NULL, &readback), "crowd is NULL");
+  REFUSED(skitter_readback_record(NULL, NULL), "readback is NULL");
+  REFUSED(skitter_readback_step(NULL, 1, dt), "readback is NULL");
+  REFUSED(skitter_readback_skipped(NULL, &m), "readback is NULL");
+  REFUSED(skitter_readback_take(NULL, &m, &is), "readback is NULL");
+  REFUSED(skitter_readback_places(NULL, 0, &n), "readback is NULL");
+  REFUSED(skitter_readback_positions(NULL, 0, NULL, least, 1), "readback is NULL");
+  REFUSED(skitter_readback_bodies(NULL, 0, &records), "readback is NULL");
+  REFUSED(skitter_readback_bounds(NULL, 0, NULL, least, most, &is), "readback is NULL");
+  REFUSED(skitter_readback_pick(NULL, place, place, 1, &picked, &is), "readback is NULL");
+  REFUSED(skitter_readback_nearest(NULL, place, &picked, &is), "readback is NULL");
+
+  REFUSED(skitter_crowd_palette_entries(NULL, 0, &n), "crowd is NULL");
+  REFUSED(skitter_palettes_create(NULL, 0, NULL, 0, NULL, &palettes), "crowd is NULL");
+  REFUSED(skitter_palettes_record(NULL, NULL, NULL, 0), "palettes is NULL");
+  REFUSED(skitter_skin_mesh_create(NULL, 0, NULL, &mesh), "crowd is NULL");
+  REFUSED(skitter_skin_mesh_vertices(NULL, NULL, 0, &s), "mesh is NULL");
+  REFUSED(skitter_skin_mesh_indices(NULL, NULL, 0, &s), "mesh is NULL");
+  REFUSED(skitter_skin_mesh_levels(NULL, NULL, 0, &s), "mesh is NULL");
+  REFUSED(skitter_skin_mesh_radius(NULL, numbers), "mesh is NULL");
+
+  REFUSED(skitter_scene_view(NULL, NULL, 0, &view), "scene is NULL");
+  REFUSED(skitter_renderer_create(NULL, 1, 1, &renderer), "crowd is NULL");
+  REFUSED(skitter_renderer_draw(NULL, &view), "renderer is NULL");
+  REFUSED(skitter_renderer_record(NULL, NULL, &view, NULL, NULL), "renderer is NULL");
+  REFUSED(skitter_renderer_image(NULL, &image), "renderer is NULL");
+  REFUSED(skitter_renderer_pixels(NULL, pixels, sizeof pixels), "renderer is NULL");
+
+  OK(skitter_readback_destroy(NULL));
+  OK(skitter_palettes_destroy(NULL));
+  OK(skitter_skin_mesh_destroy(NULL));
+  OK(skitter_renderer_destroy(NULL));
+}
+
 static void testErrors(void) {
   skitter_device* device = NULL;
   skitter_scene* scene = NULL;
@@ -170,6 +267,10 @@ static void testErrors(void) {
   REFUSED(skitter_state_tick(NULL, &m), "state is NULL");
   REFUSED(skitter_state_dt(NULL, numbers), "state is NULL");
   REFUSED(skitter_state_note(NULL, &note), "state is NULL");
+
+  REFUSED(skitter_state_scene(NULL, &scene), "state is NULL");
+
+  testNothingRead();
 
   REFUSED(skitter_ik_batch_create(NULL, NULL, 1, 1, NULL, &batch), "device is NULL");
   REFUSED(skitter_ik_batch_set_targets(NULL, numbers, 1), "batch is NULL");
@@ -682,6 +783,16 @@ static void testState(void) {
   OK(skitter_state_dt(state, &seconds));
   OK(skitter_state_note(state, &note));
   CHECK(tick == 20 && seconds == dt && strcmp(note, "{\"level\":3}") == 0);
+  {
+    skitter_scene* scene = NULL;
+    uint32_t herds = 0, agents = 0;
+    REFUSED(skitter_state_scene(state, NULL), "scene is NULL");
+    NEED(skitter_state_scene(state, &scene));
+    OK(skitter_scene_herds(scene, &herds));
+    OK(skitter_scene_agents(scene, 1, &agents));
+    CHECK(herds == 2 && agents == 3);
+    OK(skitter_scene_destroy(scene));
+  }
   REFUSED(skitter_crowd_resume(device, NULL, NULL, &crowd), "state is NULL");
 
   {
@@ -792,6 +903,12 @@ static host makeHost(void) {
   return h;
 }
 
+static void closeHost(const host* h) {
+  vkDestroyCommandPool(h->device, h->pool, NULL);
+  vkDestroyDevice(h->device, NULL);
+  vkDestroyInstance(h->instance, NULL);
+}
+
 static void begin(const host* h) {
   VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   VK(vkBeginCommandBuffer(h->commands, &begin));
@@ -866,9 +983,699 @@ static void testAdoption(void) {
     OK(skitter_device_destroy(own));
   }
   OK(skitter_device_destroy(ours));
-  vkDestroyCommandPool(h.device, h.pool, NULL);
-  vkDestroyDevice(h.device, NULL);
-  vkDestroyInstance(h.instance, NULL);
+  closeHost(&h);
+}
+
+/* The ground, as edited: a slope of a quarter along x. */
+static void testGround(void) {
+  skitter_device* device = openDevice();
+  skitter_crowd* crowd = makeCrowdOf(standing, device, NULL);
+  static float heights[65 * 65], read[65 * 65];
+  skitter_terrain terrain = {0};
+  float height = 9, normal[3] = {0};
+  int i;
+
+  OK(skitter_crowd_terrain(crowd, &terrain));
+  CHECK(terrain.columns == 65 && terrain.rows == 65 && terrain.spacing_x == 0.5f);
+  CHECK(terrain.spacing_z == 0.5f);
+  REFUSED(skitter_crowd_terrain(crowd, NULL), "terrain is NULL");
+  OK(skitter_crowd_ground(crowd, 3, 4, &height, normal));
+  CHECK(height == 0 && normal[0] == 0 && normal[1] == 1 && normal[2] == 0);
+
+  for (i = 0; i < 65 * 65; ++i) heights[i] = 0.125f * (float)(i % 65);
+  OK(skitter_crowd_edit_heights(crowd, 0, 0, 65, 65, heights));
+  REFUSED(skitter_crowd_heights(crowd, read, COUNT(read) - 1), "heights has room for 4224, expected 4225");
+  REFUSED(skitter_crowd_heights(crowd, NULL, COUNT(read)), "heights is NULL");
+  OK(skitter_crowd_heights(crowd, read, COUNT(read)));
+  CHECK(memcmp(heights, read, sizeof read) == 0);
+  /* Heights up to 8 m are float32s a few roundings of 5e-7 m off. */
+  OK(skitter_crowd_ground(crowd, 3.3f, 4, &height, normal));
+  CHECK(fabs(height - 0.25 * (3.3 + 16)) < 1e-5);
+  CHECK(fabs(normal[0] + 0.25 / sqrt(1.0625)) < 1e-5 && fabs(normal[1] - 1 / sqrt(1.0625)) < 1e-5);
+  OK(skitter_crowd_ground(crowd, 1000, 1000, &height, NULL));
+  CHECK(height == 8);
+  OK(skitter_crowd_ground(crowd, 0, 0, NULL, normal));
+  REFUSED(skitter_crowd_ground(crowd, NAN, 0, &height, NULL), "the place is (nan");
+  CHECK(height == 8);
+  OK(skitter_crowd_destroy(crowd));
+  OK(skitter_device_destroy(device));
+}
+
+/* A buffer of the host's that the device writes and the host reads. */
+typedef struct host_buffer {
+  VkBuffer buffer;
+  VkDeviceMemory memory;
+  void* bytes;
+} host_buffer;
+
+static host_buffer makeBuffer(const host* h, VkDeviceSize size) {
+  const VkMemoryPropertyFlags wanted =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+  VkMemoryAllocateInfo allocation = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  VkMemoryRequirements needs;
+  VkPhysicalDeviceMemoryProperties memory;
+  host_buffer made;
+  uint32_t type = 0;
+  info.size = size;
+  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  VK(vkCreateBuffer(h->device, &info, NULL, &made.buffer));
+  vkGetBufferMemoryRequirements(h->device, made.buffer, &needs);
+  vkGetPhysicalDeviceMemoryProperties(h->physical, &memory);
+  while (type + 1 < memory.memoryTypeCount &&
+         (!(needs.memoryTypeBits >> type & 1) || (memory.memoryTypes[type].propertyFlags & wanted) != wanted))
+    ++type;
+  allocation.allocationSize = needs.size;
+  allocation.memoryTypeIndex = type;
+  VK(vkAllocateMemory(h->device, &allocation, NULL, &made.memory));
+  VK(vkBindBufferMemory(h->device, made.buffer, made.memory, 0));
+  VK(vkMapMemory(h->device, made.memory, 0, VK_WHOLE_SIZE, 0, &made.bytes));
+  return made;
+}
+
+static void freeBuffer(const host* h, const host_buffer* buffer) {
+  vkDestroyBuffer(h->device, buffer->buffer, NULL);
+  vkFreeMemory(h->device, buffer->memory, NULL);
+}
+
+/* After the recorded compute and transfer work, the host sees what it wrote. */
+static void submitForHost(const host* h) {
+  VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+  barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+  barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+  vkCmdPipelineBarrier(h->commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+                       VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0, NULL, 0, NULL);
+  submit(h);
+}
+
+/* A range of a buffer of the engine's, in a buffer of the host's. */
+static host_buffer copyOf(const host* h, VkBuffer from, VkDeviceSize offset, VkDeviceSize size) {
+  host_buffer copy = makeBuffer(h, size);
+  VkBufferCopy region = {0};
+  region.srcOffset = offset;
+  region.size = size;
+  begin(h);
+  vkCmdCopyBuffer(h->commands, from, copy.buffer, 1, &region);
+  submitForHost(h);
+  return copy;
+}
+
+/* The host's copies of a herd's buffers are what is downloaded: `floats` a record, `legs` records an agent.
+ */
+static void compareBuffers(const host* h, const skitter_crowd* crowd, skitter_record record, uint32_t floats,
+                           uint32_t legs, const float* downloaded) {
+  skitter_record_buffer buffers[8];
+  uint32_t found = 0, at = 0, agent, leg;
+  size_t count = 0, i;
+  OK(skitter_crowd_buffers(crowd, 0, record, NULL, 0, &count));
+  CHECK(count > 0 && count <= COUNT(buffers));
+  OK(skitter_crowd_buffers(crowd, 0, record, buffers, COUNT(buffers), &count));
+  for (i = 0; i < count; ++i) {
+    const host_buffer copy = copyOf(h, buffers[i].buffer, buffers[i].offset, buffers[i].bytes);
+    CHECK(4 * buffers[i].stride == floats && buffers[i].first_agent == found);
+    for (agent = found; agent < found + buffers[i].agents; ++agent)
+      for (leg = 0; leg < legs; ++leg) {
+        OK(skitter_record_at(&buffers[i], agent, leg, &at));
+        CHECK(memcmp((const char*)copy.bytes + (16 * (size_t)at - buffers[i].offset),
+                     downloaded + (agent * legs + leg) * floats, floats * sizeof(float)) == 0);
+      }
+    REFUSED(skitter_record_at(&buffers[i], found + buffers[i].agents, 0, &at), "expected one of the page's");
+    REFUSED(skitter_record_at(&buffers[i], found, legs, &at), "expected less than");
+    REFUSED(skitter_record_at(&buffers[i], found, 0, NULL), "at is NULL");
+    found += buffers[i].agents;
+    freeBuffer(h, &copy);
+  }
+  CHECK(found == 20);
+}
+
+/* Bodies, poses and steps of 20 agents mean what the crowd says of them. */
+static void testDecoding(const skitter_crowd* crowd, const float* bodies, const float* steps) {
+  static float poses[20 * 33 * 8];
+  static double joints[20 * 8 * 5 * 3];
+  const double origin[3] = {5, -1, 7}, far[3] = {INFINITY, 0, 0};
+  double places[20 * 3];
+  float headings[20];
+  skitter_body body, moved;
+  skitter_bone bone;
+  skitter_step step;
+  size_t count = 0;
+  int agent, leg, k;
+
+  OK(skitter_crowd_positions(crowd, 0, places, 20));
+  OK(skitter_crowd_headings(crowd, 0, headings, 20));
+  OK(skitter_crowd_joints(crowd, 0, joints, 20 * 8 * 5));
+  OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_POSE, poses, COUNT(poses), &count));
+  CHECK(count == COUNT(poses));
+  for (agent = 0; agent < 20; ++agent) {
+    OK(skitter_decode_body(bodies + 16 * agent, NULL, &body));
+    OK(skitter_decode_body(bodies + 16 * agent, origin, &moved));
+    CHECK(memcmp(body.position, places + 3 * agent, sizeof body.position) == 0);
+    for (k = 0; k < 3; ++k) CHECK(fabs(body.position[k] - moved.position[k] - origin[k]) < 1e-9);
+    CHECK(fabs(atan2(body.heading[0], body.heading[1]) - headings[agent]) < 1e-6);
+    CHECK(body.present == 1 && hypot(body.velocity[0], body.velocity[2]) < 2);
+    for (leg = 0; leg < 8; ++leg) {
+      const double* root = joints + 3 * (8 * 5 * agent + 5 * leg);
+      OK(skitter_decode_bone(poses + 33 * 8 * agent, 33 * 8, (uint32_t)(1 + 4 * leg), &bone));
+      for (k = 0; k < 3; ++k) CHECK(fabs(body.position[k] + bone.position[k] - root[k]) < 1e-9);
+      /* A foot lands within a leg, 1 m, and a stride of its body. */
+      OK(skitter_decode_step(steps + 8 * (8 * agent + leg), bodies + 16 * agent, NULL, &step));
+      CHECK(apart(step.landing, body.position) < 2.5 && fabs(step.landing[1] - body.position[1]) < 2.5);
+    }
+  }
+  REFUSED(skitter_decode_body(bodies, far, &body), "origin is (inf, 0, 0)");
+  REFUSED(skitter_decode_bone(poses, 33 * 8, 33, &bone),
+          "pose has 264 floats, expected at least 272 for entry 33");
+}
+
+static void testDecodingByHand(void) {
+  static const float record[4] = {1, 2, 3, 0.5f};
+  float pose[24], rows[12], event[8] = {4, 5, 6, 0.25f, 13, 7, 99, 0};
+  skitter_body body = {{10, 20, 30}, {0}, {0}, {0}, 0, 1};
+  skitter_foot foot;
+  skitter_tip tip;
+  skitter_footfall_buffer buffer = {0};
+  skitter_footfall footfall = {0};
+  int i, ours = 9;
+  OK(skitter_decode_foot(record, &body, &foot));
+  CHECK(foot.place[0] == 11 && foot.place[1] == 22 && foot.place[2] == 33 && foot.progress == 0.5f);
+  OK(skitter_decode_tip(record, &body, &tip));
+  CHECK(tip.place[0] == 11 && tip.place[1] == 22 && tip.place[2] == 33 && tip.error == 0.5f);
+  for (i = 0; i < 24; ++i) pose[i] = (float)i;
+  OK(skitter_decode_joint(pose, 24, 1, rows));
+  CHECK(memcmp(rows, pose + 12, sizeof rows) == 0);
+  REFUSED(skitter_decode_joint(pose, 23, 1, rows), "pose has 23 floats, expected at least 24 for joint 1");
+
+  buffer.first_agent = 10;
+  buffer.agents = 4;
+  buffer.first_of_herd = 100;
+  OK(skitter_decode_footfall(event, &buffer, &footfall, &ours));
+  CHECK(ours && footfall.agent == 103 && footfall.leg == 7 && footfall.tick == 99);
+  CHECK(footfall.place[0] == 4 && footfall.place[2] == 6 && footfall.speed == 0.25f);
+  for (i = 0; i < 2; ++i) {
+    event[4] = i ? 14.0f : 9.0f; /* the herds after and before */
+    OK(skitter_decode_footfall(event, &buffer, &footfall, &ours));
+    CHECK(!ours && footfall.agent == 103);
+  }
+}
+
+static int contains(const skitter_footfall* list, size_t count, const skitter_footfall* one) {
+  size_t i;
+  for (i = 0; i < count; ++i)
+    if (list[i].tick == one->tick && list[i].agent == one->agent && list[i].leg == one->leg &&
+        list[i].speed == one->speed && memcmp(list[i].place, one->place, sizeof one->place) == 0)
+      return 1;
+  return 0;
+}
+
+/* The events on the device are the touchdowns of the last tick. */
+static void testFootfallBuffers(const host* h, skitter_crowd* crowd) {
+  skitter_footfall footfalls[20 * 8], footfall;
+  skitter_footfall_buffer buffers[8];
+  size_t count = 0, pages = 0, found = 0, i;
+  int ticks, ours = 0;
+  for (ticks = 0; ticks < 60 && count == 0; ++ticks) {
+    OK(skitter_crowd_step(crowd, 1, dt));
+    OK(skitter_crowd_footfalls(crowd, 0, footfalls, COUNT(footfalls), &count));
+  }
+  CHECK(count > 0);
+  OK(skitter_crowd_footfall_buffers(crowd, 0, buffers, COUNT(buffers), &pages));
+  CHECK(pages > 0 && pages <= COUNT(buffers));
+  for (i = 0; i < pages; ++i) {
+    const host_buffer number = copyOf(h, buffers[i].counters, buffers[i].count_offset, 4);
+    const host_buffer events = copyOf(h, buffers[i].events, 0, 32 * (VkDeviceSize)buffers[i].room);
+    const uint32_t all = *(const uint32_t*)number.bytes;
+    uint32_t event;
+    CHECK(all <= buffers[i].room);
+    for (event = 0; event < all && event < buffers[i].room; ++event) {
+      OK(skitter_decode_footfall((const float*)events.bytes + 8 * event, &buffers[i], &footfall, &ours));
+      CHECK(!ours || contains(footfalls, count, &footfall));
+      found += ours != 0;
+    }
+    freeBuffer(h, &number);
+    freeBuffer(h, &events);
+  }
+  CHECK(found == count);
+}
+
+static void testRecords(void) {
+  host h = makeHost();
+  skitter_device* device = adopt(&h);
+  skitter_crowd_options options = {0};
+  skitter_crowd* crowd;
+  static float bodies[20 * 16], steps[20 * 8 * 8];
+  skitter_goal_buffer goals[8];
+  uint32_t agents = 0;
+  size_t count = 0, i;
+
+  options.footfalls = 1000;
+  crowd = makeCrowd(device, &options);
+  OK(skitter_crowd_step(crowd, 30, dt));
+  OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_BODY, NULL, 0, &count));
+  CHECK(count == COUNT(bodies));
+  REFUSED(skitter_crowd_records(crowd, 0, SKITTER_RECORD_BODY, bodies, COUNT(bodies) - 1, &count),
+          "numbers has room for 319, expected 320");
+  REFUSED(skitter_crowd_records(crowd, 0, SKITTER_RECORD_BODY, NULL, 1, &count), "numbers is NULL");
+  REFUSED(skitter_crowd_records(crowd, 2, SKITTER_RECORD_BODY, NULL, 0, &count), "herd 2");
+  REFUSED(skitter_crowd_records(crowd, 0, (skitter_record)18, NULL, 0, &count),
+          "record is 18, expected a skitter_record");
+  OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_BODY, bodies, COUNT(bodies), &count));
+  OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_STEP, steps, COUNT(steps), &count));
+  CHECK(count == COUNT(steps));
+  compareBuffers(&h, crowd, SKITTER_RECORD_BODY, 16, 1, bodies);
+  compareBuffers(&h, crowd, SKITTER_RECORD_STEP, 8, 8, steps);
+  testDecoding(crowd, bodies, steps);
+  testDecodingByHand();
+
+  REFUSED(skitter_crowd_buffers(crowd, 2, SKITTER_RECORD_BODY, NULL, 0, &count), "herd 2");
+  REFUSED(skitter_crowd_buffers(crowd, 0, SKITTER_RECORD_BODY, NULL, 1, &count), "buffers is NULL");
+  REFUSED(skitter_crowd_buffers(crowd, 0, SKITTER_RECORD_BODY, NULL, 0, NULL), "count is NULL");
+  REFUSED(skitter_crowd_buffers(crowd, 0, (skitter_record)31, NULL, 0, &count), "expected a skitter_record");
+  OK(skitter_crowd_buffers(crowd, 0, SKITTER_RECORD_WATCH, NULL, 0, &count));
+  CHECK(count == 0);
+  OK(skitter_crowd_goal_buffers(crowd, 0, goals, COUNT(goals), &count));
+  CHECK(count > 0 && count <= COUNT(goals));
+  for (i = 0; i < count; ++i) {
+    CHECK(goals[i].goals != VK_NULL_HANDLE && goals[i].first_agent == agents);
+    agents += goals[i].agents;
+  }
+  CHECK(agents == 20);
+  REFUSED(skitter_crowd_goal_buffers(crowd, 2, NULL, 0, &count), "herd 2");
+
+  testFootfallBuffers(&h, crowd);
+  REFUSED(skitter_crowd_footfall_buffers(crowd, 2, NULL, 0, &count), "herd 2");
+  OK(skitter_crowd_destroy(crowd));
+  crowd = makeCrowd(device, NULL);
+  {
+    skitter_footfall_buffer none = {0};
+    none.room = 9;
+    OK(skitter_crowd_footfall_buffers(crowd, 0, &none, 1, &count));
+    CHECK(count > 0 && none.room == 0);
+  }
+  OK(skitter_crowd_destroy(crowd));
+  OK(skitter_device_destroy(device));
+  closeHost(&h);
+}
+
+/* What was taken of a tick, while the crowd is still after it. */
+static void testTaken(const skitter_crowd* crowd, const skitter_readback* readback) {
+  static double joints[20 * 8 * 5 * 3];
+  const double origin[3] = {5, -1, 7}, down[3] = {0, -1, 0};
+  double places[20 * 3], taken[20 * 3], least[3] = {0}, most[3] = {0}, above[3];
+  const float* records = NULL;
+  skitter_picked picked = {9, 9, 9, {9, 9, 9}}, same = {9, 9, 9, {9, 9, 9}};
+  skitter_body body;
+  uint32_t agents = 0;
+  int found = 0, foundByCrowd = 0, i, k;
+
+  OK(skitter_readback_places(readback, 0, &agents));
+  CHECK(agents == 20);
+  OK(skitter_readback_places(readback, 7, &agents));
+  CHECK(agents == 0);
+  OK(skitter_crowd_positions(crowd, 0, places, 20));
+  REFUSED(skitter_readback_positions(readback, 0, NULL, taken, 19), "xyz has room for 19, expected 20");
+  OK(skitter_readback_positions(readback, 0, NULL, taken, 20));
+  CHECK(memcmp(places, taken, sizeof taken) == 0);
+  OK(skitter_readback_positions(readback, 0, origin, taken, 20));
+  for (i = 0; i < 60; ++i) CHECK(fabs(places[i] - taken[i] - origin[i % 3]) < 1e-9);
+  OK(skitter_readback_bodies(readback, 0, &records));
+  OK(skitter_decode_body(records + 16 * 19, NULL, &body));
+  CHECK(memcmp(body.position, places + 3 * 19, sizeof body.position) == 0);
+
+  OK(skitter_readback_bounds(readback, 0, NULL, least, most, &found));
+  CHECK(found);
+  OK(skitter_crowd_joints(crowd, 0, joints, 20 * 8 * 5));
+  for (i = 0; i < 20 * 8 * 5; ++i)
+    for (k = 0; k < 3; ++k) CHECK(joints[3 * i + k] >= least[k] && joints[3 * i + k] <= most[k]);
+  OK(skitter_readback_bounds(readback, 7, NULL, least, most, &found));
+  CHECK(!found);
+
+  memcpy(above, places, sizeof above);
+  above[1] += 10;
+  OK(skitter_readback_pick(readback, above, down, INFINITY, &picked, &found));
+  OK(skitter_crowd_pick(crowd, above, down, INFINITY, &same, &foundByCrowd));
+  CHECK(found && foundByCrowd && picked.herd == same.herd && picked.agent == same.agent);
+  CHECK(picked.distance == same.distance && picked.place[1] == same.place[1]);
+  OK(skitter_readback_pick(readback, above, down, 1, &picked, &found));
+  CHECK(!found);
+  OK(skitter_readback_nearest(readback, above, &picked, &found));
+  OK(skitter_crowd_nearest(crowd, above, &same, &foundByCrowd));
+  CHECK(found && foundByCrowd && picked.herd == same.herd && picked.agent == same.agent);
+  CHECK(picked.distance == same.distance && picked.distance < 10);
+  REFUSED(skitter_readback_pick(readback, above, down, -1, &picked, &found), "length is -1");
+  above[0] = NAN;
+  REFUSED(skitter_readback_nearest(readback, above, &picked, &found), "point is (nan");
+}
+
+/* Copies in the host's own command buffer. */
+static void testOwnReadback(const host* h, skitter_crowd* crowd) {
+  skitter_readback_options options = {0};
+  skitter_readback* readback = NULL;
+  const uint32_t herds[2] = {1, 9};
+  uint64_t tick = 0, before = 0, skipped = 0;
+  uint32_t agents = 9;
+  int found = 1, i;
+  options.slots = 1;
+  REFUSED(skitter_readback_create(crowd, &options, &readback), "1 slots, expected at least 2");
+  options.slots = 2;
+  options.herd_count = 2;
+  REFUSED(skitter_readback_create(crowd, &options, &readback), "options->herds is NULL");
+  options.herds = herds;
+  REFUSED(skitter_readback_create(crowd, &options, &readback), "herd 9");
+  REFUSED(skitter_readback_create(crowd, &options, NULL), "readback is NULL");
+  options.herd_count = 1;
+  NEED(skitter_readback_create(crowd, &options, &readback));
+  OK(skitter_crowd_tick(crowd, &before));
+  begin(h);
+  REFUSED(skitter_readback_record(readback, NULL), "commands is NULL");
+  for (i = 0; i < 3; ++i) {
+    OK(skitter_crowd_record(crowd, h->commands, dt));
+    OK(skitter_readback_record(readback, h->commands));
+  }
+  OK(skitter_readback_take(readback, &tick, &found));
+  OK(skitter_readback_skipped(readback, &skipped));
+  CHECK(!found && tick == 0 && skipped == 1);
+  submit(h);
+  OK(skitter_readback_take(readback, &tick, &found));
+  CHECK(found && tick == before + 2);
+  OK(skitter_readback_places(readback, 0, &agents));
+  CHECK(agents == 0);
+  OK(skitter_readback_places(readback, 1, &agents));
+  CHECK(agents == 3);
+  OK(skitter_readback_destroy(readback));
+}
+
+static void testReadback(void) {
+  host h = makeHost();
+  skitter_device* device = adopt(&h);
+  skitter_crowd* crowd = makeCrowd(device, NULL);
+  skitter_readback* readback = NULL;
+  double places[20 * 3];
+  uint64_t tick = 99, hash = 0;
+  int found = 1;
+
+  NEED(skitter_readback_create(crowd, NULL, &readback));
+  OK(skitter_readback_take(readback, &tick, &found));
+  CHECK(!found && tick == 99);
+  REFUSED(skitter_readback_positions(readback, 0, NULL, places, 20), "nothing is taken");
+  OK(skitter_readback_step(readback, 0, dt));
+  OK(skitter_readback_step(readback, 10, dt));
+  /* This waits for the ticks. */
+  OK(skitter_crowd_state_hash(crowd, &hash));
+  OK(skitter_readback_take(readback, &tick, &found));
+  CHECK(found && tick == 10);
+  testTaken(crowd, readback);
+  REFUSED(skitter_readback_take(readback, NULL, &found), "tick is NULL");
+
+  /* It is gone with the next copy. */
+  OK(skitter_readback_step(readback, 1, dt));
+  REFUSED(skitter_readback_positions(readback, 0, NULL, places, 20), "nothing is taken");
+  REFUSED(skitter_readback_step(readback, 1, -1), "dt");
+  testOwnReadback(&h, crowd);
+
+  /* It keeps the crowd. */
+  OK(skitter_crowd_destroy(crowd));
+  OK(skitter_readback_step(readback, 1, dt));
+  OK(skitter_readback_destroy(readback));
+  OK(skitter_device_destroy(device));
+  closeHost(&h);
+}
+
+static void testSkinMesh(const skitter_crowd* crowd, uint32_t entries) {
+  skitter_skin_mesh *mesh = NULL, *small = NULL;
+  skitter_skin_vertex* vertices;
+  uint32_t* indices;
+  skitter_skin_level levels[16];
+  skitter_space space = {SKITTER_AXES_LEFT_Y_UP, 0.01f};
+  size_t vertexCount = 0, indexCount = 0, levelCount = 0, written = 0, i;
+  float radius = 0, radiusOfSmall = 0;
+  uint32_t sum = 0;
+  int k;
+
+  REFUSED(skitter_skin_mesh_create(crowd, 1, NULL, &mesh), "herd 1");
+  REFUSED(skitter_skin_mesh_create(crowd, 0, NULL, NULL), "mesh is NULL");
+  NEED(skitter_skin_mesh_create(crowd, 0, NULL, &mesh));
+  OK(skitter_skin_mesh_vertices(mesh, NULL, 0, &vertexCount));
+  OK(skitter_skin_mesh_indices(mesh, NULL, 0, &indexCount));
+  OK(skitter_skin_mesh_levels(mesh, levels, COUNT(levels), &levelCount));
+  REFUSED(skitter_skin_mesh_vertices(mesh, NULL, 1, &vertexCount), "vertices is NULL");
+  REFUSED(skitter_skin_mesh_indices(mesh, NULL, 1, &indexCount), "indices is NULL");
+  CHECK(vertexCount > 100 && indexCount > 300 && levelCount > 0 && levelCount <= COUNT(levels));
+  vertices = malloc(vertexCount * sizeof *vertices);
+  indices = malloc(indexCount * sizeof *indices);
+  if (vertices == NULL || indices == NULL) exit(1);
+  OK(skitter_skin_mesh_vertices(mesh, vertices, vertexCount, &written));
+  OK(skitter_skin_mesh_indices(mesh, indices, indexCount, &written));
+  OK(skitter_skin_mesh_radius(mesh, &radius));
+  for (i = 0; i < vertexCount; ++i) {
+    const skitter_skin_vertex* v = &vertices[i];
+    /* Four float32s that were rounded to sum to 1. */
+    CHECK(fabs(v->weights[0] + v->weights[1] + v->weights[2] + v->weights[3] - 1) < 1e-5);
+    for (k = 0; k < 4; ++k) CHECK(v->bones[k] < entries);
+    CHECK(fabs(v->position[0]) < radius && fabs(v->position[1]) < radius && fabs(v->position[2]) < radius);
+  }
+  for (i = 0; i < indexCount; ++i) CHECK(indices[i] < vertexCount);
+  for (i = 0; i < levelCount; ++i) {
+    CHECK(levels[i].first_index == sum && levels[i].index_count % 3 == 0);
+    sum += levels[i].index_count;
+  }
+  CHECK(sum == indexCount && levels[levelCount - 1].pixels == 0);
+
+  /* In centimetres, and with the left on the other side. */
+  NEED(skitter_skin_mesh_create(crowd, 0, &space, &small));
+  OK(skitter_skin_mesh_radius(small, &radiusOfSmall));
+  CHECK(fabs(radiusOfSmall - 100 * radius) < 1e-4 * radiusOfSmall);
+  {
+    skitter_skin_vertex first;
+    OK(skitter_skin_mesh_vertices(small, &first, 1, &written));
+    CHECK(written == vertexCount);
+    CHECK(fabs(first.position[0] + 100 * vertices[0].position[0]) < 1e-4 * radiusOfSmall);
+    CHECK(fabs(first.position[1] - 100 * vertices[0].position[1]) < 1e-4 * radiusOfSmall);
+  }
+  space.metres_per_unit = -1;
+  REFUSED(skitter_skin_mesh_create(crowd, 0, &space, &mesh), "space.metres_per_unit is -1");
+  free(vertices);
+  free(indices);
+  OK(skitter_skin_mesh_destroy(mesh));
+  OK(skitter_skin_mesh_destroy(small));
+}
+
+/* The rotation of a quaternion x, y, z, w: a row of its matrix. */
+static void rowOf(const float* q, int row, double* to) {
+  const double x = q[0], y = q[1], z = q[2], w = q[3];
+  const double rows[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                             {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                             {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+  memcpy(to, rows[row], sizeof rows[row]);
+}
+
+static void testRefusedPalettes(skitter_crowd* crowd, const skitter_palette_target* target) {
+  skitter_palette_target wrong = *target;
+  skitter_palette_options options = {{SKITTER_AXES_RIGHT_Y_UP, 0}, 0};
+  skitter_palettes* palettes = NULL;
+  REFUSED(skitter_palettes_create(crowd, 1, target, 1, NULL, &palettes), "herd 1");
+  REFUSED(skitter_palettes_create(crowd, 0, NULL, 1, NULL, &palettes), "targets is NULL");
+  REFUSED(skitter_palettes_create(crowd, 0, target, 1, NULL, NULL), "palettes is NULL");
+  wrong.instances.bytes = 6 * 48 - 1;
+  REFUSED(skitter_palettes_create(crowd, 0, &wrong, 1, NULL, &palettes), "287 bytes for 6 transforms");
+  wrong = *target;
+  wrong.palettes.format = (skitter_transform_format)2;
+  REFUSED(skitter_palettes_create(crowd, 0, &wrong, 1, NULL, &palettes), "palettes.format is 2");
+  options.space.axes = (skitter_axes)4;
+  REFUSED(skitter_palettes_create(crowd, 0, target, 1, &options, &palettes), "space.axes is 4");
+  options.space.axes = SKITTER_AXES_RIGHT_Y_UP;
+  options.space.metres_per_unit = INFINITY;
+  REFUSED(skitter_palettes_create(crowd, 0, target, 1, &options, &palettes), "space.metres_per_unit is inf");
+  CHECK(palettes == NULL);
+}
+
+/* Six places, four of them taken: instances and palettes as matrices, and instances as quaternions. */
+static void testDrawing(void) {
+  enum { places = 6, bones = 33 };
+  host h = makeHost();
+  skitter_device* device = adopt(&h);
+  skitter_crowd* crowd = makeCrowdOf(standing, device, NULL);
+  skitter_palettes* palettes = NULL;
+  skitter_palette_target targets[2];
+  const double origin[3] = {1, -2, 3};
+  const host_buffer mine = makeBuffer(&h, places * (48 + 48 * bones + 32));
+  const float* matrices = mine.bytes;
+  const float* skins = matrices + 12 * places;
+  const float* quaternions = skins + 12 * bones * places;
+  static float bodies[16 * places], poses[8 * bones * places];
+  uint32_t entries = 0;
+  size_t count = 0;
+  skitter_body body;
+  skitter_bone bone;
+  double row[3];
+  int i, k, r;
+
+  OK(skitter_crowd_palette_entries(crowd, 0, &entries));
+  CHECK(entries == bones);
+  REFUSED(skitter_crowd_palette_entries(crowd, 1, &entries), "herd 1");
+  memset(targets, 0, sizeof targets);
+  targets[0].instances.buffer = targets[0].palettes.buffer = targets[1].instances.buffer = mine.buffer;
+  targets[0].instances.bytes = 48 * places;
+  targets[0].palettes.offset = 48 * places;
+  targets[0].palettes.bytes = 48 * bones * places;
+  targets[1].instances.offset = places * (48 + 48 * bones);
+  targets[1].instances.bytes = 32 * places;
+  targets[1].instances.format = SKITTER_TRANSFORM_QUATERNION;
+  testRefusedPalettes(crowd, targets);
+  NEED(skitter_palettes_create(crowd, 0, targets, 2, NULL, &palettes));
+
+  memset(mine.bytes, 0x7f, places * (48 + 48 * bones + 32));
+  begin(&h);
+  OK(skitter_crowd_record(crowd, h.commands, dt));
+  OK(skitter_palettes_record(palettes, h.commands, origin, 0));
+  OK(skitter_palettes_record(palettes, h.commands, NULL, 1));
+  REFUSED(skitter_palettes_record(palettes, h.commands, NULL, 2), "target is 2, the palettes have 2");
+  REFUSED(skitter_palettes_record(palettes, NULL, NULL, 0), "commands is NULL");
+  submitForHost(&h);
+  OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_BODY, bodies, COUNT(bodies), &count));
+  OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_POSE, poses, COUNT(poses), &count));
+  /* Places are float32s within 32 m of the origin, 2e-6 m, and rotations are products of a few of them. */
+  for (i = 0; i < places; ++i) {
+    const float *matrix = matrices + 12 * i, *quaternion = quaternions + 8 * i;
+    OK(skitter_decode_body(bodies + 16 * i, NULL, &body));
+    CHECK(body.present == (i < 4));
+    if (!body.present) {
+      for (k = 0; k < 12; ++k) CHECK(matrix[k] == 0);
+      for (k = 0; k < 8; ++k) CHECK(quaternion[k] == 0);
+      continue;
+    }
+    for (r = 0; r < 3; ++r) {
+      CHECK(fabs(matrix[4 * r + 3] - (body.position[r] - origin[r])) < 1e-5);
+      CHECK(fabs(quaternion[4 + r] - body.position[r]) < 1e-5);
+      rowOf(body.rotation, r, row);
+      for (k = 0; k < 3; ++k) CHECK(fabs(matrix[4 * r + k] - row[k]) < 1e-5);
+    }
+    CHECK(quaternion[7] == 1);
+    for (k = 0; k < bones; ++k) {
+      OK(skitter_decode_bone(poses + 8 * bones * i, 8 * bones, (uint32_t)k, &bone));
+      for (r = 0; r < 3; ++r) {
+        const float* skin = skins + 12 * (bones * i + k) + 4 * r;
+        rowOf(bone.rotation, r, row);
+        CHECK(fabs(skin[0] - row[0]) < 1e-5 && fabs(skin[1] - row[1]) < 1e-5);
+        CHECK(fabs(skin[2] - row[2]) < 1e-5);
+      }
+    }
+  }
+  testSkinMesh(crowd, entries);
+  /* They keep the crowd. */
+  OK(skitter_crowd_destroy(crowd));
+  OK(skitter_palettes_destroy(palettes));
+  freeBuffer(&h, &mine);
+  OK(skitter_device_destroy(device));
+  closeHost(&h);
+}
+
+enum { pictureWidth = 64, pictureHeight = 48, pictureBytes = 4 * pictureWidth * pictureHeight };
+
+/* Paints all of the picture red. */
+static void paintRed(VkCommandBuffer commands, void* user) {
+  VkClearAttachment red = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT};
+  VkClearRect all = {.layerCount = 1};
+  red.clearValue.color.float32[0] = red.clearValue.color.float32[3] = 1;
+  all.rect.extent.width = pictureWidth;
+  all.rect.extent.height = pictureHeight;
+  vkCmdClearAttachments(commands, 1, &red, 1, &all);
+  ++*(int*)user;
+}
+
+static void testRefusedViews(skitter_renderer* renderer, const skitter_view* view) {
+  skitter_view wrong = *view;
+  REFUSED(skitter_renderer_draw(renderer, NULL), "view is NULL");
+  wrong.eye[1] = NAN;
+  REFUSED(skitter_renderer_draw(renderer, &wrong), "view->eye is");
+  memcpy(wrong.eye, wrong.target, sizeof wrong.eye);
+  REFUSED(skitter_renderer_draw(renderer, &wrong), "view->target is where view->eye is");
+  wrong = *view;
+  wrong.field_of_view = 4;
+  REFUSED(skitter_renderer_draw(renderer, &wrong), "view->field_of_view is 4");
+}
+
+static void testPng(const uint8_t* pixels) {
+  unsigned char head[8] = {0};
+  FILE* file;
+  OK(skitter_write_png("c_test_picture.png", pictureWidth, pictureHeight, pixels));
+  file = fopen("c_test_picture.png", "rb");
+  CHECK(file != NULL && fread(head, 1, 8, file) == 8 && memcmp(head, "\x89PNG\r\n\x1a\n", 8) == 0);
+  if (file != NULL) fclose(file);
+  remove("c_test_picture.png");
+  REFUSED(skitter_write_png("/no/such/folder/a.png", pictureWidth, pictureHeight, pixels),
+          "/no/such/folder/a.png");
+  REFUSED(skitter_write_png("a.png", 0, 5, pixels), "a.png: a picture of 0 x 5 pixels");
+  REFUSED(skitter_write_png(NULL, 1, 1, pixels), "file is NULL");
+  REFUSED(skitter_write_png("a.png", 1, 1, NULL), "rgba is NULL");
+}
+
+static void testPictures(void) {
+  host h = makeHost();
+  skitter_device* device = adopt(&h);
+  skitter_crowd* crowd = makeCrowdOf(standing, device, NULL);
+  skitter_crowd_options bare = {0};
+  skitter_scene* scene = NULL;
+  skitter_renderer* renderer = NULL;
+  skitter_view view = {{0}, {0}, 0}, up;
+  VkImage image = VK_NULL_HANDLE;
+  static uint8_t pixels[pictureBytes], again[pictureBytes];
+  int painted = 0, i;
+
+  NEED(skitter_scene_parse(standing, NULL, &scene));
+  REFUSED(skitter_scene_view(scene, crowd, 0, NULL), "view is NULL");
+  OK(skitter_scene_view(scene, crowd, 0, &view));
+  CHECK(fabs(view.field_of_view - 0.8) < 1e-6 && view.eye[1] > view.target[1]);
+  OK(skitter_scene_destroy(scene));
+
+  REFUSED(skitter_renderer_create(crowd, 0, 5, &renderer), "a picture of 0 x 5 pixels");
+  REFUSED(skitter_renderer_create(crowd, 5, 5, NULL), "renderer is NULL");
+  CHECK(skitter_renderer_create(crowd, 1u << 30, 5, &renderer) == SKITTER_ERROR_DEVICE);
+  bare.no_poses = 1;
+  {
+    skitter_crowd* plain = makeCrowdOf(standing, device, &bare);
+    REFUSED(skitter_renderer_create(plain, 5, 5, &renderer), "pose");
+    OK(skitter_crowd_destroy(plain));
+  }
+  CHECK(renderer == NULL);
+  NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, &renderer));
+  /* It keeps the crowd. */
+  OK(skitter_crowd_destroy(crowd));
+  REFUSED(skitter_renderer_pixels(renderer, pixels, pictureBytes), "no picture");
+  testRefusedViews(renderer, &view);
+  OK(skitter_renderer_draw(renderer, &view));
+  REFUSED(skitter_renderer_pixels(renderer, pixels, pictureBytes - 1), "rgba has room for");
+  REFUSED(skitter_renderer_pixels(renderer, NULL, pictureBytes), "rgba is NULL");
+  OK(skitter_renderer_pixels(renderer, pixels, pictureBytes));
+  /* The same again, and something else from elsewhere. */
+  OK(skitter_renderer_draw(renderer, &view));
+  OK(skitter_renderer_pixels(renderer, again, pictureBytes));
+  CHECK(memcmp(pixels, again, sizeof pixels) == 0);
+  up = view;
+  up.target[1] = up.eye[1] + 10;
+  OK(skitter_renderer_draw(renderer, &up));
+  OK(skitter_renderer_pixels(renderer, again, pictureBytes));
+  CHECK(memcmp(pixels, again, sizeof pixels) != 0);
+
+  /* Into a command buffer of ours, and over it. */
+  begin(&h);
+  REFUSED(skitter_renderer_record(renderer, NULL, &view, NULL, NULL), "commands is NULL");
+  REFUSED(skitter_renderer_record(renderer, h.commands, NULL, NULL, NULL), "view is NULL");
+  OK(skitter_renderer_record(renderer, h.commands, &view, NULL, NULL));
+  submit(&h);
+  OK(skitter_renderer_pixels(renderer, again, pictureBytes));
+  CHECK(memcmp(pixels, again, sizeof pixels) == 0);
+  begin(&h);
+  OK(skitter_renderer_record(renderer, h.commands, &view, paintRed, &painted));
+  submit(&h);
+  OK(skitter_renderer_pixels(renderer, again, pictureBytes));
+  CHECK(painted == 1);
+  for (i = 0; i < pictureBytes; i += 4) CHECK(again[i] == 255 && again[i + 1] == 0 && again[i + 2] == 0);
+  OK(skitter_renderer_image(renderer, &image));
+  CHECK(image != VK_NULL_HANDLE);
+  testPng(pixels);
+  OK(skitter_renderer_destroy(renderer));
+  OK(skitter_device_destroy(device));
+  closeHost(&h);
 }
 
 static void testIk(void) {
@@ -932,9 +1739,7 @@ static void testIk(void) {
   bones[0].length = -1;
   REFUSED(skitter_ik_batch_create(device, bones, 3, 2, NULL, &batch), "length");
   OK(skitter_device_destroy(device));
-  vkDestroyCommandPool(h.device, h.pool, NULL);
-  vkDestroyDevice(h.device, NULL);
-  vkDestroyInstance(h.instance, NULL);
+  closeHost(&h);
 }
 
 static void checkMotion(const skitter_spline_motion* motion, float x, skitter_spline_state state) {
@@ -1026,18 +1831,20 @@ static void testSplines(void) {
   OK(skitter_spline_batch_destroy(batch));
 
   OK(skitter_device_destroy(device));
-  vkDestroyCommandPool(h.device, h.pool, NULL);
-  vkDestroyDevice(h.device, NULL);
-  vkDestroyInstance(h.instance, NULL);
+  closeHost(&h);
 }
 
 int main(int argc, char** argv) {
   static const struct {
     const char* name;
     void (*run)(void);
-  } tests[] = {{"errors", testErrors},  {"scene", testScene},       {"crowd", testCrowd},
-               {"sizes", testSizes},    {"steering", testSteering}, {"herds", testHerds},
-               {"state", testState},    {"adoption", testAdoption}, {"ik", testIk},
+  } tests[] = {{"errors", testErrors},     {"scene", testScene},
+               {"crowd", testCrowd},       {"sizes", testSizes},
+               {"steering", testSteering}, {"herds", testHerds},
+               {"state", testState},       {"adoption", testAdoption},
+               {"ground", testGround},     {"records", testRecords},
+               {"readback", testReadback}, {"drawing", testDrawing},
+               {"pictures", testPictures}, {"ik", testIk},
                {"splines", testSplines}};
   size_t i;
   for (i = 0; argc == 2 && i < COUNT(tests); ++i) {
