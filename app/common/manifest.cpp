@@ -57,7 +57,8 @@ nlohmann::ordered_json Manifest::json() const {
   if (dt) json["dt"] = *dt;
   if (terrain) {
     json["terrain"] = describe(*terrain);
-    json["sceneHash"] = fmt::format("{:016x}", sceneHash(*scene, *terrain));
+    json["sceneHash"] =
+        sceneHashBefore.empty() ? fmt::format("{:016x}", sceneHash(*scene, *terrain)) : sceneHashBefore;
   }
   return json;
 }

@@ -22,6 +22,7 @@ struct Manifest {
   std::optional<double> dt = {};
   std::optional<uint64_t> seed = {};  // of what is no scene
   std::string device = {}, driver = {};
+  std::string sceneHashBefore = {};  // of the run that this one goes on from; empty: of scene and terrain
 
   // One more where there are several.
   void add(const DeviceReport& report);

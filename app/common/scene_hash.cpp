@@ -176,10 +176,28 @@ void add(Hash& hash, const Removal& removal) {
   add(hash, "remove", herd, agents);
 }
 
-void add(Hash& hash, const Event& event) {
+void add(Hash& hash, FileHashes& fileHashes, const HerdAddition& addition) {
+  const auto& [herd] = addition;
+  hash.add("addHerd");
+  add(hash, fileHashes, herd);
+}
+
+void add(Hash& hash, const HerdRemoval& removal) {
+  const auto& [herd] = removal;
+  hash.add("removeHerd");
+  hash.add(uint64_t{herd});
+}
+
+// Of events that name no file.
+template <class What>
+void add(Hash& hash, FileHashes&, const What& what) {
+  add(hash, what);
+}
+
+void add(Hash& hash, FileHashes& fileHashes, const Event& event) {
   const auto& [at, what] = event;
   hash.add(at);
-  std::visit([&](const auto& each) { add(hash, each); }, what);
+  std::visit([&](const auto& each) { add(hash, fileHashes, each); }, what);
 }
 
 }  // namespace
@@ -191,7 +209,7 @@ uint64_t sceneHash(const Scene& scene, const Heightfield& terrain) {
   hash.add(seed);
   hash.add(uint64_t{herds.size()});
   for (const Herd& herd : herds) add(hash, fileHashes, herd);
-  for (const Event& event : events) add(hash, event);
+  for (const Event& event : events) add(hash, fileHashes, event);
   hash.add(uint64_t{terrain.columns});
   hash.add(terrain.spacingX);
   hash.add(terrain.spacingZ);

@@ -28,14 +28,16 @@ constexpr double maxVoidValue = std::numeric_limits<double>::max();
 constexpr double minTick = 1e-3, maxTick = 0.15;
 
 void scaleHerds(Scene& scene, uint64_t agents) {
-  if (scene.herds.empty()) throw inputError(fmt::format("--agents: {} has no herds", scene.name));
-  const uint32_t first = scene.herds.front().agents;
+  const std::vector<Herd*> herds = herdsOf(scene);
+  if (herds.empty()) throw inputError(fmt::format("--agents: {} has no herds", scene.name));
+  const uint32_t first = herds.front()->agents;
   uint64_t sum = 0;
-  for (size_t h = 0; h < scene.herds.size(); ++h) {
-    uint32_t& count = scene.herds[h].agents;
+  for (Herd* herd : herds) {
+    uint32_t& count = herd->agents;
+    const bool isFirst = herd == herds.front();
     double scaled = static_cast<double>(agents);
-    if (h > 0 && first > 0) scaled *= static_cast<double>(count) / first;
-    if (h > 0 && first == 0) scaled = count;
+    if (!isFirst && first > 0) scaled *= static_cast<double>(count) / first;
+    if (!isFirst && first == 0) scaled = count;
     sum += static_cast<uint64_t>(std::llround(std::min(scaled, 1e12)));
     if (sum > maxAgents) {
       throw inputError(fmt::format("--agents {}: {}'s herds would have over {} agents in all", agents,
@@ -163,7 +165,7 @@ std::vector<SceneOptions::Change> SceneOptions::changes() const {
   const auto ofEveryHerd = [&](const char* option, const auto& given, auto Herd::*member) {
     if (!given) return;
     all.push_back({fmt::format("{} {}", option, nameOf(*given)), [&given, member](Scene& result) {
-                     for (Herd& herd : result.herds) herd.*member = *given;
+                     for (Herd* herd : herdsOf(result)) herd->*member = *given;
                    }});
   };
   if (agents)
@@ -267,8 +269,8 @@ void SceneOptions::declare(Files& files, const Scene& loaded) const {
   if (const auto* file = std::get_if<TerrainFile>(&loaded.terrain))
     files.reads(terrain.empty() ? "the scene's terrain" : "--terrain", file->file);
   std::set<std::string> rigs;
-  for (const Herd& herd : loaded.herds)
-    if (herd.rig != "spider") rigs.insert(herd.rig);
+  for (const Herd* herd : herdsOf(loaded))
+    if (herd->rig != "spider") rigs.insert(herd->rig);
   const char* option = rig.empty() ? "the scene's rig" : "--rig";
   for (const std::string& file : rigs) {
     files.reads(option, file);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "app/common/files.h"
@@ -16,6 +17,16 @@ class App;
 }
 
 namespace skitter::app {
+
+// The scene's herds, and those that its events add; none twice.
+template <class SceneOrConst>
+auto herdsOf(SceneOrConst& scene) {
+  std::vector<decltype(scene.herds.data())> all;
+  for (auto& herd : scene.herds) all.push_back(&herd);
+  for (auto& event : scene.events)
+    if (auto* addition = std::get_if<HerdAddition>(&event.what)) all.push_back(&addition->herd);
+  return all;
+}
 
 // What is simulated and where: a scene file, and the flags that change it.
 struct SceneOptions {

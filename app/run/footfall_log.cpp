@@ -9,10 +9,10 @@ constexpr double lineBytes = 60, stepsASecond = 2;  // of a leg that walks at it
 
 }  // namespace
 
-double footfallBytes(const Crowd& crowd, const Scene& scene, double dt, uint64_t ticks) {
+double footfallBytes(const Crowd& crowd, double dt, uint64_t ticks) {
   double legs = 0;
   for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-    legs += double{1} * scene.herds[h].agents * crowd.rig(h).legCount();
+    legs += double{1} * crowd.agentCount(h) * crowd.rig(h).legCount();
   return lineBytes * stepsASecond * legs * dt * static_cast<double>(ticks);
 }
 

@@ -9,7 +9,7 @@
 namespace skitter::app {
 
 // About what the touchdowns of so many ticks take.
-double footfallBytes(const Crowd& crowd, const Scene& scene, double dt, uint64_t ticks);
+double footfallBytes(const Crowd& crowd, double dt, uint64_t ticks);
 
 // Every touchdown of a run as a line of CSV: herd, agent, leg, tick, seconds, x, y, z, speed. The manifest is
 // in front of them.

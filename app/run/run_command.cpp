@@ -12,6 +12,7 @@
 
 #include "app/commands.h"
 #include "app/common/manifest.h"
+#include "app/common/scene_options.h"
 #include "app/common/signals.h"
 #include "app/run/obstacle.h"
 #include "app/run/offscreen.h"
@@ -22,6 +23,7 @@
 #include "app/viewer/viewer.h"
 #include "app/viewer/window.h"
 #include "base/clock.h"
+#include "crowd/herd.h"
 #include "skitter/crowd.h"
 #include "skitter/error.h"
 #include "skitter/state.h"
@@ -49,6 +51,24 @@ void failOnValidation(const Device& device) {
   for (const ValidationMessage& message : messages)
     fmt::print(stderr, "{} x {}\n", message.count, message.text);
   throw Error(Error::Kind::check, fmt::format("the validation layer has {} complaints", messages.size()));
+}
+
+// The number of the first event by which herds come or go.
+std::optional<size_t> firstHerdEvent(const Scene& scene) {
+  for (size_t e = 0; e < scene.events.size(); ++e) {
+    const auto& what = scene.events[e].what;
+    if (std::holds_alternative<HerdAddition>(what) || std::holds_alternative<HerdRemoval>(what)) return e;
+  }
+  return {};
+}
+
+void refuseTraceOfComers(const RunOptions& options, const Scene& scene) {
+  if (options.trace.empty()) return;
+  if (const std::optional<size_t> event = firstHerdEvent(scene))
+    throw inputError(
+        fmt::format("--trace {}: events[{}] of {} adds or removes a herd, expected the same herds from the "
+                    "first tick to the last",
+                    options.trace, *event, scene.name));
 }
 
 // From the options to the files: start, simulate, finish.
@@ -107,7 +127,8 @@ Run::Run(RunOptions options)
     summary_.resumedAt = state_->tick;
   }
   options_.check(target_, windowed_);
-  scene_ = options_.load(state_ ? &state_->scene : nullptr);
+  scene_ = options_.load(state_ ? &note_.sceneOf(*state_) : nullptr);
+  refuseTraceOfComers(options_, scene_);
   files_ = options_.files(target_, scene_);
   files_.check();
   if (!windowed_ || options_.frames) ticks_ = options_.framesWithoutWindow() * options_.ticksPerFrame;
@@ -115,6 +136,9 @@ Run::Run(RunOptions options)
   summary_.wantedTicks = ticks_;
   summary_.agents = scene_.agentCount();
   manifest_ = {.scene = &scene_, .dt = options_.scene.dt};
+  // Events have edited the terrain that the state has.
+  if (state_ && note_.manifest.contains("sceneHash") && note_.manifest.at("sceneHash").is_string())
+    manifest_.sceneHashBefore = note_.manifest.at("sceneHash").get<std::string>();
 }
 
 std::string Run::stopped() const {
@@ -150,7 +174,7 @@ void Run::start() {
   const CrowdOptions crowdOptions = options_.crowdOptions(target_, windowed_);
   if (state_) {
     state_->options = crowdOptions;
-    state_->scene = scene_;
+    state_->scene.camera = scene_.camera;
     crowd_.emplace(*device_, *state_);
     done_ = state_->tick;
     state_->source.reset();  // which keeps the file open
@@ -164,8 +188,8 @@ void Run::start() {
   manifest_.terrain = &terrain_;
   manifest_.add(device_->report());
 
-  outputs_.expect(files_, target_, *crowd_, scene_, terrain_, ticks_);
-  outputs_.open(target_, *crowd_, scene_, manifest_);
+  outputs_.expect(files_, target_, *crowd_, terrain_, ticks_);
+  outputs_.open(target_, *crowd_, manifest_);
   leave_ = [this] {
     outputs_.finish(*crowd_, terrain_, done_, unfinished(), manifest_);
     return stopped();
@@ -198,6 +222,7 @@ void Run::save() {
   note.dt = options_.scene.dt;
   note.ticksPerFrame = options_.ticksPerFrame;
   note.manifest = manifest_.json();
+  if (firstHerdEvent(scene_)) note.scene = scene_;
   if (ticks_) note.frames = *ticks_ / options_.ticksPerFrame;
   if (obstacle_) note.obstacle = obstacle_->json();
   crowd_->save(options_.save, note.text());
@@ -206,10 +231,11 @@ void Run::save() {
 
 void Run::restart(std::optional<Controller> controller) {
   Scene next = scene_;
-  for (Herd& herd : next.herds)
-    if (controller) herd.controller = *controller;
+  for (Herd* herd : herdsOf(next))
+    if (controller) herd->controller = *controller;
   *crowd_ = Crowd(*device_, terrain_, next, options_.crowdOptions(target_, windowed_));
   scene_ = std::move(next);
+  manifest_.sceneHashBefore.clear();
   savedAt_ = -1;
   summary_.resumedAt.reset();
   raiseObstacle();
@@ -254,7 +280,8 @@ void Run::finish() {
     summary_.watchEvery = crowd_->watchEvery();
     summary_.fidelity = crowd_->fidelity();
     for (uint32_t h = 0; h < crowd_->herdCount(); ++h)
-      summary_.herds.push_back({crowd_->rig(h).name, scene_.herds[h].agents, crowd_->fidelity(h)});
+      if (const crowd::Herd& herd = implOf(*crowd_).herds[h]; !herd.isGone())
+        summary_.herds.push_back({h, crowd_->rig(h).name, herd.from.agents, crowd_->fidelity(h)});
     if (options_.sleep) summary_.sleeping = crowd_->sleeping();
     summary_.stateHash = crowd_->stateHash();
     summary_.memory = memoryOf(*crowd_);

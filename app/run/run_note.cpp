@@ -8,10 +8,11 @@
 namespace skitter::app {
 
 std::string RunNote::text() const {
-  const nlohmann::ordered_json json = {
+  nlohmann::ordered_json json = {
       {"manifest", manifest},
       {"run",
        {{"dt", dt}, {"ticksPerFrame", ticksPerFrame}, {"frames", orNull(frames)}, {"obstacle", obstacle}}}};
+  if (scene) json["run"]["scene"] = nlohmann::ordered_json::parse(sceneJson(*scene));
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -26,6 +27,7 @@ RunNote RunNote::of(const State& state, const std::string& file) try {
   if (!run.at("frames").is_null()) note.frames = run.at("frames").get<uint64_t>();
   note.obstacle = run.at("obstacle");
   note.manifest = json.at("manifest");
+  if (run.contains("scene")) note.scene = parseScene(run.at("scene").dump(), file, "/");
   return note;
 } catch (const nlohmann::json::exception& fault) {
   throw inputError(fmt::format("{}: its note is none of skitter run: {}", file, fault.what()));

@@ -16,6 +16,10 @@ struct RunNote {
   std::optional<uint64_t> frames;   // wanted in all
   nlohmann::ordered_json obstacle;  // null: there is none
   nlohmann::ordered_json manifest;
+  // With which the run began, where its events add or remove herds: a state's scene has those that there are.
+  std::optional<Scene> scene = {};
+
+  const Scene& sceneOf(const State& state) const { return scene ? *scene : state.scene; }
 
   std::string text() const;
   // Of the state in that file. One that another program has saved has the defaults. Throws Error(input).

@@ -110,7 +110,7 @@ void RunOptions::adopt(const State& state, const RunNote& note, bool inWindow) {
       throw inputError(fmt::format("{}: {} was saved {}", option, resume, text));
     value = saved;
   };
-  scene.refuseOthersThan(state.scene, resume);
+  scene.refuseOthersThan(note.sceneOf(state), resume);
   if (state.dt > 0 && isGiven("--dt") && static_cast<float>(scene.dt) == state.dt) scene.dt = note.dt;
   if (state.dt > 0) decide("--dt", scene.dt, note.dt, fmt::format("with --dt {}", note.dt));
   decide("--ticks-per-frame", ticksPerFrame, note.ticksPerFrame,

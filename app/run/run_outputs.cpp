@@ -10,9 +10,8 @@ namespace {
 constexpr double mostTraceBytes = 4.0 * (1ull << 30);
 
 // The size of a trace. Throws Error(input) where so much was probably not meant.
-double traceBytes(const RunOptions& options, const Crowd& crowd, const Scene& scene,
-                  const Heightfield& terrain, uint64_t ticks) {
-  const double bytes = Trace::bytes(crowd, scene, terrain, ticks);
+double traceBytes(const RunOptions& options, const Crowd& crowd, const Heightfield& terrain, uint64_t ticks) {
+  const double bytes = Trace::bytes(crowd, terrain, ticks);
   if (bytes > mostTraceBytes && !options.large)
     throw inputError(fmt::format("--trace {}: {} ticks would take {:.1f} GiB, more than 4 GiB need --large",
                                  options.trace, ticks, bytes / (1ull << 30)));
@@ -21,23 +20,21 @@ double traceBytes(const RunOptions& options, const Crowd& crowd, const Scene& sc
 
 }  // namespace
 
-void RunOutputs::expect(Files& files, const OutTarget& target, const Crowd& crowd, const Scene& scene,
-                        const Heightfield& terrain, std::optional<uint64_t> ticks) const {
+void RunOutputs::expect(Files& files, const OutTarget& target, const Crowd& crowd, const Heightfield& terrain,
+                        std::optional<uint64_t> ticks) const {
   const uint64_t done = crowd.tick();
   files.expect("--out", pictureBytes(target, options_.size.width, options_.size.height,
                                      options_.framesWithoutWindow() - done / options_.ticksPerFrame));
   if (!options_.trace.empty())
-    files.expect("--trace", traceBytes(options_, crowd, scene, terrain, ticks.value() - done));
-  if (ticks) files.expect("--footfalls", footfallBytes(crowd, scene, options_.scene.dt, *ticks - done));
+    files.expect("--trace", traceBytes(options_, crowd, terrain, ticks.value() - done));
+  if (ticks) files.expect("--footfalls", footfallBytes(crowd, options_.scene.dt, *ticks - done));
   // An older state stays until a newer one is whole.
   files.expect("--save", static_cast<double>(crowd.stateBytes()) * (options_.saveEvery ? 2 : 1));
   files.check();
 }
 
-void RunOutputs::open(const OutTarget& target, const Crowd& crowd, const Scene& scene,
-                      const Manifest& manifest) {
-  if (!options_.trace.empty())
-    trace_.emplace(options_.trace, crowd, scene, static_cast<float>(options_.scene.dt));
+void RunOutputs::open(const OutTarget& target, const Crowd& crowd, const Manifest& manifest) {
+  if (!options_.trace.empty()) trace_.emplace(options_.trace, crowd, static_cast<float>(options_.scene.dt));
   if (!options_.footfalls.empty()) footfalls_.emplace(options_.footfalls, manifest);
   if (target.kind != OutTarget::Kind::none)
     pictures_.emplace(target, options_.size.width, options_.size.height, options_.videoFps(),

@@ -19,9 +19,9 @@ class RunOutputs {
   explicit RunOutputs(const RunOptions& options) : options_(options) {}
 
   // So much will be written. Throws Error(input) where so much was probably not meant, or has no room.
-  void expect(Files& files, const OutTarget& target, const Crowd& crowd, const Scene& scene,
-              const Heightfield& terrain, std::optional<uint64_t> ticks) const;
-  void open(const OutTarget& target, const Crowd& crowd, const Scene& scene, const Manifest& manifest);
+  void expect(Files& files, const OutTarget& target, const Crowd& crowd, const Heightfield& terrain,
+              std::optional<uint64_t> ticks) const;
+  void open(const OutTarget& target, const Crowd& crowd, const Manifest& manifest);
 
   void append(const Crowd& crowd);
   Pictures* pictures() { return pictures_ ? &*pictures_ : nullptr; }

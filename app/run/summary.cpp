@@ -120,9 +120,9 @@ void Summary::print() const {
     printMemory(memory, agents);
   }
   printFidelity(fidelity, watchEvery);
-  for (size_t h = 0; h < herds.size() && herds.size() > 1; ++h) {
-    fmt::print("herd {}: {}, {} agents\n", h, herds[h].rig, herds[h].agents);
-    printFidelity(herds[h].fidelity, watchEvery);
+  for (size_t i = 0; i < herds.size() && herds.size() > 1; ++i) {
+    fmt::print("herd {}: {}, {} agents\n", herds[i].number, herds[i].rig, herds[i].agents);
+    printFidelity(herds[i].fidelity, watchEvery);
   }
   if (fidelity.lastResorts > 0)
     printRow("no foothold", fmt::format("{} steps, a last resort", fidelity.lastResorts));
@@ -137,7 +137,10 @@ nlohmann::ordered_json Summary::json() const {
   if (tick) milliseconds = {{"min", tick->min}, {"median", tick->median}, {"max", tick->max}};
   nlohmann::ordered_json perHerd = nlohmann::ordered_json::array();
   for (const HerdFigures& herd : herds)
-    perHerd.push_back({{"rig", herd.rig}, {"agents", herd.agents}, {"fidelity", jsonOf(herd.fidelity)}});
+    perHerd.push_back({{"number", herd.number},
+                       {"rig", herd.rig},
+                       {"agents", herd.agents},
+                       {"fidelity", jsonOf(herd.fidelity)}});
   return {{"device", device},
           {"agents", agents},
           {"sleeping", orNull(sleeping)},

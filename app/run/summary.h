@@ -18,6 +18,7 @@ nlohmann::ordered_json orNull(const std::optional<T>& value) {
 }
 
 struct HerdFigures {
+  uint32_t number = 0;
   std::string rig;
   uint32_t agents = 0;
   Fidelity fidelity;
@@ -33,11 +34,11 @@ struct Summary {
   std::optional<uint64_t> wantedTicks;  // none where a window runs until it is closed
   bool interrupted = false;
   TickTimes times;
-  std::vector<StageTime> drawing;  // sums over all frames; empty unless asked for
-  bool cpuTold = true;             // the CPU time is the simulation's alone
-  uint32_t watchEvery = 1;         // the figures are of one agent of this many at a time
-  Fidelity fidelity;               // of all herds
-  std::vector<HerdFigures> herds;
+  std::vector<StageTime> drawing;    // sums over all frames; empty unless asked for
+  bool cpuTold = true;               // the CPU time is the simulation's alone
+  uint32_t watchEvery = 1;           // the figures are of one agent of this many at a time
+  Fidelity fidelity;                 // of all herds
+  std::vector<HerdFigures> herds;    // that are there at the end
   std::optional<uint64_t> sleeping;  // agents at the end; none where they may not
   uint64_t stateHash = 0;
   std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times

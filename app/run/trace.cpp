@@ -153,12 +153,12 @@ void addSizes(const Crowd::Impl& crowd, uint32_t herd, nlohmann::ordered_json& d
 
 }  // namespace
 
-Trace::Trace(const fs::path& folder, const Crowd& crowd, const Scene& scene, double dt)
+Trace::Trace(const fs::path& folder, const Crowd& crowd, double dt)
     : folder_(folder), dt_(dt), firstTick_(crowd.tick() + 1) {
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
     const auto file = [&](const char* name) { return folder_.add(fmt::format("herd{}/{}", h, name)); };
     const Rig& rig = crowd.rig(h);
-    const uint32_t agents = scene.herds[h].agents + scene.herds[h].reserve;
+    const uint32_t agents = crowd.places(h);
     const uint64_t legs = static_cast<uint64_t>(rig.legCount()),
                    bones = static_cast<uint64_t>(rig.maxBones());
     herds_.push_back({agents, NpyWriter(file("joints.npy"), "<f4", {agents, legs, bones + 1, 3}),
@@ -168,10 +168,10 @@ Trace::Trace(const fs::path& folder, const Crowd& crowd, const Scene& scene, dou
   }
 }
 
-double Trace::bytes(const Crowd& crowd, const Scene& scene, const Heightfield& terrain, uint64_t ticks) {
+double Trace::bytes(const Crowd& crowd, const Heightfield& terrain, uint64_t ticks) {
   uint64_t aTick = 0;
   for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-    aTick += (uint64_t{scene.herds[h].agents} + scene.herds[h].reserve) * EntrySizes(crowd.rig(h)).bytes();
+    aTick += crowd.places(h) * EntrySizes(crowd.rig(h)).bytes();
   return static_cast<double>(aTick) * static_cast<double>(ticks) +
          static_cast<double>(terrain.heights.size() * sizeof(float));
 }

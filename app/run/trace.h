@@ -15,9 +15,9 @@ namespace skitter::app {
 class Trace {
  public:
   // Throws Error(input).
-  Trace(const std::filesystem::path& folder, const Crowd& crowd, const Scene& scene, double dt);
+  Trace(const std::filesystem::path& folder, const Crowd& crowd, double dt);
   // What the files of so many ticks take.
-  static double bytes(const Crowd& crowd, const Scene& scene, const Heightfield& terrain, uint64_t ticks);
+  static double bytes(const Crowd& crowd, const Heightfield& terrain, uint64_t ticks);
   // Whether a trace may write a file or folder of this name.
   static bool claims(const std::filesystem::path& name);
 

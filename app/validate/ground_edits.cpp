@@ -17,13 +17,10 @@ constexpr float kAway = 1, kLeast = 0.15f, kMost = 0.75f, kHeight = 0.25f;  // l
 
 }  // namespace
 
-GroundEdits::GroundEdits(const Crowd& crowd, uint64_t seed, double dt)
-    : ground_(crowd.terrain()),
+GroundEdits::GroundEdits(const Heightfield& ground, uint64_t seed, double dt)
+    : ground_(ground),
       every_(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(kEvery / dt)))),
-      random_(seed) {
-  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd)))
-    legLengths_.push_back(implOf(crowd).kinds[of.run->kind].rig.legLength);
-}
+      random_(seed) {}
 
 // Not a standard distribution: those differ from library to library.
 float GroundEdits::drawn(float least, float most) {
@@ -54,13 +51,17 @@ HeightEdit GroundEdits::near(const HerdState& herd, float legLength) {
   return edit;
 }
 
-std::vector<HeightEdit> GroundEdits::before(uint64_t n, const std::vector<HerdState>& herds) {
+std::vector<HeightEdit> GroundEdits::before(uint64_t n, const Crowd& crowd,
+                                            const std::vector<HerdState>& herds) {
   std::vector<HeightEdit> edits;
   const uint64_t turn = n / every_ % kCycle;
   if (n % every_ != 0 || turn == 0 || turn > kTimes) return edits;
-  for (size_t h = 0; h < herds.size(); ++h)
-    for (uint32_t i = 0; i < std::min(kAtOnce, herds[h].agents); ++i)
-      edits.push_back(near(herds[h], legLengths_[h]));
+  auto herd = herds.begin();
+  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd))) {
+    const float legLength = implOf(crowd).kinds[of.run->kind].rig.legLength;
+    for (uint32_t i = 0; i < std::min(kAtOnce, herd->agents); ++i) edits.push_back(near(*herd, legLength));
+    ++herd;
+  }
   return edits;
 }
 

@@ -17,18 +17,18 @@ struct HeightEdit {
 // seconds a second of it: a few at a time, four times, then time for gait to stop looking at the ground.
 class GroundEdits {
  public:
-  GroundEdits(const Crowd& crowd, uint64_t seed, double dt);
+  GroundEdits(const Heightfield& ground, uint64_t seed, double dt);
 
-  // The edits to make before tick n; places are near agents of `herds`, which are crowd::allRuns().
-  std::vector<HeightEdit> before(uint64_t n, const std::vector<HerdState>& herds);
+  // The edits to make before tick n; places are near agents of `herds`, which are the crowd's
+  // crowd::allRuns().
+  std::vector<HeightEdit> before(uint64_t n, const Crowd& crowd, const std::vector<HerdState>& herds);
 
  private:
   HeightEdit near(const HerdState& herd, float legLength);
   float drawn(float least, float most);
 
   Heightfield ground_;  // as it was: an edit is above or below it, so that edits do not pile up
-  std::vector<float> legLengths_;
-  uint64_t every_;  // ticks
+  uint64_t every_;      // ticks
   std::mt19937_64 random_;
 };
 

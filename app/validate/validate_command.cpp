@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -43,43 +44,52 @@ struct ValidateOptions {
   uint32_t pageAgents = 0;  // 0: as many as the device allows
 };
 
-// Beside the device's crowd: the same herds walked by the reference alone, from the same first state. States
-// are those of crowd::allRuns().
+using States = std::map<crowd::RunKey, HerdState>;
+
+// Everybody who is there.
+States download(const Crowd& crowd) {
+  States states;
+  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd)))
+    states.emplace(of.key(), crowd::download(implOf(crowd), *of.run));
+  return states;
+}
+
+// Beside the device's crowd: the same herds walked by the reference alone, from the same first state.
 class FreeRuns {
  public:
-  FreeRuns(const Crowd& crowd, const std::vector<HerdState>& first) {
-    for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd)))
-      runs_.push_back(std::make_unique<validation::FreeRun>(validation::herdFacts(implOf(crowd), of),
-                                                            first[runs_.size()]));
+  explicit FreeRuns(const Crowd& crowd) { follow(crowd, {}, download(crowd)); }
+
+  // Takes over what has happened between two ticks, from the states before and after it. A herd that has come
+  // begins as it is.
+  void follow(const Crowd& crowd, const States& before, const States& after) {
+    std::erase_if(runs_, [&](const auto& each) { return !after.contains(each.first); });
+    for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd))) {
+      const HerdState& now = after.at(of.key());
+      if (const auto known = runs_.find(of.key()); known != runs_.end())
+        known->second->follow(before.at(of.key()), now);
+      else
+        runs_.emplace(of.key(),
+                      std::make_unique<validation::FreeRun>(validation::herdFacts(implOf(crowd), of), now));
+    }
   }
-  void follow(const std::vector<HerdState>& before, const std::vector<HerdState>& after) {
-    for (size_t r = 0; r < runs_.size(); ++r) runs_[r]->follow(before[r], after[r]);
-  }
+  // `device` are the states of crowd::allRuns().
   void tick(const std::vector<HerdState>& device) {
-    for (size_t r = 0; r < runs_.size(); ++r) runs_[r]->tick(device[r].watched);
+    auto state = device.begin();
+    for (const auto& [key, run] : runs_) run->tick((state++)->watched);
   }
-  double shareWithin(const Crowd& crowd, const std::vector<HerdState>& device) const {
-    const std::vector<crowd::HerdRun> runs = crowd::allRuns(implOf(crowd));
+  double shareWithin(const Crowd& crowd, const States& device) const {
     double agents = 0, within = 0;
-    for (size_t r = 0; r < runs_.size(); ++r) {
-      const double here = runs[r].agentCount();
+    for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd))) {
+      const double here = of.agentCount();
       agents += here;
-      within += runs_[r]->shareWithin(device[r], freeRunTolerance) * here;
+      within += runs_.at(of.key())->shareWithin(device.at(of.key()), freeRunTolerance) * here;
     }
     return agents > 0 ? within / agents : 1;
   }
 
  private:
-  std::vector<std::unique_ptr<validation::FreeRun>> runs_;
+  std::map<crowd::RunKey, std::unique_ptr<validation::FreeRun>> runs_;  // in the order of crowd::allRuns()
 };
-
-// Everybody who is there.
-std::vector<HerdState> download(const Crowd& crowd) {
-  std::vector<HerdState> states;
-  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd)))
-    states.push_back(crowd::download(implOf(crowd), *of.run));
-  return states;
-}
 
 // A validation under way: what may be told when it is ended from another thread.
 struct Validation {
@@ -115,20 +125,20 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
   const auto dt = static_cast<float>(options.scene.dt);
   Lockstep lockstep(crowd, scene, dt, options.stages);
   std::optional<FreeRuns> freeRuns;
-  if (options.freeRun) freeRuns.emplace(crowd, download(crowd));
+  if (options.freeRun) freeRuns.emplace(crowd);
   std::optional<GroundEdits> edits;
   if (options.edits) {
-    edits.emplace(crowd, scene.seed, options.scene.dt);
+    edits.emplace(crowd.terrain(), scene.seed, options.scene.dt);
     outcome.edits = 0;
   }
   Progress progress("ticks", options.frames, options.quiet);
   while (crowd.tick() < options.frames && !stopRequested()) {
-    std::vector<HerdState> untold;
+    States untold;
     if (freeRuns && !scene.events.empty()) untold = download(crowd);
     const std::vector<HerdState>& before = lockstep.begin();
-    if (!untold.empty()) freeRuns->follow(untold, download(crowd));
+    if (freeRuns && !scene.events.empty()) freeRuns->follow(crowd, untold, download(crowd));
     if (edits) {
-      for (const HeightEdit& e : edits->before(crowd.tick(), before)) {
+      for (const HeightEdit& e : edits->before(crowd.tick(), crowd, before)) {
         lockstep.edit(e.x, e.z, e.columns, e.rows, e.heights);
         ++*outcome.edits;
       }

@@ -78,6 +78,10 @@ std::optional<AgentId> agentAt(const Crowd& crowd, const Lens& lens, const glm::
   return best;
 }
 
+bool hasPlace(const Crowd& crowd, AgentId id) {
+  return id.herd < crowd.herdCount() && id.agent < crowd.places(id.herd);
+}
+
 AgentId neighbourOf(const Crowd& crowd, AgentId id, bool after) {
   const std::vector<crowd::Herd>& all = implOf(crowd).herds;
   const uint32_t herds = crowd.herdCount();

@@ -19,6 +19,8 @@ struct AgentId {
 // The agent that is drawn nearest to a pixel, at most `most` pixels beside its legs; none that the ground
 // hides. Waits for the device.
 std::optional<AgentId> agentAt(const Crowd& crowd, const Lens& lens, const glm::vec2& pixel, float most);
+// Whether the crowd has such a place: its herd may be gone.
+bool hasPlace(const Crowd& crowd, AgentId id);
 // The one after or before, through all herds.
 AgentId neighbourOf(const Crowd& crowd, AgentId id, bool after);
 

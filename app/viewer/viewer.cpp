@@ -17,6 +17,7 @@
 #include "app/viewer/lens.h"
 #include "app/viewer/overlays.h"
 #include "app/viewer/pace.h"
+#include "crowd/herd.h"
 #include "gpu/context.h"
 #include "gpu/submit.h"
 #include "gpu/swapchain.h"
@@ -234,6 +235,7 @@ void Viewer::advance() {
       runTick(ring_, run_.crowd, run_.dt, times_);
     }
     run_.afterTick();
+    if (followed_ && !hasPlace(run_.crowd, followed_->id())) followed_.reset();
     if (followed_) followed_->look(run_.crowd);
     ++made;
   }
@@ -353,7 +355,7 @@ void Viewer::restart(std::optional<Controller> controller) {
     rates_.restart();
     pace_.forget();
     run_.crowd.timeStages(run_.timings || showsFigures_);
-    if (agent) followed_.emplace(run_.crowd, *agent);
+    if (agent && hasPlace(run_.crowd, *agent)) followed_.emplace(run_.crowd, *agent);
     say(controller ? fmt::format("controller {}", nameOf(*controller)) : "from the start");
   } catch (const Error& error) {
     say(error.what());
@@ -387,11 +389,12 @@ Figures Viewer::figures() const {
   if (!rates_.stages.empty()) rows.emplace_back("stages, ms a tick", "");
   for (const StageTime& stage : rates_.stages)
     rows.emplace_back(stage.stage, fmt::format("{:8.3f}", stage.milliseconds));
-  for (size_t h = 0; h < run_.scene.herds.size() && h < 8; ++h) {
-    const Herd& herd = run_.scene.herds[h];
+  const std::vector<crowd::Herd>& herds = implOf(run_.crowd).herds;
+  for (uint32_t h = 0; h < herds.size() && h < 8; ++h) {
+    if (herds[h].isGone()) continue;
     rows.emplace_back(fmt::format("herd {}", h), "");
-    rows.emplace_back("rig", run_.crowd.rig(static_cast<uint32_t>(h)).name);
-    rows.emplace_back("controller", nameOf(herd.controller));
+    rows.emplace_back("rig", run_.crowd.rig(h).name);
+    rows.emplace_back("controller", nameOf(herds[h].from.controller));
   }
   if (followed_) {
     rows.emplace_back(fmt::format("agent {}", followed_->id().agent), "");

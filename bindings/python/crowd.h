@@ -16,7 +16,7 @@ constexpr float usualTick = 1.0f / 60;  // seconds
 // A crowd with what it takes to make its ticks and pictures. Members are destroyed last first.
 struct PythonCrowd {
   std::shared_ptr<SharedDevice> device;
-  Scene scene;  // that cameras look at: its herds are those of the crowd
+  Scene scene;  // whose camera takes pictures
   Crowd crowd;
   bindings::Walk walk;
   std::optional<Renderer> renderer = {};  // of the last picture

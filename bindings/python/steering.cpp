@@ -105,21 +105,14 @@ uint64_t add(PythonCrowd& self, const glm::vec2& position, float heading, uint32
       [&](Crowd& crowd) { return (goal ? crowd.add(herd, place, *goal) : crowd.add(herd, place)).bits(); });
 }
 
+// A copy: another thread may change the Python object meanwhile.
 HerdNumbers addHerd(PythonCrowd& self, Herd herd) {
-  return self.told([&](Crowd& crowd) -> HerdNumbers {
-    const HerdId id = crowd.addHerd(herd);
-    std::vector<Herd>& herds = self.scene.herds;
-    if (id.index == herds.size()) herds.emplace_back();
-    herds[id.index] = std::move(herd);
-    return {id.index, id.generation};
-  });
+  const HerdId id = self.told([&](Crowd& crowd) { return crowd.addHerd(herd); });
+  return {id.index, id.generation};
 }
 
 void removeHerd(PythonCrowd& self, HerdNumbers herd) {
-  self.told([&](Crowd& crowd) {
-    crowd.removeHerd({herd.first, herd.second});
-    self.scene.herds[herd.first].agents = 0;  // cameras look for one with agents
-  });
+  self.told([&](Crowd& crowd) { crowd.removeHerd({herd.first, herd.second}); });
 }
 
 void bindGoals(CrowdClass& bound) {

@@ -9,7 +9,9 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -20,6 +22,7 @@
 #include "crowd/kinds.h"
 #include "crowd/page.h"
 #include "crowd/rig_records.h"
+#include "crowd/roster.h"
 #include "crowd/scale.h"
 #include "crowd/setup.h"
 #include "crowd/spawn.h"
@@ -233,10 +236,7 @@ crowd::Herd herdFrom(const Herd& from, uint64_t seed, std::span<const uint32_t> 
     herd.runs.push_back({.kind = kinds[i], .firstOfHerd = first, .agents = numbering.counts[i]});
     first += numbering.counts[i];
   }
-  std::vector<uint32_t> generations(herd.agents, generation);
-  for (uint32_t agent = 0; agent < herd.agents; ++agent)
-    if ((herd.starts.empty() ? agent : herd.starts[agent]) >= from.agents) ++generations[agent];
-  herd.presence = crowd::Presence(std::move(generations));
+  herd.presence = crowd::Presence::beginning(from, herd.starts, generation);
   return herd;
 }
 
@@ -249,10 +249,37 @@ void enrol(const Impl& crowd, const Herd& from, crowd::SizeRun& run, crowd::Kind
   kind.tinted = kind.tinted || (crowd.options.pose && crowd::isTinted(from));
 }
 
+// The kinds of a herd by itself, one a size; without its agents.
+std::vector<crowd::Kind> kindsFor(const Impl& crowd, const Herd& from, const Rig& loaded) {
+  std::vector<crowd::Kind> kinds;
+  for (const float size : crowd::sizesOf(from)) kinds.push_back(makeKind(crowd, from, loaded, size));
+  return kinds;
+}
+
+// Reads the rigs and clips of the herds that events after a tick will add, so that no file is read while the
+// crowd runs.
+void prepareComing(Impl& crowd, uint64_t tick, float dt) {
+  std::map<std::pair<std::string, Controller>, Rig> rigs;  // the controller decides how a rig is read
+  for (size_t e = 0; e < crowd.events.size(); ++e) {
+    const Event& event = crowd.events[e];
+    const auto* addition = std::get_if<HerdAddition>(&event.what);
+    if (addition == nullptr || (tick > 0 && crowd::tickOf(event, double{dt}) <= tick)) continue;
+    const Herd& herd = addition->herd;
+    try {
+      const std::pair key(herd.rig, herd.controller);
+      auto loaded = rigs.find(key);
+      if (loaded == rigs.end()) loaded = rigs.emplace(key, crowd::rigOf(herd)).first;
+      crowd.coming.emplace(e, kindsFor(crowd, herd, loaded->second));
+    } catch (const Error& fault) {
+      throw Error(fault.kind(), fmt::format("{}: events[{}].addHerd: {}", crowd.scene.name, e, fault.what()));
+    }
+  }
+}
+
 std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
                                 const crowd::Kinds& kinds, const CrowdOptions& options) {
   // A state's were checked when its crowd began, with the herds that there were then.
-  crowd::checkEvents(scene, terrain);
+  crowd::checkEvents(scene, terrain, kinds);
   auto made = beginCrowd(device, terrain, scene, options);
   Impl& crowd = *made;
   for (size_t k = 0; k < kinds.rigs.size(); ++k) {
@@ -266,6 +293,7 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
     crowd::Herd& herd = crowd.herds.emplace_back(herdFrom(from, crowd::seedOf(crowd.seed, h), ofHerds[h]));
     for (crowd::SizeRun& run : herd.runs) enrol(crowd, from, run, crowd.kinds[run.kind]);
   }
+  prepareComing(crowd, 0, 0);
   fillAll(crowd, true);
   settle(crowd, crowd.kinds);
   return made;
@@ -297,6 +325,7 @@ std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
       kind.tinted = kind.tinted || (state.options.pose && crowd::isTinted(of.herd->from));
     crowd.kinds[k] = std::move(kind);
   }
+  prepareComing(crowd, state.tick, state.dt);
   crowd::checkState(crowd, state);
   fillAll(crowd, false);
   warmUp(crowd, crowd.kinds);
@@ -304,16 +333,16 @@ std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
   return made;
 }
 
-// A kind for those agents alone, without its pipelines.
-crowd::Kind kindFor(const Impl& crowd, const Herd& from, const Rig& loaded, float size, crowd::SizeRun& run) {
-  crowd::Kind kind = makeKind(crowd, from, loaded, size);
+// The kind is for those agents alone.
+void claim(const Impl& crowd, const Herd& from, crowd::SizeRun& run, crowd::Kind& kind) {
   if (crowd.dt > 0) {
     checkTick(kind, crowd.dt);
     crowd::setParameters(crowd, crowd.dt, kind);
   }
+  kind.firstAgents.clear();
+  kind.agents = 0;
   enrol(crowd, from, run, kind);
   kind.herdSteps = crowd::herdStepsOf(crowd, kind);
-  return kind;
 }
 
 bool isGone(const crowd::Herd& herd) { return herd.isGone(); }
@@ -327,11 +356,6 @@ std::vector<uint32_t> freeIn(const List& list, size_t count) {
     if (i >= list.size() || isGone(list[i])) numbers.push_back(i);
   return numbers;
 }
-template <class List>
-size_t countIn(const List& list) {
-  return static_cast<size_t>(std::ranges::count_if(list, [](const auto& each) { return !isGone(each); }));
-}
-
 // Beyond its end the list grows.
 template <class List, class Item>
 void put(List& list, uint32_t number, Item item) {
@@ -350,9 +374,62 @@ void vacate(Impl& crowd, uint32_t number) {
   ++crowd.revision;
 }
 
+// A herd of that number, with kinds of its own: those that kindsFor has made, which stay where an Error is
+// thrown.
+HerdId admit(Impl& crowd, uint32_t number, const Herd& from, std::vector<crowd::Kind>& kinds) {
+  const std::vector<uint32_t> slots = freeIn(crowd.kinds, kinds.size());
+  const crowd::Herd none;
+  const crowd::Herd& before = number < crowd.herds.size() ? crowd.herds[number] : none;
+  crowd::Herd herd =
+      herdFrom(from, crowd::seedOf(crowd.seed, number), slots, before.presence.nextGeneration());
+  herd.generation = (before.generation + 1) / 2 * 2;
+  herd.since = crowd.tick;
+  uint64_t needed = 0;
+  for (size_t i = 0; i < kinds.size(); ++i) {
+    claim(crowd, from, herd.runs[i], kinds[i]);
+    needed += crowd::bytesOf(crowd, kinds[i]);
+  }
+  expectMemory(*crowd.context, herd.agents, needed);
+
+  const HerdId id{number, herd.generation};
+  for (size_t i = 0; i < slots.size(); ++i) put(crowd.kinds, slots[i], std::move(kinds[i]));
+  put(crowd.herds, number, std::move(herd));
+  try {
+    for (const uint32_t k : slots) {
+      fill(crowd, k);
+      settle(crowd, std::span(&crowd.kinds[k], 1));
+      gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
+        gpu::allToAll(cmd);
+        crowd::beginWatch(crowd, k, cmd);
+        gpu::allToAll(cmd);
+      });
+    }
+  } catch (...) {
+    for (size_t i = 0; i < slots.size(); ++i) {
+      kinds[i] = std::exchange(crowd.kinds[slots[i]], {});
+      kinds[i].pages.clear();
+    }
+    vacate(crowd, number);
+    throw;
+  }
+  ++crowd.revision;
+  return id;
+}
+
 }  // namespace
 
 namespace crowd {
+
+HerdId addComing(Crowd::Impl& crowd, size_t event) {
+  const auto found = crowd.coming.find(event);
+  assert(found != crowd.coming.end());
+  const skitter::Herd& from = std::get<HerdAddition>(crowd.events[event].what).herd;
+  const uint32_t number =
+      Roster(crowd).add(from, fmt::format("{}: events[{}].addHerd", crowd.scene.name, event));
+  const HerdId id = admit(crowd, number, from, found->second);
+  crowd.coming.erase(found);
+  return id;
+}
 
 void setParameters(const Crowd::Impl& crowd, float dt, Kind& kind) {
   kind.parameters = parametersOf(crowd, kind, dt);
@@ -367,6 +444,8 @@ void setTick(Crowd::Impl& crowd, float dt) {
     throw inputError("dt changed from " + std::to_string(crowd.dt) + " to " + std::to_string(dt) +
                      ": steps are timed in ticks, so a crowd keeps its first dt");
   for (const Kind& kind : crowd.kinds) checkTick(kind, dt);
+  for (const auto& [event, kinds] : crowd.coming)
+    for (const Kind& kind : kinds) checkTick(kind, dt);
   crowd.dt = dt;
   for (Kind& kind : crowd.kinds)
     if (!kind.stages.empty()) setParameters(crowd, dt, kind);
@@ -436,56 +515,10 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
 
 HerdId Crowd::addHerd(const Herd& from) {
   Impl& crowd = *impl_;
-  const uint64_t places = uint64_t{from.agents} + from.reserve, held = capacity();
-  if (held + places > Scene::maxAgents)
-    throw inputError(
-        fmt::format("a new herd: {} agents and reserve beside {} places, expected at most {} in all", places,
-                    held, Scene::maxAgents));
-  if (const size_t live = countIn(crowd.herds); live >= Scene::maxHerds)
-    throw inputError(fmt::format("a new herd beside {}, expected at most {} in all", live, Scene::maxHerds));
   const Rig loaded = rigFor(from);
-  const std::vector<float> sizes = crowd::sizesOf(from);
-  if (const size_t kinds = countIn(crowd.kinds); kinds + sizes.size() > crowd::mostKinds)
-    throw inputError(fmt::format(
-        "a new herd, which has {} kinds of its own, one a size, beside {}, expected at most {} in "
-        "all",
-        sizes.size(), kinds, crowd::mostKinds));
-
-  const uint32_t number = freeIn(crowd.herds, 1).front();
-  const std::vector<uint32_t> slots = freeIn(crowd.kinds, sizes.size());
-  const crowd::Herd none;
-  const crowd::Herd& before = number < crowd.herds.size() ? crowd.herds[number] : none;
-  crowd::Herd herd =
-      herdFrom(from, crowd::seedOf(crowd.seed, number), slots, before.presence.nextGeneration());
-  herd.generation = (before.generation + 1) / 2 * 2;
-  std::vector<crowd::Kind> made;
-  uint64_t needed = 0;
-  for (size_t i = 0; i < sizes.size(); ++i) {
-    made.push_back(kindFor(crowd, from, loaded, sizes[i], herd.runs[i]));
-    needed += crowd::bytesOf(crowd, made.back());
-  }
-  expectMemory(*crowd.context, places, needed);
-
-  const HerdId id{number, herd.generation};
-  for (size_t i = 0; i < slots.size(); ++i) put(crowd.kinds, slots[i], std::move(made[i]));
-  put(crowd.herds, number, std::move(herd));
-  try {
-    for (const uint32_t k : slots) {
-      fill(crowd, k);
-      settle(crowd, std::span(&crowd.kinds[k], 1));
-      gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
-        gpu::allToAll(cmd);
-        crowd::beginWatch(crowd, k, cmd);
-        gpu::allToAll(cmd);
-      });
-    }
-  } catch (...) {
-    for (const uint32_t k : slots) crowd.kinds[k] = {};
-    vacate(crowd, number);
-    throw;
-  }
-  ++crowd.revision;
-  return id;
+  const uint32_t number = crowd::Roster(crowd).add(from, "a new herd");
+  std::vector<crowd::Kind> kinds = kindsFor(crowd, from, loaded);
+  return admit(crowd, number, from, kinds);
 }
 
 void Crowd::removeHerd(HerdId id) {
@@ -495,10 +528,7 @@ void Crowd::removeHerd(HerdId id) {
                                  id.generation));
   const crowd::Herd& herd = crowd.herds[id.index];
   const auto isAlone = [&](const crowd::SizeRun& run) { return crowd::runsOf(crowd, run.kind).size() == 1; };
-  if (!std::ranges::all_of(herd.runs, isAlone) && herd.from.reserve == 0)
-    throw inputError(fmt::format(
-        "herd {}: shares pages with other herds, expected a herd of another kind or one with a reserve",
-        id.index));
+  crowd::Roster(crowd).remove(id.index, fmt::format("herd {}", id.index));
   crowd.context->waitIdle();
   for (const crowd::SizeRun& run : herd.runs) {
     if (isAlone(run)) {

@@ -5,16 +5,17 @@
 #include <cmath>
 
 #include "crowd/events.h"
+#include "crowd/roster.h"
 #include "crowd/steer.h"
 #include "skitter/error.h"
 
 namespace skitter::crowd {
 namespace {
 
-// Whose events they are, and what messages call the one that is looked at.
+// What messages call the event that is looked at, and the herds that there are then.
 struct Where {
-  const Scene& scene;
   const Heightfield& terrain;
+  Roster& herds;
   std::string event;
 };
 
@@ -38,12 +39,16 @@ void check(const HeightSamples& edit, const Where& at) {
     throw inputError(fmt::format("{}.edit: a height is not finite", at.event));
 }
 
-const skitter::Herd& herdOf(uint32_t number, const Where& at) {
-  const size_t herds = at.scene.herds.size();
+const skitter::Herd& herdOf(const char* key, uint32_t number, const Where& at) {
+  const size_t herds = at.herds.numbers();
   if (number >= herds)
     throw inputError(
-        fmt::format("{}.herd is {}, expected less than {}, the number of herds", at.event, number, herds));
-  return at.scene.herds[number];
+        fmt::format("{}.{} is {}, expected less than {}, the number of herds", at.event, key, number, herds));
+  const skitter::Herd* herd = at.herds.find(number);
+  if (herd == nullptr)
+    throw inputError(fmt::format("{}.{} is {}, a herd that was removed, expected one that is there", at.event,
+                                 key, number));
+  return *herd;
 }
 
 void expectCount(const char* key, size_t found, size_t least, const Where& at) {
@@ -72,17 +77,17 @@ void expectItsReserve(uint32_t number, const skitter::Herd& herd, const Where& a
 }
 
 void check(const GoalChange& change, const Where& at) {
-  checkAgents("agents", change.agents, 0, herdOf(change.herd, at), at);
+  checkAgents("agents", change.agents, 0, herdOf("herd", change.herd, at), at);
   expectGoal([&] { return at.event; }, change.goal);
 }
 
 void check(const SpeedChange& change, const Where& at) {
-  checkAgents("agents", change.agents, 0, herdOf(change.herd, at), at);
+  checkAgents("agents", change.agents, 0, herdOf("herd", change.herd, at), at);
   expectSpeed([&] { return at.event; }, "the speed", change.speed);
 }
 
 void check(const Teleport& teleport, const Where& at) {
-  const skitter::Herd& herd = herdOf(teleport.herd, at);
+  const skitter::Herd& herd = herdOf("herd", teleport.herd, at);
   expectCount("teleport", teleport.moves.size(), 1, at);
   for (size_t i = 0; i < teleport.moves.size(); ++i) {
     const auto name = [&] { return fmt::format("{}.teleport[{}]", at.event, i); };
@@ -92,7 +97,7 @@ void check(const Teleport& teleport, const Where& at) {
 }
 
 void check(const Addition& addition, const Where& at) {
-  expectItsReserve(addition.herd, herdOf(addition.herd, at), at);
+  expectItsReserve(addition.herd, herdOf("herd", addition.herd, at), at);
   expectCount("add", addition.arrivals.size(), 1, at);
   for (size_t i = 0; i < addition.arrivals.size(); ++i) {
     const auto& [place, goal] = addition.arrivals[i];
@@ -103,7 +108,7 @@ void check(const Addition& addition, const Where& at) {
 }
 
 void check(const Removal& removal, const Where& at) {
-  const skitter::Herd& herd = herdOf(removal.herd, at);
+  const skitter::Herd& herd = herdOf("herd", removal.herd, at);
   expectItsReserve(removal.herd, herd, at);
   checkAgents("remove", removal.agents, 1, herd, at);
   std::vector<uint32_t> sorted = removal.agents;
@@ -113,12 +118,24 @@ void check(const Removal& removal, const Where& at) {
     throw inputError(fmt::format("{}.remove has agent {} twice, expected once", at.event, *twice));
 }
 
+void check(const HerdAddition& addition, const Where& at) {
+  const std::string name = at.event + ".addHerd";
+  checkHerd(addition.herd, name);
+  at.herds.add(addition.herd, name);
+}
+
+void check(const HerdRemoval& removal, const Where& at) {
+  herdOf("removeHerd", removal.herd, at);
+  at.herds.remove(removal.herd, fmt::format("{}.removeHerd: herd {}", at.event, removal.herd));
+}
+
 }  // namespace
 
-void checkEvents(const Scene& scene, const Heightfield& terrain) {
+void checkEvents(const Scene& scene, const Heightfield& terrain, const Kinds& kinds) {
+  Roster herds(scene, kinds);
   for (size_t e = 0; e < scene.events.size(); ++e) {
     const Event& event = scene.events[e];
-    const Where where{scene, terrain, fmt::format("{}: events[{}]", scene.name, e)};
+    const Where where{terrain, herds, fmt::format("{}: events[{}]", scene.name, e)};
     if (!(event.at >= 0 && event.at <= Event::maxTime))
       throw inputError(fmt::format("{}.at is {}, expected 0 to {} s", where.event, event.at, Event::maxTime));
     if (e > 0 && event.at < scene.events[e - 1].at)

@@ -8,6 +8,9 @@
 #include <optional>
 
 #include "crowd/herd.h"
+#include "crowd/roster.h"
+#include "crowd/setup.h"
+#include "crowd/spawn.h"
 #include "crowd/steer.h"
 #include "skitter/error.h"
 
@@ -57,22 +60,19 @@ std::vector<float> heightsOf(const HeightSamples& samples, const Rectangle&, con
   return samples.heights;
 }
 
-// The first tick that ends at that time or later. A time that is a whole number of ticks may be a little more
-// or less in float32.
-uint64_t tickOf(const Event& event, double dt) {
-  return static_cast<uint64_t>(std::max(1.0, std::ceil(double{event.at} / dt - 1e-3)));
+// The number of one of the crowd's events.
+size_t numberOf(const Event& event, const Crowd::Impl& crowd) {
+  return static_cast<size_t>(&event - crowd.events.data());
 }
 
 // Who would be there as a tick's events happen one after the other: none of them happens where one cannot.
 class Rehearsal {
  public:
-  explicit Rehearsal(const Crowd::Impl& crowd) : crowd_(crowd) {}
+  explicit Rehearsal(const Crowd::Impl& crowd) : crowd_(crowd), herds_(crowd) {}
 
   void play(const Event& event) {
-    const auto number = &event - crowd_.events.data();
-    std::visit(
-        [&](const auto& what) { play(what, fmt::format("{}: events[{}]", crowd_.scene.name, number)); },
-        event.what);
+    const std::string name = fmt::format("{}: events[{}]", crowd_.scene.name, numberOf(event, crowd_));
+    std::visit([&](const auto& what) { play(what, name); }, event.what);
   }
 
  private:
@@ -108,15 +108,31 @@ class Rehearsal {
     expectItsReserve(removal.herd, name);
   }
 
+  void play(const HerdAddition& addition, const std::string& name) {
+    const skitter::Herd& herd = addition.herd;
+    const uint32_t number = herds_.add(herd, name + ".addHerd");
+    const Numbering numbering = numberingOf(herd, seedOf(crowd_.seed, number));
+    presences_[number] = Presence::beginning(herd, numbering.starts, 0);
+  }
+  void play(const HerdRemoval& removal, const std::string& name) {
+    herdAt(removal.herd, name);
+    herds_.remove(removal.herd, fmt::format("{}.removeHerd: herd {}", name, removal.herd));
+    presences_.erase(removal.herd);
+  }
+
   // The host may have removed the herd, and may have made another one of that number.
-  const Herd& herdAt(uint32_t number, const std::string& name) const {
-    const Herd& herd = crowd_.herdAt(number);
-    if (herd.isGone())
+  const skitter::Herd& herdAt(uint32_t number, const std::string& name) const {
+    if (const skitter::Herd* herd = herds_.find(number)) return *herd;
+    if (number < herds_.numbers())
       throw inputError(fmt::format("{}: herd {} was removed, expected one that is there", name, number));
-    return herd;
+    throw inputError(
+        fmt::format("{}: herd {}: expected one of the crowd's {} herds", name, number, herds_.numbers()));
   }
   Presence& presenceOf(uint32_t herd, const std::string& name) {
-    return presences_.try_emplace(herd, herdAt(herd, name).presence).first->second;
+    herdAt(herd, name);
+    const auto known = presences_.find(herd);
+    return known != presences_.end() ? known->second
+                                     : presences_.emplace(herd, crowd_.herdAt(herd).presence).first->second;
   }
   void expectSomebody(uint32_t herd, uint32_t agent, const std::string& name) {
     const Presence& presence = presenceOf(herd, name);
@@ -125,18 +141,18 @@ class Rehearsal {
                                    agent, presence.count));
   }
   void expectItsReserve(uint32_t herd, const std::string& name) const {
-    expectReserve([&] { return fmt::format("{}: herd {}", name, herd); },
-                  herdAt(herd, name).from.reserve > 0);
+    expectReserve([&] { return fmt::format("{}: herd {}", name, herd); }, herdAt(herd, name).reserve > 0);
   }
 
   const Crowd::Impl& crowd_;
+  Roster herds_;
   std::map<uint32_t, Presence> presences_;  // of the herds that events name
 };
 
 // What the host would call. The rehearsal has found nothing in the way.
 class Happening {
  public:
-  explicit Happening(Crowd& crowd) : crowd_(crowd) {}
+  Happening(Crowd& crowd, size_t number) : crowd_(crowd), number_(number) {}
 
   void operator()(const Mound& mound) const { edit(mound); }
   void operator()(const HeightSamples& samples) const { edit(samples); }
@@ -171,6 +187,8 @@ class Happening {
   void operator()(const Removal& removal) const {
     for (const uint32_t agent : removal.agents) crowd_.remove(crowd_.agentId(removal.herd, agent));
   }
+  void operator()(const HerdAddition&) const { addComing(implOf(crowd_), number_); }
+  void operator()(const HerdRemoval& removal) const { crowd_.removeHerd(crowd_.herdId(removal.herd)); }
 
  private:
   template <class Ground>
@@ -181,9 +199,16 @@ class Happening {
   }
 
   Crowd& crowd_;
+  size_t number_;  // of the event
 };
 
 }  // namespace
+
+// The first tick that ends at that time or later. A time that is a whole number of ticks may be a little more
+// or less in float32.
+uint64_t tickOf(const Event& event, double dt) {
+  return static_cast<uint64_t>(std::max(1.0, std::ceil(double{event.at} / dt - 1e-3)));
+}
 
 std::span<const Event> eventsAt(std::span<const Event> events, uint64_t tick, double dt) {
   const auto byTick = [&](const Event& event) { return tickOf(event, dt); };
@@ -205,11 +230,17 @@ void letEventsHappen(Crowd& crowd) {
   Crowd::Impl& impl = implOf(crowd);
   const uint64_t tick = impl.tick + 1;
   if (impl.happened == tick) return;
-  const std::span<const Event> events = eventsAt(impl.events, tick, double{impl.dt});
-  Rehearsal rehearsal(impl);
-  for (const Event& event : events) rehearsal.play(event);
-  for (const Event& event : events) std::visit(Happening(crowd), event.what);
+  const std::span<const Event> events = eventsAt(impl.events, tick, double{impl.dt}).subspan(impl.begun);
+  if (!events.empty()) {
+    Rehearsal rehearsal(impl);
+    for (const Event& event : events) rehearsal.play(event);
+  }
+  for (const Event& event : events) {
+    std::visit(Happening(crowd, numberOf(event, impl)), event.what);
+    ++impl.begun;
+  }
   impl.happened = tick;
+  impl.begun = 0;
 }
 
 }  // namespace skitter::crowd

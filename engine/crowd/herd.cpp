@@ -22,8 +22,10 @@ uint32_t HerdRun::agentCount() const {
 
 std::vector<HerdRun> allRuns(const Crowd::Impl& crowd) {
   std::vector<HerdRun> all;
-  for (uint32_t h = 0; h < crowd.herds.size(); ++h)
+  for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
+    if (crowd.herds[h].isGone()) continue;
     for (const SizeRun& run : crowd.herds[h].runs) all.push_back({h, &crowd.herds[h], &run});
+  }
   return all;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -91,6 +93,9 @@ struct Presence {
   void leave(uint32_t place);
   // An even one that no handle has.
   uint32_t nextGeneration() const;
+  // As a herd begins: `starts` is Numbering::starts, `generation`, which is even, that of places where
+  // somebody is.
+  static Presence beginning(const skitter::Herd& from, std::span<const uint32_t> starts, uint32_t generation);
 
  private:
   uint32_t firstEmpty_ = 0;  // no lower place is empty
@@ -107,10 +112,19 @@ struct Herd {
   uint64_t seed = 0;        // its own
   // How often its number was freed: even while there is a herd.
   uint32_t generation = 0;
+  uint64_t since = 0;  // the tick after which it came
 
   bool isGone() const { return generation % 2 == 1; }
   // The run that one of its places is in.
   const SizeRun& runOf(uint32_t agent) const;
+};
+
+// What a run of a herd is known by for as long as the herd is there, whatever becomes of others.
+struct RunKey {
+  uint32_t number, generation;  // of the herd
+  uint32_t run;                 // of its runs
+
+  auto operator<=>(const RunKey&) const = default;
 };
 
 // A run, and the herd that it is of.
@@ -120,6 +134,7 @@ struct HerdRun {
   const SizeRun* run;
 
   uint32_t agentCount() const;  // of those who are there
+  RunKey key() const { return {number, herd->generation, static_cast<uint32_t>(run - herd->runs.data())}; }
 };
 
 }  // namespace skitter::crowd
@@ -138,8 +153,11 @@ struct Crowd::Impl {
   uint32_t revision = 0;           // of kinds and herds: a renderer that has seen another looks again
   crowd::HeightEdits edits;
   std::vector<Event> events;  // the scene's, by time
-  uint64_t happened = 0;      // the last tick before which events have happened
-  uint64_t watchUntil = 0;    // the last tick in which gait looks at the ground; 0: never
+  uint64_t happened = 0;      // the last tick before which all events have happened
+  size_t begun = 0;           // and how many before the next one
+  // The kinds of herds that events will add, by the event's number: without agents and pipelines.
+  std::map<size_t, std::vector<crowd::Kind>> coming;
+  uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground; 0: never
   uint64_t tick = 0;
   uint64_t agentsInTick = 0;  // who were there in it
   float dt = 0;               // of the first tick; 0 before it
@@ -159,7 +177,7 @@ struct Crowd::Impl {
 
 namespace crowd {
 
-// Those of all herds, herd after herd: each is validated by itself.
+// Those of all herds that are there, herd after herd, and so by key: each is validated by itself.
 std::vector<HerdRun> allRuns(const Crowd::Impl& crowd);
 // Those of a kind's agents, in their order.
 std::vector<HerdRun> runsOf(const Crowd::Impl& crowd, uint32_t kind);

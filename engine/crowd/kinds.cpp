@@ -21,35 +21,12 @@ auto membersOf(const skitter::Herd& herd) {
                         std::tuple(reserve > 0));
 }
 
-void check(const skitter::Herd& herd, const std::string& what) {
-  using skitter::Herd;
-  checkTuning(herd.tuning, what + ".tuning");
-  if (herd.sizes.size() > Herd::maxSizes)
-    throw inputError(
-        fmt::format("{}.sizes are {}, expected at most {}", what, herd.sizes.size(), Herd::maxSizes));
-  for (size_t s = 0; s < herd.sizes.size(); ++s)
-    if (!(herd.sizes[s] >= Herd::minSize && herd.sizes[s] <= Herd::maxSize))
-      throw inputError(fmt::format("{}.sizes[{}] is {}, expected {} to {}", what, s, herd.sizes[s],
-                                   Herd::minSize, Herd::maxSize));
-  if (const uint64_t places = uint64_t{herd.agents} + herd.reserve;
-      herd.sizes.size() > 1 && places > Scene::maxAgents)
-    throw inputError(fmt::format("{}: {} agents and reserve of several sizes, expected at most {}", what,
-                                 places, Scene::maxAgents));
-  if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
-    throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
-  if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))
-    throw inputError(fmt::format("{}.tint is {}, expected 0 to 1", what, *herd.tint));
-  for (int i = 0; herd.colour && i < 3; ++i)
-    if (!((*herd.colour)[i] >= 0 && (*herd.colour)[i] <= 1))
-      throw inputError(fmt::format("{}.colour[{}] is {}, expected 0 to 1", what, i, (*herd.colour)[i]));
-}
-
 // `areEqual` compares what the rigs of two herds, by number, are.
 template <class Equal>
 Kinds grouped(const Scene& scene, const Equal& areEqual) {
   Kinds kinds;
   for (uint32_t h = 0; h < scene.herds.size(); ++h) {
-    check(scene.herds[h], fmt::format("{}: herds[{}]", scene.name, h));
+    checkHerd(scene.herds[h], fmt::format("{}: herds[{}]", scene.name, h));
     for (const float size : sizesOf(scene.herds[h])) kinds.herds.push_back({.herd = h, .size = size});
   }
   for (uint32_t i = 0; i < kinds.herds.size(); ++i) {
@@ -74,12 +51,35 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
 // Whether legs are proposed where the model has none.
 bool proposes(const skitter::Herd& herd) { return traitsOf(herd.controller).needsClips; }
 
+}  // namespace
+
+void checkHerd(const skitter::Herd& herd, const std::string& what) {
+  using skitter::Herd;
+  checkTuning(herd.tuning, what + ".tuning");
+  if (herd.sizes.size() > Herd::maxSizes)
+    throw inputError(
+        fmt::format("{}.sizes are {}, expected at most {}", what, herd.sizes.size(), Herd::maxSizes));
+  for (size_t s = 0; s < herd.sizes.size(); ++s)
+    if (!(herd.sizes[s] >= Herd::minSize && herd.sizes[s] <= Herd::maxSize))
+      throw inputError(fmt::format("{}.sizes[{}] is {}, expected {} to {}", what, s, herd.sizes[s],
+                                   Herd::minSize, Herd::maxSize));
+  if (const uint64_t places = uint64_t{herd.agents} + herd.reserve;
+      herd.sizes.size() > 1 && places > Scene::maxAgents)
+    throw inputError(fmt::format("{}: {} agents and reserve of several sizes, expected at most {}", what,
+                                 places, Scene::maxAgents));
+  if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
+    throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
+  if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))
+    throw inputError(fmt::format("{}.tint is {}, expected 0 to 1", what, *herd.tint));
+  for (int i = 0; herd.colour && i < 3; ++i)
+    if (!((*herd.colour)[i] >= 0 && (*herd.colour)[i] <= 1))
+      throw inputError(fmt::format("{}.colour[{}] is {}, expected 0 to 1", what, i, (*herd.colour)[i]));
+}
+
 Rig rigOf(const skitter::Herd& herd) {
   if (herd.rig == "spider") return spiderRig();
   return proposes(herd) ? proposedRig(herd.rig) : loadRig(herd.rig);
 }
-
-}  // namespace
 
 Kinds kindsOf(const Scene& scene) {
   Kinds kinds = grouped(scene, [](uint32_t, uint32_t) { return true; });

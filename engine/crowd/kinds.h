@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "crowd/herd.h"
@@ -26,6 +27,11 @@ struct Kinds {
   std::vector<uint32_t> firstHerds;  // the first of these of each kind
   std::vector<Rig> rigs;             // of each kind, at size 1
 };
+
+// Throws Error(input) where its tuning, sizes, phase or colours are out of range; `what` is its name there.
+void checkHerd(const skitter::Herd& herd, const std::string& what);
+// Reads the file that the herd names, if it names one.
+Rig rigOf(const skitter::Herd& herd);
 
 // Herds are of one kind where their size is equal, and all but agents, spawn, goal, other sizes, phase and
 // colours. Throws Error(input) where there are more than a device can serve, or a herd's tuning, sizes, phase

@@ -17,6 +17,14 @@ Presence::Presence(std::vector<uint32_t> made)
       count(static_cast<uint32_t>(
           std::ranges::count_if(generations, [](uint32_t generation) { return generation % 2 == 0; }))) {}
 
+Presence Presence::beginning(const skitter::Herd& from, std::span<const uint32_t> starts,
+                             uint32_t generation) {
+  std::vector<uint32_t> generations(from.agents + from.reserve, generation);
+  for (uint32_t place = 0; place < generations.size(); ++place)
+    if ((starts.empty() ? place : starts[place]) >= from.agents) ++generations[place];
+  return Presence(std::move(generations));
+}
+
 uint32_t Presence::nextGeneration() const {
   if (generations.empty()) return 0;
   const uint32_t last = std::ranges::max(generations);

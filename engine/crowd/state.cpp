@@ -217,6 +217,12 @@ uint32_t fingerprintOf(const Kind& kind) {
   return sum;
 }
 
+std::vector<uint32_t> fingerprintsOf(const std::vector<Kind>& kinds) {
+  std::vector<uint32_t> all;
+  for (const Kind& kind : kinds) all.push_back(fingerprintOf(kind));
+  return all;
+}
+
 // Of each of the kind's places.
 std::vector<uint32_t> generationsOf(const Impl& crowd, uint32_t kind) {
   std::vector<uint32_t> all(crowd.kinds[kind].agents);
@@ -292,9 +298,12 @@ StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& foot
     const std::vector<uint32_t>& generations = herd.presence.generations;
     head.herds.push_back({.runs = herd.runs,
                           .generation = herd.generation,
-                          .lastGeneration = generations.empty() ? 0 : std::ranges::max(generations)});
+                          .lastGeneration = generations.empty() ? 0 : std::ranges::max(generations),
+                          .since = herd.since});
     if (!herd.isGone()) addCounts(crowd, h, head.herds.back());
   }
+  for (const auto& [event, kinds] : crowd.coming)
+    head.coming.push_back({.event = event, .hashes = fingerprintsOf(kinds)});
   return head;
 }
 
@@ -449,6 +458,7 @@ void restoreHerds(Impl& crowd, const State& state) {
     herd.from = state.scene.herds.at(h);
     herd.seed = seedOf(crowd.seed, h);
     herd.generation = saved.generation;
+    herd.since = saved.since;
     if (herd.isGone()) {
       herd.presence.generations = {saved.lastGeneration};
       continue;
@@ -474,6 +484,13 @@ void checkState(const Impl& crowd, const State& state) {
     if (head.kinds[k].hash != fingerprintOf(crowd.kinds[k]))
       throw inputError(fmt::format("{}: rig {} has other legs or clips than when the state was saved", name,
                                    crowd.kinds[k].rig.name));
+  for (const StateComing& each : head.coming) {
+    const auto found = crowd.coming.find(each.event);
+    if (found == crowd.coming.end() || fingerprintsOf(found->second) != each.hashes)
+      throw inputError(fmt::format(
+          "{}: the rig of events[{}].addHerd has other legs or clips than when the state was saved", name,
+          each.event));
+  }
   const uint32_t watchEvery = head.options.watchEvery;
   if (crowd.watchEvery != watchEvery)
     throw inputError(

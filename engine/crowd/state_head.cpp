@@ -57,12 +57,19 @@ void eachKey(SizeRun& run, const Visit& visit) {
 }
 template <class Visit>
 void eachKey(StateHerd& herd, const Visit& visit) {
-  auto& [runs, generation, lastGeneration, counts, reachErrors] = herd;
+  auto& [runs, generation, lastGeneration, since, counts, reachErrors] = herd;
   visit("runs", runs);
   visit("generation", generation);
   visit("lastGeneration", lastGeneration);
+  visit("since", since);
   visit("counts", counts);
   visit("reachErrors", reachErrors);
+}
+template <class Visit>
+void eachKey(StateComing& coming, const Visit& visit) {
+  auto& [event, hashes] = coming;
+  visit("event", event);
+  visit("hashes", hashes);
 }
 template <class Visit>
 void eachKey(CrowdOptions& options, const Visit& visit) {
@@ -136,6 +143,7 @@ void eachKey(StateHead& head, const Visit& visit) {
   visit("agentsInTick", head.agentsInTick);
   visit("kinds", head.kinds);
   visit("herds", head.herds);
+  visit("coming", head.coming);
 }
 
 Json noteOf(const std::string& note) {

@@ -46,9 +46,16 @@ struct StateHerd {
   std::vector<SizeRun> runs;
   uint32_t generation = 0;      // odd: the herd is gone
   uint32_t lastGeneration = 0;  // the highest of its places
+  uint64_t since = 0;           // the tick after which it came
   // What the device has counted since the start.
   std::array<uint32_t, shared::ROW_COUNTERS> counts{};
   std::array<uint32_t, shared::HISTOGRAM_BUCKETS> reachErrors{};
+};
+
+// A herd that an event will add.
+struct StateComing {
+  uint64_t event = 0;            // its number
+  std::vector<uint32_t> hashes;  // of its kinds, as StateKind::hash
 };
 
 // The members of State, and what only its crowd needs.
@@ -58,6 +65,7 @@ struct StateHead : State {
   uint64_t agentsInTick = 0;
   std::vector<StateKind> kinds;
   std::vector<StateHerd> herds;
+  std::vector<StateComing> coming;
 };
 
 // Throws Error(input) where the scene or the note cannot be written. The terrain's heights are hashed only.

@@ -62,10 +62,13 @@ float gentleHeight(const Heightfield& terrain, glm::vec2 at, float radius) {
 }
 
 // The same of the whole crowd: of the first herd that has agents.
-Walk walkOf(const Scene& scene, const Crowd::Impl& live, double seconds) {
-  for (uint32_t i = 0; i < scene.herds.size() && i < live.herds.size(); ++i)
-    if (scene.herds[i].agents > 0)
-      return walkOf(scene.herds[i], live.kindOf(i), live.terrain, scene.seed, seconds);
+Walk walkOf(const Crowd::Impl& live, double seconds) {
+  for (uint32_t i = 0; i < live.herds.size(); ++i) {
+    const crowd::Herd& herd = live.herds[i];
+    if (herd.from.agents == 0) continue;
+    const double came = static_cast<double>(herd.since) * double{live.dt};
+    return walkOf(herd.from, live.kindOf(i), live.terrain, live.seed, seconds - came);
+  }
   return {{0, 0}, {0, 1}};
 }
 
@@ -125,29 +128,28 @@ View onPath(const Camera& camera, double seconds, const Heightfield& terrain) {
   return view;
 }
 
-View viewOf(const Camera& camera, const Scene& scene, const Crowd::Impl& live, double seconds) {
+View viewOf(const Camera& camera, const Crowd::Impl& live, double seconds) {
   const float distance = std::max(camera.distance, 0.5f);
   switch (camera.kind) {
     case Camera::Kind::fixed:
       return {.eye = camera.position, .target = camera.target};
     case Camera::Kind::orbit:
-      return orbited(
-          camera,
-          camera.about ? *camera.about : middleOf(walkOf(scene, live, seconds), live.terrain, distance),
-          distance, seconds, live.terrain);
+      return orbited(camera,
+                     camera.about ? *camera.about : middleOf(walkOf(live, seconds), live.terrain, distance),
+                     distance, seconds, live.terrain);
     case Camera::Kind::path:
       return onPath(camera, seconds, live.terrain);
     case Camera::Kind::follow:
       break;
   }
-  return followed(walkOf(scene, live, seconds), distance, live.terrain);
+  return followed(walkOf(live, seconds), distance, live.terrain);
 }
 
 }  // namespace
 
 View viewOf(const Scene& scene, const Crowd& crowd, double seconds) {
   const double time = std::isnan(seconds) ? 0 : std::clamp(seconds, -kLongest, kLongest);
-  View view = viewOf(scene.camera, scene, implOf(crowd), time);
+  View view = viewOf(scene.camera, implOf(crowd), time);
   view.fieldOfView = scene.camera.fieldOfView;
   return view;
 }

@@ -107,6 +107,9 @@ TEST_F(ManifestTest, TheHashIsOfWhatHappens) {
       R"("add": [{}])",
       R"("add": [{"goal": {"kind": "none"}}])",
       R"("remove": [1])",
+      R"("addHerd": {})",
+      R"("addHerd": {"agents": 5})",
+      R"("removeHerd": 0)",
   };
   std::set<std::string> hashes;
   for (const char* event : events) {

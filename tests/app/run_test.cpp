@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <fstream>
 #include <set>
+#include <utility>
 
 #include "process.h"
 
@@ -69,6 +72,31 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   for (const char* word : {"device", "agents", "median", "state hash", "slip"}) {
     EXPECT_NE(result.out.find(word), std::string::npos) << word;
   }
+}
+
+TEST_F(Running, ListsTheHerdsThatAreThere) {
+  write("scene.json", R"({"herds": [{"agents": 3}, {"agents": 2, "controller": "loop"}], "events": [
+    {"at": 0.1, "removeHerd": 0}, {"at": 0.2, "addHerd": {"agents": 4}},
+    {"at": 0.3, "addHerd": {"agents": 5, "controller": "loop"}}, {"at": 0.4, "removeHerd": 1}]})");
+  const auto herdsAfter = [&](const char* frames) {
+    const Result result =
+        skitter({"run", file("scene.json"), "--headless", "--frames", frames, "--json", file("run.json"),
+                 "--footfalls", file("feet.csv"), "--out", file("run.png"), "--size", "64x48"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    std::vector<std::pair<int, int>> herds;
+    if (result.code != 0) return herds;
+    const nlohmann::json written = json("run.json");
+    for (const nlohmann::json& herd : written.at("herds")) {
+      herds.emplace_back(herd.at("number").get<int>(), herd.at("agents").get<int>());
+      EXPECT_NE(result.out.find(fmt::format("herd {}: ", herds.back().first)), std::string::npos);
+    }
+    return herds;
+  };
+  using Herds = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(herdsAfter("20"), (Herds{{0, 4}, {1, 2}, {2, 5}}));
+  EXPECT_EQ(herdsAfter("30"), (Herds{{0, 4}, {2, 5}}));
+  expectRefusal(skitter({"run", file("scene.json"), "--headless", "--frames", "2", "--trace", file("trace")}),
+                2, {"--trace", "events[0] of scene adds or removes a herd"});
 }
 
 // Those that stand sleep, those that walk do not.

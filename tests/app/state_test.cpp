@@ -78,6 +78,24 @@ TEST_F(States, GoOnWithAnotherRigAndSeveralHerds) {
   expectSameWhole({file("scene.json")});
 }
 
+// Of the file that the run began with it knows, whatever herds there are when it is saved.
+TEST_F(States, GoOnWhereHerdsComeAndGo) {
+  write("scene.json", R"({"herds": [{"agents": 9}, {"agents": 4, "controller": "loop"}], "events": [
+    {"at": 0.2, "addHerd": {"agents": 5, "reserve": 1, "sizes": [1, 0.5]}},
+    {"at": 0.3, "mound": {"radius": 4}}, {"at": 0.3, "removeHerd": 1},
+    {"at": 0.416666667, "herd": 2, "add": [{"position": [1, 2]}]},
+    {"at": 0.6, "removeHerd": 2}, {"at": 0.6, "addHerd": {"agents": 3, "controller": "planted"}}]})");
+  expectSameWhole({file("scene.json")});
+  const nlohmann::json herds = json("run.json").at("herds");
+  ASSERT_EQ(herds.size(), 2u);
+  EXPECT_EQ(herds[1].at("number"), 1);
+  EXPECT_EQ(herds[1].at("agents"), 3);
+  expectSameWhole({file("scene.json")}, {file("scene.json")});
+  write("other.json", R"({"herds": [{"agents": 9}, {"agents": 4, "controller": "loop"}]})");
+  expectRefusal(run({"--resume", file("walk.state"), file("other.json")}), 2,
+                {"SCENE", "other.json", "events"});
+}
+
 TEST_F(States, NeedNothingBesideThem) {
   std::filesystem::copy(SKITTER_ROOT "/assets/terrain/everest_513x513.png", file("hills.png"));
   write("scene.json", R"({"terrain": {"kind": "file", "file": "hills.png", "scale": 0.01},

@@ -22,6 +22,12 @@ std::vector<std::string> stagesThatAgree(const nlohmann::json& validation) {
   return names;
 }
 
+int samplesOf(const nlohmann::json& validation, const std::string& name) {
+  for (const nlohmann::json& stage : validation.at("stages"))
+    if (stage.at("name") == name) return stage.at("samples").get<int>();
+  return -1;
+}
+
 TEST_F(Validate, EveryStageAgreesWithTheReference) {
   for (const Controller controller : allControllers) {
     SCOPED_TRACE(nameOf(controller));
@@ -106,6 +112,39 @@ TEST_F(Validate, EventsAboutAgentsAreReplayed) {
     EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({nameOf(controller)}));
     EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
   }
+}
+
+// Herds that come and go when the scene says, with every controller.
+TEST_F(Validate, HerdsThatComeAndGoAreReplayed) {
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    for (const char* option : {"--free-run", "--edits"}) {
+      const Result result =
+          skitter({"validate", SKITTER_ROOT "/assets/scenes/waves.json", "--controller", nameOf(controller),
+                   "--agents", "8", "--dt", "0.05", "--frames", "45", option, "--json", file("v.json")});
+      EXPECT_EQ(result.code, 0) << result.out << result.err;
+      EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({nameOf(controller)}));
+      // Eight all along, 16 from tick 10 on with two more places, and 6 in their place from tick 30 on.
+      // Agents who are not there are not compared in navigate.
+      EXPECT_GE(samplesOf(json("v.json"), "navigate"), 8 * 45 + 16 * 20 + 6 * 16);
+      EXPECT_LE(samplesOf(json("v.json"), "navigate"), 8 * 45 + 18 * 20 + 6 * 16);
+      if (json("v.json").contains("freeRunShare")) {
+        EXPECT_GE(json("v.json").at("freeRunShare"), 0.75);
+      }
+    }
+  }
+}
+
+TEST_F(Validate, AHerdThatComesLaterIsCompared) {
+  write("empty.json", R"({"herds": [], "events": [{"at": 0.1, "addHerd": {}}]})");
+  const Result result =
+      skitter({"validate", file("empty.json"), "--agents", "6", "--frames", "60", "--json", file("v.json")});
+  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({"adaptive"}));
+  EXPECT_EQ(samplesOf(json("v.json"), "navigate"), 6 * 55);
+  write("lost.json", R"({"herds": [{}], "events": [{"at": 0.1, "addHerd": {"rig": "none.glb"}}]})");
+  expectRefusal(skitter({"validate", file("lost.json"), "--quiet"}), 2,
+                {"lost: events[0].addHerd: ", "none.glb"});
 }
 
 // The usual number of agents does not suit a scene that names some, whatever it is.

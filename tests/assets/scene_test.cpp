@@ -126,10 +126,17 @@ TEST(Scene, EventsOfEveryKind) {
     {"at": 2, "herd": 1, "agents": [9], "speed": 0.5},
     {"at": 3, "herd": 1, "teleport": [{"agent": 4, "position": [1, -2], "heading": 1.5}, {"agent": 0}]},
     {"at": 4, "herd": 1, "add": [{"position": [7, 8], "heading": -1}, {"goal": {"kind": "none"}}]},
-    {"at": 5, "remove": [2, 7]}
+    {"at": 5, "remove": [2, 7]},
+    {"at": 6, "addHerd": {"agents": 5, "reserve": 1, "rig": "crab.glb", "goal": {"kind": "none"}}},
+    {"at": 7, "removeHerd": 3}
   ]})",
-                                 "events.json", "");
+                                 "events.json", "folder");
   const Goal none{.kind = Goal::Kind::none}, point{.kind = Goal::Kind::point, .target = {5, 6}};
+  Herd crabs;
+  crabs.rig = "folder/crab.glb";
+  crabs.agents = 5;
+  crabs.reserve = 1;
+  crabs.goal = none;
   const std::vector<Event> expected{
       {0, Mound{.radius = 2}},
       {1, GoalChange{.goal = none}},
@@ -138,6 +145,8 @@ TEST(Scene, EventsOfEveryKind) {
       {3, Teleport{.herd = 1, .moves = {{4, {{1, -2}, 1.5f}}, {0, {}}}}},
       {4, Addition{.herd = 1, .arrivals = {{.place = {{7, 8}, -1}}, {.goal = none}}}},
       {5, Removal{.agents = {2, 7}}},
+      {6, HerdAddition{crabs}},
+      {7, HerdRemoval{3}},
   };
   ASSERT_EQ(scene.events.size(), expected.size());
   for (size_t e = 0; e < expected.size(); ++e) EXPECT_TRUE(scene.events[e] == expected[e]) << e;
@@ -231,7 +240,8 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": {}})", "events is an object, expected an array of at most 4096 events"},
       {R"({"events": [{"at": -1, "mound": {}}]})", "events[0].at is -1"},
       {R"({"events": [{"at": 1}]})",
-       "events[0] has 0 of mound, edit, goal, speed, teleport, add, remove, expected one"},
+       "events[0] has 0 of mound, edit, goal, speed, teleport, add, remove, addHerd, removeHerd, expected "
+       "one"},
       {R"({"events": [{"mound": {}, "edit": {"columns": 1, "rows": 1, "heights": [0]}}]})",
        "events[0] has 2 of mound, edit"},
       {R"({"events": [{"mond": {}, "mound": {}}]})", "events[0].mond is no known key; did you mean mound?"},
@@ -270,6 +280,14 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": [{"add": [{"goal": {"speed": -1}}]}]})", "events[0].add[0].goal.speed is -1"},
       {R"({"events": [{"remove": []}]})", "events[0].remove is an array of 0"},
       {R"({"events": [{"remove": [0, -1]}]})", "events[0].remove[1] is -1"},
+      {R"({"events": [{"addHerd": 3}]})", "events[0].addHerd is 3, expected an object"},
+      {R"({"events": [{"addHerd": {"agent": 3}}]})",
+       "events[0].addHerd.agent is no known key; did you mean agents?"},
+      {R"({"events": [{"addHerd": {"goal": {"speed": -1}}}]})", "events[0].addHerd.goal.speed is -1"},
+      {R"({"events": [{"herd": 1, "addHerd": {}}]})", "events[0].herd is no known key"},
+      {R"({"events": [{"removeHerd": 1024}]})",
+       "events[0].removeHerd is 1024, expected a whole number from 0 to 1023"},
+      {R"({"events": [{"removeHerd": 1, "addHerd": {}}]})", "events[0] has 2 of mound, edit, goal"},
       {R"({"seed": 1, "seed": 2})", "\"seed\" appears twice"},
       {R"({"seed": NaN})", "line 1"},
       {"", "not valid JSON"},
@@ -462,7 +480,7 @@ class RandomScenes {
     return made;
   }
   decltype(Event::what) happening() {
-    switch (whole(0, 6)) {
+    switch (whole(0, 8)) {
       case 0:
         return mound();
       case 1:
@@ -501,11 +519,23 @@ class RandomScenes {
         }
         return made;
       }
-      default: {
+      case 6: {
         Removal made;
         auto& [herd, agents] = made;
         herd = someHerd();
         agents = numbers(1);
+        return made;
+      }
+      case 7: {
+        HerdAddition made;
+        auto& [herd] = made;
+        herd = this->herd();
+        return made;
+      }
+      default: {
+        HerdRemoval made;
+        auto& [herd] = made;
+        herd = someHerd();
         return made;
       }
     }
@@ -617,6 +647,12 @@ TEST(Scene, IsNotWrittenWhereItCouldNotBeRead) {
       "built-in: events[0].teleport[0].agent is 4294967295, expected a whole number from 0 to 16777215");
   EXPECT_EQ(faultOfEvent(SpeedChange{.herd = 1024}),
             "built-in: events[0].herd is 1024, expected a whole number from 0 to 1023");
+  HerdAddition spoilt;
+  spoilt.herd.keys = 9;
+  EXPECT_EQ(faultOfEvent(spoilt),
+            "built-in: events[0].addHerd.keys is 9, expected a whole number from 2 to 8");
+  EXPECT_EQ(faultOfEvent(HerdRemoval{1024}),
+            "built-in: events[0].removeHerd is 1024, expected a whole number from 0 to 1023");
   const std::vector<uint32_t> many(Event::maxAgents + 1);
   EXPECT_EQ(faultOfEvent(GoalChange{.agents = many}),
             "built-in: events[0].agents are 65537, expected at most 65536");

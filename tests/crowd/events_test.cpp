@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <limits>
+#include <utility>
 
+#include "assets/files.h"
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
 #include "skitter/error.h"
@@ -14,7 +17,7 @@
 namespace skitter::test {
 namespace {
 
-using ::testing::HasSubstr, ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 class EventsTest : public GpuTest {};
 
@@ -27,6 +30,14 @@ Scene twoHerds() {
   return scene;
 }
 Goal pointAt(float x, float z) { return {.kind = Goal::Kind::point, .target = {x, z}, .speed = 2}; }
+
+// Of two sizes, with places for more.
+Herd guests(uint32_t agents = 9, Controller controller = Controller::adaptive) {
+  Herd herd = sceneOf(agents, 1, 1, controller).herds[0];
+  herd.reserve = 2;
+  herd.sizes = {1, 0.6f};
+  return herd;
+}
 
 TEST(Events, HappenBeforeTheFirstTickThatEndsThenOrLater) {
   std::vector<Event> events;
@@ -190,6 +201,119 @@ TEST_F(EventsTest, GiveTheSameBitsWhereTheyAreWrittenBeforeTheTick) {
   }
 }
 
+TEST_F(EventsTest, OfHerdsAreWhatTheCallerCouldDo) {
+  const Goal goal = pointAt(6, -3);
+  const Place place{{4, 5}, 1};
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    Scene scene = twoHerds();
+    scene.events = {{0.1f, HerdAddition{guests(9, controller)}},
+                    {0.2f, GoalChange{.herd = 2, .goal = goal}},
+                    {0.2f, Addition{.herd = 2, .arrivals = {{.place = place}}}},
+                    {0.3f, HerdRemoval{2}},
+                    {0.3f, HerdAddition{guests(4)}}};
+    Crowd crowd(device(), rollingGround(), scene), other(device(), rollingGround(), twoHerds());
+    const auto both = [&](int ticks) {
+      for (Crowd* each : {&crowd, &other}) simulate(device(), *each, ticks);
+      EXPECT_EQ(crowd.stateHash(), other.stateHash()) << crowd.tick();
+      EXPECT_EQ(crowd.agentCount(), other.agentCount()) << crowd.tick();
+    };
+    both(5);
+    const HerdId came = other.addHerd(guests(9, controller));
+    both(6);
+    EXPECT_TRUE(crowd.has(came));
+    EXPECT_EQ(crowd.agentCount(2), 9u);
+    other.steer(2, goal);
+    other.add(2, place);
+    both(6);
+    EXPECT_EQ(crowd.agentCount(2), 10u);
+    other.removeHerd(came);
+    const HerdId again = other.addHerd(guests(4));
+    both(20);
+    EXPECT_FALSE(crowd.has(came));
+    EXPECT_TRUE(crowd.has(again));
+    EXPECT_EQ(again, (HerdId{2, 2}));
+  }
+}
+
+// As `skitter validate` has it, also where the tick that a herd comes in does more with it.
+TEST_F(EventsTest, OfHerdsGiveTheSameBitsWhereTheyAreWrittenBeforeTheTick) {
+  Scene scene = twoHerds();
+  scene.events = {{0.1f, HerdAddition{guests()}},
+                  {0.1f, Teleport{.herd = 2, .moves = {{1, {{5, -5}, 1}}}}},
+                  {0.1f, Removal{.herd = 2, .agents = {0}}},
+                  {0.1f, HerdRemoval{1}}};
+  Crowd crowd(device(), rollingGround(), scene), early(device(), rollingGround(), scene);
+  for (Crowd* each : {&crowd, &early}) simulate(device(), *each, 5);
+  crowd::letEventsHappen(early);
+  crowd::applyChanges(implOf(early));
+  for (const int ticks : {1, 20}) {
+    for (Crowd* each : {&crowd, &early}) simulate(device(), *each, ticks);
+    EXPECT_EQ(early.stateHash(), crowd.stateHash());
+    EXPECT_EQ(early.agentCount(), 28u);
+    EXPECT_EQ(crowd.agentCount(), 28u);
+  }
+}
+
+TEST_F(EventsTest, HerdsTakeTheLowestNumberThatIsFree) {
+  Scene scene = twoHerds();
+  scene.events = {{0.1f, HerdRemoval{0}},
+                  {0.1f, HerdAddition{sceneOf(3).herds[0]}},
+                  {0.1f, SpeedChange{.herd = 0, .agents = {2}, .speed = 2}},
+                  {0.1f, HerdAddition{guests(4)}},
+                  {0.1f, HerdRemoval{1}},
+                  {0.2f, HerdRemoval{2}},
+                  {0.2f, HerdAddition{guests(5)}}};
+  Crowd crowd(device(), flatGround(), scene);
+  simulate(device(), crowd, 11);
+  EXPECT_EQ(crowd.herdId(0), (HerdId{0, 2}));
+  EXPECT_EQ(crowd.agentCount(0), 3u);
+  EXPECT_FALSE(crowd.has(HerdId{1, 0}));
+  EXPECT_EQ(crowd.agentCount(2), 4u);
+  simulate(device(), crowd, 1);
+  EXPECT_EQ(crowd.agentCount(1), 5u);
+  EXPECT_EQ(crowd.agentCount(), 8u);
+  EXPECT_FALSE(crowd.has(HerdId{2, 0}));
+}
+
+// No file is read while the crowd runs.
+TEST_F(EventsTest, FilesOfHerdsAreReadWhenTheCrowdIsMade) {
+  TemporaryFolder folder;
+  const std::string model = (folder / "quadruped.glb").string();
+  for (const char* name : {"quadruped.glb", "quadruped.rig.json"})
+    std::filesystem::copy_file(std::string(SKITTER_ROOT "/assets/") + name, folder / name);
+  Scene scene = twoHerds();
+  for (const Controller controller : {Controller::adaptive, Controller::planted}) {
+    Herd herd = guests(3, controller);
+    herd.rig = model;
+    scene.events.push_back({0.1f, HerdAddition{std::move(herd)}});
+  }
+  Crowd crowd(device(), rollingGround(), scene);
+  simulate(device(), crowd, 3);
+  const State before = parseState(crowd.saveToMemory(), "a state");
+  Crowd resumed(device(), before);
+  std::filesystem::remove(folder / "quadruped.glb");
+  for (Crowd* each : {&crowd, &resumed}) simulate(device(), *each, 10);
+  EXPECT_EQ(crowd.agentCount(), 46u);
+  EXPECT_EQ(crowd.rig(3).legCount(), 4);
+  EXPECT_EQ(resumed.stateHash(), crowd.stateHash());
+  const auto names = AllOf(HasSubstr("two.json: events[0].addHerd: "), HasSubstr("quadruped.glb"));
+  EXPECT_THAT([&] { Crowd(device(), before); }, ThrowsMessage<Error>(names));
+  EXPECT_THAT([&] { Crowd(device(), rollingGround(), scene); }, ThrowsMessage<Error>(names));
+}
+
+// It would end the run when the herd comes.
+TEST_F(EventsTest, ATickThatIsTooShortForAHerdToComeIsRefusedAtOnce) {
+  Scene scene = sceneOf(2, 1, 1, Controller::loop);
+  const float dt = 1e-5f;
+  Crowd without(device(), flatGround(), scene);
+  simulate(device(), without, 1, dt);
+  scene.events = {{1, HerdAddition{guests()}}};
+  Crowd crowd(device(), flatGround(), scene);
+  EXPECT_THROW(simulate(device(), crowd, 1, dt), Error);
+  EXPECT_EQ(crowd.tick(), 0u);
+}
+
 TEST_F(EventsTest, WhereOneCannotHappenNoneDoes) {
   Scene scene = twoHerds();
   scene.events = {{0.1f, Mound{.radius = 4}},
@@ -226,6 +350,32 @@ TEST_F(EventsTest, OfAHerdThatTheHostHasRemovedAreRefused) {
               ThrowsMessage<Error>(HasSubstr("two.json: events[0]: herd 1 was removed")));
 }
 
+TEST_F(EventsTest, OfHerdsGoByWhatTheHostHasDone) {
+  Scene scene = twoHerds();
+  scene.events = {{0.1f, HerdAddition{guests()}}, {0.2f, Mound{.radius = 4}}, {0.2f, HerdAddition{guests(1)}},
+                  {0.2f, HerdRemoval{2}},         {0.3f, Mound{.radius = 4}}, {0.3f, HerdAddition{guests(1)}},
+                  {0.3f, HerdRemoval{3}}};
+  Crowd crowd(device(), flatGround(), scene);
+  simulate(device(), crowd, 8);
+  crowd.removeHerd(crowd.herdId(2));
+  // The herd that comes takes the number, and goes at once.
+  simulate(device(), crowd, 9);
+  EXPECT_EQ(crowd.agentCount(), 40u);
+  const std::vector<float> heights = crowd.terrain().heights;
+  EXPECT_NE(heights, flatGround().heights);
+  EXPECT_THAT([&] { simulate(device(), crowd, 1); },
+              ThrowsMessage<Error>(HasSubstr("two.json: events[6]: herd 3: expected one of the crowd's 3")));
+  EXPECT_EQ(crowd.tick(), 17u);
+  EXPECT_EQ(crowd.agentCount(), 40u);
+  EXPECT_EQ(crowd.terrain().heights, heights);
+  // The host makes one of that number, and it goes on.
+  crowd.addHerd(guests(2));
+  simulate(device(), crowd, 1);
+  EXPECT_EQ(crowd.agentCount(), 42u);
+  EXPECT_EQ(crowd.agentCount(2), 2u);
+  EXPECT_FALSE(crowd.has(HerdId{3, 0}));
+}
+
 // A run that is saved and goes on has each of them once.
 TEST_F(EventsTest, AStateNeitherRepeatsNorLosesThem) {
   Scene scene = twoHerds();
@@ -246,6 +396,31 @@ TEST_F(EventsTest, AStateNeitherRepeatsNorLosesThem) {
     EXPECT_EQ(again.stateHash(), whole.stateHash()) << saved;
     EXPECT_EQ(again.terrain().heights, whole.terrain().heights) << saved;
     EXPECT_EQ(again.agentCount(), 40u) << saved;
+  }
+}
+
+TEST_F(EventsTest, AStateNeitherRepeatsNorLosesThoseOfHerds) {
+  Scene scene = twoHerds();
+  scene.events = {{0.1f, HerdAddition{guests()}},
+                  {0.2f, Addition{.herd = 2, .arrivals = {{.place = {{3, 3}, 0}}}}},
+                  {0.3f, HerdRemoval{2}},
+                  {0.3f, HerdRemoval{1}},
+                  {0.4f, HerdAddition{guests(5, Controller::loop)}},
+                  {0.5f, SpeedChange{.herd = 1, .agents = {0}, .speed = 3}}};
+  Crowd whole(device(), rollingGround(), scene);
+  simulate(device(), whole, 40);
+  EXPECT_EQ(whole.agentCount(), 25u);
+  for (const int saved : {0, 5, 6, 14, 17, 18, 23, 24, 35}) {
+    SCOPED_TRACE(saved);
+    Crowd first(device(), rollingGround(), scene);
+    simulate(device(), first, saved);
+    Crowd again(device(), parseState(first.saveToMemory(), "a state"));
+    EXPECT_EQ(again.stateHash(), first.stateHash());
+    simulate(device(), again, 40 - saved);
+    EXPECT_EQ(again.stateHash(), whole.stateHash());
+    EXPECT_EQ(again.agentCount(), 25u);
+    EXPECT_TRUE(again.has(whole.herdId(1)));
+    EXPECT_FALSE(again.has(HerdId{2, 0}));
   }
 }
 
@@ -310,6 +485,71 @@ TEST_F(EventsTest, AboutNobodyAreRefusedWhenTheCrowdIsMade) {
   EXPECT_EQ(faultOf(Removal{.agents = {4, 22}}), "taken");
 }
 
+TEST_F(EventsTest, OfHerdsThatCannotBeAreRefusedWhenTheCrowdIsMade) {
+  const auto faultIn = [&](Scene scene, const std::vector<decltype(Event::what)>& events) -> std::string {
+    for (const auto& what : events) scene.events.push_back({1, what});
+    try {
+      Crowd crowd(device(), flatGround(), scene);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+      return error.what();
+    }
+    return "taken";
+  };
+  const auto faultOf = [&](const std::vector<decltype(Event::what)>& events) {
+    return faultIn(twoHerds(), events);
+  };
+  const HerdAddition ten{sceneOf(10).herds[0]};
+  const std::string first = "two.json: events[0]", second = "two.json: events[1]";
+  EXPECT_EQ(faultOf({SpeedChange{.herd = 2}, ten}),
+            first + ".herd is 2, expected less than 2, the number of herds");
+  EXPECT_EQ(faultOf({ten, SpeedChange{.herd = 3}}),
+            second + ".herd is 3, expected less than 3, the number of herds");
+  EXPECT_EQ(faultOf({HerdRemoval{2}}), first + ".removeHerd is 2, expected less than 2, the number of herds");
+  EXPECT_EQ(faultOf({HerdRemoval{1}, GoalChange{.herd = 1}}),
+            second + ".herd is 1, a herd that was removed, expected one that is there");
+  EXPECT_EQ(faultOf({HerdRemoval{1}, HerdRemoval{1}}),
+            second + ".removeHerd is 1, a herd that was removed, expected one that is there");
+  EXPECT_EQ(faultOf({ten, SpeedChange{.herd = 2, .agents = {10}}}),
+            second + ".agents[0] is 10, expected less than 10, the places of its herd");
+  EXPECT_EQ(faultOf({ten, Removal{.herd = 2, .agents = {1}}}),
+            second + ": herd 2: its reserve is 0, expected at least 1 where agents come and go");
+  EXPECT_EQ(faultOf({HerdRemoval{1}, ten, SpeedChange{.herd = 1, .agents = {9}}, HerdRemoval{1}}), "taken");
+
+  const auto faultOfHerd = [&](const std::function<void(Herd&)>& spoil) {
+    HerdAddition addition = ten;
+    spoil(addition.herd);
+    return faultOf({addition});
+  };
+  EXPECT_EQ(
+      faultOfHerd([](Herd& herd) { herd.agents = Scene::maxAgents; }),
+      first + ".addHerd: 16777216 agents and reserve beside 43 places, expected at most 16777216 in all");
+  EXPECT_EQ(faultOfHerd([](Herd& herd) {
+              herd.sizes = {1, 30};
+            }),
+            first + ".addHerd.sizes[1] is 30, expected 0.05 to 20");
+  EXPECT_THAT(faultOfHerd([](Herd& herd) { herd.tuning.stepHeight = 1e9f; }),
+              HasSubstr(first + ".addHerd.tuning.stepHeight"));
+  EXPECT_THAT(faultOfHerd([](Herd& herd) { herd.rig = "nowhere.glb"; }),
+              AllOf(HasSubstr(first + ".addHerd: "), HasSubstr("nowhere.glb")));
+
+  HerdAddition sizes = ten;
+  for (int size = 0; size < 16; ++size) sizes.herd.sizes.push_back(0.5f + 0.1f * static_cast<float>(size));
+  EXPECT_EQ(
+      faultOf(std::vector<decltype(Event::what)>(7, sizes)),
+      "two.json: events[6].addHerd: 16 kinds of its own, one a size, beside 98, expected at most 100 in "
+      "all");
+  Scene equal = twoHerds();
+  equal.herds[0].reserve = 0;
+  EXPECT_EQ(faultIn(equal, {HerdRemoval{0}}),
+            first +
+                ".removeHerd: herd 0: shares pages with other herds, expected a herd of another kind or "
+                "one with a reserve");
+  equal.herds.push_back(ten.herd);
+  equal.herds.back().controller = Controller::loop;
+  EXPECT_EQ(faultIn(equal, {HerdRemoval{2}}), "taken");
+}
+
 // assets/scenes/events.json.
 TEST_F(EventsTest, ExampleRuns) {
   const Scene scene = loadScene(SKITTER_ROOT "/assets/scenes/events.json");
@@ -340,6 +580,24 @@ TEST_F(EventsTest, ExampleOfAgentsRuns) {
   simulate(device(), crowd, 30);
   EXPECT_EQ(crowd.agentCount(), 33u);
   EXPECT_FALSE(crowd.has(AgentId(1, 11, 2)));
+  EXPECT_LT(crowd.fidelity().penetration, 0.01);
+}
+
+// assets/scenes/waves.json.
+TEST_F(EventsTest, ExampleOfHerdsRuns) {
+  const Scene scene = loadScene(SKITTER_ROOT "/assets/scenes/waves.json");
+  Crowd crowd(device(), scene.loadTerrain(), scene);
+  const auto agentsAfter = [&](int tick) {
+    simulate(device(), crowd, tick - static_cast<int>(crowd.tick()));
+    return crowd.agentCount();
+  };
+  EXPECT_EQ(agentsAfter(29), 8u);
+  EXPECT_EQ(agentsAfter(30), 24u);
+  EXPECT_EQ(agentsAfter(60), 25u);
+  EXPECT_EQ(agentsAfter(89), 25u);
+  EXPECT_EQ(agentsAfter(90), 14u);
+  EXPECT_EQ(crowd.herdId(1), (HerdId{1, 2}));
+  EXPECT_EQ(agentsAfter(120), 14u);
   EXPECT_LT(crowd.fidelity().penetration, 0.01);
 }
 

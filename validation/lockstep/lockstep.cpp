@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <variant>
 
 #include "crowd/changes.h"
@@ -31,8 +32,19 @@ void add(const StageResult& result, StageResult& sum) {
 }
 
 std::string nameOf(const Crowd::Impl& crowd, const crowd::HerdRun& of) {
-  if (of.herd->runs.size() == 1) return fmt::format("herd {}", of.number);
-  return fmt::format("herd {}, size {}", of.number, crowd.kinds[of.run->kind].size);
+  std::string name = fmt::format("herd {}", of.number);
+  if (of.herd->generation > 0) name += fmt::format(" of generation {}", of.herd->generation);
+  if (of.herd->runs.size() > 1) name += fmt::format(", size {}", crowd.kinds[of.run->kind].size);
+  return name;
+}
+
+// The scene's, and those that its events add.
+std::vector<const Herd*> herdsOf(const Scene& scene) {
+  std::vector<const Herd*> all;
+  for (const Herd& herd : scene.herds) all.push_back(&herd);
+  for (const Event& event : scene.events)
+    if (const auto* addition = std::get_if<HerdAddition>(&event.what)) all.push_back(&addition->herd);
+  return all;
 }
 
 }  // namespace
@@ -40,11 +52,13 @@ std::string nameOf(const Crowd::Impl& crowd, const crowd::HerdRun& of) {
 void expectComparable(const Scene& scene, std::span<const crowd::StageId> stages, const char* what) {
   const bool comes = std::ranges::any_of(
       scene.events, [](const Event& event) { return std::holds_alternative<Addition>(event.what); });
-  if (scene.agentCount() == 0 && !comes)
+  const std::vector<const Herd*> herds = herdsOf(scene);
+  const bool areSome = std::ranges::any_of(herds, [](const Herd* herd) { return herd->agents > 0; });
+  if (!areSome && !comes)
     throw inputError(fmt::format("{} has no agents, expected at least one to compare", scene.name));
   const auto isCompared = [&](crowd::StageId stage) {
-    return std::ranges::any_of(scene.herds, [&](const Herd& herd) {
-      const std::vector<CheckedStage> compared = checkedStages(herd.controller);
+    return std::ranges::any_of(herds, [&](const Herd* herd) {
+      const std::vector<CheckedStage> compared = checkedStages(herd->controller);
       return std::ranges::find(compared, stage, &CheckedStage::stage) != compared.end();
     });
   };
@@ -54,16 +68,15 @@ void expectComparable(const Scene& scene, std::span<const crowd::StageId> stages
 }
 
 Lockstep::Lockstep(Crowd& crowd, const Scene& scene, float dt, std::vector<crowd::StageId> only)
-    : crowd_(crowd), seed_(scene.seed) {
-  Crowd::Impl& impl = implOf(crowd_);
-  crowd::setTick(impl, dt);  // which herds' parameters depend on
-  for (const crowd::HerdRun& of : crowd::allRuns(impl))
-    replays_.push_back(std::make_unique<Replay>(herdFacts(impl, of), only));
+    : crowd_(crowd), seed_(scene.seed), only_(std::move(only)) {
+  crowd::setTick(implOf(crowd_), dt);  // which herds' parameters depend on
+  followHerds();
 }
 
 Lockstep::~Lockstep() = default;
 
 const std::vector<HerdState>& Lockstep::begin() {
+  hasBegun_ = true;
   letEventsHappen();
   samples_.clear();
   for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd_)))
@@ -74,38 +87,41 @@ const std::vector<HerdState>& Lockstep::begin() {
 void Lockstep::edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows,
                     std::span<const float> heights) {
   crowd_.editHeights(x0, z0, columns, rows, heights);
-  for (const auto& replay : replays_) replay->edit(x0, z0, columns, rows, heights);
+  for (const Compared& each : compared_) each.replay->edit(x0, z0, columns, rows, heights);
 }
 
 const std::vector<HerdState>& Lockstep::end() {
   after_ = download();
-  for (size_t r = 0; r < replays_.size(); ++r) replays_[r]->tick(crowd_.tick(), before_[r], after_[r]);
+  for (size_t r = 0; r < compared_.size(); ++r)
+    compared_[r].replay->tick(crowd_.tick(), before_[r], after_[r]);
   return after_;
 }
 
 std::vector<StageResult> Lockstep::results() const {
-  const Crowd::Impl& impl = implOf(crowd_);
-  const std::vector<crowd::HerdRun> runs = crowd::allRuns(impl);
-  std::vector<StageResult> all;
+  std::vector<const Compared*> all;
+  for (const std::vector<Compared>* list : {&compared_, &gone_})
+    for (const Compared& each : *list) all.push_back(&each);
+  std::vector<StageResult> sums;
   for (const crowd::StageId stage : crowd::allStages) {
     const char* name = nameOf(stage);
     StageResult* sum = nullptr;
-    for (size_t r = 0; r < replays_.size(); ++r) {
-      if (runs[r].run->agents == 0) continue;
-      for (StageResult result : replays_[r]->results()) {
-        if (result.name != name) continue;
-        if (replays_.size() > 1) {
-          result.worst = fmt::format("{}: {}", nameOf(impl, runs[r]), result.worst);
-          if (!result.pass) result.why = fmt::format("{}: {}", nameOf(impl, runs[r]), result.why);
+    for (const Compared* each : all) {
+      if (!each->hasPlaces) continue;
+      for (StageResult result : each->replay->results()) {
+        // Who is there for a few ticks may begin no step.
+        if (result.name != name || (each->isBrief && result.samples + result.kept == 0)) continue;
+        if (all.size() > 1) {
+          result.worst = fmt::format("{}: {}", each->name, result.worst);
+          if (!result.pass) result.why = fmt::format("{}: {}", each->name, result.why);
         }
         if (sum != nullptr)
           add(result, *sum);
         else
-          sum = &all.emplace_back(result);
+          sum = &sums.emplace_back(result);
       }
     }
   }
-  return all;
+  return sums;
 }
 
 std::vector<HerdState> Lockstep::download() const {
@@ -119,6 +135,7 @@ std::vector<HerdState> Lockstep::download() const {
 void Lockstep::letEventsHappen() {
   Crowd::Impl& impl = implOf(crowd_);
   crowd::letEventsHappen(crowd_);
+  followHerds();
   const Heightfield& ground = crowd_.terrain();
   for (const Event& event : crowd::eventsAt(impl.events, crowd_.tick() + 1, double{impl.dt})) {
     const crowd::Rectangle at = crowd::groundOf(event, ground);
@@ -127,9 +144,34 @@ void Lockstep::letEventsHappen() {
       const auto first = ground.heights.begin() + static_cast<std::ptrdiff_t>(row) * ground.columns + at.x;
       heights.insert(heights.end(), first, first + at.columns);
     }
-    for (const auto& replay : replays_) replay->edit(at.x, at.z, at.columns, at.rows, heights);
+    for (const Compared& each : compared_) each.replay->edit(at.x, at.z, at.columns, at.rows, heights);
   }
   if (crowd::changesWait(impl)) crowd::applyChanges(impl);
+}
+
+// The reference of a herd that has come begins with the ground as it is.
+void Lockstep::followHerds() {
+  const Crowd::Impl& impl = implOf(crowd_);
+  if (!compared_.empty() && impl.revision == revision_) return;
+  revision_ = impl.revision;
+  std::vector<Compared> before = std::exchange(compared_, {});
+  for (const crowd::HerdRun& of : crowd::allRuns(impl)) {
+    const auto known = std::ranges::find(before, of.key(), &Compared::key);
+    if (known != before.end()) {
+      compared_.push_back(std::move(*known));
+      before.erase(known);
+    } else {
+      compared_.push_back({.key = of.key(),
+                           .name = nameOf(impl, of),
+                           .hasPlaces = of.run->agents > 0,
+                           .isBrief = hasBegun_,
+                           .replay = std::make_unique<Replay>(herdFacts(impl, of), only_)});
+    }
+  }
+  for (Compared& each : before) {
+    each.isBrief = true;
+    gone_.push_back(std::move(each));
+  }
 }
 
 }  // namespace skitter::validation

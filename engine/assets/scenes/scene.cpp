@@ -268,12 +268,23 @@ void keysOf(Fields& fields, const char* key, Removal& removal) {
   fields.integer("herd", herd, 0, Scene::maxHerds - 1);
   fields.integers(key, agents, Event::maxAgents, Scene::maxAgents - 1);
 }
+template <class Fields>
+void keysOf(Fields& fields, const char* key, HerdAddition& addition) {
+  auto& [herd] = addition;
+  fields.object(key, herd);
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, HerdRemoval& removal) {
+  auto& [herd] = removal;
+  fields.integer(key, herd, 0, Scene::maxHerds - 1);
+}
 
 template <class Fields>
 void keysOf(Fields& fields, Event& event) {
   auto& [at, what] = event;
   fields.key("at", at, 0, Event::maxTime);
-  fields.oneOf({"mound", "edit", "goal", "speed", "teleport", "add", "remove"}, what);
+  fields.oneOf({"mound", "edit", "goal", "speed", "teleport", "add", "remove", "addHerd", "removeHerd"},
+               what);
 }
 void checkKeys(const Event& event, const std::string& file, const std::string& path) {
   const auto expectSome = [&](const char* key, const auto& list) {

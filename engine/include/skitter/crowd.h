@@ -53,7 +53,8 @@ struct CrowdOptions {
   bool timestamps = false;                // time every stage on the device
   uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
-  std::vector<Rig> rigs = {};  // one a herd, in place of those that the scene names; empty: the scene's
+  // One a herd, in place of those that the scene names, but for herds that events add; empty: the scene's.
+  std::vector<Rig> rigs = {};
 };
 
 // How well agents moved in the ticks in which they were watched (docs/stages/measure.md defines each).
@@ -149,8 +150,9 @@ class SKITTER_API Crowd {
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
   // cannot be (an unknown rig or controller, a count of rigs that is not that of herds, tuning out of its
   // range, more than 100 herds that differ and sizes of these, legs of an adaptive herd above 100 m, a
-  // terrain that reaches beyond 4 km from the origin, an event that names nobody) and, before any agent is
-  // made, Error(device) when memory does not suffice (as DeviceLimits::availableBytes, but now).
+  // terrain that reaches beyond 4 km from the origin, an event that names nobody, or a herd that cannot come
+  // or go) and, before any agent is made, Error(device) when memory does not suffice (as
+  // DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // As it was when it was saved; on another device and in other pages, too: every record has the bits that it
   // had. What the state's options ask for and the state lacks (poses, feet, footfalls) follows from it.
@@ -165,10 +167,13 @@ class SKITTER_API Crowd {
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in
   // order. What Scene::events has for that time happens first, as if the caller had called editHeights,
-  // steer, setSpeed, teleport, add or remove just before. Throws Error(input) where dt is not what it was
-  // before, for steps are timed in ticks, or, of an adaptive herd, below 22 microseconds; and where an event
-  // cannot happen, because an agent is not there or no place is left: then none of the tick's events has, and
-  // the tick can be recorded again.
+  // steer, setSpeed, teleport, add, remove, addHerd or removeHerd just before; no file is read for that. A
+  // tick before which a herd comes or goes waits for the device, and is recorded when all that was recorded
+  // before it is submitted. Throws Error(input) where dt is not what it was before, for steps are timed in
+  // ticks, or, of an adaptive herd, below 22 microseconds; and where an event cannot happen, because a herd
+  // or an agent is not there or no place is left: then none of the tick's events has, and the tick can be
+  // recorded again. Throws Error(device) where memory does not suffice for a herd that comes: then what
+  // comes before it has happened, and the tick, recorded again, goes on with it.
   void record(VkCommandBuffer commandBuffer, float dt);
 
   // Replaces a rectangle of the terrain's samples while the crowd walks: columns [x0, x0 + columns), rows

@@ -23,10 +23,10 @@ struct View {
 };
 
 // The scene's camera at a time, any number of seconds. `follow` frames the action: one walker and those about
-// it, seen from behind, aside and above, moving as the first herd is commanded to. `orbit` turns about it, or
-// about a point. `path` goes through its keys, and stays at the first before it and at the last after it.
-// None of these is ever below the ground. Needs no readback. `crowd` was made of `scene`. Throws Error(input)
-// for a path of keys that cannot be (Camera::keys).
+// it, seen from behind, aside and above, moving as the first herd that is there was commanded to at first.
+// `orbit` turns about it, or about a point. `path` goes through its keys, and stays at the first before it
+// and at the last after it. None of these is ever below the ground. Needs no readback. `crowd` was made of
+// `scene`. Throws Error(input) for a path of keys that cannot be (Camera::keys).
 SKITTER_API View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
 
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.

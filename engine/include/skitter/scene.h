@@ -138,8 +138,8 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 // What a scene says to agents, as Crowd::steer, setSpeed, teleport, add and remove do. Herds are named by
-// their number in the scene and agents by that of their place in the herd, below its agents and reserve:
-// whoever is there then.
+// their number, which is the place in the scene or what HerdAddition gives, and agents by that of their place
+// in the herd, below its agents and reserve: whoever is there then.
 struct GoalChange {
   uint32_t herd = 0;
   std::vector<uint32_t> agents = {};  // empty: all who are there
@@ -187,6 +187,20 @@ struct Removal {
   bool operator==(const Removal&) const = default;
 };
 
+// A herd that comes, as Crowd::addHerd has it: it gets the lowest number that no herd has. Its rig and clips
+// are read when the crowd is made.
+struct HerdAddition {
+  Herd herd;
+
+  bool operator==(const HerdAddition&) const = default;
+};
+// A herd that goes, as Crowd::removeHerd has it.
+struct HerdRemoval {
+  uint32_t herd = 0;
+
+  bool operator==(const HerdRemoval&) const = default;
+};
+
 // What happens to a running crowd, just before the first tick that ends at `at` or later.
 struct Event {
   static constexpr float maxTime = 86400;        // seconds
@@ -194,7 +208,9 @@ struct Event {
   static constexpr size_t maxAgents = 1 << 16;   // that one event names, moves or adds
 
   float at = 0;  // seconds
-  std::variant<Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal> what;
+  std::variant<Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition,
+               HerdRemoval>
+      what;
 
   bool operator==(const Event&) const = default;
 };
