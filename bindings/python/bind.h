@@ -75,11 +75,21 @@ class Signals {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// A scene as Python has it: herds and terrain are objects of their own, so that a name for one of them stays
-// good whatever becomes of the scene.
+// An event as Python has it: `what` is an object of one of the kinds of Event::what.
+struct PythonEvent {
+  float at = 0;
+  py::object what;
+};
+void bindEvents(py::module_& module);
+py::list eventsOf(const Scene& scene);
+// Throws Error(input) where something else is in the list.
+std::vector<Event> eventsIn(const py::list& events);
+
+// A scene as Python has it: herds, terrain and events are objects of their own, so that a name for one of
+// them stays good whatever becomes of the scene.
 struct PythonScene {
   Scene rest = Scene{};  // all but these
-  py::list herds;
+  py::list herds, events;
   py::object terrain;
 
   explicit PythonScene(const Scene& scene);

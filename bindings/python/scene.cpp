@@ -239,10 +239,11 @@ void bindCameras(py::module_& module) {
 
 }  // namespace
 
-PythonScene::PythonScene(const Scene& scene) : rest(scene) {
+PythonScene::PythonScene(const Scene& scene) : rest(scene), events(eventsOf(scene)) {
   for (const Herd& herd : scene.herds) herds.append(std::make_shared<Herd>(herd));
   terrain = std::visit([](const auto& kind) { return py::cast(kind); }, scene.terrain);
   rest.herds.clear();
+  rest.events.clear();
 }
 
 Scene PythonScene::scene() const {
@@ -262,6 +263,9 @@ Scene PythonScene::scene() const {
   else
     throw inputError(fmt::format("terrain is {}, expected a TerrainNoise or a TerrainFile",
                                  py::repr(terrain).cast<std::string>()));
+  made.events = eventsIn(events);
+  if (made.events.size() > Scene::maxEvents)
+    throw inputError(fmt::format("{} events, expected at most {}", made.events.size(), Scene::maxEvents));
   return made;
 }
 
@@ -271,8 +275,10 @@ void bindScene(py::module_& module) {
   bindTerrain(module);
   bindRig(module);
   bindCameras(module);
+  bindEvents(module);
 
-  py::class_<PythonScene>(module, "Scene", "Terrain, herds, camera and seed: what a crowd is made of.")
+  py::class_<PythonScene>(module, "Scene",
+                          "Terrain, herds, camera, events and seed: what a crowd is made of.")
       .def(py::init([] { return PythonScene(Scene{}); }), "1,000 spiders on generated ground.")
       .def_static(
           "builtin", [] { return PythonScene(builtinScene()); }, "1,000 spiders that cross generated ground.")
@@ -294,6 +300,7 @@ void bindScene(py::module_& module) {
           [](PythonScene& self, const Camera& value) { self.rest.camera = value; },
           "Where pictures are taken from.")
       .def_readwrite("herds", &PythonScene::herds, "A list of Herd.")
+      .def_readwrite("events", &PythonScene::events, "A list of Event, by time.")
       .def_readwrite("terrain", &PythonScene::terrain, "A TerrainNoise or a TerrainFile.")
       .def_property_readonly(
           "agent_count", [](const PythonScene& self) { return self.scene().agentCount(); },

@@ -260,13 +260,108 @@ class Camera:
     keys: Sequence[CameraKey]
     def __init__(self) -> None: ...
 
+class Mound:
+    """Ground that rises, or sinks to a pit, with smooth sides."""
+
+    centre: Sequence[float]
+    radius: float
+    height: float
+    def __init__(self, centre: Sequence[float] = (0, 0), radius: float = 1, height: float = 0.5) -> None: ...
+
+class HeightSamples:
+    """New heights of a rectangle of the ground's samples."""
+
+    x: int
+    z: int
+    heights: _Floats
+    def __init__(self, x: int, z: int, heights: _Floats) -> None: ...
+
+class GoalChange:
+    """A new goal."""
+
+    herd: int
+    agents: Sequence[int]
+    goal: Goal
+    def __init__(self, goal: Goal, herd: int = 0, agents: Sequence[int] = ()) -> None: ...
+
+class SpeedChange:
+    """A new speed; goals stay."""
+
+    herd: int
+    agents: Sequence[int]
+    speed: float
+    def __init__(self, speed: float, herd: int = 0, agents: Sequence[int] = ()) -> None: ...
+
+class Move:
+    """An agent that is put elsewhere."""
+
+    agent: int
+    position: Sequence[float]
+    heading: float
+    def __init__(self, agent: int, position: Sequence[float], heading: float = 0) -> None: ...
+
+class Teleport:
+    """Agents of a herd that are put elsewhere; goals stay."""
+
+    herd: int
+    moves: Sequence[Move]
+    def __init__(self, moves: Sequence[Move], herd: int = 0) -> None: ...
+
+class Arrival:
+    """An agent that comes."""
+
+    position: Sequence[float]
+    heading: float
+    goal: Optional[Goal]
+    def __init__(
+        self, position: Sequence[float], heading: float = 0, goal: Optional[Goal] = None
+    ) -> None: ...
+
+class Addition:
+    """Agents that come, to a herd with a reserve."""
+
+    herd: int
+    arrivals: Sequence[Arrival]
+    def __init__(self, arrivals: Sequence[Arrival], herd: int = 0) -> None: ...
+
+class Removal:
+    """Agents that go, from a herd with a reserve."""
+
+    herd: int
+    agents: Sequence[int]
+    def __init__(self, agents: Sequence[int], herd: int = 0) -> None: ...
+
+class HerdAddition:
+    """A herd that comes; it gets the lowest number that is free."""
+
+    herd: Herd
+    def __init__(self, herd: Herd) -> None: ...
+
+class HerdRemoval:
+    """A herd that goes."""
+
+    herd: int
+    def __init__(self, herd: int) -> None: ...
+
+_What = Union[
+    Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition, HerdRemoval
+]
+
+class Event:
+    """What happens to a crowd while it runs, at a time."""
+
+    at: float
+    what: _What
+    def __init__(self, at: float, what: _What) -> None: ...
+
 class Scene:
-    """Terrain, herds, camera and seed: what a crowd is made of."""
+    """Terrain, herds, camera, events and seed: what a crowd is made of."""
 
     name: str
     seed: int
     camera: Camera
     herds: List[Herd]
+    events: List[Event]
     terrain: Union[TerrainNoise, TerrainFile]
     def __init__(self) -> None: ...
     @staticmethod

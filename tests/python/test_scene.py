@@ -158,3 +158,121 @@ def test_a_rig_tells_its_legs():
     assert rig.bodyHeight > 0 and rig.bodyRadius > 0
     with pytest.raises(skitter.InputError, match="/no/rig.glb"):
         skitter.Rig.load("/no/rig.glb")
+
+
+def every_kind_of_event():
+    goal = skitter.Goal()
+    goal.kind, goal.target = "point", (5, 6)
+    return [
+        skitter.Event(0, skitter.Mound((1, 2), height=-0.5)),
+        skitter.Event(0.5, skitter.HeightSamples(3, 4, [[1, 2, 3], [4, 5, 6]])),
+        skitter.Event(1, skitter.GoalChange(goal, agents=[3, 1])),
+        skitter.Event(2, skitter.SpeedChange(0.5, herd=1)),
+        skitter.Event(3, skitter.Teleport([skitter.Move(4, (1, -2), 1.5), skitter.Move(0, (0, 0))], herd=1)),
+        skitter.Event(4, skitter.Addition([skitter.Arrival((7, 8), -1), skitter.Arrival((0, 1), goal=goal)])),
+        skitter.Event(5, skitter.Removal([2, 7])),
+        skitter.Event(6, skitter.HerdAddition(skitter.Herd(6))),
+        skitter.Event(7, skitter.HerdRemoval(2)),
+    ]
+
+
+def test_events_are_objects_with_the_names_of_scene_files(scene):
+    assert scene.events == []
+    scene.events = every_kind_of_event()
+    written = json.loads(scene.to_json())["events"]
+    assert written[0] == {"at": 0, "mound": {"centre": [1, 2], "radius": 1, "height": -0.5}}
+    assert written[1]["edit"] == {"x": 3, "z": 4, "columns": 3, "rows": 2, "heights": [1, 2, 3, 4, 5, 6]}
+    assert written[2]["agents"] == [3, 1] and written[2]["goal"]["target"] == [5, 6]
+    assert (written[3]["herd"], written[3]["speed"]) == (1, 0.5) and "agents" not in written[3]
+    assert written[4]["teleport"][0] == {"agent": 4, "position": [1, -2], "heading": 1.5}
+    assert "goal" not in written[5]["add"][0] and written[5]["add"][1]["goal"]["kind"] == "point"
+    assert written[6]["remove"] == [2, 7]
+    assert written[7]["addHerd"]["agents"] == 6 and written[8]["removeHerd"] == 2
+
+    events = skitter.Scene.parse(scene.to_json()).events
+    assert [event.at for event in events] == [0, 0.5, 1, 2, 3, 4, 5, 6, 7]
+    assert [type(event.what) for event in events] == [type(event.what) for event in every_kind_of_event()]
+    mound, samples, goal, speed, teleport, addition, removal, comes, goes = (event.what for event in events)
+    assert (mound.centre, mound.radius, mound.height) == ((1, 2), 1, -0.5)
+    assert (samples.x, samples.z) == (3, 4) and samples.heights.tolist() == [[1, 2, 3], [4, 5, 6]]
+    assert (goal.herd, goal.agents, goal.goal.kind, goal.goal.target) == (0, (3, 1), "point", (5, 6))
+    assert (speed.herd, speed.agents, speed.speed) == (1, (), 0.5)
+    assert [(move.agent, move.position, move.heading) for move in teleport.moves] == [(4, (1, -2), 1.5), (0, (0, 0), 0)]
+    first, second = addition.arrivals
+    assert (first.position, first.heading, first.goal) == ((7, 8), -1, None) and second.goal.target == (5, 6)
+    assert (removal.herd, removal.agents) == (0, (2, 7))
+    assert comes.herd.agents == 6 and goes.herd == 2
+    assert "at 7 s: HerdRemoval" in repr(events[-1])
+
+
+def test_events_change_where_they_are(scene):
+    scene.events = every_kind_of_event()
+    mound, samples, goal, speed, teleport, addition, removal, comes, goes = (event.what for event in scene.events)
+    mound.radius, samples.heights, goal.goal.speed, goal.agents = 3, [[7]], 2, ()
+    speed.speed, teleport.herd, removal.agents, comes.herd.reserve, goes.herd = 4, 0, [1], 5, 0
+    move = skitter.Move(1, (2, 3))
+    move.position, move.heading = (4, 5), 0.5
+    teleport.moves = [move]
+    arrival = skitter.Arrival((1, 1))
+    arrival.position, arrival.heading, arrival.goal = (2, 2), 0.25, skitter.Goal()
+    addition.arrivals = [arrival]
+    scene.events[3].at = 2.5
+    written = json.loads(scene.to_json())["events"]
+    assert written[0]["mound"]["radius"] == 3
+    assert written[1]["edit"] == {"x": 3, "z": 4, "columns": 1, "rows": 1, "heights": [7]}
+    assert written[2]["goal"]["speed"] == 2 and "agents" not in written[2]
+    assert (written[3]["at"], written[3]["speed"]) == (2.5, 4)
+    assert (written[4]["herd"], written[4]["teleport"]) == (0, [{"agent": 1, "position": [4, 5], "heading": 0.5}])
+    assert written[5]["add"][0]["position"] == [2, 2] and written[5]["add"][0]["goal"]["kind"] == "cross"
+    assert written[6]["remove"] == [1] and written[7]["addHerd"]["reserve"] == 5 and written[8]["removeHerd"] == 0
+    event = scene.events.pop(0)
+    scene.events.clear()
+    del scene
+    assert event.what.radius == 3
+    event.what = skitter.HerdRemoval(0)
+    assert event.what.herd == 0
+
+
+@pytest.mark.parametrize(
+    "spoil, what",
+    [
+        (lambda s: s.events.append("a mound"), r"events\[0\] is 'a mound', expected an Event"),
+        (lambda s: s.events.append(skitter.Event(0, 3)), r"events\[0\]\.what is 3, expected a Mound"),
+        (lambda s: skitter.HeightSamples(0, 0, [1, 2]), r"heights have shape \(2,\), expected \(rows, columns\)"),
+        (
+            lambda s: s.events.extend(skitter.Event(at, skitter.Mound()) for at in (2, 1)),
+            r"events\[1\]\.at is 1, expected 2 or later",
+        ),
+        (lambda s: s.events.append(skitter.Event(0, skitter.Removal([]))), r"events\[0\]\.remove is empty"),
+    ],
+)
+def test_events_that_cannot_be_are_refused_by_name(scene, spoil, what):
+    with pytest.raises(skitter.InputError, match=what):
+        spoil(scene)
+        scene.to_json()
+
+
+def test_events_happen(device, standing):
+    herd = skitter.Herd(3)
+    herd.spawn.kind, herd.goal.kind = "grid", "none"
+    standing.events = [
+        skitter.Event(0.1, skitter.Teleport([skitter.Move(1, (5, -6))])),
+        skitter.Event(0.1, skitter.HerdAddition(herd)),
+        skitter.Event(0.2, skitter.Removal([0])),
+        skitter.Event(0.3, skitter.HerdRemoval(1)),
+    ]
+    herd.agents = 1000  # the event has a copy
+    crowd = skitter.Crowd(device, standing)
+    crowd.step(5)
+    assert (crowd.herd_count, crowd.agent_count) == (1, 4)
+    crowd.step()
+    assert (crowd.herd_count, crowd.agent_count, crowd.agents(1)) == (2, 7, 3)
+    assert crowd.positions()[1, [0, 2]] == pytest.approx([5, -6], abs=0.1)
+    crowd.step(6)
+    assert crowd.agents() == 3
+    assert crowd.render(64, 36).shape == (36, 64, 4)
+    crowd.step(6)
+    assert not crowd.has_herd((1, 0)) and crowd.agent_count == 3
+    assert crowd.render(64, 36).shape == (36, 64, 4)
+    assert len(skitter.State.parse(crowd.save_to_memory()).scene.events) == 4
+    assert skitter.validate(standing, 30, device)
