@@ -1,15 +1,20 @@
 #include "app/common/simulate.h"
 
+#include <algorithm>
+
 #include "base/clock.h"
 
 namespace skitter::app {
 
 void addStages(std::vector<StageTime>& sums, const std::vector<StageTime>& times) {
-  if (sums.empty()) {
-    sums = times;
-    return;
+  // By name: with the herds that are there, the stages change.
+  for (const StageTime& time : times) {
+    const auto same = std::ranges::find(sums, time.stage, &StageTime::stage);
+    if (same == sums.end())
+      sums.push_back(time);
+    else
+      same->milliseconds += time.milliseconds;
   }
-  for (size_t s = 0; s < sums.size() && s < times.size(); ++s) sums[s].milliseconds += times[s].milliseconds;
 }
 
 void runTick(gpu::CommandRing& ring, Crowd& crowd, float dt, TickTimes& times) {

@@ -9,10 +9,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "drawing.h"
 #include "gpu.h"
 #include "skitter/buffers.h"
+#include "skitter/error.h"
 #include "skitter/readback.h"
 #include "steer_comp.h"
 #include "window.h"
@@ -67,9 +69,20 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
+// The buffers of a herd that goes are freed, and steering, palettes and readback are made for all herds once.
+void expectNoHerdEvents(const Scene& scene) {
+  for (const Event& event : scene.events)
+    if (std::holds_alternative<HerdAddition>(event.what) || std::holds_alternative<HerdRemoval>(event.what))
+      throw inputError(scene.name + ": an event adds or removes a herd, expected the same herds all along");
+}
+
 // Spiders that choose their footholds, and some that play an animation.
 Scene sceneOf(const Options& options) {
-  if (!options.scene.empty()) return loadScene(options.scene);
+  if (!options.scene.empty()) {
+    Scene loaded = loadScene(options.scene);
+    expectNoHerdEvents(loaded);
+    return loaded;
+  }
   Scene scene;
   scene.terrain = TerrainNoise{.columns = 257, .rows = 257, .amplitude = 5};
   scene.herds[0].agents = options.agents;

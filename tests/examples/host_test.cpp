@@ -70,6 +70,12 @@ TEST_F(HostTest, SteersAndDraws) {
   EXPECT_LT(differ, with.size() / 3 / 2);
 }
 
+TEST_F(HostTest, RefusesScenesWhoseHerdsComeAndGo) {
+  const Result result = host({"--scene", SKITTER_ROOT "/assets/scenes/waves.json", "--frames", "2"});
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, testing::HasSubstr("skitter_host: waves: an event adds or removes a herd"));
+}
+
 TEST_F(HostTest, ShowsAWindow) {
   const Result result = runProgram({"bash", "-c", R"sh(
     Xvfb -displayfd 3 -screen 0 640x480x24 -nolisten tcp 3> "$1/display" 2> /dev/null &

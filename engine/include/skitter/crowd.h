@@ -169,11 +169,12 @@ class SKITTER_API Crowd {
   // order. What Scene::events has for that time happens first, as if the caller had called editHeights,
   // steer, setSpeed, teleport, add, remove, addHerd or removeHerd just before; no file is read for that. A
   // tick before which a herd comes or goes waits for the device, and is recorded when all that was recorded
-  // before it is submitted. Throws Error(input) where dt is not what it was before, for steps are timed in
-  // ticks, or, of an adaptive herd, below 22 microseconds; and where an event cannot happen, because a herd
-  // or an agent is not there or no place is left: then none of the tick's events has, and the tick can be
-  // recorded again. Throws Error(device) where memory does not suffice for a herd that comes: then what
-  // comes before it has happened, and the tick, recorded again, goes on with it.
+  // before it is submitted. The buffers of a herd that goes are freed: what reads them (Readback, Palettes,
+  // the caller's shaders) must be gone before. Throws Error(input) where dt is not what it was before, for
+  // steps are timed in ticks, or, of an adaptive herd, below 22 microseconds; and where an event cannot
+  // happen, because a herd or an agent is not there or no place is left: then none of the tick's events has,
+  // and the tick can be recorded again. Throws Error(device) where memory does not suffice for a herd that
+  // comes: then what comes before it has happened, and the tick, recorded again, goes on with it.
   void record(VkCommandBuffer commandBuffer, float dt);
 
   // Replaces a rectangle of the terrain's samples while the crowd walks: columns [x0, x0 + columns), rows
