@@ -7,6 +7,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
 
+#include "cpu_reference/fields.h"
 #include "cpu_reference/limit.h"
 
 // What the stages of docs/stages.md pass to each other, in double precision. Metres, seconds, radians; +Y up,
@@ -75,23 +76,16 @@ struct Creature {
 
 enum class GoalKind { none, point, cross, velocity };
 
+#define REFERENCE_MEMBER(type, name, initial, place, roundings) type name = initial;
 struct Goal {
-  glm::dvec2 target{0}, otherEnd{0};  // world x, z; of kind velocity the target is the desired velocity
-  double speed = 0, arrivalRadius = 0;
+  SKITTER_GOAL_FIELDS(REFERENCE_MEMBER)
   GoalKind kind = GoalKind::none;
 };
 
 struct AgentBody {
   double tileX = 0, tileZ = 0;
-  double localX = 0, y = 0, localZ = 0;
-  glm::dvec2 heading{0, 1};  // x, z
-  double speed = 0;          // m/s, horizontal, along the heading
-  glm::dquat orientation{1, 0, 0, 0};
-  double turnRate = 0;      // omega
-  double still = 0;         // seconds
-  double follow = 1;        // follow factor
-  double surfaceSpeed = 0;  // m/s along the ground
-  bool absent = false;      // nobody is in this place
+  SKITTER_BODY_FIELDS(REFERENCE_MEMBER)
+  bool absent = false;  // nobody is in this place
 
   glm::dvec2 world() const { return {tileX * tileSize + localX, tileZ * tileSize + localZ}; }
   // v_e: how fast the feet must go, turning included.
@@ -99,18 +93,14 @@ struct AgentBody {
 };
 
 struct Gait {
-  double phase = 0;
-  uint32_t lift = 0, reaim = 0;  // bit l: leg l
-  double duration = 0;           // ticks a step that begins now lasts
-  double halfStride = 0, cycle = 0;
-  uint32_t air = 0;  // legs in the air before any lifts
+  SKITTER_GAIT_FIELDS(REFERENCE_MEMBER)
 };
 
 // Positions are local to the tile in x and z, world in y.
 struct Step {
   double tileX = 0, tileZ = 0;
-  glm::dvec3 landing{0}, liftOff{0}, lift{0}, startTangent{0};
-  double firstTick = 0;
+  SKITTER_STEP_FIELDS(REFERENCE_MEMBER)
+  SKITTER_ARC_FIELDS(REFERENCE_MEMBER)
   double duration = 1;  // ticks; negative: the landing is a last resort
 
   // Progress u in [0, 1] at the end of a tick; 1 is stance.
@@ -123,33 +113,23 @@ struct Step {
 };
 
 struct Foot {
-  glm::dvec3 target{0};  // relative
-  double progress = 1;
+  SKITTER_FOOT_FIELDS(REFERENCE_MEMBER)
 };
 
 struct Chain {
   std::vector<glm::dvec2> directions;  // (d.x, d.y) / (1 + d.z) of each bone in its frame B_i
-  glm::dvec3 tip{0};                   // relative
-  double reachError = 0;               // metres
-  double miss = 0;                     // of a planted foot, share of the reach; 0 up to missLeast
+  SKITTER_TIP_FIELDS(REFERENCE_MEMBER)
+  double miss = 0;  // of a planted foot, share of the reach; 0 up to missLeast
 };
 
 struct BonePose {
-  glm::dquat rotation{1, 0, 0, 0};  // world from rest
-  glm::dvec3 position{0};           // relative
+  SKITTER_POSE_FIELDS(REFERENCE_MEMBER)
 };
 
 // Sums over the ticks in which an agent was watched; metres and radians.
 struct Metric {
-  double ticks = 0;
-  double planted = 0, stays = 0, skates = 0;  // leg-ticks: planted, planted a tick before too, skating
-  double slip = 0, stances = 0;               // over finished stances
-  double largestError = 0, largestViolation = 0;
-  double penetration = 0, penetrationBeyond = 0, floating = 0, floatingBeyond = 0;
-  double depth = 0, deepest = 0, violations = 0;
-  double pairs = 0, crossings = 0;
-  double supported = 0, unstable = 0, margin = 0, leastMargin = 0;
-  double footJerk = 0, footPath = 0, bodyJerk = 0, bodyPath = 0;  // sums of W^5 Q and of P^2
+  SKITTER_METRIC_FIELDS(REFERENCE_MEMBER)
+  double largestViolation = 0;
 };
 
 // normalize(v) = v / sqrt(max(|v|^2, 1e-20))

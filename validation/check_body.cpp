@@ -3,6 +3,7 @@
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 namespace {
@@ -28,6 +29,7 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
   const double unit = setting.tuning.legLength;
   Sample sample;
   sample.finite("body", records(moment.after.body, moment.agent, shared::BODY_STRIDE));
+  compareFields(expected, got, sample);
   const auto scalar = [&](const char* quantity, double want, double found, double bounded) {
     sample.compare(quantity, std::abs(want - found), bounded, {want, 0, 0, 0}, {found, 0, 0, 0});
   };

@@ -7,6 +7,7 @@
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 namespace {
@@ -161,7 +162,7 @@ Sample compare(const Case& c, const reference::FootholdResult& result) {
   sample.finite("arc", records(c.moment.after.arc, c.leg, shared::ARC_STRIDE));
   sample.same("tile x", expected.tileX, got.tileX);
   sample.same("tile z", expected.tileZ, got.tileZ);
-  sample.same("first tick", expected.firstTick, got.firstTick);
+  compareFields(expected, got, sample);
   sample.same("duration, ticks", expected.duration, got.duration);
   const auto point = [&](const char* across, const char* height, const glm::dvec3& e, const glm::dvec3& g,
                          double horizontal, double vertical) {

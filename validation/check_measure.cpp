@@ -7,6 +7,7 @@
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 namespace {
@@ -60,6 +61,7 @@ TrailBounds compareTrail(const reference::Trail& expected, const reference::Trai
   const TrailBounds bound{at, at + tolerance::relative,
                           at + tolerance::relative + 2 * tolerance::roundoff * glm::length(expected.second),
                           at + tolerance::relative + 8 * tolerance::roundoff * glm::length(expected.second)};
+  compareFields(expected, got, sample);
   const auto vector = [&](const char* quantity, const glm::dvec3& e, const glm::dvec3& g, double by) {
     sample.compare(quantity, glm::length(e - g) / unit, by / unit, {e, 0}, {g, 0});
   };
@@ -230,6 +232,7 @@ Bounds compareTrails(const Setting& setting, const Legs& legs, const reference::
 bool compareSums(const Setting& setting, const Legs& legs, const reference::Measured& expected,
                  const Metric& got, const Bounds& bounds, Sample& sample) {
   const double unit = setting.tuning.legLength;
+  compareFields(expected.metric, got, sample);
   Metric want = expected.metric;
   MetricComparison metric(sample, want, got, unit, static_cast<double>(legs.feet.size()));
   metric.count("ticks", &Metric::ticks);

@@ -3,6 +3,7 @@
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 namespace {
@@ -16,12 +17,7 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
   Sample sample;
   sample.finite("goal", records(moment.after.goal, moment.agent, shared::GOAL_STRIDE));
   sample.finite("steer", records(moment.after.steer, moment.agent, shared::STEER_STRIDE));
-  sample.same("goal target x", expected.goal.target.x, got.target.x);
-  sample.same("goal target z", expected.goal.target.y, got.target.y);
-  sample.same("goal other end x", expected.goal.otherEnd.x, got.otherEnd.x);
-  sample.same("goal other end z", expected.goal.otherEnd.y, got.otherEnd.y);
-  sample.same("goal speed", expected.goal.speed, got.speed);
-  sample.same("goal arrival radius", expected.goal.arrivalRadius, got.arrivalRadius);
+  compareFields(expected.goal, got, sample);
   sample.same("goal kind", static_cast<double>(expected.goal.kind), static_cast<double>(got.kind));
   const bool given = expected.goal.kind == reference::GoalKind::velocity;
   const double speed = std::max(given ? glm::length(expected.desired) : expected.goal.speed, 1e-6);

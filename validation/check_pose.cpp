@@ -3,6 +3,7 @@
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 namespace {
@@ -11,6 +12,7 @@ namespace tolerance = reference::tolerance;
 
 void compareBone(const reference::BonePose& expected, const reference::BonePose& got, int bones, double reach,
                  double unit, Sample& sample) {
+  compareFields(expected, got, sample);
   const glm::dquat &e = expected.rotation, &g = got.rotation;
   const glm::dvec4 u{e.x, e.y, e.z, e.w}, v{g.x, g.y, g.z, g.w};
   sample.compare("rotation", std::min(glm::length(u - v), glm::length(u + v)), tolerance::boneRotation(bones),

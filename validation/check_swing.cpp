@@ -3,6 +3,7 @@
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 
@@ -18,6 +19,7 @@ void checkSwing(const Setting& setting, const Moment& moment, Judge& judge) {
     const reference::Foot got = footOf(moment.after, leg);
     Sample sample;
     sample.finite("foot", records(moment.after.foot, leg, shared::FOOT_STRIDE));
+    compareFields(expected, got, sample);
     const bool planted = expected.progress >= 1;
     sample.same("planted", planted, got.progress >= 1);
     sample.compare("progress", std::abs(expected.progress - got.progress), 4 * tolerance::roundoff,

@@ -6,6 +6,7 @@
 #include "validation/clip_leg.h"
 #include "validation/convert.h"
 #include "validation/convert_clip.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 
@@ -27,6 +28,7 @@ void checkClipSwing(const Setting& setting, const Moment& moment, Judge& judge) 
     Sample sample;
     sample.finite("foot", records(moment.after.foot, leg, shared::FOOT_STRIDE));
     sample.finite("chain", records(moment.after.chain, leg, shared::chainStride(setting.bones)));
+    compareFields(expected.foot, foot, sample);
     const double place = bounds.joints.back() + tolerance::rotated(glm::length(expected.foot.target));
     sample.compare("foot / leg length", glm::length(expected.foot.target - foot.target) / unit, place / unit,
                    {expected.foot.target, 0}, {foot.target, 0});

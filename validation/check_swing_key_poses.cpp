@@ -3,6 +3,7 @@
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 
@@ -29,6 +30,7 @@ void checkKeyPoseSwing(const Setting& setting, const Moment& moment, Judge& judg
     sample.finite("foot", records(moment.after.foot, leg, shared::FOOT_STRIDE));
     sample.finite("chain", records(moment.after.chain, leg, shared::chainStride(setting.bones)));
     sample.finite("spring", records(moment.after.spring, leg, shared::chainStride(setting.bones)));
+    compareFields(expected.foot, foot, sample);
     for (size_t i = 0; i < limb.bones.size(); ++i) {
       const glm::dvec2 &want = expected.chain.directions[i], &found = chain.directions[i];
       sample.compare("direction", glm::length(want - found), bound.directions[i], {want, i, 0},

@@ -3,6 +3,7 @@
 #include "skitter/records.h"
 #include "validation/checks.h"
 #include "validation/convert.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 
@@ -22,6 +23,7 @@ void checkLoopSwing(const Setting& setting, const Moment& moment, Judge& judge) 
 
     Sample sample;
     sample.finite("foot", records(moment.after.foot, leg, shared::FOOT_STRIDE));
+    compareFields(expected.foot, got, sample);
     // A loop is closed and has no corner where a foot lifts or lands: only which it is may be in doubt there.
     const bool stands = expected.foot.progress >= 1, tie = stands != (got.progress >= 1);
     if (tie) {

@@ -6,6 +6,7 @@
 #include "validation/clip_leg.h"
 #include "validation/convert.h"
 #include "validation/convert_clip.h"
+#include "validation/fields.h"
 
 namespace skitter::validation {
 namespace {
@@ -48,6 +49,7 @@ void compare(const Setting& setting, const Moment& moment, size_t leg, const Pla
                    {found, 0});
     sample.compare(up, std::abs(apart.y) / unit, bounds.vertical / unit, {want, 0}, {found, 0});
   };
+  compareFields(expected.foot, foot, sample);
   sample.same("locked", expected.plant.locked, got.locked);
   sample.same("stance", expected.foot.progress, foot.progress);
   place(expected.foot.target, foot.target, "target, horizontally / leg length",

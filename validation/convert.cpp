@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "skitter/records.h"
-#include "validation/fields.h"
 #include "validation/vec4s.h"
 
 namespace skitter::validation {
@@ -23,7 +22,7 @@ std::vector<glm::dvec2> pairsOf(const std::vector<float>& records, size_t base, 
   return pairs;
 }
 
-// The fields of a record (engine/include/skitter/records.h), by the reference's types.
+// The fields of a record (cpu_reference/fields.h), by their types.
 void read(double& to, const float* from) { to = from[0]; }
 void read(uint32_t& to, const float* from) { to = mask(from[0]); }
 template <int N>
@@ -39,8 +38,8 @@ void write(float* to, const glm::vec<N, double>& from) {
 }
 void write(float* to, const glm::dquat& q) { write(to, glm::dvec4(q.x, q.y, q.z, q.w)); }
 
-#define READ(name, first) read(to.name, record + (first));
-#define WRITE(name, first) write(record + (first), from.name);
+#define READ(type, name, initial, place, roundings) read(to.name, record + (place));
+#define WRITE(type, name, initial, place, roundings) write(record + (place), from.name);
 
 const float* recordAt(const std::vector<float>& records, size_t index, int stride) {
   return records.data() + 4 * at(index, stride);

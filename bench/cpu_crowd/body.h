@@ -77,12 +77,12 @@ Footing<F> footingOf(const World& world, float tick, const Agent<F>& a, const Le
 template <class F>
 Footing<F> blindFootingOf(const World& world, const Agent<F>& a) {
   const Mat3<F> r = matrixOf(a.orientation);
-  const F x = a.tileX * shared::TILE_SIZE + a.local.x, z = a.tileZ * shared::TILE_SIZE + a.local.z;
+  const F x = a.tileX * shared::TILE_SIZE + a.localX, z = a.tileZ * shared::TILE_SIZE + a.localZ;
   Footing<F> footing;
   for (const LegModel& leg : world.legs) {
     const Vec3<F> home = r * broadcast<F>(leg.home);
     const F height = groundAt(world.terrain, x + home.x, z + home.z).height;
-    footing.ground.add({home.x, height - a.local.y, home.z});
+    footing.ground.add({home.x, height - a.y, home.z});
   }
   return footing;
 }
@@ -93,7 +93,7 @@ Vec3<F> leaningNormal(const shared::Parameters& q, const typename PlaneSums<F>::
   const F lean = clamp(a.speed * a.turnRate * q.leanGain, -q.leanMost, q.leanMost);
   const float level = 1 - q.leanLevel;
   return normalized(
-      Vec3<F>{a.headingZ * lean - plane.slopeX * level, F(1), -a.headingX * lean - plane.slopeZ * level});
+      Vec3<F>{a.heading.z * lean - plane.slopeX * level, F(1), -a.heading.x * lean - plane.slopeZ * level});
 }
 
 // From which the body can brake before the terrain's edge.
@@ -104,8 +104,8 @@ F speedToEdge(const shared::Parameters& q, const Agent<F>& a) {
     const F left = select(heading < F(0), F(extent) + tiles + local, F(extent) - tiles - local);
     return larger(left, F(0)) * reciprocal(larger(absolute(heading), F(1e-6f)));
   };
-  const F way = smaller(ahead(q.halfExtentX, a.tileX, a.local.x, a.headingX),
-                        ahead(q.halfExtentZ, a.tileZ, a.local.z, a.headingZ));
+  const F way = smaller(ahead(q.halfExtentX, a.tileX, a.localX, a.heading.x),
+                        ahead(q.halfExtentZ, a.tileZ, a.localZ, a.heading.z));
   const float halfTick = 0.5f * q.dt;
   return way * reciprocal(squareRoot(way * (0.5f / q.braking) + halfTick * halfTick) + halfTick);
 }
@@ -118,25 +118,25 @@ void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
   const F commanded = squareRoot(a.velocityX * a.velocityX + a.velocityZ * a.velocityZ);
   const auto going = F(1e-4f * q.legLength) < commanded;
   const F inverse = reciprocal(larger(commanded, 1e-20f));
-  const F wx = select(going, a.velocityX * inverse, a.headingX),
-          wz = select(going, a.velocityZ * inverse, a.headingZ);
-  const F c = wx * a.headingZ - wz * a.headingX, d = wx * a.headingX + wz * a.headingZ;
+  const F wx = select(going, a.velocityX * inverse, a.heading.x),
+          wz = select(going, a.velocityZ * inverse, a.heading.z);
+  const F c = wx * a.heading.z - wz * a.heading.x, d = wx * a.heading.x + wz * a.heading.z;
   const F e = select(F(0) < d, c, select(F(0) <= c, F(1), F(-1)));
   const F rate = clamp(e * q.turnGain, -q.turnRate, q.turnRate) * (follow * 0.75f + 0.25f);
   const float change = q.turnAcceleration * q.dt;
   a.turnRate = a.turnRate + clamp(rate - a.turnRate, -change, change);
-  const Vec3<F> turned = Turn<F>(a.turnRate * q.dt)(Vec3<F>{a.headingX, F(0), a.headingZ});
+  const Vec3<F> turned = Turn<F>(a.turnRate * q.dt)(Vec3<F>{a.heading.x, F(0), a.heading.z});
   const F size = rsqrt(turned.x * turned.x + turned.z * turned.z);
-  a.headingX = turned.x * size;
-  a.headingZ = turned.z * size;
-  const F speed = follow * commanded * larger(F(0), wx * a.headingX + wz * a.headingZ);
+  a.heading.x = turned.x * size;
+  a.heading.z = turned.z * size;
+  const F speed = follow * commanded * larger(F(0), wx * a.heading.x + wz * a.heading.z);
   a.speed = a.speed + clamp(speed - a.speed, -q.braking * q.dt, q.acceleration * q.dt);
   a.speed = smaller(a.speed, speedToEdge(q, a));
-  const F movedX = a.headingX * (a.speed * q.dt), movedZ = a.headingZ * (a.speed * q.dt);
+  const F movedX = a.heading.x * (a.speed * q.dt), movedZ = a.heading.z * (a.speed * q.dt);
 
   const auto plane = footing.ground.fit(q, float(world.legs.size()));
   const F rise = plane.slopeX * movedX + plane.slopeZ * movedZ;
-  const F planeHeight = a.local.y + plane.height + rise;
+  const F planeHeight = a.y + plane.height + rise;
 
   const F swell = a.phase * (F(1) - a.phase) * 4.0f;
   const F breath = swell * swell * smaller(F(1), a.still * (1 / q.settleTime));
@@ -144,8 +144,8 @@ void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
   const Vec3<F> up{(o.x * o.y - o.z * o.w) * 2.0f, F(1) - (o.x * o.x + o.z * o.z) * 2.0f,
                    (o.y * o.z + o.x * o.w) * 2.0f};
   const Vec3<F> normal = normalized(mix(up, leaningNormal(q, plane, a), F(q.tiltBlend)));
-  const F climb = -(normal.x * a.headingX + normal.z * a.headingZ) * reciprocal(normal.y);
-  const Vec3<F> forward = normalized(Vec3<F>{a.headingX, climb, a.headingZ});
+  const F climb = -(normal.x * a.heading.x + normal.z * a.heading.z) * reciprocal(normal.y);
+  const Vec3<F> forward = normalized(Vec3<F>{a.heading.x, climb, a.heading.z});
   const Quaternion<F> orientation = quaternionOf(Mat3<F>{cross(normal, forward), normal, forward});
   const Quaternion<F> opposite{-orientation.x, -orientation.y, -orientation.z, -orientation.w};
   a.orientation = select(dot(orientation, a.orientation) < F(0), opposite, orientation);
@@ -155,17 +155,17 @@ void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
     tile = tile + crossed;
     local = to - crossed * shared::TILE_SIZE;
   };
-  advance(a.local.x, a.tileX, movedX);
-  advance(a.local.z, a.tileZ, movedZ);
+  advance(a.localX, a.tileX, movedX);
+  advance(a.localZ, a.tileZ, movedZ);
 
-  const F x = a.tileX * shared::TILE_SIZE + a.local.x, z = a.tileZ * shared::TILE_SIZE + a.local.z;
+  const F x = a.tileX * shared::TILE_SIZE + a.localX, z = a.tileZ * shared::TILE_SIZE + a.localZ;
   F height = planeHeight + breath * q.breathHeight;
   for (int k = -1; k <= 1; ++k) {
     const Vec3<F> belly = normal * q.bodyHeight + forward * (float(k) * q.bodyRadius);
     height =
         larger(height, groundAt(world.terrain, x + belly.x, z + belly.z).height + q.bellyClearance - belly.y);
   }
-  a.local.y = mix(a.local.y + rise, height, F(q.heightBlend));
+  a.y = mix(a.y + rise, height, F(q.heightBlend));
 
   a.surfaceSpeed = a.speed * rsqrt(larger(forward.x * forward.x + forward.z * forward.z, 1e-20f));
   const F slow(1e-2f * q.legLength);

@@ -25,11 +25,11 @@ class Foothold {
         a_(b.agent),
         reaim_(F(0.5f) < b.reaim),
         r_(matrixOf(a_.orientation)) {
-    x_ = a_.tileX * shared::TILE_SIZE + a_.local.x;
-    z_ = a_.tileZ * shared::TILE_SIZE + a_.local.z;
+    x_ = a_.tileX * shared::TILE_SIZE + a_.localX;
+    z_ = a_.tileZ * shared::TILE_SIZE + a_.localZ;
     oldTicks_ = absolute(b.step.ticks);
     flown_ = F(tick - 1) - b.step.firstTick;
-    ticks_ = select(reaim_, larger(oldTicks_ - flown_, 2), a_.stepTicks);
+    ticks_ = select(reaim_, larger(oldTicks_ - flown_, 2), a_.duration);
   }
 
   Step<F> step(float tick) const {
@@ -48,8 +48,8 @@ class Foothold {
     }
     const F least = select(reaim_, F(1) - u, F(1)) * q_.stepHeight;
     const Vec3<F> lift = route(p0, p1, m0, least);
-    next.landing = p1 + a_.local;
-    next.liftOff = p0 + a_.local;
+    next.landing = p1 + a_.local();
+    next.liftOff = p0 + a_.local();
     next.lift = lift;
     next.startTangent = select(reaim_, m0, lift);
     next.tileX = a_.tileX;
@@ -67,7 +67,7 @@ class Foothold {
   };
 
   Ladder ladderOf() const {
-    const F time = ticks_ * q_.dt, stance = a_.cycle - a_.stepTicks * q_.dt;
+    const F time = ticks_ * q_.dt, stance = a_.cycle - a_.duration * q_.dt;
     const Vec3<F> tau = predictLanding(b_.home, a_, time, stance);
     Vec3<F> root = Turn<F>(a_.turnRate * time)(b_.root);
     root.z = root.z + a_.surfaceSpeed * time;
@@ -88,7 +88,7 @@ class Foothold {
       for (int j = -k; j <= k; ++j) {
         Vec3<F> point = ladder.predicted + ladder.along * float(k - 3) + ladder.across * float(j);
         const Ground<F> ground = groundAt(world_.terrain, x_ + point.x, z_ + point.z);
-        point.y = ground.height - a_.local.y;
+        point.y = ground.height - a_.y;
         visit(point, ground, length(point - ladder.root));
       }
     }
@@ -172,7 +172,7 @@ class Foothold {
       p = p + m0 * h10;  // nothing but for a step aimed anew
     }
     p = p + side * share;
-    const F gap = groundAt(world_.terrain, x_ + p.x, z_ + p.z).height - (a_.local.y + p.y);
+    const F gap = groundAt(world_.terrain, x_ + p.x, z_ + p.z).height - (a_.y + p.y);
     return (gap * r_.y.y + q_.stepClearance * clearing) * reciprocal(share);
   }
 

@@ -33,8 +33,8 @@ template <class F, int N>
   const float groups = float(world.groups);
   const F v = a.surfaceSpeed + absolute(a.turnRate) * q.homeRadius;
   const F pace = reciprocal(F(1) + v * (1 / q.swingSpeed));
-  a.stepTicks = larger(F(3), roundDown(pace * (q.swingStill / q.dt) + 0.5f));
-  const F swing = a.stepTicks * q.dt, duty = larger(F(q.dutyLeast), F(q.dutyStill) - v * q.dutyGain);
+  a.duration = larger(F(3), roundDown(pace * (q.swingStill / q.dt) + 0.5f));
+  const F swing = a.duration * q.dt, duty = larger(F(q.dutyLeast), F(q.dutyStill) - v * q.dutyGain);
   const F cycle =
       larger(smaller(F(q.cycleMax), swing * reciprocal(F(1) - duty)), swing * (groups * q.windowSlack));
   const F stance = cycle - swing, inverseCycle = reciprocal(cycle);

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
 #include "bench/cpu_crowd/rotation.h"
+#include "cpu_reference/fields.h"
 #include "skitter/records.h"
 
 namespace skitter::cpu_crowd {
@@ -10,37 +14,54 @@ namespace skitter::cpu_crowd {
 // are floats throughout, so that an agent can be taken out of its block and put back.
 
 template <class F>
+struct Pair {
+  F x, z;
+};
+
+// The rows of a field of a record, by its type in the table of fields (cpu_reference/fields.h).
+template <class F, class Type>
+struct RowsOf {
+  using Rows = F;
+};
+template <class F>
+struct RowsOf<F, glm::dvec2> {
+  using Rows = Pair<F>;
+};
+template <class F>
+struct RowsOf<F, glm::dvec3> {
+  using Rows = Vec3<F>;
+};
+template <class F>
+struct RowsOf<F, glm::dquat> {
+  using Rows = Quaternion<F>;
+};
+#define SKITTER_ROWS(type, name, initial, place, roundings) typename RowsOf<F, type>::Rows name;
+
+template <class F>
 struct Agent {
   // goal
   F targetX, targetZ, otherX, otherZ, wantedSpeed, arrival, kind;
   // steer
   F velocityX, velocityZ;
-  // body
-  Vec3<F> local;
-  F headingX, tileX, tileZ, headingZ, speed;
-  Quaternion<F> orientation;
-  F turnRate, still, follow, surfaceSpeed;
-  // gait; masks of legs
-  F phase, lift, reaim, stepTicks, halfStride, cycle, air;
+  SKITTER_BODY_FIELDS(SKITTER_ROWS)
+  F tileX, tileZ;
+  SKITTER_GAIT_FIELDS(SKITTER_ROWS)
+
+  Vec3<F> local() const { return {localX, y, localZ}; }
 };
 
 // positions tile-local in x and z
 template <class F>
 struct Step {
-  Vec3<F> landing;
-  F tileX;
-  Vec3<F> liftOff;
-  F tileZ;
-  Vec3<F> lift;
-  F firstTick;
-  Vec3<F> startTangent;
+  SKITTER_STEP_FIELDS(SKITTER_ROWS)
+  SKITTER_ARC_FIELDS(SKITTER_ROWS)
+  F tileX, tileZ;
   F ticks;  // negative: the landing is a last resort
 };
 
 template <class F>
 struct Foot {
-  Vec3<F> target;
-  F progress;
+  SKITTER_FOOT_FIELDS(SKITTER_ROWS)
 };
 
 template <class F, int N>
@@ -60,15 +81,14 @@ struct Leg {
 
 template <class F>
 struct BonePose {
-  Quaternion<F> rotation;
-  Vec3<F> position;
+  SKITTER_POSE_FIELDS(SKITTER_ROWS)
 };
 
 // A point of a step relative to the agent's position, along world axes.
 template <class F>
 Vec3<F> relative(const Vec3<F>& point, const Step<F>& step, const Agent<F>& agent) {
-  return {point.x + (step.tileX - agent.tileX) * shared::TILE_SIZE - agent.local.x, point.y - agent.local.y,
-          point.z + (step.tileZ - agent.tileZ) * shared::TILE_SIZE - agent.local.z};
+  return {point.x + (step.tileX - agent.tileX) * shared::TILE_SIZE - agent.localX, point.y - agent.y,
+          point.z + (step.tileZ - agent.tileZ) * shared::TILE_SIZE - agent.localZ};
 }
 
 }  // namespace skitter::cpu_crowd

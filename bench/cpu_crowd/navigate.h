@@ -9,7 +9,7 @@ namespace skitter::cpu_crowd {
 template <class F>
 void navigate(const World& world, Agent<F>& a) {
   const shared::Parameters& q = world.q;
-  const F x = a.tileX * shared::TILE_SIZE + a.local.x, z = a.tileZ * shared::TILE_SIZE + a.local.z;
+  const F x = a.tileX * shared::TILE_SIZE + a.localX, z = a.tileZ * shared::TILE_SIZE + a.localZ;
   const auto isKind = [&](float kind) { return absolute(a.kind - kind) < F(0.5f); };
   const auto given = isKind(shared::GOAL_VELOCITY);
   F dx = a.targetX - select(given, F(0), x), dz = a.targetZ - select(given, F(0), z);

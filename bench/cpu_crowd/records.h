@@ -15,38 +15,46 @@ inline const float* recordAt(const std::vector<float>& buffer, size_t index, int
   return buffer.data() + 4 * index * size_t(stride);
 }
 
+inline void take(const float* from, float& to) { to = from[0]; }
+inline void take(const float* from, Pair<float>& to) { to = {from[0], from[1]}; }
+inline void take(const float* from, Vec3<float>& to) { to = {from[0], from[1], from[2]}; }
+inline void take(const float* from, Quaternion<float>& to) { to = {from[0], from[1], from[2], from[3]}; }
+inline void put(float from, float* to) { to[0] = from; }
+inline void put(const Pair<float>& from, float* to) { to[0] = from.x, to[1] = from.z; }
+inline void put(const Vec3<float>& from, float* to) { to[0] = from.x, to[1] = from.y, to[2] = from.z; }
+inline void put(const Quaternion<float>& from, float* to) {
+  to[0] = from.x, to[1] = from.y, to[2] = from.z, to[3] = from.w;
+}
+#define SKITTER_TAKE(type, name, initial, place, roundings) take(record + (place), to.name);
+#define SKITTER_PUT(type, name, initial, place, roundings) put(from.name, record + (place));
+
 inline Agent<float> readAgent(const HerdState& state, size_t agent) {
   const float* goal = recordAt(state.goal, agent, shared::GOAL_STRIDE);
   const float* steer = recordAt(state.steer, agent, shared::STEER_STRIDE);
-  const float* b = recordAt(state.body, agent, shared::BODY_STRIDE);
-  const float* gait = recordAt(state.gait, agent, shared::GAIT_STRIDE);
-  Agent<float> a;
-  a.targetX = goal[0], a.targetZ = goal[1], a.otherX = goal[2], a.otherZ = goal[3];
-  a.wantedSpeed = goal[4], a.arrival = goal[5], a.kind = goal[6];
-  a.velocityX = steer[0], a.velocityZ = steer[1];
-  a.local = {b[0], b[1], b[2]};
-  a.tileX = shared::tileX(b[3]), a.tileZ = shared::tileZ(b[3]);
-  a.headingX = b[4], a.headingZ = b[5], a.speed = b[6];
-  a.orientation = {b[8], b[9], b[10], b[11]};
-  a.turnRate = b[12], a.still = b[13], a.follow = b[14], a.surfaceSpeed = b[15];
-  a.phase = gait[0], a.lift = gait[1], a.reaim = gait[2], a.stepTicks = gait[3];
-  a.halfStride = gait[4], a.cycle = gait[5], a.air = gait[6];
-  return a;
+  Agent<float> to;
+  to.targetX = goal[0], to.targetZ = goal[1], to.otherX = goal[2], to.otherZ = goal[3];
+  to.wantedSpeed = goal[4], to.arrival = goal[5], to.kind = goal[6];
+  to.velocityX = steer[0], to.velocityZ = steer[1];
+  const float* record = recordAt(state.body, agent, shared::BODY_STRIDE);
+  SKITTER_BODY_FIELDS(SKITTER_TAKE)
+  to.tileX = shared::tileX(record[3]), to.tileZ = shared::tileZ(record[3]);
+  record = recordAt(state.gait, agent, shared::GAIT_STRIDE);
+  SKITTER_GAIT_FIELDS(SKITTER_TAKE)
+  return to;
 }
 
-inline void writeAgent(const Agent<float>& a, size_t agent, HerdState& state) {
-  const auto put = [&](std::vector<float>& buffer, int stride, std::initializer_list<float> values) {
-    std::copy(values.begin(), values.end(), recordAt(buffer, agent, stride));
-  };
-  put(state.goal, shared::GOAL_STRIDE,
-      {a.targetX, a.targetZ, a.otherX, a.otherZ, a.wantedSpeed, a.arrival, a.kind, 0});
-  put(state.steer, shared::STEER_STRIDE, {a.velocityX, a.velocityZ, 0, 0});
-  put(state.body, shared::BODY_STRIDE,
-      {a.local.x, a.local.y, a.local.z, shared::packedTile(a.tileX, a.tileZ), a.headingX, a.headingZ, a.speed,
-       0, a.orientation.x, a.orientation.y, a.orientation.z, a.orientation.w, a.turnRate, a.still, a.follow,
-       a.surfaceSpeed});
-  put(state.gait, shared::GAIT_STRIDE,
-      {a.phase, a.lift, a.reaim, a.stepTicks, a.halfStride, a.cycle, a.air, 0});
+// What no field has is zero already.
+inline void writeAgent(const Agent<float>& from, size_t agent, HerdState& state) {
+  const float goal[] = {from.targetX,     from.targetZ, from.otherX, from.otherZ,
+                        from.wantedSpeed, from.arrival, from.kind};
+  std::copy(std::begin(goal), std::end(goal), recordAt(state.goal, agent, shared::GOAL_STRIDE));
+  float* record = recordAt(state.steer, agent, shared::STEER_STRIDE);
+  record[0] = from.velocityX, record[1] = from.velocityZ;
+  record = recordAt(state.body, agent, shared::BODY_STRIDE);
+  SKITTER_BODY_FIELDS(SKITTER_PUT)
+  record[3] = shared::packedTile(from.tileX, from.tileZ);
+  record = recordAt(state.gait, agent, shared::GAIT_STRIDE);
+  SKITTER_GAIT_FIELDS(SKITTER_PUT)
 }
 
 // Where a tip is in the device's records: relative to the agent, world axes.
@@ -58,60 +66,61 @@ inline Vec3<float> tipInWorld(const LegModel& leg, const Quaternion<float>& orie
 template <int N>
 Leg<float, N> readLeg(const HerdState& state, size_t agent, size_t l, size_t legs, int bones) {
   const size_t leg = agent * legs + l;
-  const float* s = recordAt(state.step, leg, shared::STEP_STRIDE);
-  const float* arc = recordAt(state.arc, leg, shared::ARC_STRIDE);
+  Leg<float, N> read{};
+  Step<float>& to = read.step;
+  const float* record = recordAt(state.arc, leg, shared::ARC_STRIDE);
+  SKITTER_ARC_FIELDS(SKITTER_TAKE)
+  record = recordAt(state.step, leg, shared::STEP_STRIDE);
+  SKITTER_STEP_FIELDS(SKITTER_TAKE)
   const float tile = recordAt(state.body, agent, shared::BODY_STRIDE)[3];
   const float x = shared::tileX(tile), z = shared::tileZ(tile);
-  const float apart = shared::tilesApart(shared::tileOfTicks(s[7]), shared::stepTile(x, z));
+  const float apart = shared::tilesApart(shared::tileOfTicks(record[7]), shared::stepTile(x, z));
+  to.tileX = x + shared::apartX(apart), to.tileZ = z + shared::apartZ(apart);
+  to.ticks = std::copysign(shared::ticksOf(record[7]), record[7]);
   const float* directions = recordAt(state.chain, leg, shared::chainStride(bones));
-  Leg<float, N> to{};
-  to.step = {{s[0], s[1], s[2]},       x + shared::apartX(apart),
-             {s[4], s[5], s[6]},       z + shared::apartZ(apart),
-             {arc[0], arc[1], arc[2]}, s[3],
-             {arc[4], arc[5], arc[6]}, std::copysign(shared::ticksOf(s[7]), s[7])};
   for (int b = 0; b < bones; ++b) {
-    to.chain.x[b] = directions[2 * b];
-    to.chain.y[b] = directions[2 * b + 1];
+    read.chain.x[b] = directions[2 * b];
+    read.chain.y[b] = directions[2 * b + 1];
   }
-  to.foot.progress =
-      std::clamp((float(state.tick) - to.step.firstTick) / std::abs(to.step.ticks), 0.0f, 1.0f);
+  read.foot.progress = std::clamp((float(state.tick) - to.firstTick) / std::abs(to.ticks), 0.0f, 1.0f);
   const float* told = state.miss.data() + 2 * shared::missPair(int(agent), int(l), int(legs));
-  to.chain.error = told[1] == float(state.tick) ? told[0] : 0;
-  return to;
+  read.chain.error = told[1] == float(state.tick) ? told[0] : 0;
+  return read;
 }
 
 template <int N>
-void writeLeg(const Leg<float, N>& from, const LegModel& model, float missLeast, size_t agent, size_t l,
+void writeLeg(const Leg<float, N>& leg, const LegModel& model, float missLeast, size_t agent, size_t l,
               size_t legs, int bones, HerdState& state) {
-  const size_t leg = agent * legs + l;
-  const Step<float>& s = from.step;
-  const float step[] = {s.landing.x, s.landing.y,
-                        s.landing.z, s.firstTick,
-                        s.liftOff.x, s.liftOff.y,
-                        s.liftOff.z, shared::packedTicks(s.ticks, shared::stepTile(s.tileX, s.tileZ))};
-  std::copy(std::begin(step), std::end(step), recordAt(state.step, leg, shared::STEP_STRIDE));
-  const float arc[] = {s.lift.x,         s.lift.y,         s.lift.z,         0,
-                       s.startTangent.x, s.startTangent.y, s.startTangent.z, 0};
-  std::copy(std::begin(arc), std::end(arc), recordAt(state.arc, leg, shared::ARC_STRIDE));
-  const Foot<float>& f = from.foot;
-  const float foot[] = {f.target.x, f.target.y, f.target.z, f.progress};
-  std::copy(std::begin(foot), std::end(foot), recordAt(state.foot, leg, shared::FOOT_STRIDE));
-  float* directions = recordAt(state.chain, leg, shared::chainStride(bones));
+  const size_t index = agent * legs + l;
+  const auto writeStep = [&](const Step<float>& from) {
+    float* record = recordAt(state.step, index, shared::STEP_STRIDE);
+    SKITTER_STEP_FIELDS(SKITTER_PUT)
+    record[7] = shared::packedTicks(from.ticks, shared::stepTile(from.tileX, from.tileZ));
+    record = recordAt(state.arc, index, shared::ARC_STRIDE);
+    SKITTER_ARC_FIELDS(SKITTER_PUT)
+  };
+  const auto writeFoot = [&](const Foot<float>& from) {
+    float* record = recordAt(state.foot, index, shared::FOOT_STRIDE);
+    SKITTER_FOOT_FIELDS(SKITTER_PUT)
+  };
+  writeStep(leg.step);
+  writeFoot(leg.foot);
+  const Chain<float, N>& chain = leg.chain;
+  float* directions = recordAt(state.chain, index, shared::chainStride(bones));
   for (int b = 0; b < bones; ++b) {
-    directions[2 * b] = from.chain.x[b];
-    directions[2 * b + 1] = from.chain.y[b];
+    directions[2 * b] = chain.x[b];
+    directions[2 * b + 1] = chain.y[b];
   }
-  const float tip[] = {from.chain.tip.x, from.chain.tip.y, from.chain.tip.z, from.chain.error * model.reach};
-  std::copy(std::begin(tip), std::end(tip), recordAt(state.tip, leg, shared::TIP_STRIDE));
+  const float tip[] = {chain.tip.x, chain.tip.y, chain.tip.z, chain.error * model.reach};
+  std::copy(std::begin(tip), std::end(tip), recordAt(state.tip, index, shared::TIP_STRIDE));
   float* told = state.miss.data() + 2 * shared::missPair(int(agent), int(l), int(legs));
-  told[0] = f.progress >= 1 && from.chain.error > missLeast ? from.chain.error : 0;
+  told[0] = leg.foot.progress >= 1 && chain.error > missLeast ? chain.error : 0;
   told[1] = float(state.tick);
 }
 
-inline void writePose(const BonePose<float>& pose, size_t entry, HerdState& state) {
-  const float record[] = {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w,
-                          pose.position.x, pose.position.y, pose.position.z, 0};
-  std::copy(std::begin(record), std::end(record), recordAt(state.pose, entry, shared::POSE_STRIDE));
+inline void writePose(const BonePose<float>& from, size_t entry, HerdState& state) {
+  float* record = recordAt(state.pose, entry, shared::POSE_STRIDE);
+  SKITTER_POSE_FIELDS(SKITTER_PUT)
 }
 
 inline Play<float> readPlay(const HerdState& state, size_t agent) {

@@ -13,8 +13,7 @@ WatchTurn watchTurn(uint64_t n, uint64_t every);
 
 // What is remembered of a point: x_(n-1), e1 and e2 of it, and P and Q of the open window.
 struct Trail {
-  glm::dvec3 at{0}, first{0}, second{0};
-  double path = 0, jerk = 0;
+  SKITTER_TRAIL_FIELDS(REFERENCE_MEMBER)
 };
 
 struct TipTrail : Trail {

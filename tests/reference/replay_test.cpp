@@ -11,11 +11,11 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "cpu_reference/fields.h"
 #include "reference_herd.h"
 #include "skitter/error.h"
 #include "skitter/records.h"
 #include "validation/convert.h"
-#include "validation/fields.h"
 
 namespace skitter::test {
 namespace {
@@ -192,19 +192,18 @@ std::vector<Fault> fieldFaults() {
                             isMask ? static_cast<float>(static_cast<uint32_t>(value) ^ 2u) : value + amount;
                       }});
   };
-#define ADD(record, stage, Struct, name, first)         \
-  add(#record, stage, &HerdState::record, #name, first, \
-      std::is_same_v<decltype(reference::Struct::name), uint32_t>);
-#define GOAL(name, first) ADD(goal, "navigate", Goal, name, first)
-#define BODY(name, first) ADD(body, "body", AgentBody, name, first)
-#define GAIT(name, first) ADD(gait, "gait", Gait, name, first)
-#define STEP(name, first) ADD(step, "foothold", Step, name, first)
-#define ARC(name, first) ADD(arc, "foothold", Step, name, first)
-#define FOOT(name, first) ADD(foot, "swing", Foot, name, first)
-#define TIP(name, first) ADD(tip, "ik", Chain, name, first)
-#define POSE(name, first) ADD(pose, "pose", BonePose, name, first)
-#define METRIC(name, first) ADD(metric, "measure", Metric, name, first)
-#define TRAIL(name, first) ADD(watch, "measure", Trail, name, first)
+#define ADD(record, stage, type, name, place) \
+  add(#record, stage, &HerdState::record, #name, place, std::is_same_v<type, uint32_t>);
+#define GOAL(type, name, initial, place, roundings) ADD(goal, "navigate", type, name, place)
+#define BODY(type, name, initial, place, roundings) ADD(body, "body", type, name, place)
+#define GAIT(type, name, initial, place, roundings) ADD(gait, "gait", type, name, place)
+#define STEP(type, name, initial, place, roundings) ADD(step, "foothold", type, name, place)
+#define ARC(type, name, initial, place, roundings) ADD(arc, "foothold", type, name, place)
+#define FOOT(type, name, initial, place, roundings) ADD(foot, "swing", type, name, place)
+#define TIP(type, name, initial, place, roundings) ADD(tip, "ik", type, name, place)
+#define POSE(type, name, initial, place, roundings) ADD(pose, "pose", type, name, place)
+#define METRIC(type, name, initial, place, roundings) ADD(metric, "measure", type, name, place)
+#define TRAIL(type, name, initial, place, roundings) ADD(watch, "measure", type, name, place)
   SKITTER_GOAL_FIELDS(GOAL)
   SKITTER_BODY_FIELDS(BODY)
   SKITTER_GAIT_FIELDS(GAIT)
