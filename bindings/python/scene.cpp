@@ -83,7 +83,7 @@ void bindHerd(py::module_& module) {
                            nameOf(self.controller));
       });
   defineNamed(herd, "controller", &Herd::controller, allControllers,
-              "\"adaptive\", \"loop\", \"clip\", \"planted\" or \"key-poses\".");
+              "How the legs move: \"adaptive\" and others.");
   defineNamed(herd, "solver", &Herd::solver, herdSolvers, "What solves the legs: \"active-set\" and others.");
   defineNamed(herd, "stepping", &Herd::stepping, allSteppings,
               "When legs of an adaptive herd step: \"gait\" or \"reach\".");

@@ -5,6 +5,10 @@
 // What sets the controllers apart, as plain data; their stages are in crowd/controllers.
 namespace skitter::crowd {
 
+// Every controller, in any order. One that is forgotten here does not compile (controllers.cpp).
+#define SKITTER_CONTROLLERS(CONTROLLER) \
+  CONTROLLER(adaptive) CONTROLLER(loop) CONTROLLER(clip) CONTROLLER(planted) CONTROLLER(keyPoses)
+
 struct ControllerTraits {
   bool playsClips = false;   // in every tick
   bool needsClips = false;   // played, or sampled for key poses

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "process.h"
+#include "skitter/controller.h"
 
 namespace skitter::test {
 namespace {
@@ -54,9 +55,9 @@ struct States : AppTest {
 };
 
 TEST_F(States, GoOnAsOneRun) {
-  for (const char* controller : {"adaptive", "loop", "clip", "planted", "key-poses"}) {
-    SCOPED_TRACE(controller);
-    expectSameWhole({"--agents", "20", "--controller", controller, "--seed", "5"});
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    expectSameWhole({"--agents", "20", "--controller", nameOf(controller), "--seed", "5"});
   }
 }
 

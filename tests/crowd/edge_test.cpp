@@ -54,8 +54,7 @@ TEST_P(EdgeTest, CliffsAndTheTerrainsEdge) {
 // However fast they are told to be.
 TEST_P(EdgeTest, NobodyLeavesTheMap) {
   const Heightfield ground = smallRollingGround();
-  for (const Controller controller : {Controller::adaptive, Controller::loop, Controller::clip,
-                                      Controller::planted, Controller::keyPoses}) {
+  for (const Controller controller : allControllers) {
     SCOPED_TRACE(nameOf(controller));
     Crowd crowd(device(), ground, sceneOf(64, 1000, 1, controller));
     double farthest = 0;

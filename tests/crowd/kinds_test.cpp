@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "crowd/page.h"
+#include "crowd/record.h"
 #include "crowd/simulation.h"
 #include "gpu/transfer.h"
 #include "skitter/error.h"
@@ -40,8 +41,10 @@ std::vector<Rig> ownRigs(const Scene& scene) {
 }
 
 std::vector<std::vector<float>> recordsOf(const HerdState& s) {
-  return {s.goal, s.steer, s.body, s.gait, s.step,   s.chain, s.foot, s.tip,
-          s.pose, s.arc,   s.miss, s.play, s.metric, s.start, s.fix,  s.spring};
+  std::vector<std::vector<float>> records;
+  for (const Record record : allRecords)
+    if (crowd::infoOf(record).per != crowd::Per::watched) records.push_back(s.of(record));
+  return records;
 }
 
 std::vector<std::tuple<uint32_t, uint32_t, uint64_t, float, float, float, float>> eventsOf(

@@ -6,6 +6,7 @@
 
 #include "cpu_reference/heightfield.h"
 #include "cpu_reference/stages/measure.h"
+#include "crowd/record.h"
 #include "skitter/records.h"
 #include "validation/convert.h"
 #include "validation/free_run.h"
@@ -34,21 +35,18 @@ Replay ReferenceHerd::replay() const { return Replay(facts()); }
 
 void ReferenceHerd::spawn(uint32_t agents) {
   const size_t count = agents, legCount = static_cast<size_t>(legs());
-  const size_t chain = static_cast<size_t>(shared::chainStride(bones_));
   state_.agents = agents;
-  state_.goal.resize(4 * count * shared::GOAL_STRIDE);
-  state_.steer.resize(4 * count * shared::STEER_STRIDE);
-  state_.body.resize(4 * count * shared::BODY_STRIDE);
-  state_.gait.resize(4 * count * shared::GAIT_STRIDE);
-  state_.step.resize(4 * count * legCount * shared::STEP_STRIDE);
-  state_.arc.resize(4 * count * legCount * shared::ARC_STRIDE);
-  state_.foot.resize(4 * count * legCount * shared::FOOT_STRIDE);
-  state_.chain.resize(4 * count * legCount * chain);
-  state_.tip.resize(4 * count * legCount * shared::TIP_STRIDE);
-  state_.miss.resize(4 * count * static_cast<size_t>(shared::missStride(legs())));
-  state_.pose.resize(4 * count * (1 + legCount * static_cast<size_t>(bones_)) * shared::POSE_STRIDE);
-  state_.metric.resize(4 * count * shared::METRIC_STRIDE);
-  state_.watch.resize(4 * count * static_cast<size_t>(shared::watchStride(legs())));
+  const auto make = [&](Record record) {
+    const size_t each = crowd::infoOf(record).per == crowd::Per::leg ? legCount : 1;
+    state_.of(record).resize(4 * count * each *
+                             static_cast<size_t>(crowd::strideOf(record, legs(), bones_, 0)));
+  };
+  for (const Record record : allRecords)
+    if (crowd::infoOf(record).kept == crowd::Kept::always) make(record);
+  for (const CheckedStage& stage : checkedStages(Controller::adaptive))
+    for (const Record record : stage.writes) make(record);
+  make(Record::metric);
+  make(Record::watch);
 
   const reference::Heights heights = heightsOf(terrain_, parameters_);
   const reference::Creature creature = creatureOf(rigRecords_, legs(), bones_, rig_.groupCount());

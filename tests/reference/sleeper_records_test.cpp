@@ -1,10 +1,15 @@
 // Every record of a sleeper stays as it is, to the bit, and whoever changes it is named.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "crowd/controller.h"
+#include "crowd/record.h"
 #include "reference_herd.h"
 #include "skitter/records.h"
 #include "validation/convert.h"
@@ -15,17 +20,30 @@ namespace {
 using validation::Replay;
 using validation::StageResult;
 
-// Every record that a herd has between navigate and measure, and who writes it.
-struct Record {
-  const char* name;
+// A record that a herd has between navigate and measure, and who writes it.
+struct KeptRecord {
   Controller controller;
-  std::vector<float> HerdState::*records;
-  const char* stage;
-  size_t legs;  // 1: it is of the whole agent
-};
-void PrintTo(const Record& record, std::ostream* out) { *out << record.name; }
+  crowd::StageId stage;
+  Record record;
 
-class SleepersRecord : public testing::TestWithParam<Record> {
+  size_t legs() const { return crowd::infoOf(record).per == crowd::Per::leg ? 8 : 1; }
+  std::string name() const {
+    std::string name = std::string(nameOf(controller)) + "_" + crowd::infoOf(record).name;
+    std::ranges::replace(name, '-', '_');
+    return name;
+  }
+};
+void PrintTo(const KeptRecord& kept, std::ostream* out) { *out << kept.name(); }
+
+std::vector<KeptRecord> keptRecords(std::span<const Controller> controllers) {
+  std::vector<KeptRecord> kept;
+  for (const Controller controller : controllers)
+    for (const validation::CheckedStage& stage : validation::checkedStages(controller))
+      for (const Record record : stage.writes) kept.push_back({controller, stage.stage, record});
+  return kept;
+}
+
+class SleepersRecord : public testing::TestWithParam<KeptRecord> {
  protected:
   // Two agents of made-up records, unlike anything that the stages compute, but asleep.
   static constexpr size_t agents = 2, legs = 8, bones = 4;
@@ -34,28 +52,17 @@ class SleepersRecord : public testing::TestWithParam<Record> {
     HerdState state;
     state.agents = agents;
     state.sleep = true;
-    const auto fill = [](std::vector<float>& records, size_t count, int stride) {
-      records.resize(4 * agents * count * static_cast<size_t>(stride));
+    const auto fill = [&](Record record) {
+      const size_t count = crowd::infoOf(record).per == crowd::Per::leg ? legs : 1;
+      const int joints = crowd::traitsOf(controller).playsClips ? 1 : 0;
+      const auto stride = static_cast<size_t>(crowd::strideOf(record, legs, bones, joints));
+      std::vector<float>& records = state.of(record);
+      records.resize(4 * agents * count * stride);
       for (size_t i = 0; i < records.size(); ++i) records[i] = 0.001f * static_cast<float>(i % 977);
     };
-    fill(state.goal, 1, shared::GOAL_STRIDE);
-    fill(state.steer, 1, shared::STEER_STRIDE);
-    fill(state.body, 1, shared::BODY_STRIDE);
-    fill(state.gait, 1, shared::GAIT_STRIDE);
-    fill(state.step, legs, shared::STEP_STRIDE);
-    if (crowd::traitsOf(controller).aimsSteps) fill(state.arc, legs, shared::ARC_STRIDE);
-    fill(state.foot, legs, shared::FOOT_STRIDE);
-    fill(state.chain, legs, shared::chainStride(bones));
-    fill(state.tip, legs, shared::TIP_STRIDE);
-    if (crowd::traitsOf(controller).tellsMisses) fill(state.miss, 1, shared::missStride(legs));
-    if (crowd::traitsOf(controller).playsClips) fill(state.play, 1, shared::PLAY_STRIDE);
-    if (crowd::traitsOf(controller).playsClips) fill(state.pose, 1, shared::MATRIX_STRIDE);
-    if (!crowd::traitsOf(controller).playsClips) fill(state.pose, 1 + legs * bones, shared::POSE_STRIDE);
-    if (controller == Controller::planted) {
-      fill(state.start, legs, shared::startStride(bones));
-      fill(state.fix, legs * bones, shared::FIX_STRIDE);
-    }
-    if (controller == Controller::keyPoses) fill(state.spring, legs, shared::chainStride(bones));
+    for (const Record record : allRecords)
+      if (crowd::infoOf(record).kept == crowd::Kept::always) fill(record);
+    for (const KeptRecord& kept : keptRecords({{controller}})) fill(kept.record);
     for (size_t agent = 0; agent < agents; ++agent) {
       validation::putGoal(state, agent, {});
       validation::putSteer(state, agent, {0, 0}, true);
@@ -88,10 +95,10 @@ TEST_P(SleepersRecord, staysAndIsNoSample) {
 TEST_P(SleepersRecord, mustBeWhatItWasToTheBit) {
   HerdState before = asleep(), after = asleep();
   // The last float of the second agent's or, of those of legs, of its last leg but one's.
-  const size_t legsHere = GetParam().legs, leg = legsHere > 1 ? legsHere - 2 : 0;
-  const size_t each = (before.*GetParam().records).size() / agents / legsHere;
-  float& was = (before.*GetParam().records)[(legsHere + leg + 1) * each - 1];
-  float& is = (after.*GetParam().records)[(legsHere + leg + 1) * each - 1];
+  const size_t legsHere = GetParam().legs(), leg = legsHere > 1 ? legsHere - 2 : 0;
+  const size_t each = before.of(GetParam().record).size() / agents / legsHere;
+  float& was = before.of(GetParam().record)[(legsHere + leg + 1) * each - 1];
+  float& is = after.of(GetParam().record)[(legsHere + leg + 1) * each - 1];
   const std::string place =
       "of a sleeper: tick 9, agent 1, leg " + std::to_string(legsHere > 1 ? static_cast<int>(leg) : -1) + ",";
   const float some = 0.25f, more = std::nextafter(some, 1.0f);
@@ -100,54 +107,15 @@ TEST_P(SleepersRecord, mustBeWhatItWasToTheBit) {
     Replay replay = judge();
     replay.tick(9, before, after);
     for (const StageResult& result : replay.results()) {
-      const bool writer = result.name == GetParam().stage;
+      const bool writer = result.name == nameOf(GetParam().stage);
       EXPECT_EQ(result.pass, !writer) << result.name << ": " << result.worst;
       EXPECT_EQ(result.worst.find(place) != std::string::npos, writer) << result.worst;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    everyRecord, SleepersRecord,
-    testing::Values(Record{"adaptiveBody", Controller::adaptive, &HerdState::body, "body", 1},
-                    Record{"adaptiveGait", Controller::adaptive, &HerdState::gait, "gait", 1},
-                    Record{"adaptiveStep", Controller::adaptive, &HerdState::step, "foothold", 8},
-                    Record{"adaptiveArc", Controller::adaptive, &HerdState::arc, "foothold", 8},
-                    Record{"adaptiveFoot", Controller::adaptive, &HerdState::foot, "swing", 8},
-                    Record{"adaptiveChain", Controller::adaptive, &HerdState::chain, "ik", 8},
-                    Record{"adaptiveTip", Controller::adaptive, &HerdState::tip, "ik", 8},
-                    Record{"adaptiveMiss", Controller::adaptive, &HerdState::miss, "ik", 1},
-                    Record{"adaptivePose", Controller::adaptive, &HerdState::pose, "pose", 1},
-                    Record{"loopBody", Controller::loop, &HerdState::body, "body", 1},
-                    Record{"loopGait", Controller::loop, &HerdState::gait, "gait", 1},
-                    Record{"loopFoot", Controller::loop, &HerdState::foot, "swing", 8},
-                    Record{"loopChain", Controller::loop, &HerdState::chain, "ik", 8},
-                    Record{"loopTip", Controller::loop, &HerdState::tip, "ik", 8},
-                    Record{"loopMiss", Controller::loop, &HerdState::miss, "ik", 1},
-                    Record{"loopPose", Controller::loop, &HerdState::pose, "pose", 1},
-                    Record{"clipBody", Controller::clip, &HerdState::body, "body", 1},
-                    Record{"clipPlay", Controller::clip, &HerdState::play, "clip", 1},
-                    Record{"clipFoot", Controller::clip, &HerdState::foot, "swing", 8},
-                    Record{"clipChain", Controller::clip, &HerdState::chain, "swing", 8},
-                    Record{"clipTip", Controller::clip, &HerdState::tip, "swing", 8},
-                    Record{"clipPose", Controller::clip, &HerdState::pose, "pose", 1},
-                    Record{"plantedBody", Controller::planted, &HerdState::body, "body", 1},
-                    Record{"plantedPlay", Controller::planted, &HerdState::play, "clip", 1},
-                    Record{"plantedStep", Controller::planted, &HerdState::step, "swing", 8},
-                    Record{"plantedFoot", Controller::planted, &HerdState::foot, "swing", 8},
-                    Record{"plantedStart", Controller::planted, &HerdState::start, "swing", 8},
-                    Record{"plantedChain", Controller::planted, &HerdState::chain, "ik", 8},
-                    Record{"plantedTip", Controller::planted, &HerdState::tip, "ik", 8},
-                    Record{"plantedFix", Controller::planted, &HerdState::fix, "ik", 8},
-                    Record{"plantedPose", Controller::planted, &HerdState::pose, "pose", 1},
-                    Record{"keyPosesBody", Controller::keyPoses, &HerdState::body, "body", 1},
-                    Record{"keyPosesGait", Controller::keyPoses, &HerdState::gait, "gait", 1},
-                    Record{"keyPosesFoot", Controller::keyPoses, &HerdState::foot, "swing", 8},
-                    Record{"keyPosesChain", Controller::keyPoses, &HerdState::chain, "swing", 8},
-                    Record{"keyPosesTip", Controller::keyPoses, &HerdState::tip, "swing", 8},
-                    Record{"keyPosesSpring", Controller::keyPoses, &HerdState::spring, "swing", 8},
-                    Record{"keyPosesPose", Controller::keyPoses, &HerdState::pose, "pose", 1}),
-    [](const auto& param) { return std::string(param.param.name); });
+INSTANTIATE_TEST_SUITE_P(everyRecord, SleepersRecord, testing::ValuesIn(keptRecords(allControllers)),
+                         [](const auto& param) { return param.param.name(); });
 
 }  // namespace
 }  // namespace skitter::test

@@ -7,16 +7,11 @@ namespace skitter::crowd {
 
 const ControllerStages& controllerStages(Controller controller) {
   switch (controller) {
-    case Controller::loop:
-      return loopController;
-    case Controller::clip:
-      return clipController;
-    case Controller::planted:
-      return plantedController;
-    case Controller::keyPoses:
-      return keyPoseController;
-    case Controller::adaptive:
-      break;
+#define SKITTER_CONTROLLER(name) \
+  case Controller::name:         \
+    return name##Controller;
+    SKITTER_CONTROLLERS(SKITTER_CONTROLLER)
+#undef SKITTER_CONTROLLER
   }
   return adaptiveController;
 }

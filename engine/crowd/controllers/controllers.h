@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "crowd/controller.h"
 #include "crowd/herd.h"
 #include "crowd/stage.h"
 #include "skitter/scene.h"
 
-// Each controller in a file of its own name.
 namespace skitter::crowd {
 
 struct ControllerStages {
@@ -27,11 +27,10 @@ struct ControllerStages {
 
 const ControllerStages& controllerStages(Controller controller);
 
-extern const ControllerStages adaptiveController;
-extern const ControllerStages loopController;
-extern const ControllerStages clipController;
-extern const ControllerStages plantedController;
-extern const ControllerStages keyPoseController;
+// adaptiveController and so on, each in the file of its name.
+#define SKITTER_CONTROLLER(name) extern const ControllerStages name##Controller;
+SKITTER_CONTROLLERS(SKITTER_CONTROLLER)
+#undef SKITTER_CONTROLLER
 
 // What those that need clips have in common.
 ClipSet clipSetOf(const skitter::Herd& from, const Rig& loaded, float size);

@@ -12,7 +12,7 @@ void prepareKeyPoses(const gpu::Context& context, const skitter::Herd& from, con
 }  // namespace
 
 // Joins a few key poses of an animation.
-const ControllerStages keyPoseController = {
+const ControllerStages keyPosesController = {
     .all =
         [](const CrowdOptions&) {
           return std::vector{navigateStage(),     wakeStage(), blindBodyStage(), keyPoseGaitStage(),
