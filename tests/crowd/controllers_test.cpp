@@ -15,7 +15,7 @@ namespace skitter::test {
 namespace {
 
 // All but adaptive, of which most tests are.
-std::vector<Controller> others() {
+std::vector<Controller> allButAdaptive() {
   std::vector<Controller> controllers(allControllers.begin(), allControllers.end());
   std::erase(controllers, Controller::adaptive);
   return controllers;
@@ -97,7 +97,7 @@ TEST_P(ControllersTest, AnyNumberOfAgentsInAnyPages) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, ControllersTest,
-                         ::testing::Combine(bothLoadPaths(), ::testing::ValuesIn(others())),
+                         ::testing::Combine(bothLoadPaths(), ::testing::ValuesIn(allButAdaptive())),
                          [](const auto& param) {
                            return testNameOf(std::get<1>(param.param)) +
                                   (std::get<0>(param.param) == LoadPath::texel ? "Texel" : "Storage");
@@ -157,7 +157,7 @@ TEST_P(ControllerTest, RecordPathsAgreeToTheBit) {
   EXPECT_EQ(hashes.size(), 1u);
 }
 
-INSTANTIATE_TEST_SUITE_P(, ControllerTest, ::testing::ValuesIn(others()),
+INSTANTIATE_TEST_SUITE_P(, ControllerTest, ::testing::ValuesIn(allButAdaptive()),
                          [](const auto& param) { return testNameOf(param.param); });
 
 using ClipHerdTest = GpuTest;
@@ -213,7 +213,7 @@ using HerdsTest = GpuTest;
 TEST_F(HerdsTest, ControllersMix) {
   const Heightfield ground = smallRollingGround();
   Scene scene = sceneOf(12);
-  for (const Controller controller : others()) {
+  for (const Controller controller : allButAdaptive()) {
     Herd& herd = scene.herds.emplace_back(scene.herds[0]);
     herd.controller = controller;
     herd.agents += 5;

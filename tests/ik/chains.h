@@ -17,8 +17,8 @@ using Random = reference::IkRandom;
 double uniform(Random& random, double low, double high);
 glm::dvec3 randomDirection(Random& random);
 
-// What limits a chain: "free", "cone", "ellipse", "hinge", "oblique" (hinges that their bones are not square
-// to), "twist" (balls that may twist), "mixed" (all of these by turns), "free-base" (a free bone, then
+// What limits a chain: the kinds of docs/ik.md by their names, "oblique" (hinges that their bones are not
+// square to), "twist" (balls that may twist), "mixed" (all of these by turns), "free-base" (a free bone, then
 // cones).
 extern const std::vector<std::string> limitKinds;
 

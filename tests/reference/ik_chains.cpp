@@ -36,8 +36,8 @@ double beyondSwing(const BoneSpec& bone, const glm::dvec3& v) {
   if (bone.kind == LimitKind::cone) return std::max(0.0, theta - std::min(bone.cone, 3.1));
   const glm::dvec3 x = shortestArc({0, 0, 1}, rest) * glm::dvec3(1, 0, 0), y = glm::cross(rest, x);
   const double way = std::atan2(glm::dot(v, y), glm::dot(v, x));
-  const double ax = std::cos(way) >= 0 ? bone.ellipse.x : bone.ellipse.z;
-  const double ay = std::sin(way) >= 0 ? bone.ellipse.y : bone.ellipse.w;
+  const double ax = std::cos(way) >= 0 ? bone.angles.x : bone.angles.z;
+  const double ay = std::sin(way) >= 0 ? bone.angles.y : bone.angles.w;
   return std::max(0.0, theta - 1 / std::hypot(std::cos(way) / ax, std::sin(way) / ay));
 }
 
@@ -49,7 +49,7 @@ reference::IkChain chainOf(const ChainSpec& spec, const std::optional<glm::dvec3
     reference::IkBone bone{.length = s.length, .direction = s.direction, .hingeAxis = s.axis};
     if (s.kind == LimitKind::cone) bone.limit = reference::coneLimit(s.cone);
     if (s.kind == LimitKind::ellipse) {
-      bone.limit = reference::ellipseLimit(s.ellipse.x, s.ellipse.y, s.ellipse.z, s.ellipse.w);
+      bone.limit = reference::ellipseLimit(s.angles.x, s.angles.y, s.angles.z, s.angles.w);
     }
     if (s.kind == LimitKind::hinge) bone.limit = reference::hingeLimit(s.low, s.high);
     if (s.twist) bone.limit = reference::withTwist(bone.limit, s.twist->first, s.twist->second);
@@ -81,7 +81,7 @@ ChainSpec ellipseSpec(size_t bones) {
   ChainSpec spec = bentSpec(bones);
   for (BoneSpec& bone : spec) {
     bone.kind = LimitKind::ellipse;
-    bone.ellipse = glm::dvec4(30, 70, 40, 20) * degree;
+    bone.angles = glm::dvec4(30, 70, 40, 20) * degree;
   }
   return spec;
 }
@@ -102,7 +102,7 @@ ChainSpec mixedSpec() {
   spec[0].cone = 80 * degree;
   spec[0].twist = {-30 * degree, 50 * degree};
   spec[1].kind = LimitKind::ellipse;
-  spec[1].ellipse = glm::dvec4(70, 30, 40, 60) * degree;
+  spec[1].angles = glm::dvec4(70, 30, 40, 60) * degree;
   spec[1].length = 0.7;
   spec[2].kind = LimitKind::hinge;
   spec[2].axis = glm::normalize(glm::dvec3(0.4, 0.3, 1));

@@ -15,7 +15,7 @@ struct BoneSpec {
   glm::dvec3 direction{0, 0, 1};
   reference::LimitKind kind = reference::LimitKind::free;
   double cone = 0;                                 // radians, as all
-  glm::dvec4 ellipse{0};                           // toward +x, +y, -x, -y
+  glm::dvec4 angles{0};                            // of an ellipse: toward +x, +y, -x, -y
   glm::dvec3 axis{0, 0, 1};                        // of a hinge, unit
   double low = 0, high = 0;                        // of a hinge
   std::optional<std::pair<double, double>> twist;  // low, high
@@ -30,7 +30,7 @@ ChainSpec bentSpec(size_t bones);
 ChainSpec coneSpec(size_t bones, double halfAngle);
 ChainSpec ellipseSpec(size_t bones);  // 30, 70, 40, 20 degrees
 ChainSpec hingeSpec(size_t bones);    // about Z, +-60 degrees; the first bone is free
-// A cone with twist, an ellipse, a skew hinge, a free bone and a cone, of different lengths.
+// Every kind of limit, one with twist and a skew hinge, on bones of different lengths.
 ChainSpec mixedSpec();
 
 // What a chain of these bones would be wrong by, judged from the joints alone by angles: each bone's rotation
