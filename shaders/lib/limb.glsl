@@ -27,7 +27,7 @@ void setBone(inout Limb limb, int i, vec4 a) {
     limb.carry[i_] = Frame(c_.xyz, cross(d_.xyz, c_.xyz), d_.xyz);          \
     limb.bone[i_] = c_.w;                                                   \
     limb.edge[i_] = d_.w;                                                   \
-    if (isKind(i_, LIMITS_WITH_ENDS)) limb.ends[i_] = LOAD4(rig, bone_ + 3); \
+    if (hasEnds(i_)) limb.ends[i_] = LOAD4(rig, bone_ + 3);                  \
     if (isKind(i_, LIMIT_TWIST)) limb.twists[i_] = LOAD4(rig, bone_ + 4).yz; \
   }
 #endif

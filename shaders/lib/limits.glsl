@@ -17,8 +17,8 @@ bool isKind(int bone, int kind) {
 }
 #endif
 
-// Kinds that keep numbers of their own in the bone's record, a limb's `ends`.
-const int LIMITS_WITH_ENDS = LIMIT_ELLIPSE | LIMIT_HINGE;
+// Whether a bone's limit keeps numbers of its own in the bone's record, a limb's `ends`.
+bool hasEnds(int bone) { return isKind(bone, LIMIT_ELLIPSE | LIMIT_HINGE); }
 
 // Abramowitz & Stegun 4.4.49, error 2e-8 within [0, 1].
 float arctangent(float x) {
