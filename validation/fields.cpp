@@ -60,4 +60,6 @@ void compareFields(const reference::Trail& expected, const reference::Trail& got
   SKITTER_TRAIL_FIELDS(COMPARE)
 }
 
+#undef COMPARE
+
 }  // namespace skitter::validation

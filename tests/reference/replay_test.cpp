@@ -74,7 +74,12 @@ TEST(Replay, leavesOutWhatAStateHasNot) {
     state->pose.clear();
     state->metric.clear();
   }
-  const std::vector<std::string> few = {"navigate", "body", "gait", "foothold", "swing", "ik"};
+  std::vector<std::string> few;
+  for (const validation::CheckedStage& checked : validation::checkedStages(Controller::adaptive)) {
+    using enum crowd::StageId;
+    if (checked.stage != pose && checked.stage != measure && checked.stage != footfall)
+      few.emplace_back(nameOf(checked.stage));
+  }
   EXPECT_EQ(namesOf(replay.results()).back(), "footfall") << "nothing is known to be left out yet";
   EXPECT_FALSE(replay.pass());
   replay.tick(herd.ticks(), before, after);
@@ -125,7 +130,9 @@ TEST(Replay, metricsMayBeAbsent) {
   before.metric.clear();
   after.metric.clear();
   replay.tick(1, before, after);
-  EXPECT_EQ(namesOf(replay.results()).back(), "pose");
+  const std::vector<std::string> names = namesOf(replay.results());
+  EXPECT_EQ(std::ranges::count(names, "pose"), 1);
+  EXPECT_EQ(std::ranges::count(names, "measure"), 0);
   EXPECT_TRUE(replay.pass());
 }
 
