@@ -26,7 +26,7 @@ inline constexpr int own = -1;
   FIELD(double,     y,                 0,                      1,  own) \
   FIELD(double,     localZ,            0,                      2,  own) \
   FIELD(glm::dvec2, heading,           glm::dvec2(0, 1),       4,  own)  /* x, z */ \
-  FIELD(double,     speed,             0,                      6,  own)  /* m/s, horizontal, along the heading */ \
+  FIELD(double,     speed,             0,                      6,  own)  /* m/s along the heading, level */ \
   FIELD(glm::dquat, orientation,       glm::dquat(1, 0, 0, 0), 8,  own) \
   FIELD(double,     turnRate,          0,                      12, own)  /* omega */ \
   FIELD(double,     still,             0,                      13, own)  /* s */ \
@@ -37,10 +37,10 @@ inline constexpr int own = -1;
   FIELD(double,     phase,             0,                      0,  own) \
   FIELD(uint32_t,   lift,              0,                      1,  own)  /* bit l: leg l */ \
   FIELD(uint32_t,   reaim,             0,                      2,  own) \
-  FIELD(double,     duration,          0,                      3,  0)    /* ticks a step that begins now lasts */ \
+  FIELD(double,     duration,          0,                      3,  0)    /* ticks that a new step lasts */ \
   FIELD(double,     halfStride,        0,                      4,  own) \
   FIELD(double,     cycle,             0,                      5,  own) \
-  FIELD(uint32_t,   air,               0,                      6,  0)    /* legs in the air before any lifts */
+  FIELD(uint32_t,   air,               0,                      6,  0)    /* in the air before any lifts */
 
 /* Positions are local to the tile in x and z, world in y. */
 #define SKITTER_STEP_FIELDS(FIELD) \
@@ -69,7 +69,7 @@ inline constexpr int own = -1;
 #define SKITTER_METRIC_FIELDS(FIELD) \
   FIELD(double,     ticks,             0,                      0,  own) \
   FIELD(double,     planted,           0,                      1,  own)  /* leg-ticks */ \
-  FIELD(double,     stays,             0,                      2,  own)  /* of these planted a tick before too */ \
+  FIELD(double,     stays,             0,                      2,  own)  /* of these, a tick before too */ \
   FIELD(double,     skates,            0,                      3,  own)  /* of these skating */ \
   FIELD(double,     slip,              0,                      4,  own)  /* over finished stances */ \
   FIELD(double,     stances,           0,                      5,  own) \
