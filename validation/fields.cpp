@@ -10,8 +10,6 @@ using reference::own;
 glm::dvec4 numbersOf(double value) { return {value, 0, 0, 0}; }
 glm::dvec4 numbersOf(uint32_t value) { return {value, 0, 0, 0}; }
 glm::dvec4 numbersOf(const glm::dvec2& value) { return {value, 0, 0}; }
-glm::dvec4 numbersOf(const glm::dvec3& value) { return {value, 0}; }
-glm::dvec4 numbersOf(const glm::dquat& value) { return {value.x, value.y, value.z, value.w}; }
 
 template <int roundings, typename Value>
 void compareField(const char* quantity, const Value& expected, const Value& got, Sample& sample) {

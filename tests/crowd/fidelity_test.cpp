@@ -109,9 +109,9 @@ Rig hopper() {
 }
 
 // The record of a herd, tick after tick.
-class Record {
+class WalkRecord {
  public:
-  Record(const crowd::Kind& kind, const Heightfield& ground, uint32_t agents)
+  WalkRecord(const crowd::Kind& kind, const Heightfield& ground, uint32_t agents)
       : kind_(kind),
         tuning_(validation::tuningOf(kind.parameters)),
         heights_(validation::heightsOf(ground, kind.parameters)),
@@ -177,7 +177,7 @@ TEST_F(FidelityTest, FiguresAreWhatTheRunGave) {
       generateHeightfield({.columns = 129, .rows = 129, .amplitude = 16, .wavelength = 12});
   Crowd crowd(device(), ground, scene, {.rigs = {stiffSpider(), hopper(), scaledSpider(1.7f)}});
 
-  std::vector<Record> records;
+  std::vector<WalkRecord> records;
   for (int i = 0; i < 90; ++i) {
     simulate(device(), crowd, 1);
     for (uint32_t h = 0; h < 3; ++h) {
