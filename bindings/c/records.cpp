@@ -9,10 +9,6 @@ using c::guarded;
 
 namespace {
 
-#define SKITTER_RECORD(NAME, name, binding, per, stride, kept, spawned, hashed) \
-  static_assert(SKITTER_RECORD_##NAME == static_cast<int>(Record::name));
-SKITTER_RECORDS(SKITTER_RECORD)
-#undef SKITTER_RECORD
 static_assert(4 * shared::FOOTFALL_STRIDE == 8 && shared::GOAL_STRIDE == 2);  // as the header says
 
 Record recordOf(skitter_record record) {

@@ -17,6 +17,7 @@
 #ifndef SKITTER_H
 #define SKITTER_H
 
+#include <skitter/records.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <vulkan/vulkan.h>
@@ -326,25 +327,12 @@ SKITTER_C skitter_result skitter_crowd_has_herd(const skitter_crowd* crowd, skit
  * skitter/records.h, which C99 can include. An `origin` is a point in world metres that positions are
  * relative to; NULL: the world's. */
 
+/* SKITTER_RECORD_GOAL, SKITTER_RECORD_BODY and so on: the table at the end of skitter/records.h, where the
+ * layouts are, too. SKITTER_RECORD_WATCH is neither handed out nor downloaded. */
 typedef enum skitter_record {
-  SKITTER_RECORD_GOAL = 0,
-  SKITTER_RECORD_STEER = 1,
-  SKITTER_RECORD_BODY = 2,
-  SKITTER_RECORD_GAIT = 3,
-  SKITTER_RECORD_STEP = 4,
-  SKITTER_RECORD_ARC = 5,
-  SKITTER_RECORD_FOOT = 6,
-  SKITTER_RECORD_CHAIN = 7,
-  SKITTER_RECORD_MISS = 8,
-  SKITTER_RECORD_TIP = 9,
-  SKITTER_RECORD_POSE = 10,
-  SKITTER_RECORD_PLAY = 11,
-  SKITTER_RECORD_START = 12,
-  SKITTER_RECORD_FIX = 13,
-  SKITTER_RECORD_SPRING = 14,
-  SKITTER_RECORD_METRIC = 15,
-  SKITTER_RECORD_WATCH = 16, /* neither handed out nor downloaded */
-  SKITTER_RECORD_FLIGHT = 17
+#define SKITTER_RECORD_NAMED(NAME, name, binding, per, stride, kept, spawned, hashed) SKITTER_RECORD_##NAME,
+  SKITTER_RECORDS(SKITTER_RECORD_NAMED)
+#undef SKITTER_RECORD_NAMED
 } skitter_record;
 
 /* A herd's records in one page. The buffer is the crowd's and stays the same as long as it has the herd;
