@@ -12,7 +12,8 @@ constexpr double lineBytes = 60, stepsASecond = 2;  // of a leg that walks at it
 double footfallBytes(const Crowd& crowd, double dt, uint64_t ticks) {
   double legs = 0;
   for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-    legs += double{1} * crowd.agentCount(h) * crowd.rig(h).legCount();
+    if (const uint32_t agents = crowd.agentCount(h); agents > 0)
+      legs += double{1} * agents * crowd.rig(h).legCount();
   return lineBytes * stepsASecond * legs * dt * static_cast<double>(ticks);
 }
 

@@ -151,13 +151,19 @@ void addSizes(const Crowd::Impl& crowd, uint32_t herd, nlohmann::ordered_json& d
                                   {"legLength", crowd.kinds[run.kind].rig.legLength}});
 }
 
+// Without legs where the herd is gone.
+const Rig& tracedRig(const Crowd& crowd, uint32_t herd) {
+  static const Rig none;
+  return implOf(crowd).herds[herd].isGone() ? none : crowd.rig(herd);
+}
+
 }  // namespace
 
 Trace::Trace(const fs::path& folder, const Crowd& crowd, double dt)
     : folder_(folder), dt_(dt), firstTick_(crowd.tick() + 1) {
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
     const auto file = [&](const char* name) { return folder_.add(fmt::format("herd{}/{}", h, name)); };
-    const Rig& rig = crowd.rig(h);
+    const Rig& rig = tracedRig(crowd, h);
     const uint32_t agents = crowd.places(h);
     const uint64_t legs = static_cast<uint64_t>(rig.legCount()),
                    bones = static_cast<uint64_t>(rig.maxBones());
@@ -171,7 +177,7 @@ Trace::Trace(const fs::path& folder, const Crowd& crowd, double dt)
 double Trace::bytes(const Crowd& crowd, const Heightfield& terrain, uint64_t ticks) {
   uint64_t aTick = 0;
   for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-    aTick += crowd.places(h) * EntrySizes(crowd.rig(h)).bytes();
+    aTick += crowd.places(h) * EntrySizes(tracedRig(crowd, h)).bytes();
   return static_cast<double>(aTick) * static_cast<double>(ticks) +
          static_cast<double>(terrain.heights.size() * sizeof(float));
 }
@@ -207,7 +213,7 @@ size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manif
     herds_[h].rotations.finish(entries_);
     herds_[h].stance.finish(entries_);
     herds_[h].body.finish(entries_);
-    herds.push_back(describe(crowd.rig(h), herds_[h].agents));
+    herds.push_back(describe(tracedRig(crowd, h), herds_[h].agents));
     addSizes(implOf(crowd), h, herds.back());
   }
   const nlohmann::ordered_json json = {{"dt", dt_},

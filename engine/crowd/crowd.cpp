@@ -21,6 +21,7 @@
 #include "crowd/herd.h"
 #include "crowd/kinds.h"
 #include "crowd/page.h"
+#include "crowd/readback.h"
 #include "crowd/rig_records.h"
 #include "crowd/roster.h"
 #include "crowd/scale.h"
@@ -532,6 +533,7 @@ void Crowd::removeHerd(HerdId id) {
   crowd.context->waitIdle();
   for (const crowd::SizeRun& run : herd.runs) {
     if (isAlone(run)) {
+      if (crowd.options.sleep && herd.since < crowd.tick) crowd.agentsInTick -= crowd::presentIn(crowd, run);
       crowd.kinds[run.kind] = {};
       continue;
     }

@@ -115,7 +115,8 @@ Fidelity figuresOf(const Crowd::Impl& crowd, uint32_t first, uint32_t end) {
   crowd.context->waitIdle();
   bool limitsAreKept = false;
   for (uint32_t h = first; h < end; ++h)
-    limitsAreKept = limitsAreKept || crowd::traitsOf(crowd.kindOf(h).controller).keepsLimits;
+    if (!crowd.herds[h].isGone())
+      limitsAreKept = limitsAreKept || crowd::traitsOf(crowd.kindOf(h).controller).keepsLimits;
   Sums sums(limitsAreKept);
   std::vector<uint64_t> buckets(shared::HISTOGRAM_BUCKETS);
   uint64_t lastResorts = 0, notFinite = 0;

@@ -46,6 +46,18 @@ const crowd::Herd& Crowd::Impl::herdAt(uint32_t herd) const {
   throw inputError(fmt::format("herd {}: expected one of the crowd's {} herds", herd, herds.size()));
 }
 
+const crowd::Herd& Crowd::Impl::presentHerdAt(uint32_t number) const {
+  const crowd::Herd& herd = herdAt(number);
+  if (!herd.isGone()) return herd;
+  throw inputError(fmt::format("herd {}: was removed, expected one that is there", number));
+}
+
+void Crowd::Impl::expectHerd(const char* what, HerdId id) const {
+  if (herdAt(id.index).generation != id.generation)
+    throw inputError(fmt::format("{}: herd {} was removed, expected it to be there for as long as it is read",
+                                 what, id.index));
+}
+
 const crowd::Kind& Crowd::Impl::kindOf(uint32_t herd, uint32_t agent) const {
   const crowd::Herd& of = herdAt(herd);
   if (agent < of.agents) return kinds[of.runOf(agent).kind];

@@ -165,12 +165,16 @@ struct Crowd::Impl {
   Scene scene;                  // that it was made of
   bool rigsAreCallers = false;  // not those that the scene names
 
-  // Throws Error(input) where there is no such herd.
+  // One that is gone has no places. Throws Error(input) where no herd had that number.
   const crowd::Herd& herdAt(uint32_t herd) const;
   crowd::Herd& herdAt(uint32_t herd) { return const_cast<crowd::Herd&>(std::as_const(*this).herdAt(herd)); }
-  // Of the herd's first size: those of its other sizes differ in lengths alone.
-  crowd::Kind& kindOf(uint32_t herd) { return kinds[herdAt(herd).runs.front().kind]; }
-  const crowd::Kind& kindOf(uint32_t herd) const { return kinds[herdAt(herd).runs.front().kind]; }
+  // One that is there: throws Error(input) for one that is gone, too.
+  const crowd::Herd& presentHerdAt(uint32_t herd) const;
+  // Throws Error(input) where that herd is gone; `what` reads it.
+  void expectHerd(const char* what, HerdId id) const;
+  // Of the herd's first size: those of its other sizes differ in lengths alone. Throws as presentHerdAt.
+  crowd::Kind& kindOf(uint32_t herd) { return kinds[presentHerdAt(herd).runs.front().kind]; }
+  const crowd::Kind& kindOf(uint32_t herd) const { return kinds[presentHerdAt(herd).runs.front().kind]; }
   // Of an agent. Throws Error(input) where the herd has no such place.
   const crowd::Kind& kindOf(uint32_t herd, uint32_t agent) const;
 };

@@ -8,6 +8,7 @@
 
 #include "crowd/controller.h"
 #include "crowd/spawn.h"
+#include "crowd/steer.h"
 #include "skitter/error.h"
 
 namespace skitter::crowd {
@@ -51,6 +52,16 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
 // Whether legs are proposed where the model has none.
 bool proposes(const skitter::Herd& herd) { return traitsOf(herd.controller).needsClips; }
 
+// The ranges of a scene file.
+void checkSpawn(const Spawn& spawn, const std::string& what) {
+  constexpr double most = Scene::maxCoordinate;
+  const auto name = [&] { return what; };
+  expectWithin(name, "spawn.spacing", double{spawn.spacing}, 0.01, most, "m");
+  expectWithin(name, "spawn.centre x", double{spawn.centre.x}, -most, most, "m");
+  expectWithin(name, "spawn.centre z", double{spawn.centre.y}, -most, most, "m");
+  expectWithin(name, "spawn.heading", double{spawn.heading}, -1000, 1000, "radians");
+}
+
 }  // namespace
 
 void checkHerd(const skitter::Herd& herd, const std::string& what) {
@@ -63,10 +74,13 @@ void checkHerd(const skitter::Herd& herd, const std::string& what) {
     if (!(herd.sizes[s] >= Herd::minSize && herd.sizes[s] <= Herd::maxSize))
       throw inputError(fmt::format("{}.sizes[{}] is {}, expected {} to {}", what, s, herd.sizes[s],
                                    Herd::minSize, Herd::maxSize));
+  // Of agents alone, of one size, there is said how much memory they need.
   if (const uint64_t places = uint64_t{herd.agents} + herd.reserve;
-      herd.sizes.size() > 1 && places > Scene::maxAgents)
-    throw inputError(fmt::format("{}: {} agents and reserve of several sizes, expected at most {}", what,
-                                 places, Scene::maxAgents));
+      (herd.sizes.size() > 1 || herd.reserve > 0) && places > Scene::maxAgents)
+    throw inputError(
+        fmt::format("{}: {} agents and reserve, expected at most {}", what, places, Scene::maxAgents));
+  checkSpawn(herd.spawn, what);
+  expectGoal([&] { return what; }, herd.goal);
   if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
     throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
   if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))

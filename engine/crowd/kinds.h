@@ -28,14 +28,14 @@ struct Kinds {
   std::vector<Rig> rigs;             // of each kind, at size 1
 };
 
-// Throws Error(input) where its tuning, sizes, phase or colours are out of range; `what` is its name there.
+// Throws Error(input) where its tuning, sizes, spawn, goal, phase or colours are out of range, or its agents
+// and reserve are more than a crowd can have; `what` is its name there.
 void checkHerd(const skitter::Herd& herd, const std::string& what);
 // Reads the file that the herd names, if it names one.
 Rig rigOf(const skitter::Herd& herd);
 
 // Herds are of one kind where their size is equal, and all but agents, spawn, goal, other sizes, phase and
-// colours. Throws Error(input) where there are more than a device can serve, or a herd's tuning, sizes, phase
-// or colours are out of range.
+// colours. Throws Error(input) where there are more than a device can serve, or checkHerd refuses one.
 Kinds kindsOf(const Scene& scene);
 // With rigs that the caller made, one a herd, in place of those that the scene names. Throws Error(input) for
 // another count of them, too.

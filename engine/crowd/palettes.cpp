@@ -63,7 +63,7 @@ struct Palettes::Impl {
   const gpu::Context* context = nullptr;
   const Crowd::Impl* crowd = nullptr;
   Controller controller = Controller::adaptive;
-  uint32_t herd = 0, entries = 0;
+  uint32_t herd = 0, generation = 0, entries = 0;
   PaletteOptions options;
   std::vector<gpu::Buffer> starts;  // at each of the herd's sizes
   // Of each format that a target asks for.
@@ -173,6 +173,7 @@ Palettes::Palettes(Device& device, const Crowd& crowd, uint32_t herd,
   const crowd::Kind& kind = made.crowd->kindOf(herd);
   made.controller = kind.controller;
   made.herd = herd;
+  made.generation = made.crowd->herds[herd].generation;
   made.entries = entriesOfKind(kind);
   made.options = options;
   if (!(options.space.metresPerUnit > 0) || !std::isfinite(options.space.metresPerUnit))
@@ -200,7 +201,9 @@ Palettes::~Palettes() = default;
 Palettes::Palettes(Palettes&&) noexcept = default;
 Palettes& Palettes::operator=(Palettes&&) noexcept = default;
 
-uint32_t Palettes::agentsOf(const Crowd& crowd, uint32_t herd) { return implOf(crowd).herdAt(herd).agents; }
+uint32_t Palettes::agentsOf(const Crowd& crowd, uint32_t herd) {
+  return implOf(crowd).presentHerdAt(herd).agents;
+}
 uint32_t Palettes::entriesOf(const Crowd& crowd, uint32_t herd) {
   return entriesOfKind(implOf(crowd).kindOf(herd));
 }
@@ -208,6 +211,7 @@ uint32_t Palettes::entriesOf(const Crowd& crowd, uint32_t herd) {
 void Palettes::record(VkCommandBuffer commandBuffer, const glm::dvec3& origin, uint32_t target) const {
   const Impl& palettes = *impl_;
   assert(target < palettes.targets.size());
+  palettes.crowd->expectHerd("palettes", {palettes.herd, palettes.generation});
   const glm::dmat3 turn = palettes.options.space.turned();
   const glm::dvec2 tile = glm::floor(glm::dvec2(origin.x, origin.z) / double{shared::TILE_SIZE});
   const glm::dvec3 local = origin - double{shared::TILE_SIZE} * glm::dvec3(tile.x, 0, tile.y);

@@ -2,6 +2,7 @@
 #include "crowd/readback.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cstring>
@@ -148,6 +149,15 @@ HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<con
   return recordsOf(crowd, partsOf(crowd, herd), records, sample);
 }
 
+uint32_t presentIn(const Crowd::Impl& crowd, const SizeRun& run) {
+  constexpr std::array body{Record::body};
+  const HerdState state = recordsOf(crowd, partsOf(crowd, run), body, kAll);
+  uint32_t count = 0;
+  for (size_t agent = 0; agent < state.agents; ++agent)
+    count += state.body[agent * 4 * shared::BODY_STRIDE + 7] == 0;
+  return count;
+}
+
 HerdState download(const Crowd::Impl& crowd, const SizeRun& run, const AgentSample& sample) {
   const std::vector<Part> parts = partsOf(crowd, run);
   HerdState state = stateOf(crowd, parts, sample);
@@ -190,11 +200,15 @@ std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herd) const {
 uint64_t Crowd::sleeping() const {
   impl_->context->waitIdle();
   if (!impl_->options.sleep || impl_->tick == 0) return 0;
-  uint64_t sleeping = impl_->agentsInTick;
-  for (const crowd::Kind& kind : impl_->kinds)
-    for (const Page& page : kind.pages)
-      sleeping -= gpu::download<uint32_t>(*impl_->context, page.counters)[shared::COUNTER_AWAKE];
-  return sleeping;
+  uint64_t awake = 0;
+  for (uint32_t k = 0; k < impl_->kinds.size(); ++k) {
+    const std::vector<crowd::HerdRun> runs = crowd::runsOf(*impl_, k);
+    // A herd that has just come was in no tick.
+    if (runs.empty() || runs.front().herd->since >= impl_->tick) continue;
+    for (const Page& page : impl_->kinds[k].pages)
+      awake += gpu::download<uint32_t>(*impl_->context, page.counters)[shared::COUNTER_AWAKE];
+  }
+  return impl_->agentsInTick > awake ? impl_->agentsInTick - awake : 0;
 }
 
 uint64_t Crowd::stateHash() const {

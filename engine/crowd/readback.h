@@ -13,6 +13,9 @@ namespace skitter::crowd {
 HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<const Record> records,
                           const AgentSample& sample = {});
 
+// How many of the run's places somebody was in, in the last tick.
+uint32_t presentIn(const Crowd::Impl& crowd, const SizeRun& run);
+
 // As Crowd::download, of a herd's agents that have one size; they are counted from 0.
 HerdState download(const Crowd::Impl& crowd, const SizeRun& run, const AgentSample& sample = {});
 

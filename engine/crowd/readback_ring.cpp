@@ -94,6 +94,7 @@ struct Readback::Impl {
     bool isMade() const { return tick > 0 && made.getStatus() == vk::Result::eEventSet; }
   };
   const Crowd::Impl* crowd = nullptr;
+  std::vector<HerdId> herds;  // that are read
   Snapshot::Layout layout;
   std::vector<Copy> copies;
   std::vector<Slot> slots;
@@ -122,11 +123,13 @@ Readback::Readback(Device& device, const Crowd& crowd, ReadbackOptions options)
   if (options.slots < 2)
     throw inputError(fmt::format("readback: {} slots, expected at least 2", options.slots));
   if (options.herds.empty())
-    for (uint32_t herd = 0; herd < crowd.herdCount(); ++herd) options.herds.push_back(herd);
+    for (uint32_t herd = 0; herd < crowd.herdCount(); ++herd)
+      if (!read.herds[herd].isGone()) options.herds.push_back(herd);
   impl_->layout.herds.resize(crowd.herdCount());
   uint64_t bytes = 0;
   for (const uint32_t herd : options.herds) {
-    const crowd::Herd& from = read.herdAt(herd);
+    const crowd::Herd& from = read.presentHerdAt(herd);
+    impl_->herds.push_back(crowd.herdId(herd));
     Snapshot::Layout::Herd& place = impl_->layout.herds[herd];
     if (place.radius > 0) throw inputError(fmt::format("readback: herd {} is named twice", herd));
     place = {bytes / sizeof(float), from.agents, crowd::radiusOf(read, from)};
@@ -150,6 +153,7 @@ Readback::Readback(Readback&&) noexcept = default;
 Readback& Readback::operator=(Readback&&) noexcept = default;
 
 void Readback::record(VkCommandBuffer commandBuffer) {
+  for (const HerdId herd : impl_->herds) impl_->crowd->expectHerd("readback", herd);
   Impl::Slot* slot = impl_->free();
   if (slot == nullptr) {
     ++impl_->skipped;

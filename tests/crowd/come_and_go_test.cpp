@@ -8,6 +8,7 @@
 #include "crowd/simulation.h"
 #include "crowd/spawn.h"
 #include "skitter/error.h"
+#include "skitter/state.h"
 #include "validation/convert.h"
 #include "validation/herd_facts.h"
 
@@ -171,6 +172,32 @@ TEST_F(ComeAndGoInputTest, SleepersAreThoseWhoAreThere) {
   EXPECT_EQ(crowd.sleeping(), 10u);
   simulate(device(), crowd, 1);
   EXPECT_EQ(crowd.sleeping(), 9u);
+}
+
+TEST_F(ComeAndGoInputTest, SleepersOfHerdsThatComeAndGoAreThoseOfTheTick) {
+  Scene scene = withReserve(10, 0);
+  scene.herds[0].goal.kind = Goal::Kind::none;
+  Herd guests = withReserve(40, 5).herds[0];
+  Crowd crowd(device(), flatGround(), scene, CrowdOptions{.sleep = true});
+  simulate(device(), crowd, 600);
+  EXPECT_EQ(crowd.sleeping(), 10u);
+  HerdId came = crowd.addHerd(guests);
+  EXPECT_EQ(crowd.sleeping(), 10u);
+  EXPECT_EQ(Crowd(device(), parseState(crowd.saveToMemory(), "a state")).sleeping(), 10u);
+  simulate(device(), crowd, 2);
+  EXPECT_EQ(crowd.sleeping(), 10u);
+  // Whoever leaves or comes before the next tick does not count.
+  crowd.remove(crowd.agentId(came.index, 3));
+  crowd.remove(crowd.agentId(came.index, 4));
+  crowd.add(came.index, {{5, 5}, 0});
+  crowd.removeHerd(came);
+  EXPECT_EQ(crowd.sleeping(), 10u);
+  crowd.removeHerd(crowd.addHerd(guests));
+  EXPECT_EQ(crowd.sleeping(), 10u);
+  simulate(device(), crowd, 1);
+  EXPECT_EQ(crowd.sleeping(), 10u);
+  crowd.removeHerd(crowd.herdId(0));
+  EXPECT_EQ(crowd.sleeping(), 0u);
 }
 
 // Whatever the pages are.

@@ -135,6 +135,17 @@ TEST_P(BrokenLimitsTest, AreNotCountedAmongKeptOnes) {
   EXPECT_LT(*crowd.fidelity().limitViolation, 1e-4);
 }
 
+// A herd that is gone keeps none.
+TEST_P(BrokenLimitsTest, AreNotTheMatterOfWhoIsGone) {
+  Scene scene = sceneOf(4, 1, 1, Controller::clip);
+  scene.herds.push_back(sceneOf(3, 1, 1, Controller::planted).herds[0]);
+  Crowd crowd(device(), rollingGround(), scene);
+  crowd.removeHerd(crowd.herdId(1));
+  simulate(device(), crowd, 2);
+  EXPECT_FALSE(crowd.fidelity().limitViolation.has_value());
+  EXPECT_FALSE(crowd.fidelity(1).limitViolation.has_value());
+}
+
 INSTANTIATE_TEST_SUITE_P(, BrokenLimitsTest, bothLoadPaths(), loadPathName);
 
 class ControllerTest : public GpuTest, public ::testing::WithParamInterface<Controller> {};

@@ -527,6 +527,10 @@ TEST_F(EventsTest, OfHerdsThatCannotBeAreRefusedWhenTheCrowdIsMade) {
               herd.sizes = {1, 30};
             }),
             first + ".addHerd.sizes[1] is 30, expected 0.05 to 20");
+  EXPECT_EQ(faultOfHerd([](Herd& herd) { herd.goal.speed = std::nanf(""); }),
+            first + ".addHerd: goal.speed is nan m/s, expected 0 to 1000");
+  EXPECT_EQ(faultOfHerd([](Herd& herd) { herd.spawn.spacing = 0; }),
+            first + ".addHerd: spawn.spacing is 0 m, expected 0.01 to 4096");
   EXPECT_THAT(faultOfHerd([](Herd& herd) { herd.tuning.stepHeight = 1e9f; }),
               HasSubstr(first + ".addHerd.tuning.stepHeight"));
   EXPECT_THAT(faultOfHerd([](Herd& herd) { herd.rig = "nowhere.glb"; }),

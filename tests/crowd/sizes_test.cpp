@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -129,6 +130,35 @@ TEST(KindsRefusalTest, EqualSizesOfEqualHerdsShareAKind) {
   std::vector<uint32_t> kinds;
   for (const crowd::SizedHerd& herd : crowd::kindsOf(scene).herds) kinds.push_back(herd.kind);
   EXPECT_EQ(kinds, (std::vector<uint32_t>{0, 1, 1, 1, 2, 0}));
+}
+
+TEST(KindsRefusalTest, AHerdThatCannotBeIsRefused) {
+  const auto faultOf = [](const std::function<void(Herd&)>& spoil) -> std::string {
+    Scene scene = sizedScene(30, {});
+    scene.name = "one.json";
+    spoil(scene.herds[0]);
+    try {
+      crowd::kindsOf(scene);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), Error::Kind::input);
+      return error.what();
+    }
+    return "taken";
+  };
+  const std::string herd = "one.json: herds[0]: ";
+  const float inf = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(faultOf([](Herd& of) { of.agents = UINT32_MAX, of.reserve = 2; }),
+            herd + "4294967297 agents and reserve, expected at most 16777216");
+  EXPECT_EQ(faultOf([](Herd& of) { of.spawn.spacing = 0; }),
+            herd + "spawn.spacing is 0 m, expected 0.01 to 4096");
+  EXPECT_EQ(faultOf([&](Herd& of) { of.spawn.spacing = inf; }),
+            herd + "spawn.spacing is inf m, expected 0.01 to 4096");
+  EXPECT_EQ(faultOf([&](Herd& of) { of.spawn.centre.y = -inf; }),
+            herd + "spawn.centre z is -inf m, expected -4096 to 4096");
+  EXPECT_EQ(faultOf([](Herd& of) { of.spawn.heading = std::nanf(""); }),
+            herd + "spawn.heading is nan radians, expected -1000 to 1000");
+  EXPECT_EQ(faultOf([](Herd& of) { of.goal.speed = -1; }), herd + "goal.speed is -1 m/s, expected 0 to 1000");
+  EXPECT_EQ(faultOf([](Herd& of) { of.agents = UINT32_MAX; }), "taken");
 }
 
 TEST(KindsRefusalTest, SizesAreDrawnBySeedAndMixedByPlace) {

@@ -78,7 +78,8 @@ class SKITTER_API Palettes {
   // Records the writes of one target, after Crowd::record() in the same or an earlier submission, outside a
   // render pass. It begins with a barrier that waits for vertex, fragment, compute and transfer work recorded
   // before it, and ends with one that makes the transforms visible to such work recorded after it. `origin`
-  // is the point of the world, in metres, that the host's space has its own origin in.
+  // is the point of the world, in metres, that the host's space has its own origin in. Throws Error(input)
+  // where the herd was removed; then nothing is recorded.
   void record(VkCommandBuffer commandBuffer, const glm::dvec3& origin = glm::dvec3(0),
               uint32_t target = 0) const;
 

@@ -18,7 +18,7 @@
 namespace skitter {
 
 struct ReadbackOptions {
-  std::vector<uint32_t> herds = {};  // whose agents are read; none: all herds'
+  std::vector<uint32_t> herds = {};  // whose agents are read; none: all that are there
   uint32_t slots = 3;                // copies that there is room for, at least 2
 };
 
@@ -71,7 +71,8 @@ class SKITTER_API Readback {
 
   // Records a copy after Crowd::record() in the same command buffer, outside a render pass. Each must be
   // submitted once, in order. Nothing is recorded, and the tick is counted by skipped(), where every slot is
-  // still on its way.
+  // still on its way. Throws Error(input) that names a herd that is read and was removed; then nothing is
+  // recorded.
   void record(VkCommandBuffer commandBuffer);
   // The newest that has been made; none before the first.
   std::optional<Snapshot> latest() const;
