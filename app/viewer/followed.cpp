@@ -97,6 +97,7 @@ AgentId neighbourOf(const Crowd& crowd, AgentId id, bool after) {
 
 Followed::Followed(const Crowd& crowd, AgentId id)
     : id_(id),
+      herd_(crowd.herdId(id.herd)),
       creature_(creatureOf(implOf(crowd).kindOf(id.herd, id.agent))),
       legLength_(crowd.rig(id.herd, id.agent).legLength),
       bodyHeight_(crowd.rig(id.herd, id.agent).bodyHeight) {

@@ -19,7 +19,7 @@ struct AgentId {
 // The agent that is drawn nearest to a pixel, at most `most` pixels beside its legs; none that the ground
 // hides. Waits for the device.
 std::optional<AgentId> agentAt(const Crowd& crowd, const Lens& lens, const glm::vec2& pixel, float most);
-// Whether the crowd has such a place: its herd may be gone.
+// Whether the crowd has such a place.
 bool hasPlace(const Crowd& crowd, AgentId id);
 // The one after or before, through all herds.
 AgentId neighbourOf(const Crowd& crowd, AgentId id, bool after);
@@ -57,7 +57,9 @@ class Followed {
   Followed(const Crowd& crowd, AgentId id);
 
   AgentId id() const { return id_; }
-  // After each tick. Waits for the device.
+  // Not once its herd is gone, whoever has its number then.
+  bool isThere(const Crowd& crowd) const { return crowd.has(herd_); }
+  // After each tick in which it is there. Waits for the device.
   void look(const Crowd& crowd);
   glm::vec3 middle() const;  // of its body, which the support polygon should hold
   float speed() const;       // m/s
@@ -68,6 +70,7 @@ class Followed {
   void lookAtLeg(const Crowd& crowd, size_t leg);
 
   AgentId id_;
+  HerdId herd_;
   reference::Creature creature_;
   float legLength_ = 1, bodyHeight_ = 0;
   HerdState before_, now_;

@@ -235,7 +235,7 @@ void Viewer::advance() {
       runTick(ring_, run_.crowd, run_.dt, times_);
     }
     run_.afterTick();
-    if (followed_ && !hasPlace(run_.crowd, followed_->id())) followed_.reset();
+    if (followed_ && !followed_->isThere(run_.crowd)) followed_.reset();
     if (followed_) followed_->look(run_.crowd);
     ++made;
   }

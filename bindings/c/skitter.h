@@ -139,9 +139,17 @@ SKITTER_C skitter_result skitter_crowd_resume(skitter_device* device, const skit
 
 /* Records one tick of `dt` seconds into the caller's command buffer, outside a render pass. The tick waits
  * for earlier reads of the crowd's buffers, and makes its results visible to vertex, compute and transfer
- * work after it. Each recorded tick is submitted once, in order. A crowd keeps the dt of its first tick. */
+ * work after it. Each recorded tick is submitted once, in order. A crowd keeps the dt of its first tick.
+ * What the scene's events have for that time happens first. A tick before which a herd comes or goes waits
+ * for the device: it is recorded when all ticks before it are submitted. The buffers of a herd that goes are
+ * freed; what was recorded of them before must not be submitted any more.
+ * After SKITTER_ERROR_INPUT none of the tick's events has happened. After SKITTER_ERROR_DEVICE, where memory
+ * does not suffice for a herd that comes, the events before it have, and the tick, recorded again, goes on
+ * with it. */
 SKITTER_C skitter_result skitter_crowd_record(skitter_crowd* crowd, VkCommandBuffer commands, float dt);
-/* Makes so many ticks on the device's queue and waits for the last one. */
+/* Makes so many ticks on the device's queue and waits for the last one. After an error the ticks before the
+ * one that failed are made, and skitter_crowd_tick() tells how many; of its events have happened those that
+ * skitter_crowd_record() says. */
 SKITTER_C skitter_result skitter_crowd_step(skitter_crowd* crowd, uint64_t ticks, float dt);
 
 /* Ticks recorded so far. */
@@ -448,14 +456,14 @@ SKITTER_C skitter_result skitter_decode_footfall(const float event[8], const ski
 /* ---- Readback ---- */
 
 /* Where agents are, some ticks late and without waiting: a ring of copies, which the device makes after a
- * tick. Herds that are read must not be removed while the readback is there, and what was recorded into the
- * caller's command buffers has finished before it is destroyed. */
+ * tick. Once a herd that it reads is removed, it records no more: that is SKITTER_ERROR_INPUT. What was
+ * recorded into the caller's command buffers has finished before it is destroyed. */
 typedef struct skitter_readback skitter_readback;
 
 /* All zero: the defaults. */
 typedef struct skitter_readback_options {
   const uint32_t* herds; /* whose agents are read */
-  uint32_t herd_count;   /* 0: all herds */
+  uint32_t herd_count;   /* 0: all that are there */
   uint32_t slots;        /* copies that there is room for, at least 2; 0: 3. 64 bytes an agent each */
 } skitter_readback_options;
 
@@ -468,7 +476,8 @@ SKITTER_C skitter_result skitter_readback_create(skitter_crowd* crowd,
  * still on its way. */
 SKITTER_C skitter_result skitter_readback_record(skitter_readback* readback, VkCommandBuffer commands);
 /* Makes so many ticks on the device's queue, with a copy after the last one, and does not wait for them, but
- * where two ticks are still on their way. */
+ * where two ticks are still on their way. An error leaves what one of skitter_crowd_step() does; where a herd
+ * that is read was removed, all of the ticks are made, without a copy. */
 SKITTER_C skitter_result skitter_readback_step(skitter_readback* readback, uint64_t ticks, float dt);
 SKITTER_C skitter_result skitter_readback_skipped(const skitter_readback* readback, uint64_t* skipped);
 
@@ -608,7 +617,7 @@ typedef struct skitter_view {
   float field_of_view; /* radians, vertical, above 0 and below pi; 0: 0.8 */
 } skitter_view;
 /* The camera of a scene at a time, any number of seconds. The crowd was made of the scene, or of the state
- * that the scene is of. A herd that was removed has no agents in the scene (skitter_scene_set_agents). */
+ * that the scene is of. */
 SKITTER_C skitter_result skitter_scene_view(const skitter_scene* scene, const skitter_crowd* crowd,
                                             double seconds, skitter_view* view);
 

@@ -175,9 +175,9 @@ void fill(Impl& crowd, uint32_t k, bool spawns = true) {
   if (kind.tinted) uploadTints(crowd, k);
 }
 
-// A crowd without herds.
+// A crowd without herds, which will have so many places at most.
 std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
-                                 const CrowdOptions& options) {
+                                 const CrowdOptions& options, uint64_t places) {
   auto made = std::make_unique<Impl>();
   Impl& crowd = *made;
   const gpu::Context& context = device.context();
@@ -202,7 +202,7 @@ std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, con
   crowd.edits = crowd::HeightEdits(context);
   crowd.events = scene.events;
   if (options.timestamps) crowd.timer = gpu::StageTimer(context, crowd::Frame::mostStages);
-  crowd.watchEvery = crowd::watchEvery(options, scene.capacity());
+  crowd.watchEvery = crowd::watchEvery(options, places);
   return made;
 }
 
@@ -257,31 +257,44 @@ std::vector<crowd::Kind> kindsFor(const Impl& crowd, const Herd& from, const Rig
   return kinds;
 }
 
+// Makes the call, whose Error names the event by which a herd comes.
+template <class Call>
+auto asEvent(const Impl& crowd, size_t event, const Call& call) {
+  try {
+    return call();
+  } catch (const Error& fault) {
+    throw Error(fault.kind(),
+                fmt::format("{}: events[{}].addHerd: {}", crowd.scene.name, event, fault.what()));
+  }
+}
+
 // Reads the rigs and clips of the herds that events after a tick will add, so that no file is read while the
 // crowd runs.
 void prepareComing(Impl& crowd, uint64_t tick, float dt) {
   std::map<std::pair<std::string, Controller>, Rig> rigs;  // the controller decides how a rig is read
-  for (size_t e = 0; e < crowd.events.size(); ++e) {
+  const auto isPast = [&](const Event& event) {
+    return tick > 0 && crowd::tickOf(event, double{dt}) <= tick;
+  };
+  const size_t begun = static_cast<size_t>(std::ranges::count_if(crowd.events, isPast)) + crowd.begun;
+  for (size_t e = begun; e < crowd.events.size(); ++e) {
     const Event& event = crowd.events[e];
     const auto* addition = std::get_if<HerdAddition>(&event.what);
-    if (addition == nullptr || (tick > 0 && crowd::tickOf(event, double{dt}) <= tick)) continue;
+    if (addition == nullptr) continue;
     const Herd& herd = addition->herd;
-    try {
+    asEvent(crowd, e, [&] {
       const std::pair key(herd.rig, herd.controller);
       auto loaded = rigs.find(key);
       if (loaded == rigs.end()) loaded = rigs.emplace(key, crowd::rigOf(herd)).first;
       crowd.coming.emplace(e, kindsFor(crowd, herd, loaded->second));
-    } catch (const Error& fault) {
-      throw Error(fault.kind(), fmt::format("{}: events[{}].addHerd: {}", crowd.scene.name, e, fault.what()));
-    }
+    });
   }
 }
 
 std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
                                 const crowd::Kinds& kinds, const CrowdOptions& options) {
   // A state's were checked when its crowd began, with the herds that there were then.
-  crowd::checkEvents(scene, terrain, kinds);
-  auto made = beginCrowd(device, terrain, scene, options);
+  const uint64_t places = crowd::checkEvents(scene, terrain, kinds);
+  auto made = beginCrowd(device, terrain, scene, options, places);
   Impl& crowd = *made;
   for (size_t k = 0; k < kinds.rigs.size(); ++k) {
     const crowd::SizedHerd& first = kinds.herds[kinds.firstHerds[k]];
@@ -308,9 +321,14 @@ Rig rigFor(const Herd& from) {
   return std::move(crowd::kindsOf(scene).rigs.front());
 }
 
+// The caller's, of a herd that the crowd began with; one that came later has its file's.
+Rig restoredRig(const crowd::Herd& herd, uint32_t number, const std::vector<Rig>& rigs) {
+  return herd.since == 0 && number < rigs.size() ? rigs[number] : rigFor(herd.from);
+}
+
 // Herds and kinds have the numbers that they had, those that are gone among them.
 std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
-  auto made = beginCrowd(device, state.terrain, state.scene, state.options);
+  auto made = beginCrowd(device, state.terrain, state.scene, state.options, state.scene.capacity());
   Impl& crowd = *made;
   crowd::restoreHerds(crowd, state);
   for (uint32_t k = 0; k < crowd.kinds.size(); ++k) {
@@ -318,8 +336,7 @@ std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
     if (runs.empty()) continue;
     const auto& [h, herd, run] = runs.front();
     const float size = crowd::sizesOf(herd->from)[static_cast<size_t>(run - herd->runs.data())];
-    crowd::Kind kind = makeKind(
-        crowd, herd->from, state.options.rigs.empty() ? rigFor(herd->from) : state.options.rigs[h], size);
+    crowd::Kind kind = makeKind(crowd, herd->from, restoredRig(*herd, h, state.options.rigs), size);
     kind.firstAgents = std::move(crowd.kinds[k].firstAgents);
     kind.agents = crowd.kinds[k].agents;
     for (const crowd::HerdRun& of : runs)
@@ -427,7 +444,7 @@ HerdId addComing(Crowd::Impl& crowd, size_t event) {
   const skitter::Herd& from = std::get<HerdAddition>(crowd.events[event].what).herd;
   const uint32_t number =
       Roster(crowd).add(from, fmt::format("{}: events[{}].addHerd", crowd.scene.name, event));
-  const HerdId id = admit(crowd, number, from, found->second);
+  const HerdId id = asEvent(crowd, event, [&] { return admit(crowd, number, from, found->second); });
   crowd.coming.erase(found);
   return id;
 }

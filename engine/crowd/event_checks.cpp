@@ -131,8 +131,9 @@ void check(const HerdRemoval& removal, const Where& at) {
 
 }  // namespace
 
-void checkEvents(const Scene& scene, const Heightfield& terrain, const Kinds& kinds) {
+uint64_t checkEvents(const Scene& scene, const Heightfield& terrain, const Kinds& kinds) {
   Roster herds(scene, kinds);
+  uint64_t most = herds.places();
   for (size_t e = 0; e < scene.events.size(); ++e) {
     const Event& event = scene.events[e];
     const Where where{terrain, herds, fmt::format("{}: events[{}]", scene.name, e)};
@@ -142,7 +143,9 @@ void checkEvents(const Scene& scene, const Heightfield& terrain, const Kinds& ki
       throw inputError(fmt::format("{}.at is {}, expected {} or later, as the event before it", where.event,
                                    event.at, scene.events[e - 1].at));
     std::visit([&](const auto& what) { check(what, where); }, event.what);
+    if (std::holds_alternative<HerdAddition>(event.what)) most = std::max(most, herds.places());
   }
+  return most;
 }
 
 }  // namespace skitter::crowd

@@ -13,8 +13,8 @@ namespace skitter::crowd {
 // All that can be known before the crowd runs, which begins with the scene's herds, of those kinds: throws
 // Error(input) that names the event where the terrain has no such place, no herd of that number is there by
 // then, the herd has no such agent, a herd cannot come or go, or a number is out of its range. The files of
-// herds that come are not read.
-void checkEvents(const Scene& scene, const Heightfield& terrain, const Kinds& kinds);
+// herds that come are not read. Returns the most places that herds have at a time.
+uint64_t checkEvents(const Scene& scene, const Heightfield& terrain, const Kinds& kinds);
 
 // The tick before which an event happens, counted from 1, of `dt` seconds.
 uint64_t tickOf(const Event& event, double dt);

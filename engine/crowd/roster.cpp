@@ -30,20 +30,26 @@ const skitter::Herd* Roster::find(uint32_t number) const {
   return number < herds_.size() ? herds_[number].herd : nullptr;
 }
 
+uint64_t Roster::places() const {
+  uint64_t count = 0;
+  for (const Entry& each : herds_)
+    if (each.herd != nullptr) count += uint64_t{each.herd->agents} + each.herd->reserve;
+  return count;
+}
+
 uint32_t Roster::add(const skitter::Herd& herd, const std::string& name) {
-  uint64_t held = 0;
+  const uint64_t held = places();
   size_t live = 0;
   std::set<uint32_t> kinds;
   for (const Entry& each : herds_) {
     if (each.herd == nullptr) continue;
-    held += uint64_t{each.herd->agents} + each.herd->reserve;
     ++live;
     kinds.insert(each.kinds.begin(), each.kinds.end());
   }
-  const uint64_t places = uint64_t{herd.agents} + herd.reserve;
-  if (held + places > Scene::maxAgents)
+  const uint64_t asked = uint64_t{herd.agents} + herd.reserve;
+  if (held + asked > Scene::maxAgents)
     throw inputError(fmt::format("{}: {} agents and reserve beside {} places, expected at most {} in all",
-                                 name, places, held, Scene::maxAgents));
+                                 name, asked, held, Scene::maxAgents));
   if (live >= Scene::maxHerds)
     throw inputError(
         fmt::format("{}: one herd beside {}, expected at most {} in all", name, live, Scene::maxHerds));

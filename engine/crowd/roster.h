@@ -21,6 +21,7 @@ class Roster {
   explicit Roster(const Crowd::Impl& crowd);
 
   size_t numbers() const { return herds_.size(); }  // those of herds that are gone among them
+  uint64_t places() const;                          // of all herds, empty ones among them
   // nullptr where no herd has that number.
   const skitter::Herd* find(uint32_t number) const;
 

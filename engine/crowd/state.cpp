@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "assets/files/partial_file.h"
+#include "crowd/events.h"
 #include "crowd/frame.h"
 #include "crowd/page.h"
 #include "crowd/record.h"
@@ -271,6 +272,8 @@ StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& foot
   head.dt = crowd.dt;
   head.scene = crowd.scene;
   head.agentsInTick = crowd.agentsInTick;
+  head.begun = crowd.happened > crowd.tick ? eventsAt(crowd.events, crowd.tick + 1, double{crowd.dt}).size()
+                                           : crowd.begun;
   head.terrain = crowd.terrain;
   head.options = crowd.options;
   head.options.watchEvery = crowd.watchEvery;
@@ -449,9 +452,13 @@ void restoreHerds(Impl& crowd, const State& state) {
   if (head.rigsAreCallers && state.options.rigs.empty())
     throw inputError(
         fmt::format("{}: the crowd was made of rigs of a program's own, which must give them again", name));
-  if (!state.options.rigs.empty() && state.options.rigs.size() != head.herds.size())
-    throw inputError(fmt::format("{}: {} rigs for {} herds, expected one a herd", name,
-                                 state.options.rigs.size(), head.herds.size()));
+  if (state.options.rigs.size() > head.herds.size())
+    throw inputError(fmt::format("{}: {} rigs for {} herds, expected one for each that the crowd began with",
+                                 name, state.options.rigs.size(), head.herds.size()));
+  // The caller may have changed the scene's events.
+  if (state.dt > 0)
+    crowd.begun =
+        std::min<uint64_t>(head.begun, eventsAt(crowd.events, state.tick + 1, double{state.dt}).size());
   for (size_t h = 0; h < head.herds.size(); ++h) {
     const StateHerd& saved = head.herds[h];
     Herd& herd = crowd.herds.emplace_back();

@@ -190,6 +190,7 @@ Json jsonOf(const StateHead& head) {
   eachKey(copy, [&](const char* key, auto& member) { json[key] = written(member); });
   json["scene"] = Json::parse(sceneJson(head.scene));
   json["note"] = noteOf(head.note);
+  if (head.begun > 0) json["begun"] = head.begun;
   json["terrain"]["hash"] = fmt::format("{:08x}", checksum(std::as_bytes(std::span(head.terrain.heights))));
   return json;
 }
@@ -199,6 +200,7 @@ StateHead headOf(const Json& json, const std::string& name) try {
   eachKey(head, [&](const char* key, auto& member) { read(json.at(key), member); });
   head.scene = parseScene(json.at("scene").dump(), name, "/");
   if (const Json& note = json.at("note"); !note.is_null()) head.note = note.dump();
+  head.begun = json.value("begun", uint64_t{0});
   checkSides(head.terrain, name);
   checkHerds(head, name);
   for (const StateKind& kind : head.kinds)

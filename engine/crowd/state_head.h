@@ -63,6 +63,7 @@ struct StateHead : State {
   uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground
   bool rigsAreCallers = false;
   uint64_t agentsInTick = 0;
+  uint64_t begun = 0;  // of the events before the next tick, those that have happened
   std::vector<StateKind> kinds;
   std::vector<StateHerd> herds;
   std::vector<StateComing> coming;

@@ -67,7 +67,7 @@ Walk walkOf(const Crowd::Impl& live, double seconds) {
     const crowd::Herd& herd = live.herds[i];
     if (herd.from.agents == 0) continue;
     const double came = static_cast<double>(herd.since) * double{live.dt};
-    return walkOf(herd.from, live.kindOf(i), live.terrain, live.seed, seconds - came);
+    return walkOf(herd.from, live.kindOf(i), live.terrain, herd.seed, seconds - came);
   }
   return {{0, 0}, {0, 1}};
 }

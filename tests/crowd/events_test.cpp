@@ -423,6 +423,23 @@ TEST_F(EventsTest, AStateNeitherRepeatsNorLosesThoseOfHerds) {
   }
 }
 
+// Of a state between the events before a tick and the tick.
+TEST_F(EventsTest, AStateDoesNotRepeatThoseThatHaveBegun) {
+  Scene scene = twoHerds();
+  scene.events = {{0.1f, Mound{.centre = {0, -10}, .radius = 6}},
+                  {0.1f, Addition{.arrivals = {{.place = {{3, 3}, 0}}}}},
+                  {0.1f, HerdAddition{guests()}},
+                  {0.2f, Mound{.centre = {0, 10}, .radius = 6}}};
+  Crowd whole(device(), rollingGround(), scene), first(device(), rollingGround(), scene);
+  for (Crowd* each : {&whole, &first}) simulate(device(), *each, 5);
+  crowd::letEventsHappen(first);
+  Crowd again(device(), parseState(first.saveToMemory(), "a state"));
+  for (Crowd* each : {&whole, &again}) simulate(device(), *each, 20);
+  EXPECT_EQ(again.terrain().heights, whole.terrain().heights);
+  EXPECT_EQ(again.agentCount(), whole.agentCount());
+  EXPECT_EQ(again.stateHash(), whole.stateHash());
+}
+
 TEST_F(EventsTest, BeyondTheMapAreRefusedOrChangeNothing) {
   const Heightfield ground = flatGround();
   const auto fault = [&](Event event) -> std::string {

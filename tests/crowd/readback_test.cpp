@@ -146,6 +146,37 @@ TEST_F(ReadbackTest, RefusesWhatCannotBe) {
   expectRefused({.herds = {2, 0, 2}}, "readback: herd 2 is named twice");
 }
 
+TEST_F(ReadbackTest, OfAHerdThatIsGoneIsRefused) {
+  Scene scene = severalHerds();
+  scene.events = {{2 * kTick, HerdRemoval{3}}};
+  Crowd crowd(device(), rollingGround(), scene, options);
+  Readback all(device(), crowd), first(device(), crowd, {.herds = {0}});
+  const auto tick = [&](Readback& readback) -> std::string {
+    std::string fault = "taken";
+    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+      crowd.record(cmd, kTick);
+      try {
+        readback.record(cmd);
+      } catch (const Error& error) {
+        fault = error.what();
+      }
+    });
+    return fault;
+  };
+  EXPECT_EQ(tick(all), "taken");
+  EXPECT_EQ(tick(all), "readback: herd 3 was removed, expected it to be there for as long as it is read");
+  EXPECT_EQ(tick(first), "taken");
+  // Another one of its number is not the one that is read.
+  crowd.addHerd(scene.herds[0]);
+  EXPECT_THAT(tick(all), testing::HasSubstr("herd 3 was removed"));
+  crowd.removeHerd(crowd.herdId(3));
+  Readback rest(device(), crowd);
+  EXPECT_EQ(tick(rest), "taken");
+  EXPECT_EQ(rest.latest()->agents(2), 37u);
+  EXPECT_EQ(rest.latest()->agents(3), 0u);
+  EXPECT_THROW(Readback(device(), crowd, {.herds = {3}}), Error);
+}
+
 // From straight above each agent, from aside, and where nobody is.
 TEST_F(ReadbackTest, PicksTheAgentUnderTheRay) {
   Crowd crowd(device(), rollingGround(), severalHerds(), options);

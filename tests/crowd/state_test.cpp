@@ -293,6 +293,22 @@ TEST_F(StateFileTest, OwnRigsAreGivenAgain) {
   EXPECT_NE(inputFault([&] { Crowd(device(), state); }).find("other legs or clips"), std::string::npos);
 }
 
+TEST_F(StateFileTest, OwnRigsAreOfTheHerdsThatItBeganWith) {
+  Scene scene = sceneOf(9);
+  scene.events = {{0.1f, HerdAddition{sceneOf(4).herds[0]}}};
+  Crowd crowd(device(), smallRollingGround(), scene, {.rigs = {scaledSpider(0.5f)}});
+  simulate(device(), crowd, 10);
+  ASSERT_EQ(crowd.herdCount(), 2u);
+  State state = parseState(crowd.saveToMemory(), "a state");
+  state.options.rigs = {scaledSpider(0.5f)};
+  Crowd again(device(), state);
+  for (Crowd* each : {&crowd, &again}) simulate(device(), *each, 10);
+  EXPECT_EQ(again.stateHash(), crowd.stateHash());
+  state.options.rigs.resize(3, scaledSpider(0.5f));
+  EXPECT_EQ(inputFault([&] { Crowd(device(), state); }),
+            "a state: 3 rigs for 2 herds, expected one for each that the crowd began with");
+}
+
 TEST_F(StateFileTest, FiguresAreKeptOrNot) {
   State state = parseState(walking(9, {.measure = false}).saveToMemory(), "a state");
   state.options.measure = true;

@@ -34,6 +34,21 @@ TEST_P(WatchTest, PagesDoNotShow) {
   EXPECT_EQ(whole.download(0).metric, paged.download(0).metric);
 }
 
+// Herds that come count from the start, and those that are gone by then do not.
+TEST_P(WatchTest, IsOfTheMostAgentsThatThereWillBe) {
+  const auto every = [&](const std::vector<decltype(Event::what)>& events) {
+    Scene scene = sceneOf(8);
+    for (const auto& what : events) scene.events.push_back({1, what});
+    return Crowd(device(), flatGround(), scene).watchEvery();
+  };
+  const auto added = [](uint32_t agents) { return HerdAddition{sceneOf(agents).herds[0]}; };
+  EXPECT_EQ(every({}), 1u);
+  EXPECT_EQ(every({added(248)}), 1u);
+  EXPECT_EQ(every({added(249)}), 64u);
+  EXPECT_EQ(every({added(200), HerdRemoval{1}, added(200)}), 1u);
+  EXPECT_EQ(every({added(200), added(49), HerdRemoval{1}}), 64u);
+}
+
 INSTANTIATE_TEST_SUITE_P(, WatchTest, bothLoadPaths(), loadPathName);
 
 }  // namespace

@@ -139,6 +139,19 @@ TEST_F(CameraTest, followIsInTheMiddleOfTheHerd) {
   }
 }
 
+// Its place is drawn by the seed of its herd, which is another one for each number.
+TEST_F(CameraTest, followIsOfTheFirstHerdThatHasAgents) {
+  Scene scene = herdOf(1, {.kind = Spawn::Kind::lanes}, {.kind = Goal::Kind::none});
+  scene.herds.push_back(scene.herds[0]);
+  scene.herds[0].agents = 0;
+  const Crowd crowd = crowdOf(device(), incline(200, 0), scene);
+  const View view = viewOf(scene, crowd, 0);
+  const HerdState state = crowd.download(1);
+  const float* body = state.body.data();
+  EXPECT_NEAR(view.target.x, shared::tileX(body[3]) * shared::TILE_SIZE + body[0], 1e-3f);
+  EXPECT_NEAR(view.target.z, shared::tileZ(body[3]) * shared::TILE_SIZE + body[2], 1e-3f);
+}
+
 // Ground that rises behind the walker more steeply than the camera looks down lifts the camera: half a metre
 // of air under the first two thirds of its line of sight, and no more.
 TEST_F(CameraTest, followLooksOverGroundThatRises) {

@@ -360,6 +360,39 @@ TEST_P(PalettesTest, RefuseWhatCannotBe) {
   expectRefused(crowd, 0, {}, "metresPerUnit 0, expected a finite length above 0", 0);
 }
 
+TEST_P(PalettesTest, OfAHerdThatIsGoneAreRefused) {
+  Scene scene;
+  scene.herds[0].agents = 3;
+  scene.herds.push_back(scene.herds[0]);
+  scene.herds[1].controller = Controller::clip;
+  Crowd crowd(device(), ground(), scene, CrowdOptions{.measure = false});
+  const gpu::Buffer buffer(context(), 1 << 16, "the caller's");
+  const PaletteTarget target{.instances = {buffer.handle(), 0, 1 << 16}};
+  const Palettes palettes(device(), crowd, 1, {target});
+  crowd.removeHerd(crowd.herdId(1));
+  const auto isGone = testing::ThrowsMessage<Error>(testing::HasSubstr("herd 1 was removed"));
+  const auto recorded = [&] {
+    gpu::CommandRing ring(context());
+    const vk::CommandBuffer cmd = ring.begin();
+    try {
+      palettes.record(cmd);
+    } catch (...) {
+      ring.submit();
+      throw;
+    }
+    ring.submit();
+  };
+  EXPECT_THAT(recorded, isGone);
+  const auto isNone = testing::ThrowsMessage<Error>(testing::HasSubstr("herd 1: was removed"));
+  EXPECT_THAT([&] { Palettes(device(), crowd, 1, {target}); }, isNone);
+  EXPECT_THAT([&] { Palettes::agentsOf(crowd, 1); }, isNone);
+  EXPECT_THAT([&] { Palettes::entriesOf(crowd, 1); }, isNone);
+  EXPECT_THAT([&] { skinMeshOf(crowd, 1); }, isNone);
+  EXPECT_THAT([&] { crowd.rig(1); }, isNone);
+  crowd.addHerd(scene.herds[0]);
+  EXPECT_THAT(recorded, isGone);
+}
+
 // Every space shows the same side of each triangle, and levels are coarser and coarser.
 TEST(SkinMeshTest, FacesOutwardInEverySpace) {
   Device device = Device::create(test::validatedRequest());

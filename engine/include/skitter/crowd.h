@@ -42,7 +42,8 @@ struct CrowdOptions {
   bool pose = true;         // bone rotations and positions, for drawing and traces
   bool measure = true;      // keep the fidelity figures
   uint32_t watchEvery = 0;  // of one agent of this many at a time, each in its turn; 0: of all
-                            // in a crowd of at most 256, of one in 64 in a larger one
+                            // in a crowd of at most 256, of one in 64 in a larger one;
+                            // agents of herds that events add count from the start
   bool feet = false;        // keep where feet should be and are, as measure and footfalls have it, though no
                             // later tick needs it: else they may have no foot and tip records
   uint32_t footfalls = 0;   // keep so many touchdowns of a tick, a page of records, at most one a
@@ -53,7 +54,9 @@ struct CrowdOptions {
   bool timestamps = false;                // time every stage on the device
   uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
-  // One a herd, in place of those that the scene names, but for herds that events add; empty: the scene's.
+  // One a herd, in place of those that the scene names, but for herds that events add; empty: the scene's. Of
+  // a state: one for each herd, by number, that the crowd began with; herds that came later have their
+  // files'.
   std::vector<Rig> rigs = {};
 };
 
@@ -142,9 +145,10 @@ struct StageTime {
   double milliseconds = 0;  // of the last tick that has finished on the device
 };
 
-// The herds on one terrain, living on one device. Herds that are equal but for agents, spawn, goal, sizes,
-// phase and colours share pipelines and dispatches, so that any number of them costs what one of as many
-// agents does; each size among them has its own. Not thread-safe; one crowd may be recorded while another is.
+// The herds on one terrain, living on one device. Herds are of one kind where they are equal but for agents,
+// how large a reserve they have, spawn, goal, sizes, phase and colours, and they share pipelines and
+// dispatches, so that any number of them costs what one of as many agents does; each size among them has its
+// own. Not thread-safe; one crowd may be recorded while another is.
 class SKITTER_API Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
@@ -169,12 +173,13 @@ class SKITTER_API Crowd {
   // order. What Scene::events has for that time happens first, as if the caller had called editHeights,
   // steer, setSpeed, teleport, add, remove, addHerd or removeHerd just before; no file is read for that. A
   // tick before which a herd comes or goes waits for the device, and is recorded when all that was recorded
-  // before it is submitted. The buffers of a herd that goes are freed: what reads them (Readback, Palettes,
-  // the caller's shaders) must be gone before. Throws Error(input) where dt is not what it was before, for
-  // steps are timed in ticks, or, of an adaptive herd, below 22 microseconds; and where an event cannot
-  // happen, because a herd or an agent is not there or no place is left: then none of the tick's events has,
-  // and the tick can be recorded again. Throws Error(device) where memory does not suffice for a herd that
-  // comes: then what comes before it has happened, and the tick, recorded again, goes on with it.
+  // before it is submitted. The buffers of a herd that goes are freed: what was recorded of them before must
+  // not be submitted any more, and Readback and Palettes refuse to record. Throws Error(input) where dt is
+  // not what it was before, for steps are timed in ticks, or, of an adaptive herd, below 22 microseconds; and
+  // where an event cannot happen, because a herd or an agent is not there or no place is left: then none of
+  // the tick's events has, and the tick can be recorded again. Throws Error(device) where memory does not
+  // suffice for a herd that comes: then what comes before it has happened, and the tick, recorded again, goes
+  // on with it.
   void record(VkCommandBuffer commandBuffer, float dt);
 
   // Replaces a rectangle of the terrain's samples while the crowd walks: columns [x0, x0 + columns), rows
@@ -235,7 +240,7 @@ class SKITTER_API Crowd {
   HerdId addHerd(const Herd& herd);
   // Waits for the device, frees the herd's memory, and its number is of a herd without places. Command
   // buffers that were recorded before must not be submitted any more. A herd that shares its kind with others
-  // (equal but for agents, reserve, spawn and goal) leaves its places empty where the kind has a reserve, and
+  // (as the class says) leaves its places empty where the kind has a reserve, and
   // is refused by an Error(input) where it has none.
   void removeHerd(HerdId herd);
   bool has(HerdId herd) const;

@@ -58,7 +58,7 @@ struct PaletteOptions {
 // with the instance's transform before it where PaletteOptions::relative is set. An agent that is not there
 // has transforms of zeros, so that it vanishes.
 //
-// Of one thread at a time. The herd outlives it; so do the buffers.
+// Of one thread at a time. The crowd outlives it; so do the buffers.
 class SKITTER_API Palettes {
  public:
   // A target for each frame that may be in flight. Throws Error(input) for a herd that is not there, a range

@@ -58,7 +58,7 @@ class SKITTER_API Snapshot {
 // VkEvent, set by the copy itself, says that it has been made, so that the caller has no fence or semaphore
 // to pass on.
 //
-// Of one thread at a time. The crowd and the herds that are read outlive it, and what was recorded has
+// Of one thread at a time. The crowd outlives it, and what was recorded has
 // finished before it goes.
 class SKITTER_API Readback {
  public:
