@@ -146,16 +146,16 @@ struct StageTime {
 };
 
 // The herds on one terrain, living on one device. Herds are of one kind where they are equal but for agents,
-// how large a reserve they have, spawn, goal, sizes, phase and colours, and they share pipelines and
-// dispatches, so that any number of them costs what one of as many agents does; each size among them has its
-// own. Not thread-safe; one crowd may be recorded while another is.
+// how large a reserve is where both have one, spawn, goal, sizes, phase and colours, and they share pipelines
+// and dispatches, so that any number of them costs what one of as many agents does; each size among them has
+// its own. Not thread-safe; one crowd may be recorded while another is.
 class SKITTER_API Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
-  // cannot be (an unknown rig or controller, a count of rigs that is not that of herds, tuning out of its
-  // range, more than 100 herds that differ and sizes of these, legs of an adaptive herd above 100 m, a
-  // terrain that reaches beyond 4 km from the origin, an event that names nobody, or a herd that cannot come
-  // or go) and, before any agent is made, Error(device) when memory does not suffice (as
+  // cannot be (an unknown rig or controller, a count of rigs that is not that of herds, tuning, a spawn or
+  // a goal out of its range, more than 100 herds that differ and sizes of these, legs of an adaptive herd
+  // above 100 m, a terrain that reaches beyond 4 km from the origin, an event that names nobody, or a herd
+  // that cannot come or go) and, before any agent is made, Error(device) when memory does not suffice (as
   // DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // As it was when it was saved; on another device and in other pages, too: every record has the bits that it
