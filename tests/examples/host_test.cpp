@@ -74,7 +74,7 @@ TEST_F(HostTest, RefusesScenesWhoseHerdsComeAndGo) {
   const Result result =
       host({"--scene", SKITTER_ROOT "/assets/scenes/waves.json", "--frames", "2", "--out", file("a.ppm")});
   EXPECT_EQ(result.code, 1);
-  EXPECT_THAT(result.err, testing::HasSubstr("waves.json: an event adds or removes a herd"));
+  EXPECT_THAT(result.err, testing::HasSubstr("waves: an event adds or removes a herd"));
 }
 
 TEST_F(HostTest, ShowsAWindow) {
