@@ -11,8 +11,8 @@
  * - Lengths are metres, times seconds, angles radians. The world is right-handed, +Y is up, and an unturned
  * creature faces +Z.
  * - Herds and agents are numbered from 0; agents within their herd.
- * - Functions of one device, and of what was made on it, are called by one thread at a time. Error messages
- * are by thread.
+ * - Functions of one device, and of what was made on it, are called by one thread at a time. Each thread has
+ * its own last error message.
  */
 #ifndef SKITTER_H
 #define SKITTER_H
@@ -42,8 +42,7 @@ typedef enum skitter_result {
 
 /* "0.1.0". */
 SKITTER_C const char* skitter_version(void);
-/* What the last error of this thread was, in one line; empty before the first. It holds until the next error.
- */
+/* This thread's last error message, in one line; empty before the first. It lasts until the next error. */
 SKITTER_C const char* skitter_last_error(void);
 
 /* ---- Devices ---- */
@@ -53,7 +52,7 @@ typedef struct skitter_device skitter_device;
 typedef struct skitter_device_info {
   char name[256];
   char type[16];     /* "discrete", "integrated", "virtual", "cpu", "other" */
-  char why_not[512]; /* of a device that is not chosen: why */
+  char why_not[512]; /* why a device is not chosen */
   uint32_t index;    /* what skitter_device_create takes, as text */
   int suitable;      /* Skitter runs on it */
   int chosen;        /* skitter_device_create takes it where none is named */
@@ -66,8 +65,8 @@ SKITTER_C skitter_result skitter_device_list(skitter_device_info* infos, uint32_
 /* `name`: an index, or part of a name in any case; NULL: the best suitable device. */
 SKITTER_C skitter_result skitter_device_create(const char* name, skitter_device** device);
 
-/* Switches on in a chain of features, before vkCreateDevice, what the engine needs and, of what makes it
- * quicker, what the device has. The chain has VkPhysicalDeviceVulkan12Features and
+/* Switches on features in a chain, before vkCreateDevice: those that the engine needs, and those that make it
+ * faster and that the device has. The chain has VkPhysicalDeviceVulkan12Features and
  * VkPhysicalDeviceVulkan13Features. */
 SKITTER_C skitter_result skitter_add_features(VkPhysicalDeviceFeatures2* chain, VkPhysicalDevice device);
 
@@ -119,9 +118,9 @@ typedef struct skitter_crowd skitter_crowd;
 typedef struct skitter_crowd_options {
   int no_poses;         /* without bones: neither joints nor pictures */
   int no_figures;       /* without fidelity figures */
-  uint32_t watch_every; /* figures of one agent of this many at a time; 0: of all up to 256, of one in 64 of
+  uint32_t watch_every; /* figures of one agent in this many at a time; 0: of all up to 256, of one in 64 of
                            more */
-  uint32_t footfalls;   /* keep so many touchdowns of a tick, of each page of records; 0: none */
+  uint32_t footfalls;   /* keep so many touchdowns per tick and page (docs/architecture.md#words); 0: none */
   int sleep;            /* agents that have stood still for seconds are passed over */
 } skitter_crowd_options;
 
@@ -138,10 +137,10 @@ SKITTER_C skitter_result skitter_crowd_resume(skitter_device* device, const skit
                                               const skitter_crowd_options* options, skitter_crowd** crowd);
 
 /* Records one tick of `dt` seconds into the caller's command buffer, outside a render pass. The tick waits
- * for earlier reads of the crowd's buffers, and makes its results visible to vertex, compute and transfer
- * work after it. Each recorded tick is submitted once, in order. A crowd keeps the dt of its first tick.
- * What the scene's events have for that time happens first. A tick before which a herd comes or goes waits
- * for the device: it is recorded when all ticks before it are submitted. The buffers of a herd that goes are
+ * for earlier reads of the crowd's buffers, and makes its results visible to vertex, fragment, compute and
+ * transfer work after it. Each recorded tick is submitted once, in order. A crowd keeps the dt of its first tick.
+ * What the scene's events have for that time happens first. A tick before which a herd comes or goes takes
+ * the queue's lock, submits and waits: it is recorded when all ticks before it are submitted. The buffers of a herd that goes are
  * freed; what was recorded of them before must not be submitted any more.
  * After SKITTER_ERROR_INPUT none of the tick's events has happened. After SKITTER_ERROR_DEVICE, where memory
  * does not suffice for a herd that comes, the events before it have, and the tick, recorded again, goes on
@@ -154,6 +153,7 @@ SKITTER_C skitter_result skitter_crowd_step(skitter_crowd* crowd, uint64_t ticks
 
 /* Ticks recorded so far. */
 SKITTER_C skitter_result skitter_crowd_tick(const skitter_crowd* crowd, uint64_t* tick);
+/* Numbers of herds, those of herds that are gone among them: herds are 0 to `herds` - 1. */
 SKITTER_C skitter_result skitter_crowd_herds(const skitter_crowd* crowd, uint32_t* herds);
 /* Agents that are there, of all herds and of one. */
 SKITTER_C skitter_result skitter_crowd_agent_count(const skitter_crowd* crowd, uint64_t* agents);
@@ -164,13 +164,14 @@ SKITTER_C skitter_result skitter_crowd_herd_places(const skitter_crowd* crowd, u
                                                    uint32_t* places);
 SKITTER_C skitter_result skitter_crowd_herd_legs(const skitter_crowd* crowd, uint32_t herd, uint32_t* legs);
 SKITTER_C skitter_result skitter_crowd_herd_bones(const skitter_crowd* crowd, uint32_t herd, uint32_t* bones);
-/* How large the creature of each place of the herd is, times its rig, to `sizes`, which has room for `room`
- * of them. A herd whose scene has `sizes` numbers its places size after size. */
+/* Writes how large the creature of each place of the herd is, times its rig, to `sizes`, which has room for
+ * `room` of them. A herd whose scene has `sizes` numbers its places size after size. */
 SKITTER_C skitter_result skitter_crowd_sizes(const skitter_crowd* crowd, uint32_t herd, float* sizes,
                                              size_t room);
 
 /* Replaces a rectangle of the ground's samples before the next tick: `columns` from column `x` and `rows`
- * from row `z` on, row after row, metres above mid height as made. Feet whose ground moves step anew. */
+ * from row `z` on, row after row, metres above mid height, the mean of the lowest and the highest sample as
+ * made. Feet whose ground moves step anew. */
 SKITTER_C skitter_result skitter_crowd_edit_heights(skitter_crowd* crowd, uint32_t x, uint32_t z,
                                                     uint32_t columns, uint32_t rows, const float* heights);
 
@@ -178,10 +179,11 @@ SKITTER_C skitter_result skitter_crowd_edit_heights(skitter_crowd* crowd, uint32
  * +z; the grid is centred on the world's origin. */
 typedef struct skitter_terrain {
   uint32_t columns, rows;
-  float spacing_x, spacing_z; /* metres a sample */
+  float spacing_x, spacing_z; /* metres per sample */
 } skitter_terrain;
 SKITTER_C skitter_result skitter_crowd_terrain(const skitter_crowd* crowd, skitter_terrain* terrain);
-/* Its samples as edited, row after row, metres above mid height as made. There is room for `room` of them. */
+/* Writes its samples as edited, row after row, metres above that mid height, to `heights`, which has room
+ * for `room` of them. */
 SKITTER_C skitter_result skitter_crowd_heights(const skitter_crowd* crowd, float* heights, size_t room);
 /* Height and unit normal of the ground, as edited, at x, z in world metres. Beyond its edge it goes on as at
  * the edge. `height` or `normal` may be NULL. */
@@ -190,20 +192,19 @@ SKITTER_C skitter_result skitter_crowd_ground(const skitter_crowd* crowd, float 
 
 /* The functions below wait for the device. */
 
-/* Where bodies are: x, y, z of each place of the herd in world metres, to `xyz`, which has room for `room`
- * of them. Too little room is an error, and nothing is written. Where nobody is, y is -1,000,000. */
+/* Writes where bodies are, x, y, z of each place of the herd in world metres, to `xyz`, which has room for
+ * `room` of them. Too little room is an error, and nothing is written. Where nobody is, y is -1,000,000. */
 SKITTER_C skitter_result skitter_crowd_positions(const skitter_crowd* crowd, uint32_t herd, double* xyz,
                                                  size_t room);
-/* About +Y: 0 faces +Z, a quarter turn +X. One a place. */
+/* Writes headings about +Y, one per place: 0 faces +Z, a quarter turn +X. */
 SKITTER_C skitter_result skitter_crowd_headings(const skitter_crowd* crowd, uint32_t herd, float* radians,
                                                 size_t room);
-/* x, y, z of joints in world metres: of each place and leg the starts of its bones and the foot, bones + 1 a
- * leg. NaN fills up legs with fewer bones. There is room for `room` joints. */
+/* Writes x, y, z of joints in world metres: for each place and leg the starts of its bones and the foot,
+ * bones + 1 per leg. NaN fills up legs with fewer bones. There is room for `room` joints. */
 SKITTER_C skitter_result skitter_crowd_joints(const skitter_crowd* crowd, uint32_t herd, double* xyz,
                                               size_t room);
 
-/* Of every record that the next tick depends on: the same device, scene, seed and ticks give the same hash.
- */
+/* A hash of all records that the next tick depends on: equal for equal device, scene, seed and ticks. */
 SKITTER_C skitter_result skitter_crowd_state_hash(const skitter_crowd* crowd, uint64_t* hash);
 
 /* How well agents moved in the ticks in which they were watched (docs/stages/measure.md). Lengths are in leg
@@ -221,15 +222,15 @@ typedef struct skitter_fidelity {
   double margin, margin_least, unstable;
   uint64_t last_resorts, not_finite;
 } skitter_fidelity;
-/* Of one herd, or of SKITTER_ALL_HERDS. */
 #define SKITTER_ALL_HERDS UINT32_MAX
+/* The figures of one herd, or of SKITTER_ALL_HERDS. */
 SKITTER_C skitter_result skitter_crowd_fidelity(const skitter_crowd* crowd, uint32_t herd,
                                                 skitter_fidelity* fidelity);
 
 typedef struct skitter_footfall {
   uint64_t tick;
   uint32_t agent, leg;
-  float place[3]; /* world metres */
+  float place[3]; /* position of the foot, world metres */
   float speed;    /* of the foot over the tick that ended there, m/s */
 } skitter_footfall;
 /* The touchdowns of the last tick, by agent and leg. Writes up to `room` of them to `footfalls`, which may be
@@ -241,7 +242,7 @@ SKITTER_C skitter_result skitter_crowd_footfalls(const skitter_crowd* crowd, uin
 typedef struct skitter_picked {
   uint32_t herd, agent;
   double distance; /* metres, from the ray's start to the agent's sphere; from the point to its middle */
-  double place[3]; /* where the ray meets the sphere; the sphere's middle */
+  double place[3]; /* position where the ray meets the sphere; the sphere's middle */
 } skitter_picked;
 /* The nearest agent under a ray, which is `length` metres long (INFINITY: without an end) and has a direction
  * of any length but 0; and the agent nearest to a point. An agent is picked by a sphere about the middle of
@@ -269,14 +270,14 @@ typedef enum skitter_goal_kind {
 typedef struct skitter_goal {
   skitter_goal_kind kind;
   float target[2];   /* x, z, metres */
-  float speed;       /* metres a second, 0 to 1000, of kinds CROSS and POINT */
-  float velocity[2]; /* x, z, metres a second, at most 1000 long */
+  float speed;       /* metres per second, 0 to 1000, of kinds CROSS and POINT */
+  float velocity[2]; /* x, z, metres per second, at most 1000 long */
 } skitter_goal;
 
-/* Where an agent is put, its feet on the ground around. */
+/* A position and a heading: where an agent is put, its feet on the ground around. */
 typedef struct skitter_place {
   float x, z;    /* metres, on the ground */
-  float heading; /* -1000 to 1000 */
+  float heading; /* radians about +Y, 0 faces +Z; -1000 to 1000 */
 } skitter_place;
 
 /* A handle of an agent: its herd, its place there, and how often agents have come to that place. It never
@@ -286,25 +287,25 @@ typedef uint64_t skitter_agent_id;
 /* The handle of the agent in that place of the herd; where nobody is, SKITTER_ERROR_INPUT. */
 SKITTER_C skitter_result skitter_crowd_agent_id(const skitter_crowd* crowd, uint32_t herd, uint32_t agent,
                                                 skitter_agent_id* id);
-/* The handles of all, one a place; SKITTER_NO_AGENT where nobody is. There is room for `room` of them. */
+/* The handles of all, one per place; SKITTER_NO_AGENT where nobody is. There is room for `room` of them. */
 SKITTER_C skitter_result skitter_crowd_agent_ids(const skitter_crowd* crowd, uint32_t herd,
                                                  skitter_agent_id* ids, size_t room);
 /* `has` becomes whether that agent is there. */
 SKITTER_C skitter_result skitter_crowd_has(const skitter_crowd* crowd, skitter_agent_id agent, int* has);
 
-/* Goals: one for all agents of a herd; one a place of a herd; one for each of `count` agents of any herds. */
+/* Goals: one for all agents of a herd; one per place of a herd; one per agent for `count` of any herds. */
 SKITTER_C skitter_result skitter_crowd_steer(skitter_crowd* crowd, uint32_t herd, const skitter_goal* goal);
 SKITTER_C skitter_result skitter_crowd_steer_each(skitter_crowd* crowd, uint32_t herd,
                                                   const skitter_goal* goals, size_t count);
 SKITTER_C skitter_result skitter_crowd_steer_agents(skitter_crowd* crowd, const skitter_agent_id* agents,
                                                     const skitter_goal* goals, size_t count);
-/* Likewise, the speed alone: metres a second, 0 to 1000. A velocity is cut to it until the next goal. */
+/* Likewise, the speed alone: metres per second, 0 to 1000. A velocity is cut to it until the next goal. */
 SKITTER_C skitter_result skitter_crowd_set_speed(skitter_crowd* crowd, uint32_t herd, float speed);
 SKITTER_C skitter_result skitter_crowd_set_speed_each(skitter_crowd* crowd, uint32_t herd,
                                                       const float* speeds, size_t count);
 SKITTER_C skitter_result skitter_crowd_set_speed_agents(skitter_crowd* crowd, const skitter_agent_id* agents,
                                                         const float* speeds, size_t count);
-/* Puts agents elsewhere: standing, without speed and past. Goals stay. */
+/* Puts agents elsewhere. They stand, and nothing of their earlier motion is kept. Goals stay. */
 SKITTER_C skitter_result skitter_crowd_teleport(skitter_crowd* crowd, const skitter_agent_id* agents,
                                                 const skitter_place* places, size_t count);
 
@@ -320,8 +321,9 @@ typedef struct skitter_herd_id {
   uint32_t herd, generation;
 } skitter_herd_id;
 /* Adds a herd of a scene, under the lowest number that no herd has, and removes one, between two ticks. Both
- * make or free device memory at once; adding takes about 0.3 s a size. No command buffer that was recorded
- * before a herd was removed may be submitted any more. `id` may be NULL. */
+ * make or free device memory at once, submit and wait; adding takes about 0.3 s per size. Before a herd is
+ * removed, what was recorded has been submitted, and the readbacks and palettes that read it are destroyed.
+ * No command buffer that was recorded before may be submitted afterwards. `id` may be NULL. */
 SKITTER_C skitter_result skitter_crowd_add_herd(skitter_crowd* crowd, const skitter_scene* scene,
                                                 uint32_t herd, skitter_herd_id* id);
 SKITTER_C skitter_result skitter_crowd_remove_herd(skitter_crowd* crowd, skitter_herd_id herd);
@@ -351,17 +353,17 @@ typedef struct skitter_record_buffer {
   VkBuffer buffer;
   VkDeviceSize offset, bytes;   /* of what holds the herd's records, and of legs perhaps other herds' too */
   uint32_t first_agent, agents; /* of the herd, in this page */
-  uint32_t first;               /* first_agent's place in the page */
-  uint32_t stride;              /* vec4 a record */
-  uint32_t legs;                /* of an agent, for leg records; 0: the records are one an agent */
+  uint32_t first;               /* first_agent's index in the page */
+  uint32_t stride;              /* vec4 per record */
+  uint32_t legs;                /* of an agent, for leg records; 0: the records are one per agent */
 } skitter_record_buffer;
-/* One a page of the herd; does not wait. Writes up to `room` of them to `buffers`, which may be NULL where
+/* One per page of the herd; does not wait. Writes up to `room` of them to `buffers`, which may be NULL where
  * `room` is 0, and to `count` how many there are: 0 where the herd keeps no such records. */
 SKITTER_C skitter_result skitter_crowd_buffers(const skitter_crowd* crowd, uint32_t herd,
                                                skitter_record record, skitter_record_buffer* buffers,
                                                size_t room, size_t* count);
-/* The vec4 of the buffer with which a record begins. The agent is of the herd and in this page; `leg` is 0
- * where records are one an agent. */
+/* The index of the vec4 in the buffer with which a record begins. The agent is of the herd and in this page;
+ * `leg` is 0 where records are one per agent. */
 SKITTER_C skitter_result skitter_record_at(const skitter_record_buffer* buffer, uint32_t agent, uint32_t leg,
                                            uint32_t* at);
 
@@ -390,9 +392,9 @@ typedef struct skitter_goal_buffer {
 SKITTER_C skitter_result skitter_crowd_goal_buffers(const skitter_crowd* crowd, uint32_t herd,
                                                     skitter_goal_buffer* buffers, size_t room, size_t* count);
 
-/* A herd's records of one kind, place after place and of an agent leg after leg, to `numbers`, which has room
- * for `room` floats, and to `count` how many they are. Too little room is an error, but no room (then
- * `numbers` may be NULL) asks for the count alone. Waits for the device. */
+/* Writes a herd's records of one name, place after place and within an agent leg after leg, to `numbers`,
+ * which has room for `room` floats, and to `count` how many they are. Too little room is an error, but no
+ * room (then `numbers` may be NULL) asks for the count alone. Waits for the device. */
 SKITTER_C skitter_result skitter_crowd_records(const skitter_crowd* crowd, uint32_t herd,
                                                skitter_record record, float* numbers, size_t room,
                                                size_t* count);
@@ -403,8 +405,8 @@ typedef struct skitter_body {
   double position[3]; /* on the ground below the body; exact to 1e-6 m, wherever it is */
   float rotation[4];  /* world from model, quaternion x, y, z, w */
   float heading[2];   /* x, z, unit */
-  float velocity[3];  /* metres a second, horizontal */
-  float turn_rate;    /* radians a second */
+  float velocity[3];  /* metres per second, horizontal */
+  float turn_rate;    /* radians per second */
   int present;        /* 0: nobody is in this place of the herd */
 } skitter_body;
 SKITTER_C skitter_result skitter_decode_body(const float record[16], const double* origin,
@@ -463,8 +465,8 @@ typedef struct skitter_readback skitter_readback;
 /* All zero: the defaults. */
 typedef struct skitter_readback_options {
   const uint32_t* herds; /* whose agents are read */
-  uint32_t herd_count;   /* 0: all that are there */
-  uint32_t slots;        /* copies that there is room for, at least 2; 0: 3. 64 bytes an agent each */
+  uint32_t herd_count;   /* 0: all herds that are there now; herds that come later read as empty */
+  uint32_t slots;        /* copies that there is room for, at least 2; 0: 3. 64 bytes per place each */
 } skitter_readback_options;
 
 /* `options` may be NULL. */
@@ -486,13 +488,13 @@ SKITTER_C skitter_result skitter_readback_skipped(const skitter_readback* readba
  * ..._record() or ..._step(), and until something is taken again they are SKITTER_ERROR_INPUT. */
 SKITTER_C skitter_result skitter_readback_take(skitter_readback* readback, uint64_t* tick, int* found);
 
-/* Places of the herd; 0 of one that is not read. */
+/* Places of the herd; 0 for a herd that is not read. */
 SKITTER_C skitter_result skitter_readback_places(const skitter_readback* readback, uint32_t herd,
                                                  uint32_t* places);
 /* As skitter_crowd_positions(), relative to an origin; NULL: the world's. */
 SKITTER_C skitter_result skitter_readback_positions(const skitter_readback* readback, uint32_t herd,
                                                     const double* origin, double* xyz, size_t room);
-/* Body records where they lie, 16 floats a place, for skitter_decode_body(). They are there as long as what
+/* Body records where they lie, 16 floats per place, for skitter_decode_body(). They are there as long as what
  * was taken. */
 SKITTER_C skitter_result skitter_readback_bodies(const skitter_readback* readback, uint32_t herd,
                                                  const float** records);
@@ -507,6 +509,7 @@ SKITTER_C skitter_result skitter_readback_pick(const skitter_readback* readback,
                                                skitter_picked* picked, int* found);
 SKITTER_C skitter_result skitter_readback_nearest(const skitter_readback* readback, const double point[3],
                                                   skitter_picked* picked, int* found);
+/* Waits for the ticks that skitter_readback_step() and skitter_crowd_step() made. */
 SKITTER_C skitter_result skitter_readback_destroy(skitter_readback* readback);
 
 /* ---- Drawing by yourself ---- */
@@ -541,9 +544,9 @@ typedef struct skitter_transform_range {
   int planar;          /* an array for each vec4 of the transforms, one after the other; with stride 0 */
 } skitter_transform_range;
 
-/* What one frame of the caller's reads: a transform an agent, from the model space of the mesh at rest to the
- * host's space; and for each agent as many as skitter_crowd_palette_entries() says, for the bones of
- * skitter_skin_vertex. */
+/* The transforms that one frame of the caller's reads: one per agent, from the model space of the mesh at
+ * rest to the host's space; and for each agent as many as skitter_crowd_palette_entries() says, for the bones
+ * of skitter_skin_vertex. */
 typedef struct skitter_palette_target {
   skitter_transform_range instances, palettes;
 } skitter_palette_target;
@@ -575,7 +578,7 @@ SKITTER_C skitter_result skitter_palettes_record(const skitter_palettes* palette
                                                  const double* origin, uint32_t target);
 SKITTER_C skitter_result skitter_palettes_destroy(skitter_palettes* palettes);
 
-/* What the transforms move: the mesh at rest, in model space, at the first of the herd's sizes. It is a copy,
+/* The mesh that the transforms move: at rest, in model space, at the first of the herd's sizes. It is a copy,
  * which needs no crowd. */
 typedef struct skitter_skin_mesh skitter_skin_mesh;
 
@@ -604,7 +607,8 @@ SKITTER_C skitter_result skitter_skin_mesh_indices(const skitter_skin_mesh* mesh
                                                    size_t room, size_t* count);
 SKITTER_C skitter_result skitter_skin_mesh_levels(const skitter_skin_mesh* mesh, skitter_skin_level* levels,
                                                   size_t room, size_t* count);
-/* Of a sphere about an agent's position that holds every pose, at the largest size, in the host's unit. */
+/* The radius of a sphere about an agent's position that holds every pose, at the largest size, in the host's
+ * unit. */
 SKITTER_C skitter_result skitter_skin_mesh_radius(const skitter_skin_mesh* mesh, float* radius);
 SKITTER_C skitter_result skitter_skin_mesh_destroy(skitter_skin_mesh* mesh);
 
@@ -616,8 +620,8 @@ typedef struct skitter_view {
   float target[3];     /* elsewhere than the eye */
   float field_of_view; /* radians, vertical, above 0 and below pi; 0: 0.8 */
 } skitter_view;
-/* The camera of a scene at a time, any number of seconds. The crowd was made of the scene, or of the state
- * that the scene is of. */
+/* The camera of a scene at a time, any number of seconds. Only the scene's camera is read: herds that came or
+ * went need no change of it. */
 SKITTER_C skitter_result skitter_scene_view(const skitter_scene* scene, const skitter_crowd* crowd,
                                             double seconds, skitter_view* view);
 
@@ -664,7 +668,7 @@ SKITTER_C skitter_result skitter_crowd_save_to_memory(const skitter_crowd* crowd
  * but not be changed in place. Damage is SKITTER_ERROR_INPUT here or in skitter_crowd_resume(). */
 SKITTER_C skitter_result skitter_state_load(const char* file, skitter_state** state);
 SKITTER_C skitter_result skitter_state_parse(const void* bytes, size_t size, skitter_state** state);
-/* The last tick that was made, and the seconds a tick, 0 before the first. */
+/* The last tick that was made, and the seconds per tick, 0 before the first. */
 SKITTER_C skitter_result skitter_state_tick(const skitter_state* state, uint64_t* tick);
 SKITTER_C skitter_result skitter_state_dt(const skitter_state* state, float* dt);
 /* The note with which the state was saved, as JSON; empty without one. It lives as long as the state. */
@@ -716,7 +720,7 @@ SKITTER_C skitter_result skitter_ik_batch_solve(skitter_ik_batch* batch);
 /* Records one solve into the caller's command buffer, outside a render pass, with barriers against compute
  * and transfer work before and after it. */
 SKITTER_C skitter_result skitter_ik_batch_record(const skitter_ik_batch* batch, VkCommandBuffer commands);
-/* x, y, z of the joints, bone_count + 1 a chain, base first. There is room for `room` joints. */
+/* Writes x, y, z of the joints, bone_count + 1 per chain, base first. There is room for `room` joints. */
 SKITTER_C skitter_result skitter_ik_batch_joints(const skitter_ik_batch* batch, float* xyz, size_t room);
 
 typedef enum skitter_ik_stop {
@@ -731,7 +735,7 @@ typedef struct skitter_ik_report {
   uint32_t iterations;
   skitter_ik_stop stop;
 } skitter_ik_report;
-/* One a chain. */
+/* One per chain. */
 SKITTER_C skitter_result skitter_ik_batch_reports(const skitter_ik_batch* batch, skitter_ik_report* reports,
                                                   size_t room);
 SKITTER_C skitter_result skitter_ik_batch_destroy(skitter_ik_batch* batch);
@@ -771,7 +775,7 @@ typedef struct skitter_spline_clock {
   double duration; /* of the way, or of a round; above 0 */
   int active;
 } skitter_spline_clock;
-/* One a spline. */
+/* One per spline. */
 SKITTER_C skitter_result skitter_spline_batch_set_clocks(skitter_spline_batch* batch,
                                                          const skitter_spline_clock* clocks, size_t splines);
 
@@ -794,10 +798,10 @@ typedef struct skitter_spline_motion {
   float travelled;   /* arc length since the start; of a closed spline of all rounds */
   skitter_spline_state state;
 } skitter_spline_motion;
-/* One a spline, of the last time. */
+/* One per spline, of the last time. */
 SKITTER_C skitter_result skitter_spline_batch_motions(const skitter_spline_batch* batch,
                                                       skitter_spline_motion* motions, size_t room);
-/* Arc lengths, one a spline. */
+/* Arc lengths, one per spline. */
 SKITTER_C skitter_result skitter_spline_batch_lengths(const skitter_spline_batch* batch, float* lengths,
                                                       size_t room);
 SKITTER_C skitter_result skitter_spline_batch_destroy(skitter_spline_batch* batch);

@@ -161,8 +161,8 @@ void bindMaking(CrowdClass& bound) {
 
 pose: bones, for joints() and render(). measure: the figures of fidelity(). watch_every: figures of one agent of
 this many at a time; 0: of all in a crowd of at most 256, of one in 64 in a larger one. feet: keep the records
-foot and tip. footfalls: keep so many touchdowns of a tick, of each page; 0: none. sleep: agents that have stood
-still for seconds are passed over. fuse: stages that are quicker at once are made at once. timestamps: time every
+foot and tip. footfalls: keep so many touchdowns per tick and page; 0: none. sleep: agents that have stood
+still for seconds are passed over. fuse: stages that are faster when fused are fused. timestamps: time every
 stage. page_agents: most agents of a page of records; 0: as many as the device allows.)");
 }
 
@@ -193,7 +193,8 @@ void bindFacts(CrowdClass& bound) {
   bound
       .def_property_readonly(
           "herd_count",
-          [](PythonCrowd& self) { return self.told([](const Crowd& c) { return c.herdCount(); }); }, "Herds.")
+          [](PythonCrowd& self) { return self.told([](const Crowd& c) { return c.herdCount(); }); },
+          "Numbers of herds, those of herds that are gone among them.")
       .def_property_readonly(
           "agent_count",
           [](PythonCrowd& self) { return self.told([](const Crowd& c) { return c.agentCount(); }); },
@@ -240,8 +241,8 @@ void bindFacts(CrowdClass& bound) {
       .def(
           "state_hash",
           [](PythonCrowd& self) { return self.told([](const Crowd& c) { return c.stateHash(); }); },
-          "Of every record that the next tick depends on: the same device, scene, seed and ticks give the "
-          "same.")
+          "A hash of every record that the next tick depends on: the same device, scene, seed and ticks give "
+          "the same.")
       .def(
           "sleeping",
           [](PythonCrowd& self) { return self.told([](const Crowd& c) { return c.sleeping(); }); },
@@ -269,7 +270,8 @@ void bindPlaces(CrowdClass& bound) {
           [](PythonCrowd& self, uint32_t herd) {
             return rowsOf(self.told([&](const Crowd& c) { return bindings::positionsOf(c, herd); }));
           },
-          "herd"_a = 0, "Where bodies are, world metres: float64 of shape (agents, 3).")
+          "herd"_a = 0,
+          "Where bodies are, world metres: float64 of shape (places, 3). Where nobody is, y is -1,000,000.")
       .def(
           "headings",
           [](PythonCrowd& self, uint32_t herd) {
@@ -277,20 +279,21 @@ void bindPlaces(CrowdClass& bound) {
                 eachBody(self, herd, [](const BodyState& body) { return bindings::headingOf(body); }));
           },
           "herd"_a = 0,
-          "Where bodies look, radians about +Y: 0 is +Z, a quarter turn +X. float32 of shape (agents,).")
+          "Where bodies look, radians about +Y: 0 is +Z, a quarter turn +X. float32 of shape (places,).")
       .def(
           "speeds",
           [](PythonCrowd& self, uint32_t herd) {
             return listOf(
                 eachBody(self, herd, [](const BodyState& body) { return glm::length(body.velocity); }));
           },
-          "herd"_a = 0, "Horizontal, along the heading, metres a second: float32 of shape (agents,).")
+          "herd"_a = 0, "Horizontal, along the heading, metres per second: float32 of shape (places,).")
       .def(
           "rotations",
           [](PythonCrowd& self, uint32_t herd) {
             return rowsOf(eachBody(self, herd, [](const BodyState& body) { return body.rotation; }));
           },
-          "herd"_a = 0, "Of bodies, world from model, quaternions x, y, z, w: float32 of shape (agents, 4).")
+          "herd"_a = 0,
+          "Rotations of bodies, world from model, quaternions x, y, z, w: float32 of shape (places, 4).")
       .def(
           "joints",
           [](PythonCrowd& self, uint32_t herd) {
@@ -305,13 +308,13 @@ void bindPlaces(CrowdClass& bound) {
             return rowsOf(std::move(joints), {places, legs, bones + 1});
           },
           "herd"_a = 0,
-          "Joints of the legs from root to foot, world metres: float64 of shape (agents, legs, bones + 1, "
+          "Joints of the legs from root to foot, world metres: float64 of shape (places, legs, bones + 1, "
           "3). NaN "
           "fills up legs with fewer bones. Needs `pose`.")
       .def("footfalls", &footfalls, "herd"_a = 0,
            "The touchdowns of the last tick, by agent and leg: a structured array of agent, leg, tick, "
            "seconds, "
-           "place (world metres), speed (of the foot, m/s). Needs `footfalls`.")
+           "place (the foot's position, world metres), speed (of the foot, m/s). Needs `footfalls`.")
       .def(
           "dropped_footfalls",
           [](PythonCrowd& self, uint32_t herd) {
@@ -342,11 +345,11 @@ void bindRecords(CrowdClass& bound) {
             return agentFiguresOf(self.told([&](const Crowd& c) { return c.agentFidelity(herd); }));
           },
           "herd"_a = 0,
-          "The same agent by agent: a dict of float64 arrays of shape (agents,); NaN stands for None.")
+          "The same agent by agent: a dict of float64 arrays of shape (places,); NaN stands for None.")
       .def("records", &records, "herd"_a = 0,
            "The herd's records by name (skitter/records.h has the layouts): float32 of shape "
-           "(agents, "
-           "numbers), or (agents, legs, numbers) for records of legs.");
+           "(places, "
+           "numbers), or (places, legs, numbers) for records of legs.");
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ void bindChanges(py::module_& module) {
            }),
            "speed"_a, "herd"_a = 0, "agents"_a = Places{})
       .def_readwrite("herd", &SpeedChange::herd, herdText)
-      .def_readwrite("speed", &SpeedChange::speed, "Metres a second.");
+      .def_readwrite("speed", &SpeedChange::speed, "Metres per second.");
   defineTuple(speed, "agents", &SpeedChange::agents, agentsText);
 
   py::class_<Teleport::Move> move(module, "Move", "An agent that is put elsewhere.");

@@ -193,7 +193,7 @@ a base that may move. rotations: keep the bones' rotations.)")
             self.checkCount("targets", points.size(), self.batch.chains());
             self.told([&](ik::Batch& batch) { batch.setTargets(points); });
           },
-          "targets"_a, "One a chain, relative to its base or, with bases, in the world: shape (chains, 3).")
+          "targets"_a, "One per chain, relative to its base or, with bases, in the world: shape (chains, 3).")
       .def("set_bases", &setBases, "positions"_a, "rotations"_a = py::none(),
            "With `bases`: positions of shape (chains, 3), quaternions x, y, z, w of shape (chains, 4).")
       .def(
@@ -207,7 +207,7 @@ a base that may move. rotations: keep the bones' rotations.)")
            "(chains, bones, "
            "4).")
       .def("reports", &reports,
-           "Of the last solve, one a chain: a structured array of error (of the tip, share of the reach), "
+           "Of the last solve, one per chain: a structured array of error (of the tip, share of the reach), "
            "iterations, "
            "stop (an index of skitter.ik.stop_names).")
       .def_property_readonly(

@@ -12,8 +12,9 @@ constexpr const char* text =
     crowd.step(60)
     print(crowd.positions())
 
-Lengths are metres, times seconds and angles radians, where nothing else is said. The world is right-handed and
-+Y is up; an unturned creature faces +Z. What scene files and files of figures have, too, has the same name here.
+Lengths are metres, times seconds and angles radians, where nothing else is said. The world is right-handed
+and +Y is up; an unturned creature faces +Z. Keys of scene files and files of figures keep their names, but
+for those of events and cuts.
 Calls that take long let other threads run; calls on one device take turns.
 )";
 

@@ -35,8 +35,8 @@ void bindGoals(py::module_& module) {
       "\"cross\": to the far side of the terrain and back, for ever. \"point\": to `target`, to stand there. "
       "\"none\": nowhere. \"velocity\": by `velocity`.");
   goal.def_readwrite("target", &Goal::target, "x and z, metres.")
-      .def_readwrite("velocity", &Goal::velocity, "x and z, metres a second, of kind \"velocity\".")
-      .def_readwrite("speed", &Goal::speed, "Metres a second along the ground, at least 0.");
+      .def_readwrite("velocity", &Goal::velocity, "x and z, metres per second, of kind \"velocity\".")
+      .def_readwrite("speed", &Goal::speed, "Metres per second along the ground, at least 0.");
 }
 
 void bindHerd(py::module_& module) {
@@ -54,7 +54,9 @@ void bindHerd(py::module_& module) {
              return made;
            }),
            "agents"_a = 1000, "So many adaptive spiders.");
-  herd.def_readwrite("rig", &Herd::rig, "\"spider\", a model (.glb, .gltf) or a sidecar (.rig.json).")
+  herd.def_readwrite(
+          "rig", &Herd::rig,
+          "\"spider\", a model (.glb, .gltf) or a sidecar (.rig.json), relative to the working directory.")
       .def_property(
           "clips", [](const Herd& self) { return py::tuple(py::cast(self.clips)); },
           [](Herd& self, std::vector<std::string> names) { self.clips = std::move(names); },
@@ -103,7 +105,7 @@ void bindTerrain(py::module_& module) {
       .def(py::init<>())
       .def_readwrite("columns", &TerrainNoise::columns, "Samples along x.")
       .def_readwrite("rows", &TerrainNoise::rows, "Samples along z.")
-      .def_readwrite("spacing", &TerrainNoise::spacing, "Metres a sample.")
+      .def_readwrite("spacing", &TerrainNoise::spacing, "Metres per sample.")
       .def_readwrite("amplitude", &TerrainNoise::amplitude, "Metres, the height of the largest hills.")
       .def_readwrite("wavelength", &TerrainNoise::wavelength, "Metres between the largest hills.")
       .def_readwrite("octaves", &TerrainNoise::octaves, "1 to 16.")
@@ -120,8 +122,8 @@ void bindTerrain(py::module_& module) {
            "file"_a)
       .def_readwrite("file", &TerrainFile::file, "Its name.");
   using Units = HeightfieldUnits;
-  defineUnit(file, "spacingX", &Units::spacingX, "Metres a sample along x, before scale.");
-  defineUnit(file, "spacingZ", &Units::spacingZ, "Metres a sample along z, before scale.");
+  defineUnit(file, "spacingX", &Units::spacingX, "Metres per sample along x, before scale.");
+  defineUnit(file, "spacingZ", &Units::spacingZ, "Metres per sample along z, before scale.");
   defineUnit(file, "minHeight", &Units::minHeight, "Metres at code 0, before scale.");
   defineUnit(file, "maxHeight", &Units::maxHeight, "Metres at the highest code, before scale.");
   defineUnit(file, "scale", &Units::scale, "Multiplies spacing and heights.");
@@ -230,7 +232,7 @@ void bindCameras(py::module_& module) {
       .def_readwrite("azimuth", &Camera::azimuth, "Radians about +Y from +Z: on which side \"orbit\" begins.")
       .def_readwrite(
           "secondsATurn", &Camera::secondsATurn,
-          "Seconds a turn of \"orbit\", counter-clockwise from above; below 0 clockwise; 0: it stays.")
+          "Seconds per turn of \"orbit\", counter-clockwise from above; below 0 clockwise; 0: it stays.")
       .def_property(
           "keys", [](const Camera& self) { return py::tuple(py::cast(self.keys)); },
           [](Camera& self, std::vector<CameraKey> keys) { self.keys = std::move(keys); },

@@ -63,7 +63,7 @@ void bindStates(py::module_& module, CrowdClass& bound) {
                   "copied. `name` is for "
                   "messages.")
       .def_readonly("tick", &State::tick, "The last tick that was made.")
-      .def_readonly("dt", &State::dt, "Seconds a tick; 0 before the first.")
+      .def_readonly("dt", &State::dt, "Seconds per tick; 0 before the first.")
       .def_property_readonly(
           "scene", [](const State& self) { return PythonScene(self.scene); },
           "A copy of the scene, with the herds that were there.")

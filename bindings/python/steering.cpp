@@ -22,7 +22,7 @@ std::vector<glm::vec2> pairsOf(const Floats& array, const char* name) {
   return vectorsOf<2>(array, name, "(agents, 2)");
 }
 
-// A list of AgentGoal, AgentSpeed or AgentPlace: an entry a handle.
+// A list of AgentGoal, AgentSpeed or AgentPlace: an entry per handle.
 template <typename Given, typename Make>
 std::vector<Given> givenTo(const Ids& ids, const Make& make) {
   std::vector<Given> all;
@@ -57,7 +57,7 @@ void steer(PythonCrowd& self, Goal goal, uint32_t herd, const std::optional<Ids>
   self.told([&](Crowd& crowd) { crowd.steer(goals); });
 }
 
-// One goal a place of the herd, or a handle.
+// One goal per place of the herd, or a handle.
 void steerEach(PythonCrowd& self, const std::vector<Goal>& goals, const char* name, uint32_t herd,
                const std::optional<Ids>& agents) {
   if (!agents) return self.told([&](Crowd& crowd) { crowd.steer(herd, goals); });
@@ -120,13 +120,14 @@ void bindGoals(CrowdClass& bound) {
       .def("steer", &steer, "goal"_a, "herd"_a = 0, "agents"_a = py::none(),
            "Gives all agents of the herd a goal, or those of the handles `agents`, from the next tick on.")
       .def("steer_to", &steerTo, "targets"_a, "speed"_a = 1.0f, "herd"_a = 0, "agents"_a = py::none(),
-           "Sends each agent to a point of its own: x and z in metres, shape (agents, 2), one a place of the "
-           "herd or one a handle of `agents`; `speed` in metres a second.")
+           "Sends each agent to a point of its own: x and z in metres, shape (n, 2), one per place of "
+           "the herd, or one per handle of `agents`; `speed` in metres per second.")
       .def("steer_by", &steerBy, "velocities"_a, "herd"_a = 0, "agents"_a = py::none(),
-           "Gives each agent a velocity: x and z in metres a second, likewise.")
-      .def("set_speed", &setSpeed, "speed"_a, "herd"_a = 0, "agents"_a = py::none(),
-           "Metres a second, from the next tick on: one number for all, or one a place of the herd or a "
-           "handle of `agents`.");
+           "Gives each agent a velocity: x and z in metres per second, likewise.")
+      .def(
+          "set_speed", &setSpeed, "speed"_a, "herd"_a = 0, "agents"_a = py::none(),
+          "Metres per second, from the next tick on: one number for all, or one per place of the herd or per "
+          "handle of `agents`.");
 }
 
 void bindAgents(CrowdClass& bound) {
@@ -136,7 +137,8 @@ void bindAgents(CrowdClass& bound) {
           [](PythonCrowd& self, uint32_t agent, uint32_t herd) {
             return self.told([&](const Crowd& crowd) { return crowd.agentId(herd, agent).bits(); });
           },
-          "agent"_a, "herd"_a = 0, "The handle of an agent, which never means another one.")
+          "agent"_a, "herd"_a = 0,
+          "The handle of the agent in that place of the herd. It never means another agent.")
       .def(
           "agent_ids",
           [](PythonCrowd& self, uint32_t herd) {
@@ -167,9 +169,10 @@ void bindAgents(CrowdClass& bound) {
 void bindHerds(CrowdClass& bound) {
   bound
       .def("add_herd", &addHerd, "herd"_a,
-           "Adds a herd, which takes about 0.3 s a size, and returns its handle: the lowest number that no "
+           "Adds a herd, which takes about 0.3 s per size. Its rig is relative to the working directory. "
+           "Returns its handle: the lowest number that no "
            "herd has, and which one it is of those that have had it.")
-      .def("remove_herd", &removeHerd, "herd"_a, "Removes the herd of that handle.")
+      .def("remove_herd", &removeHerd, "herd"_a, "Waits for the device and removes the herd of that handle.")
       .def(
           "has_herd",
           [](PythonCrowd& self, HerdNumbers herd) {
@@ -200,7 +203,8 @@ void bindPicking(py::module_& module, CrowdClass& bound) {
       .def_readonly("agent", &Picked::agent, "Its place in the herd.")
       .def_readonly("distance", &Picked::distance,
                     "Metres from the ray's start to the agent's sphere, or from the point to its middle.")
-      .def_readonly("place", &Picked::place, "Where the ray meets the sphere, or the sphere's middle.");
+      .def_readonly("place", &Picked::place,
+                    "Position where the ray meets the sphere, or the sphere's middle.");
   bound
       .def(
           "pick",

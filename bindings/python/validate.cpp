@@ -96,15 +96,15 @@ void bindValidation(py::module_& module) {
         return fmt::format("<skitter.Validation of {} ticks: {}>", self.ticks,
                            self.passed() ? "passed" : "FAILED");
       });
-  module.def(
-      "validate", &validate, "scene"_a, "frames"_a = 120, "device"_a = py::none(), "stages"_a = py::none(),
-      py::kw_only(), "terrain"_a = py::none(), "dt"_a = usualTick, "sleep"_a = false, "fuse"_a = true,
-      "page_agents"_a = 0,
-      R"(Holds every stage of so many ticks against the CPU reference in double precision, as `skitter validate` does.
+  module.def("validate", &validate, "scene"_a, "frames"_a = 120, "device"_a = py::none(),
+             "stages"_a = py::none(), py::kw_only(), "terrain"_a = py::none(), "dt"_a = usualTick,
+             "sleep"_a = false, "fuse"_a = true, "page_agents"_a = 0,
+             R"(Holds every stage of `frames` ticks against the CPU reference in double precision.
 
-The reference takes about a millisecond for an agent and tick; of more than 1,024 agents of one size in a herd
-a part is compared, another one in each tick. stages: names of those to compare; None: all that the herds have.
-device: None: the best one. terrain, sleep, fuse, page_agents: as for a Crowd. Ctrl-C ends it between two ticks.)");
+A frame is one tick, as for `skitter validate`. The reference takes about a millisecond per agent and tick. Of
+more than 1,024 agents of one size in a herd a part is compared, another one in each tick. stages: names
+of those to compare; None: all that the herds have. device: None: the best one. terrain, sleep, fuse,
+page_agents: as for a Crowd. Ctrl-C ends it between two ticks.)");
 }
 
 }  // namespace skitter::python
