@@ -138,10 +138,10 @@ SKITTER_C skitter_result skitter_crowd_resume(skitter_device* device, const skit
 
 /* Records one tick of `dt` seconds into the caller's command buffer, outside a render pass. The tick waits
  * for earlier reads of the crowd's buffers, and makes its results visible to vertex, fragment, compute and
- * transfer work after it. Each recorded tick is submitted once, in order. A crowd keeps the dt of its first tick.
- * What the scene's events have for that time happens first. A tick before which a herd comes or goes takes
- * the queue's lock, submits and waits: it is recorded when all ticks before it are submitted. The buffers of a herd that goes are
- * freed; what was recorded of them before must not be submitted any more.
+ * transfer work after it. Each recorded tick is submitted once, in order. A crowd keeps the dt of its first
+ * tick. What the scene's events have for that time happens first. A tick before which a herd comes or goes
+ * takes the queue's lock, submits and waits: it is recorded when all ticks before it are submitted. The
+ * buffers of a herd that goes are freed; what was recorded of them before must not be submitted any more.
  * After SKITTER_ERROR_INPUT none of the tick's events has happened. After SKITTER_ERROR_DEVICE, where memory
  * does not suffice for a herd that comes, the events before it have, and the tick, recorded again, goes on
  * with it. */

@@ -25,7 +25,7 @@ struct ClipJoint {
 
 // The chain of a leg of the rig, as the palette moves it: p_i = matrix[joints[i]] * starts[i].
 struct ClipLeg {
-  std::vector<uint16_t> joints;   // palette entries, one a bone, and that of the foot: bones + 1
+  std::vector<uint16_t> joints;   // palette entries, one per bone, and that of the foot: bones + 1
   std::vector<glm::vec3> starts;  // p_0 .. p_bones, the last the foot, tip offset included, before skinning
 };
 

@@ -41,21 +41,21 @@ struct StageShader {
 struct CrowdOptions {
   bool pose = true;         // bone rotations and positions, for drawing and traces
   bool measure = true;      // keep the fidelity figures
-  uint32_t watchEvery = 0;  // of one agent of this many at a time, each in its turn; 0: of all
+  uint32_t watchEvery = 0;  // figures are of one agent in this many at a time, each in its turn; 0: of all
                             // in a crowd of at most 256, of one in 64 in a larger one;
                             // agents of herds that events add count from the start
   bool feet = false;        // keep where feet should be and are, as measure and footfalls have it, though no
                             // later tick needs it: else they may have no foot and tip records
-  uint32_t footfalls = 0;   // keep so many touchdowns of a tick, a page of records, at most one a
-                            // leg; 0: none
-  bool sleep = false;  // who has stood still for seconds is passed over, without a breath, until its goal or
-                       // the ground moves: standing crowds cost next to nothing
-  bool fuse = true;  // stages that are quicker made at once are: the same records, in fewer passes over them
+  uint32_t footfalls = 0;   // keep so many touchdowns per tick and page of records, at most one per leg;
+                            // 0: none
+  bool sleep = false;  // an agent that has stood still for seconds is passed over, without a breath, until
+                       // its goal or the ground moves: standing crowds cost next to nothing
+  bool fuse = true;    // stages that are faster when fused are fused: the same records, in fewer passes
   bool timestamps = false;                // time every stage on the device
-  uint32_t pageAgents = 0;                // most agents a page; 0: as many as the device's limits allow
+  uint32_t pageAgents = 0;                // most agents per page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
-  // One a herd, in place of those that the scene names, but for herds that events add; empty: the scene's. Of
-  // a state: one for each herd, by number, that the crowd began with; herds that came later have their
+  // One per herd, in place of those that the scene names, but for herds that events add; empty: the scene's.
+  // Of a state: one for each herd, by number, that the crowd began with; herds that came later have their
   // files'.
   std::vector<Rig> rigs = {};
 };
@@ -65,7 +65,7 @@ struct CrowdOptions {
 struct Fidelity {
   uint64_t agentTicks = 0;  // ticks watched, of all agents
   uint64_t stances = 0;     // ended while watched, and seen from their touchdown
-  double slip = 0;          // mean horizontal slide of a planted foot, a stance
+  double slip = 0;          // mean horizontal slide of a planted foot per stance
   double skating = 0;  // share of planted leg-ticks in which the foot slides faster than 0.1 leg lengths/s
   double penetration = 0;             // mean depth of all feet below the ground
   double penetrationBeyond = 0;       // the same, of what is deeper than 0.005 leg lengths
@@ -93,7 +93,7 @@ struct Footfall {
   uint32_t agent = 0, leg = 0;  // of the herd, of the rig
   uint64_t tick = 0;
   double seconds = 0;  // tick * dt
-  glm::vec3 place{0};  // where the foot is, world metres (float32: to 2.4e-4 m at 4 km)
+  glm::vec3 place{0};  // position of the foot, world metres (float32: to 2.4e-4 m at 4 km)
   float speed = 0;     // of the foot over that tick, m/s
 };
 
@@ -103,15 +103,15 @@ struct AgentSample {
 };
 
 // Records of a herd as the host sees them, agent after agent and of an agent leg after leg (skitter/records.h
-// has the layouts). Empty are those that CrowdOptions left out or no stage of the herd has. For tools, traces
-// and validation.
+// has the layouts). Records that CrowdOptions left out or no stage of the herd has are empty. For tools,
+// traces and validation.
 struct HerdState : ForRecords<std::vector<float>> {
   uint64_t tick = 0;        // the last one made
   uint32_t agents = 0;      // that are here, and empty places: body [1].w tells
   AgentSample sample;       // which of the herd they are
   uint32_t watchEvery = 1;  // measure watches one agent of this many at a time
   // Equal herds take turns as one, the herd's agent g as number watchOffset + g; number n that is being
-  // watched has its records at place n / watchEvery of `watch`, which is of all agents. Empty for a herd of
+  // watched has its records at index n / watchEvery of `watch`, which is of all agents. Empty for a herd of
   // several sizes, for these do not take turns as one.
   uint32_t watchOffset = 0;
   std::vector<Footfall> footfalls;  // of the last tick and of all agents, by agent and leg
@@ -145,10 +145,10 @@ struct StageTime {
   double milliseconds = 0;  // of the last tick that has finished on the device
 };
 
-// The herds on one terrain, living on one device. Herds are of one kind where they are equal but for agents,
-// how large a reserve is where both have one, spawn, goal, sizes, phase and colours, and they share pipelines
-// and dispatches, so that any number of them costs what one of as many agents does; each size among them has
-// its own. Not thread-safe; one crowd may be recorded while another is.
+// The herds on one terrain, living on one device. Herds that are equal but for agents, spawn, goal, sizes,
+// phase and colours, all with a reserve or all without, share pipelines and dispatches, so that any number of
+// them costs what one of as many agents does; each size among them has its own. Not thread-safe; one crowd
+// may be recorded while another is.
 class SKITTER_API Crowd {
  public:
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
@@ -169,17 +169,17 @@ class SKITTER_API Crowd {
 
   // Records one tick of `dt` seconds into the caller's command buffer (outside a render pass). It begins with
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
-  // to vertex, compute and transfer work recorded after it. Each recorded tick must be submitted once, in
-  // order. What Scene::events has for that time happens first, as if the caller had called editHeights,
-  // steer, setSpeed, teleport, add, remove, addHerd or removeHerd just before; no file is read for that. A
-  // tick before which a herd comes or goes waits for the device, and is recorded when all that was recorded
-  // before it is submitted. The buffers of a herd that goes are freed: what was recorded of them before must
-  // not be submitted any more, and Readback and Palettes refuse to record. Throws Error(input) where dt is
-  // not what it was before, for steps are timed in ticks, or, of an adaptive herd, below 22 microseconds; and
-  // where an event cannot happen, because a herd or an agent is not there or no place is left: then none of
-  // the tick's events has, and the tick can be recorded again. Throws Error(device) where memory does not
-  // suffice for a herd that comes: then what comes before it has happened, and the tick, recorded again, goes
-  // on with it.
+  // to vertex, fragment, compute and transfer work recorded after it. Each recorded tick must be submitted
+  // once, in order. What Scene::events has for that time happens first, as if the caller had called
+  // editHeights, steer, setSpeed, teleport, add, remove, addHerd or removeHerd just before; no file is read
+  // for that. A tick before which a herd comes or goes takes the queue's lock, allocates, submits and waits
+  // for the device, and is recorded when all that was recorded before it is submitted. The buffers of a herd
+  // that goes are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
+  // Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an adaptive
+  // herd, below 22 microseconds; and where an event cannot happen, because a herd or an agent is not there or
+  // no place is left: then none of the tick's events has, and the tick can be recorded again. Throws
+  // Error(device) where memory does not suffice for a herd that comes: then what comes before it has
+  // happened, and the tick, recorded again, goes on with it.
   void record(VkCommandBuffer commandBuffer, float dt);
 
   // Replaces a rectangle of the terrain's samples while the crowd walks: columns [x0, x0 + columns), rows
@@ -197,31 +197,31 @@ class SKITTER_API Crowd {
   // last counts. A number that is not finite or out of its range, a count that is not the herd's, a herd that
   // is not there and a handle of nobody throw Error(input), and nothing is changed then.
   //
-  // Goals: of all agents of a herd, of each one (one goal a place), or of some. Kind cross: along the lane in
-  // which the herd's spawn has the agent's place.
+  // Goals: of all agents of a herd, of each one (one goal per place), or of some. Kind cross: along the lane
+  // that the herd's spawn has for the agent's place.
   void steer(uint32_t herd, const Goal& goal);
   void steer(uint32_t herd, std::span<const Goal> goals);
   void steer(std::span<const AgentGoal> goals);
-  // The speed alone, 0 to Goal::maxSpeed, metres a second. Of kind velocity it is what the velocity is cut to
-  // from then on, until the next goal.
+  // The speed alone, 0 to Goal::maxSpeed, metres per second. Of kind velocity it is what the velocity is cut
+  // to from then on, until the next goal.
   void setSpeed(uint32_t herd, float speed);
   void setSpeed(uint32_t herd, std::span<const float> speeds);
   void setSpeed(std::span<const AgentSpeed> speeds);
-  // Puts agents elsewhere: standing, feet on the ground at their homes, without speed and past. The goal
-  // stays.
+  // Puts agents elsewhere. They stand with their feet on the ground at their homes, and nothing of their
+  // earlier motion is kept. The goal stays.
   void teleport(std::span<const AgentPlace> places);
   void teleport(AgentId agent, const Place& place);
-  // The goals themselves, one buffer a page of the herd, for the caller's own shaders. record() begins with a
-  // barrier against what compute shaders and transfers wrote before it; before the caller's shader writes
+  // The goals themselves, one buffer per page of the herd, for the caller's own shaders. record() begins with
+  // a barrier against what compute shaders and transfers wrote before it; before the caller's shader writes
   // goals it needs one of its own against the tick before: from COMPUTE_SHADER, SHADER_STORAGE_WRITE to
   // COMPUTE_SHADER, SHADER_STORAGE_READ | SHADER_STORAGE_WRITE. What the host says counts, where both do.
   std::vector<GoalBuffer> goalBuffers(uint32_t herd) const;
-  // The handle of who is in that place of the herd. Throws Error(input) where nobody is.
+  // The handle of the agent in that place of the herd. Throws Error(input) where nobody is.
   AgentId agentId(uint32_t herd, uint32_t agent) const;
 
   // Agents that come and go, in herds with a reserve (Herd::reserve): a herd has `places` for its agents and
-  // its reserve, and the lowest empty one is taken first. Who comes has the size of its place (Herd::sizes).
-  // Handles of who is gone are of nobody.
+  // its reserve, and the lowest empty one is taken first. An agent has the size of its place (Herd::sizes).
+  // The handle of an agent that is gone is of nobody.
   //
   // Throw Error(input) where no place is left, or where the herd has no reserve.
   AgentId add(uint32_t herd, const Place& place, const Goal& goal);
@@ -231,17 +231,19 @@ class SKITTER_API Crowd {
   uint32_t places(uint32_t herd) const;
   uint32_t agentCount(uint32_t herd) const;
 
-  // Herds that come and go, between ticks: both calls make or free device memory at once, and take as long.
+  // Herds that come and go, between ticks. Both calls make or free device memory at once, submit and wait
+  // under the queue's lock. Herd::rig is relative to the working directory.
   //
   // The herd is there in the next recorded tick, as one of the scene in a crowd that begins. It has pipelines
-  // and pages of its own (about 0.3 s a size), and the lowest number that no herd has. A renderer of the
+  // and pages of its own (about 0.3 s per size), and the lowest number that no herd has. A renderer of the
   // crowd follows at its next picture. Throws as the constructor does, and Error(input) beyond
   // Scene::maxHerds.
   HerdId addHerd(const Herd& herd);
-  // Waits for the device, frees the herd's memory, and its number is of a herd without places. Command
-  // buffers that were recorded before must not be submitted any more. A herd that shares its kind with others
-  // (as the class says) leaves its places empty where the kind has a reserve, and
-  // is refused by an Error(input) where it has none.
+  // Waits for the device and frees the herd's memory. Its number is of a herd without places then. Earlier
+  // ticks have been submitted, and no command buffer that was recorded before is submitted afterwards. What
+  // reads the herd (Readback, Palettes, the caller's shaders) must be gone before. A herd that shares its
+  // kind with others leaves its places empty where the kind has a reserve, and is refused by an Error(input)
+  // where it has none.
   void removeHerd(HerdId herd);
   bool has(HerdId herd) const;
   HerdId herdId(uint32_t herd) const;
@@ -255,7 +257,7 @@ class SKITTER_API Crowd {
   uint64_t stateBytes() const;  // about what a state takes, without the note
 
   uint64_t tick() const;         // ticks recorded so far
-  uint32_t herdCount() const;    // numbers, those of herds that are gone among them
+  uint32_t herdCount() const;    // numbers of herds, those of herds that are gone among them
   uint32_t watchEvery() const;   // the fidelity figures are of one agent of this many at a time
   uint64_t agentCount() const;   // who is there, as the host has said
   uint64_t capacity() const;     // places for agents, empty ones among them
@@ -289,7 +291,7 @@ class SKITTER_API Crowd {
   // are. Not free: a timestamp costs lavapipe as much as a small dispatch.
   void timeStages(bool on);
 
-  // One a page of the herd; does not wait. The last barrier of record() makes them visible.
+  // One per page of the herd; does not wait. The last barrier of record() makes them visible.
   std::vector<FootfallBuffer> footfallBuffers(uint32_t herd) const;
   // Likewise, of any record but `watch`. Empty where the herd keeps none (CrowdOptions).
   std::vector<RecordBuffer> buffers(uint32_t herd, Record record) const;

@@ -12,8 +12,8 @@
 // begins with: of a HerdState, of a Snapshot (skitter/readback.h) or of the caller's own copy of a buffer. It
 // is a caller's bug if there are too few (asserted).
 //
-// World positions are relative to an `origin` that the caller names, in world metres. A body's place is a
-// tile and a place in it, so x and z are exact to 1e-6 m wherever on the map the body is.
+// World positions are relative to an `origin` that the caller names, in world metres. A body's position
+// is a tile and an offset in it, so x and z are exact to 1e-6 m wherever on the map the body is.
 namespace skitter {
 
 struct BodyState {
@@ -21,7 +21,7 @@ struct BodyState {
   glm::quat rotation{1, 0, 0, 0};  // R_0, world from model
   glm::vec2 heading{0, 1};         // unit, world x and z
   glm::vec3 velocity{0};           // m/s, horizontal
-  float turnRate = 0;              // radians a second
+  float turnRate = 0;              // radians per second
   bool present = true;             // false: nobody is in this place of the herd
 };
 SKITTER_API BodyState bodyOf(std::span<const float> body, const glm::dvec3& origin = glm::dvec3(0));
@@ -36,7 +36,7 @@ struct StepState {
 SKITTER_API StepState stepOf(std::span<const float> step, std::span<const float> body,
                              const glm::dvec3& origin = glm::dvec3(0));
 
-// Of a foot record: where the foot should be. `body` has the origin that the place is relative to.
+// A foot record: where the foot should be. `body` has the origin that the position is relative to.
 struct FootState {
   glm::dvec3 place{0};
   float progress = 1;  // of its step; 1: planted
@@ -44,7 +44,7 @@ struct FootState {
 };
 SKITTER_API FootState footOf(std::span<const float> foot, const BodyState& body);
 
-// Of a tip record: where the foot is.
+// A tip record: where the foot is.
 struct TipState {
   glm::dvec3 place{0};
   float error = 0;  // metres from where it should be
@@ -64,9 +64,9 @@ SKITTER_API BonePose bonePoseOf(std::span<const float> pose, uint32_t entry);
 // it.
 SKITTER_API glm::mat3x4 jointRowsOf(std::span<const float> pose, uint32_t joint);
 
-// Of an event of Crowd::footfallBuffers(). `firstAgent` is FootfallBuffer's; Footfall::agent is of the herd
-// if it is less than FootfallBuffer::agents, else the event is another herd's. Its number in the herd is then
-// FootfallBuffer::firstOfHerd more.
+// Decodes an event of Crowd::footfallBuffers(). `firstAgent` is FootfallBuffer's; Footfall::agent is of the
+// herd if it is less than FootfallBuffer::agents, else the event is another herd's. Its number in the herd is
+// then FootfallBuffer::firstOfHerd more.
 SKITTER_API Footfall footfallOf(std::span<const float> event, uint32_t firstAgent, double dt);
 
 }  // namespace skitter

@@ -123,8 +123,8 @@ struct DeviceRequest {
   std::optional<LoadPath> loads = {};
   // Likewise; SKITTER_STORES may name "32" or "64".
   std::optional<StoreWidth> stores = {};
-  // What Device::pipelineCacheData() gave in an earlier run; read while the device is made. What another
-  // device or driver wrote is passed over.
+  // The bytes that Device::pipelineCacheData() gave in an earlier run; read while the device is made. What
+  // another device or driver wrote is passed over.
   std::vector<uint8_t> pipelineCache = {};
 };
 
@@ -151,7 +151,7 @@ struct AdoptedDevice {
   VkQueue queue = VK_NULL_HANDLE;
   uint32_t queueFamily = 0;
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;  // null: the loader's
-  // What was enabled: the chain that vkCreateDevice was given (VkDeviceCreateInfo::pNext, with
+  // The features that were enabled: the chain that vkCreateDevice was given (VkDeviceCreateInfo::pNext, with
   // pEnabledFeatures, if any, in its `features`), and the extensions of instance and device.
   const VkPhysicalDeviceFeatures2* features = nullptr;
   std::span<const char* const> extensions = {};
@@ -172,7 +172,7 @@ struct ValidationMessage {
   uint32_t count = 0;  // how often exactly this text came
 };
 
-// What the validation layer said, warnings and errors. It may outlive its device, so that complaints about
+// Messages of the validation layer, warnings and errors. It may outlive its device, so that complaints about
 // the device's own destruction can still be read. Thread-safe.
 class SKITTER_API ValidationLog {
  public:

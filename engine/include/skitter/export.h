@@ -1,6 +1,6 @@
 #pragma once
 
-// What the library shows of itself. All else is hidden: engine and host may both hold Vulkan-Hpp, tinygltf or
+// Marks what the library shows. All else is hidden: engine and host may both hold Vulkan-Hpp, tinygltf or
 // a JSON library, in versions of their own.
 //
 // SKITTER_API stands before the return type of a free function, and between `class` or `struct` and the name

@@ -19,8 +19,8 @@ struct SKITTER_API Heightfield {
   std::string name;
   uint32_t columns = 0;        // samples along x, at least 2
   uint32_t rows = 0;           // samples along z, at least 2
-  float spacingX = 1;          // metres a sample, > 0
-  float spacingZ = 1;          // metres a sample, > 0
+  float spacingX = 1;          // metres per sample, > 0
+  float spacingZ = 1;          // metres per sample, > 0
   std::vector<float> heights;  // rows * columns, row-major, metres, finite
   uint64_t filledVoids = 0;    // samples of the file that had no height and were given one
 
@@ -40,11 +40,11 @@ struct SKITTER_API Heightfield {
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> samples);
 };
 
-// What is known of a height file beside its samples. An unset value is looked up in the sidecar (`NAME.json`
+// Facts about a height file beside its samples. An unset value is looked up in the sidecar (`NAME.json`
 // beside the file, or `NAME` without a trailing `_WIDTHxHEIGHT`), then in the file itself, then defaults:
 // spacing 0.5 m, codes from 0 to 10 m, scale and exaggeration 1. docs/terrain.md tells it in full.
 struct HeightfieldUnits {
-  std::optional<float> spacingX, spacingZ;  // metres a sample, before scale
+  std::optional<float> spacingX, spacingZ;  // metres per sample, before scale
   // Metres at code 0 and at the highest code, before scale; a file of metres is rescaled to this range.
   std::optional<float> minHeight, maxHeight;
   std::optional<float> scale;             // uniform: multiplies spacing and heights alike
@@ -65,7 +65,7 @@ struct TerrainNoise {
   static constexpr int maxOctaves = 16;
 
   uint32_t columns = 513, rows = 513;
-  float spacing = 0.5f;      // metres a sample
+  float spacing = 0.5f;      // metres per sample
   float amplitude = 8.0f;    // metres, height of the largest hills
   float wavelength = 48.0f;  // metres between the largest hills
   int octaves = 6;

@@ -95,10 +95,10 @@ struct Options {
   std::optional<float> restPull = {};
   bool bases = false;                // each chain has a base of its own that may move; otherwise all are at 0
   bool rotations = false;            // write the bones' rotations too
-  uint32_t pageChains = 0;           // most chains a page; 0: as many as the device's limits allow
+  uint32_t pageChains = 0;           // most chains per page; 0: as many as the device's limits allow
   std::vector<Shader> shaders = {};  // in place of the built-in ones, for experiments
 };
-// What the engine ships: 20 for free chains, 64 for limited ones, 4 where solves continue.
+// The engine's own: 20 for free chains, 64 for limited ones, 4 where solves continue.
 SKITTER_API uint32_t defaultIterations(const Chain&, const Options&);
 // The rest pull asked for; else 0.02 where the active set continues solves of a chain with hinges, which it
 // keeps out of dead ends (docs/ik.md, Tracking), and 0.
@@ -142,11 +142,11 @@ class SKITTER_API Batch {
   uint32_t iterations() const;
   uint64_t memoryBytes() const;
 
-  // From the host: one a chain. These and the reads below wait for the device.
+  // From the host: one per chain. These and the reads below wait for the device.
   void setTargets(std::span<const glm::vec3>);
   void setBases(std::span<const Base>);  // with Options::bases
   void reset();                          // every chain to its rest pose
-  // Start poses from joints, J a chain, base first: bones are aimed at the next joint within their limits,
+  // Start poses from joints, J per chain, base first: bones are aimed at the next joint within their limits,
   // without twist. With bases, joints are in the world and the bases those set last. For Start::previous.
   void setJoints(std::span<const glm::vec3>);
   // For tools and validation, as shaders/shared/ik_batch.h lays them out: what solves continue from, with
@@ -156,9 +156,9 @@ class SKITTER_API Batch {
   std::vector<glm::vec4> downloadSeeds() const;
   // Records a solve, submits it and waits.
   void solve();
-  std::vector<glm::vec3> downloadJoints() const;  // J a chain
+  std::vector<glm::vec3> downloadJoints() const;  // J per chain
   std::vector<glm::quat> downloadRotations()
-      const;  // J - 1 a chain, world from rest; with Options::rotations
+      const;  // J - 1 per chain, world from rest; with Options::rotations
   std::vector<Report> downloadReports() const;
 
   // In the caller's command buffer, outside a render pass: one solve of every chain. It begins and ends with
@@ -167,10 +167,10 @@ class SKITTER_API Batch {
   // The device's own view, page by page: chain c is entry c % pageChains() of page c / pageChains().
   uint32_t pageChains() const;
   uint32_t pages() const;
-  Span targets(uint32_t page) const;    // a vec4 a chain: x, y, z, unused
+  Span targets(uint32_t page) const;    // a vec4 per chain: x, y, z, unused
   Span bases(uint32_t page) const;      // two: position; rotation xyzw
-  Span joints(uint32_t page) const;     // J - 1 a chain: p_1 .. p_n, w unused; the base is the caller's
-  Span rotations(uint32_t page) const;  // J - 1 a chain: xyzw
+  Span joints(uint32_t page) const;     // J - 1 per chain: p_1 .. p_n, w unused; the base is the caller's
+  Span rotations(uint32_t page) const;  // J - 1 per chain: xyzw
   Span reports(uint32_t page) const;    // one: error, iterations, stop + 8 * the solver's own, damping
   // The caller's buffers in place of the batch's, for a batch of one page: large enough, and bound until the
   // batch goes or others are given. Those left empty stay the batch's own. With
@@ -203,7 +203,7 @@ class SKITTER_API TreeBatch {
   TreeBatch(TreeBatch&&) noexcept;
   TreeBatch& operator=(TreeBatch&&) noexcept;
 
-  // `bodies`: a position a tree, `targets`: one a leg. Solves start at rest about these bodies.
+  // `bodies`: a position per tree, `targets`: one per leg. Solves start at rest about these bodies.
   void solve(std::span<const glm::vec3> bodies, std::span<const glm::vec3> targets);
   std::vector<glm::vec3> downloadBodies() const;
   std::vector<glm::vec3> downloadJoints() const;  // per tree, leg and joint

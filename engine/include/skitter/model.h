@@ -50,7 +50,7 @@ struct SKITTER_API Model {
 
   size_t jointCount() const;
   bool isAncestor(int ancestor, int node) const;
-  // What a sidecar calls a node: its name, or #INDEX where it has none or shares it.
+  // A node's name in a sidecar: its own, or #INDEX where it has none or shares it.
   std::string reference(int node) const;
 };
 

@@ -35,12 +35,12 @@ struct TransformRange {
   bool planar = false;
 };
 
-// What one frame of the caller's reads.
+// The transforms that one frame of the caller's reads.
 struct PaletteTarget {
-  // A transform an agent: from the model space of the mesh at rest, with its origin on the ground below the
+  // A transform per agent: from the model space of the mesh at rest, with its origin on the ground below the
   // body, to the host's space. In a herd of several sizes it scales the mesh to the agent's size.
   TransformRange instances = {};
-  // entries() transforms an agent, for the bones that SkinMesh::vertices name.
+  // entries() transforms per agent, for the bones that SkinMesh::vertices name.
   TransformRange palettes = {};
 };
 
@@ -58,7 +58,7 @@ struct PaletteOptions {
 // with the instance's transform before it where PaletteOptions::relative is set. An agent that is not there
 // has transforms of zeros, so that it vanishes.
 //
-// Of one thread at a time. The crowd outlives it; so do the buffers.
+// Used by one thread at a time. The crowd outlives it; so do the buffers.
 class SKITTER_API Palettes {
  public:
   // A target for each frame that may be in flight. Throws Error(input) for a herd that is not there, a range

@@ -19,7 +19,7 @@ struct Picked {
   uint32_t herd = 0, agent = 0;  // agent of the herd
   double distance = 0;           // metres, from the ray's start to the sphere; from the point to the sphere's
                                  // middle
-  glm::dvec3 place{0};           // where the ray meets the sphere; the sphere's middle
+  glm::dvec3 place{0};           // position where the ray meets the sphere; the sphere's middle
 };
 
 }  // namespace skitter

@@ -18,8 +18,9 @@
 namespace skitter {
 
 struct ReadbackOptions {
-  std::vector<uint32_t> herds = {};  // whose agents are read; none: all that are there
-  uint32_t slots = 3;                // copies that there is room for, at least 2
+  // Whose agents are read; none: those of all herds that are there now. Herds that come later read as empty.
+  std::vector<uint32_t> herds = {};
+  uint32_t slots = 3;  // copies that there is room for, at least 2
 };
 
 // World metres, relative to an origin.
@@ -58,12 +59,12 @@ class SKITTER_API Snapshot {
 // VkEvent, set by the copy itself, says that it has been made, so that the caller has no fence or semaphore
 // to pass on.
 //
-// Of one thread at a time. The crowd outlives it, and what was recorded has
+// Used by one thread at a time. The crowd outlives it, and what was recorded has
 // finished before it goes.
 class SKITTER_API Readback {
  public:
   // Throws Error(input) for a herd that is not there, named twice, or less than two slots; Error(device) when
-  // memory does not suffice: 64 bytes an agent and slot.
+  // memory does not suffice: 64 bytes per place and slot.
   Readback(Device& device, const Crowd& crowd, ReadbackOptions options = {});
   ~Readback();
   Readback(Readback&&) noexcept;

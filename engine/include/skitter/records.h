@@ -39,11 +39,11 @@ using std::abs, std::floor;
 // Legs that a creature may have.
 SKITTER_CONST int MOST_LEGS = 24;
 
-// Invocations a work group in every stage: a software device takes a while to begin one, and makes all of
+// Invocations per work group in every stage: a software device takes a while to begin one, and makes all of
 // them, with work to do or none.
 SKITTER_CONST int WORK_GROUP = 128;
 
-// Leg records are laid out in blocks of BLOCK agents: within a block those of the first legs, one an agent,
+// Leg records are laid out in blocks of BLOCK agents: within a block those of the first legs, one per agent,
 // then those of the second legs, and so on. So a stage over agents walks through memory from end to end,
 // where agents leg by leg would be many cache lines apart. The last block of a page is whole, whatever its
 // agents; what is beyond them is never read. Numbers are not negative, and divided as such: it takes fewer
@@ -70,7 +70,7 @@ SKITTER_FUNCTION float packedTile(float x, float z) { return TILES * x + z; }
 SKITTER_INLINE float tileX(float tile) { return floor(tile / TILES + 0.5f); }
 SKITTER_INLINE float tileZ(float tile) { return tile - TILES * tileX(tile); }
 
-// goal, per agent, written by navigate, and by whoever steers: the host (Crowd::steer) or shaders of the
+// goal, per agent, written by navigate and from outside: the host (Crowd::steer) or shaders of the
 // caller's (Crowd::goalBuffers). Other kinds than these are undefined, as is what is not finite.
 //   [0] target x, target z, other end x, other end z    world metres
 //       of kind velocity: desired velocity x, z (m/s), unused x 2
@@ -85,7 +85,7 @@ SKITTER_CONST float GOAL_VELOCITY = 3.0;
 //   [0] desired velocity x, z (m/s), 1 if the agent sleeps, unused
 SKITTER_CONST int STEER_STRIDE = 1;
 
-// Who may sleep: nobody, anybody, or who has breathed out.
+// The agents that may sleep: nobody, anybody, or who has breathed out.
 SKITTER_CONST int SLEEP_NEVER = 0;
 SKITTER_CONST int SLEEP_STILL = 1;
 SKITTER_CONST int SLEEP_BREATHED_OUT = 2;
@@ -152,12 +152,12 @@ SKITTER_FUNCTION int chainStride(int bones) { return (bones + 1) / 2; }
 
 // miss, per agent, written by ik of the few legs that its second dispatch solves: of each leg a pair, two a
 // vec4, for body and gait read all of an agent's.
-//   reach error of a planted foot (share of the reach; 0 up to missLeast), the tick in which it was told:
-//   what was told earlier is over
+//   reach error of a planted foot (share of the reach; 0 up to missLeast), the tick in which it was written:
+//   a pair that is older than the last tick counts as 0
 SKITTER_FUNCTION int missStride(int legs) { return (legs + 1) / 2; }
 SKITTER_FUNCTION int missPair(int agent, int leg, int legs) { return agent * 2 * missStride(legs) + leg; }
 
-// tip, per leg, written by ik where somebody looks at it (CrowdOptions::tips): it follows from the chain.
+// tip, per leg, written by ik where somebody looks at it (CrowdOptions::feet): it follows from the chain.
 //   [0] tip relative to the body's position, world axes, x, y, z; reach error (m)
 SKITTER_CONST int TIP_STRIDE = 1;
 
@@ -184,7 +184,7 @@ SKITTER_CONST int FIX_STRIDE = 2;
 //   as a chain record, rates of the directions X, Y (1/s)
 // step, of planted, written by swing.
 //   [0] lock x, y, z, tile   [1] offset o x, y, z, 1 if locked
-// pose, per agent, of clip and planted, written by pose: an entry a joint of
+// pose, per agent, of clip and planted, written by pose: an entry per joint of
 //   [0..2] rows of the matrix from the clips' skin to world axes about the body's position
 SKITTER_CONST int MATRIX_STRIDE = 3;
 SKITTER_FUNCTION int poseStride(int legs, int bones, int joints) {
@@ -195,8 +195,8 @@ SKITTER_FUNCTION int poseStride(int legs, int bones, int joints) {
 //   clip, each  [0] first frame, frames, seconds, speed (m/s; 0: standing)
 //   frame, each [0] time (s), 1 / time to the next (0 at the last), mask of legs that stand, unused
 //   row, a frame and joint: three rows of its matrix, model space, less the clip's ground; a frame more
-//   leg, a leg and joint 0 .. bones: place before skinning x, y, z, palette entry
-//   joint, each [0] place of its bone among an agent's (leg * bones + bone), or -1, unused
+//   leg, a leg and joint 0 .. bones: position before skinning x, y, z, palette entry
+//   joint, each [0] number of its bone among an agent's (leg * bones + bone), or -1, unused
 
 // key, per leg, of controller key-poses, constant.
 //   [0] phase at which the foot begins to stand, share of the cycle for which it does, unused x 2
@@ -227,7 +227,7 @@ SKITTER_FUNCTION int watchStride(int legs) { return WATCH_TRAIL_STRIDE * (1 + le
 //   [6] W^5 Q over windows of the tips, their P^2, the same of the body (m^2)
 SKITTER_CONST int METRIC_STRIDE = 7;
 
-// rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE a bone (zero-length bones pad short
+// rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE per bone (zero-length bones pad short
 // legs).
 //   leg  [0] root x, y, z (model), reach (m)
 //        [1] home x, y, z (model), group
@@ -247,8 +247,8 @@ SKITTER_CONST int RIG_LEG_STRIDE = 3;
 // have 1.
 SKITTER_CONST float FIRST_STIFFNESS = 0.2;
 SKITTER_CONST int RIG_BONE_STRIDE = 8;
-// Kinds of limit. A kernel is specialised by those that may occur at each bone: four bits a bone, eight bones
-// a word, LIMIT_TWIST beside the others.
+// Kinds of limit. A kernel is specialised by those that may occur at each bone: four bits per bone, eight
+// bones a word, LIMIT_TWIST beside the others.
 SKITTER_CONST int LIMIT_CONE = 1;
 SKITTER_CONST int LIMIT_ELLIPSE = 2;
 SKITTER_CONST int LIMIT_HINGE = 4;
@@ -261,9 +261,9 @@ SKITTER_FUNCTION int rigStride(int bones) { return RIG_LEG_STRIDE + RIG_BONE_STR
 //   [0] tip, tile-local x, y, z; 1 in the air, 0 planted
 SKITTER_CONST int FLIGHT_STRIDE = 1;
 
-// footfall, one a touchdown of the last tick, in any order, written by footfall: counters[COUNTER_FOOTFALLS]
-// of them, or as many as there is room for.
-//   [0] place x, y, z (world metres), speed of the foot over the tick that ended there (m/s)
+// footfall, one per touchdown of the last tick, in any order, written by footfall:
+// counters[COUNTER_FOOTFALLS] of them, or as many as there is room for.
+//   [0] position x, y, z (world metres), speed of the foot over the tick that ended there (m/s)
 //   [1] agent of the kind, leg, tick, unused
 SKITTER_CONST int FOOTFALL_STRIDE = 2;
 
@@ -271,7 +271,7 @@ SKITTER_CONST int FOOTFALL_STRIDE = 2;
 // clips are played: of pose, and the agents that fade), [4] footfalls of the tick, [5..7] indirect dispatch
 // of ik, [8] legs listed for it; where agents may sleep: [9..17] indirect dispatches over the agents, the
 // legs and the joints of blocks with somebody awake, [18] those blocks, [19] agents that are awake. Then a
-// row a herd of the page, counts since the start: last resorts, targets that were not finite, footfalls
+// row per herd of the page, counts since the start: last resorts, targets that were not finite, footfalls
 // without room. Rows are as many as in any page of the kind, and a power of two. Then the first agent of each
 // herd, in the page; UINT_MAX where the page has no such herd.
 SKITTER_CONST int COUNTER_DISPATCH_X = 0;
@@ -291,8 +291,8 @@ SKITTER_CONST int ROW_FOOTFALLS_DROPPED = 2;
 SKITTER_CONST int ROW_COUNTERS = 3;
 SKITTER_FUNCTION int counterRow(int row) { return COUNTER_ROWS + ROW_COUNTERS * row; }
 SKITTER_FUNCTION int counterHerd(int row, int rows) { return counterRow(rows) + row; }  // its first agent
-// reach errors, a row of buckets a herd of the page: counts per bucket of a leg length; bucket k holds errors
-// of 2^(k/4 - 20) and more.
+// reach errors, a row of buckets per herd of the page: counts per bucket of a leg length; bucket k holds
+// errors of 2^(k/4 - 20) and more.
 SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
 
 // Every kind of records, once: RECORD(NAME, name, binding, per, stride, kept, spawned, hashed). Binding

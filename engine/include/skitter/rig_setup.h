@@ -12,7 +12,7 @@
 
 namespace skitter {
 
-// What a model lacks to be a rig: its legs, and which way it stands. The content of a sidecar, NAME.rig.json
+// A rig, less its model: its legs, and which way it stands. The content of a sidecar, NAME.rig.json
 // (docs/rig.md). Positions and lengths are the model's own: its units, axes and origin. Only legLength and
 // scale are about metres.
 struct RigSetup {
@@ -21,13 +21,13 @@ struct RigSetup {
     std::vector<std::string> joints;      // root to foot; names, or #INDEX into the file's nodes
     std::optional<glm::dvec3> tipOffset;  // from the last joint to the foot, where that joint is not the foot
     std::optional<glm::dvec3> home;  // where the foot stands; unset: on the ground under the foot at rest
-    std::vector<double> coneHalfAngleDegrees;  // one a bone; empty: unlimited
+    std::vector<double> coneHalfAngleDegrees;  // one per bone; empty: unlimited
     std::optional<glm::dvec3> bend;            // the way the leg's middle goes from its rest before it walks
     double bendDegrees = 30;                   // by so much, at the middle of a straight leg
   };
 
   std::string model;                // the file, relative to the sidecar's folder
-  std::optional<double> scale;      // metres a unit; else
+  std::optional<double> scale;      // metres per unit; else
   std::optional<double> legLength;  // metres of the longest leg; else scale 1
   glm::dvec3 forward{0, 0, 1}, up{0, 1, 0};
   std::optional<glm::dvec3> origin;  // on the ground below the body; unset: amid the feet, at their height

@@ -41,11 +41,11 @@ struct Goal {
   // cross: walk to the far side of the terrain, turn, and come back beside the own lane, for ever.
   // point: walk to `target` and stand there.   none: stand.   velocity: go by `velocity`.
   enum class Kind { cross, point, none, velocity } kind = Kind::cross;
-  static constexpr float maxSpeed = 1000;  // metres a second
+  static constexpr float maxSpeed = 1000;  // metres per second
 
-  glm::vec2 target{0};    // x, z
-  float speed = 1;        // commanded horizontal speed, metres a second, 0 to maxSpeed; not of kind velocity
-  glm::vec2 velocity{0};  // x, z, metres a second, at most maxSpeed long
+  glm::vec2 target{0};  // x, z
+  float speed = 1;      // commanded horizontal speed, metres per second, 0 to maxSpeed; not of kind velocity
+  glm::vec2 velocity{0};  // x, z, metres per second, at most maxSpeed long
 
   bool operator==(const Goal&) const = default;
 };
@@ -55,11 +55,12 @@ struct Herd {
   static constexpr size_t maxSizes = 16;
   static constexpr double minSize = 0.05, maxSize = 20;
 
-  std::string rig =
-      "spider";  // "spider", a model (.glb, .gltf) or a sidecar (.rig.json), relative to the scene
+  // "spider", a model (.glb, .gltf) or a sidecar (.rig.json). A file name is relative to the working
+  // directory; in a scene file it is relative to that file, and loadScene resolves it.
+  std::string rig = "spider";
   Controller controller = Controller::adaptive;
-  // That clip and planted play and pose samples (docs/clip.md); empty: the cuts or, without any, all that
-  // suit.
+  // The clips that controllers clip and planted play and key-poses samples (docs/clip.md); empty: the cuts
+  // or, without any, all that suit.
   std::vector<std::string> clips;
   std::vector<ClipCut> cuts;          // clips cut out of those of the file
   uint32_t keys = 4;                  // key poses of controller key-poses, minKeys to maxKeys
@@ -76,8 +77,8 @@ struct Herd {
   std::vector<float> sizes = {};
   // Where in the cycle of its gait or clip each agent begins, 0 to 1; none: drawn by the seed.
   std::optional<float> phase = {};
-  // What the model's colours are turned into: this, lighter or darker as they are. Linear RGB, 0 to 1; none:
-  // they stay.
+  // The herd's colour: each of the model's becomes this one, lighter or darker as it was. Linear RGB, 0 to 1;
+  // none: the model's stay.
   std::optional<glm::vec3> colour = {};
   // How much agents differ in colour, by the seed: 0 not at all, 1 by most; none: half, by their numbers.
   std::optional<float> tint = {};
@@ -137,9 +138,9 @@ struct Place {
 
   bool operator==(const Place&) const = default;
 };
-// What a scene says to agents, as Crowd::steer, setSpeed, teleport, add and remove do. Herds are named by
-// their number, which is the place in the scene or what HerdAddition gives, and agents by that of their place
-// in the herd, below its agents and reserve: whoever is there then.
+// Scenes speak to agents by these, as programs do by Crowd::steer, setSpeed, teleport, add and remove. A herd
+// is named by its number, which is its index in the scene or the one that HerdAddition gives. An agent is
+// named by its place in the herd, below the herd's agents and reserve: whoever is there then.
 struct GoalChange {
   uint32_t herd = 0;
   std::vector<uint32_t> agents = {};  // empty: all who are there
@@ -150,7 +151,7 @@ struct GoalChange {
 struct SpeedChange {
   uint32_t herd = 0;
   std::vector<uint32_t> agents = {};  // empty: all who are there
-  float speed = 0;                    // metres a second, 0 to Goal::maxSpeed
+  float speed = 0;                    // metres per second, 0 to Goal::maxSpeed
 
   bool operator==(const SpeedChange&) const = default;
 };
@@ -166,7 +167,7 @@ struct Teleport {
 
   bool operator==(const Teleport&) const = default;
 };
-// To the lowest empty places of a herd with a reserve, which say how large who comes is.
+// Adds agents in the lowest empty places of a herd with a reserve. A place says how large its agent is.
 struct Addition {
   struct Arrival {
     Place place = {};
@@ -179,7 +180,7 @@ struct Addition {
 
   bool operator==(const Addition&) const = default;
 };
-// From a herd with a reserve.
+// Removes agents from a herd with a reserve.
 struct Removal {
   uint32_t herd = 0;
   std::vector<uint32_t> agents = {};  // at least one, none twice
@@ -201,7 +202,7 @@ struct HerdRemoval {
   bool operator==(const HerdRemoval&) const = default;
 };
 
-// What happens to a running crowd, just before the first tick that ends at `at` or later.
+// Something that happens to a running crowd, just before the first tick that ends at `at` or later.
 struct Event {
   static constexpr float maxTime = 86400;        // seconds
   static constexpr size_t maxSamples = 1 << 16;  // of HeightSamples

@@ -86,7 +86,7 @@ struct SKITTER_API SplineClock {
 
   void activate(double at);
   void reset();  // back to the start; the duration stays
-  // A new duration from `now` on, that keeps the place on the spline: > 0, or Error(input).
+  // A new duration from `now` on, that keeps the position on the spline: > 0, or Error(input).
   void rescale(double duration, double now);
   SplineState state(double now, bool closed) const;
   // Share of the way, 0 to 1; of a closed spline of the present round.
@@ -96,7 +96,7 @@ struct SKITTER_API SplineClock {
 };
 
 struct SplineMotion {
-  glm::vec3 position{0}, velocity{0};  // velocity a second of the clock
+  glm::vec3 position{0}, velocity{0};  // velocity per second of the clock
   float travelled = 0;                 // arc length since the start; of a closed spline all rounds
   SplineState state = SplineState::idle;
 };
@@ -167,7 +167,7 @@ class SKITTER_API SplineBatch {
     SplineTangents tangents = {};
     bool arcLength = true;             // the length travelled is written, else 0
     bool constantSpeed = false;        // the arc length grows evenly, not the knots' time
-    uint32_t pageSplines = 0;          // most splines a page; 0: as many as the device's limits allow
+    uint32_t pageSplines = 0;          // most splines per page; 0: as many as the device's limits allow
     std::vector<Shader> shaders = {};  // in place of the built-in ones, for experiments
   };
 
@@ -181,18 +181,18 @@ class SKITTER_API SplineBatch {
   uint32_t keys() const;    // a spline: points, and if closed one more
   uint64_t memoryBytes() const;
 
-  // From the host: `points` a spline, `knots` keys() a spline or, the same for all, keys(); empty: 0, 1, 2,
-  // .. What may not be is refused with Error(input) naming the spline and the point, and nothing changes.
+  // From the host: `points` per spline, and keys() `knots` per spline or for all; empty: 0, 1, 2, ..
+  // What may not be is refused with Error(input) naming the spline and the point, and nothing changes.
   // With SplineRule::given, set the tangents too. Prepares; these and the reads below wait for the device.
   void setPoints(std::span<const glm::vec3> points, std::span<const float> knots = {});
   // One a point; empty `leaving`: leaves as it arrives. Prepares. Only with SplineRule::given.
   void setTangents(std::span<const glm::vec3> arriving, std::span<const glm::vec3> leaving = {});
-  // One a spline; a duration that is not more than 0 or a start that is not finite is refused likewise.
+  // One per spline; a duration that is not more than 0 or a start that is not finite is refused likewise.
   void setClocks(std::span<const SplineClock>);
   // Records a tick, submits it and waits.
   void travel(double now);
   std::vector<SplineMotion> downloadMotions() const;
-  std::vector<float> downloadLengths() const;  // one a spline, 0 where refused
+  std::vector<float> downloadLengths() const;  // one per spline, 0 where refused
 
   // In the caller's command buffer, outside a render pass; each begins and ends with barriers against compute
   // and transfer work before and after it. recordPrepare: keys (and given tangents) have changed on the
@@ -204,7 +204,7 @@ class SKITTER_API SplineBatch {
   uint32_t pageSplines() const;
   uint32_t pages() const;
   Span keys(
-      uint32_t page) const;  // keys() a spline: x, y, z, knot; if closed, the last one's knot alone counts
+      uint32_t page) const;  // keys() per spline: x, y, z, knot; if closed, the last one's knot alone counts
   Span tangents(
       uint32_t page) const;  // two a key, arriving and leaving: x, y, z, unused; with SplineRule::given
   Span clocks(uint32_t page) const;   // one: start, the rest of start, duration, 1 if active else 0

@@ -14,17 +14,16 @@
 namespace skitter {
 
 // A crowd as it was after a tick, in a file or in memory, with all that it needs to go on as if it had never
-// stopped: Crowd::save writes one, and Crowd(device, state) makes a crowd of it. docs/state.md has the format
-// byte by byte. The checksums of a state find damage, not malice: whoever hands you one can crash your
-// device.
+// stopped: Crowd::save writes one, and Crowd(device, state) makes a crowd of it. docs/state.md has the file's
+// format. The checksums of a state find damage, not malice: whoever hands you one can crash your device.
 struct State {
   uint64_t tick = 0;    // the last one made
-  float dt = 0;         // seconds a tick; 0: no tick was made
+  float dt = 0;         // seconds per tick; 0: no tick was made
   Scene scene;          // the crowd's herds, also those that have come; with absolute file names
   Heightfield terrain;  // as edited
-  // Of the crowd that was saved; pageAgents, timestamps, shaders and rigs are the defaults, for they are the
-  // device's matter and the program's. What a program changes here, but for `measure` and `watchEvery`, holds
-  // for the crowd that is made of the state.
+  // Options of the crowd that was saved; pageAgents, timestamps, shaders and rigs are the defaults, for they
+  // are the device's matter and the program's. A program may change any but `measure` and `watchEvery`, also
+  // `sleep`, for the crowd that is made of the state.
   CrowdOptions options;
   std::string note;  // of the program that saved it, JSON; may be empty
 

@@ -6,7 +6,8 @@
 
 #include "skitter/scene.h"
 
-// What moves a crowd from outside while it runs (Crowd::steer, setSpeed, teleport; docs/steering.md).
+// The types by which a program moves a crowd while it runs (Crowd::steer, setSpeed, teleport;
+// docs/steering.md).
 namespace skitter {
 
 // A handle of an agent: a herd of the crowd, a place in that herd, and how often agents have come there. It
@@ -46,7 +47,7 @@ struct AgentGoal {
 };
 struct AgentSpeed {
   AgentId agent;
-  float speed = 0;  // metres a second, 0 to Goal::maxSpeed
+  float speed = 0;  // metres per second, 0 to Goal::maxSpeed
 };
 struct AgentPlace {
   AgentId agent;
@@ -54,7 +55,7 @@ struct AgentPlace {
 };
 
 // Goal records of a run of a herd's agents on the device, for shaders of the caller's, which may write them:
-// GOAL_STRIDE vec4 an agent (engine/include/skitter/records.h), that of agent firstAgent + i beginning with
+// GOAL_STRIDE vec4 per agent (engine/include/skitter/records.h), that of agent firstAgent + i beginning with
 // vec4 GOAL_STRIDE * (first + i). Equal herds share buffers. Owned by the crowd.
 struct GoalBuffer {
   VkBuffer goals = VK_NULL_HANDLE;      // a storage buffer; binds from its beginning
