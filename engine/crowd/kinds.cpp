@@ -16,8 +16,8 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, phase, colour, tint] = herd;
-  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid),
+               sizes, avoid, ways, phase, colour, tint] = herd;
+  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways),
                         std::tuple(reserve > 0));
 }
 
@@ -42,7 +42,7 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
   if (kinds.firstHerds.size() > mostKinds)
     throw inputError(fmt::format(
         "{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning, "
-        "avoid or size, expected at most {}: each of them, and each size of one, has pipelines of its "
+        "avoid, ways or size, expected at most {}: each of them, and each size of one, has pipelines of its "
         "own; equal herds share them, whatever their agents, spawn and goal",
         scene.name, kinds.firstHerds.size(), mostKinds));
   return kinds;
@@ -50,6 +50,17 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
 
 // Whether legs are proposed where the model has none.
 bool proposes(const skitter::Herd& herd) { return traitsOf(herd.controller).needsClips; }
+
+// As in a scene file.
+void checkWays(const Ways& ways, const std::string& what) {
+  const auto expect = [&](const char* key, float value, double least, double most) {
+    if (!(double{value} >= least && double{value} <= most))
+      throw inputError(fmt::format("{}.{} is {}, expected {} to {}", what, key, value, least, most));
+  };
+  expect("climb", ways.climb, 0, Ways::maxClimb);
+  expect("steepest", ways.steepest, Ways::minLimit, Ways::maxLimit);
+  expect("step", ways.step, Ways::minLimit, Ways::maxLimit);
+}
 
 }  // namespace
 
@@ -67,6 +78,7 @@ void checkHerd(const skitter::Herd& herd, const std::string& what) {
       herd.sizes.size() > 1 && places > Scene::maxAgents)
     throw inputError(fmt::format("{}: {} agents and reserve of several sizes, expected at most {}", what,
                                  places, Scene::maxAgents));
+  if (herd.ways) checkWays(*herd.ways, what + ".ways");
   if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
     throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
   if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))
