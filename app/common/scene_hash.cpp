@@ -188,7 +188,7 @@ void add(Hash& hash, const HerdRemoval& removal) {
   hash.add(uint64_t{herd});
 }
 
-// Of events that name no file.
+// Most events name no file.
 template <class What>
 void add(Hash& hash, FileHashes&, const What& what) {
   add(hash, what);

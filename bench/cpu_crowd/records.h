@@ -43,7 +43,7 @@ inline Agent<float> readAgent(const HerdState& state, size_t agent) {
   return to;
 }
 
-// What no field has is zero already.
+// Numbers of a record that no field has are zero already.
 inline void writeAgent(const Agent<float>& from, size_t agent, HerdState& state) {
   const float goal[] = {from.targetX,     from.targetZ, from.otherX, from.otherZ,
                         from.wantedSpeed, from.arrival, from.kind};

@@ -17,7 +17,7 @@ class Contestant {
   virtual int threads() const = 0;  // of the CPU that it may use; 0: the device's own
   virtual void tick() = 0;          // one; the device's may go on while the next one is recorded
   virtual void finish() {}          // waits for what goes on
-  // Of one of crowd::allRuns(), without metrics.
+  // The records of one of crowd::allRuns(), without metrics.
   virtual HerdState state(uint32_t run, const AgentSample& sample) const = 0;
   // Whether ticks from now on are timed stage by stage, which the device does not get for nothing.
   virtual void timeStages(bool on) = 0;

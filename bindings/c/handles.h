@@ -209,7 +209,7 @@ struct Told {
       : list(first), room(space), count(given(counter, "count")) {
     if (room > 0) given(list, name);
   }
-  // As many as there is room for, each as `convert` has it.
+  // Writes the elements that there is room for, converted, and tells how many there are.
   template <typename From, typename Convert>
   void write(const std::vector<From>& all, Convert convert) {
     for (size_t i = 0; i < all.size() && i < room; ++i) list[i] = convert(all[i]);

@@ -16,7 +16,7 @@ ReadbackOptions optionsOf(const skitter_readback_options& asked) {
   return options;
 }
 
-// What was taken last.
+// The latest snapshot. Throws Error(input) where none was taken.
 const Snapshot& takenFrom(const skitter_readback* readback) {
   const std::optional<Snapshot>& taken = given(readback, "readback").taken;
   if (!taken) throw inputError("readback: nothing is taken, expected skitter_readback_take() before");
@@ -95,10 +95,8 @@ skitter_result skitter_readback_positions(const skitter_readback* readback, uint
     const glm::dvec3 from = c::originOf(origin);
     given(xyz, "xyz");
     c::checkRoom("xyz", room, taken.agents(herd));
-    std::vector<glm::dvec3> positions(taken.agents(herd));
-    for (uint32_t agent = 0; agent < positions.size(); ++agent)
-      positions[agent] = taken.body(herd, agent, from).position;
-    c::copyVectors(positions, xyz);
+    for (uint32_t agent = 0; agent < taken.agents(herd); ++agent)
+      c::copyVector(taken.body(herd, agent, from).position, xyz + 3 * size_t{agent});
   });
 }
 

@@ -1,4 +1,4 @@
-// What happens to a running crowd, as objects of a scene's list of events.
+// The events of a scene as Python objects.
 #include "bindings/python/bind.h"
 
 namespace skitter::python {

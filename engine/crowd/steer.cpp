@@ -88,13 +88,13 @@ void setSpeedOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agent, flo
 }  // namespace
 
 void Crowd::steer(uint32_t number, const Goal& goal) {
-  const crowd::Herd& herd = impl_->herdAt(number);
+  const crowd::Herd& herd = impl_->presentHerdAt(number);
   expectGoal([&] { return nameOf(number); }, goal);
   steerAll(*impl_, herd, [&](uint32_t) -> const Goal& { return goal; });
 }
 
 void Crowd::steer(uint32_t number, std::span<const Goal> goals) {
-  const crowd::Herd& herd = impl_->herdAt(number);
+  const crowd::Herd& herd = impl_->presentHerdAt(number);
   expectOneEach(herd, number, goals.size(), "goals");
   forEach(herd, [&](uint32_t agent) { expectGoal([&] { return nameOf(number, agent); }, goals[agent]); });
   steerAll(*impl_, herd, [&](uint32_t agent) -> const Goal& { return goals[agent]; });
@@ -112,13 +112,13 @@ void Crowd::steer(std::span<const AgentGoal> goals) {
 }
 
 void Crowd::setSpeed(uint32_t number, float speed) {
-  const crowd::Herd& herd = impl_->herdAt(number);
+  const crowd::Herd& herd = impl_->presentHerdAt(number);
   expectSpeed([&] { return nameOf(number); }, "the speed", speed);
   forEach(herd, [&](uint32_t agent) { setSpeedOf(*impl_, herd, agent, speed); });
 }
 
 void Crowd::setSpeed(uint32_t number, std::span<const float> speeds) {
-  const crowd::Herd& herd = impl_->herdAt(number);
+  const crowd::Herd& herd = impl_->presentHerdAt(number);
   expectOneEach(herd, number, speeds.size(), "speeds");
   forEach(herd, [&](uint32_t agent) {
     expectSpeed([&] { return nameOf(number, agent); }, "the speed", speeds[agent]);
@@ -173,6 +173,7 @@ uint32_t Crowd::places(uint32_t herd) const { return impl_->herdAt(herd).agents;
 uint32_t Crowd::agentCount(uint32_t herd) const { return impl_->herdAt(herd).presence.count; }
 
 AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
+  impl_->presentHerdAt(number);
   crowd::Herd& herd = impl_->herdAt(number);
   const auto name = [&] { return fmt::format("herd {}, a new agent", number); };
   expectGoal(name, goal);

@@ -241,7 +241,13 @@ TEST_F(ComeAndGoInputTest, AHerdThatComesIsAsOneThatWasThere) {
   EXPECT_EQ(came.download(1).agents, 0u);
   EXPECT_THAT([&] { came.removeHerd(herd); },
               ThrowsMessage<Error>(HasSubstr("herd 1 of generation 0: expected")));
-  EXPECT_THAT([&] { came.herdId(1); }, ThrowsMessage<Error>(HasSubstr("herd 1: was removed")));
+  const auto isRefused = ThrowsMessage<Error>(HasSubstr("herd 1: was removed"));
+  EXPECT_THAT([&] { came.herdId(1); }, isRefused);
+  EXPECT_THAT([&] { came.steer(1, Goal{}); }, isRefused);
+  EXPECT_THAT([&] { came.steer(1, std::vector<Goal>{}); }, isRefused);
+  EXPECT_THAT([&] { came.setSpeed(1, 1); }, isRefused);
+  EXPECT_THAT([&] { came.setSpeed(1, std::vector<float>{}); }, isRefused);
+  EXPECT_THAT([&] { came.add(1, {{0, 0}, 0}); }, isRefused);
   simulate(device(), came, 5);
   Herd third = two.herds[1];
   third.controller = Controller::adaptive;

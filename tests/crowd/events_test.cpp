@@ -21,6 +21,18 @@ using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 class EventsTest : public GpuTest {};
 
+// The message of the Error(input) that the call throws, or "taken".
+template <typename Call>
+std::string inputFault(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::input);
+    return error.what();
+  }
+  return "taken";
+}
+
 // The first has a reserve of 3 places, so the two are of two kinds.
 Scene twoHerds() {
   Scene scene = sceneOf(20);
@@ -446,14 +458,10 @@ TEST_F(EventsTest, BeyondTheMapAreRefusedOrChangeNothing) {
     Scene scene = sceneOf(2);
     scene.name = "late.json";
     scene.events = {{0, Mound{}}, std::move(event)};
-    try {
+    return inputFault([&] {
       Crowd crowd(device(), ground, scene);
       simulate(device(), crowd, 2);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), Error::Kind::input);
-      return error.what();
-    }
-    return "taken";
+    });
   };
   EXPECT_THAT(fault({0, HeightSamples{ground.columns - 1, 0, 2, 1, {0, 0}}}),
               HasSubstr("late.json: events[1].edit"));
@@ -466,13 +474,7 @@ TEST_F(EventsTest, AboutNobodyAreRefusedWhenTheCrowdIsMade) {
   const auto faultOf = [&](const decltype(Event::what)& what) -> std::string {
     Scene scene = twoHerds();
     scene.events = {{0, Mound{}}, {9, what}};
-    try {
-      Crowd crowd(device(), flatGround(), scene);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), Error::Kind::input);
-      return error.what();
-    }
-    return "taken";
+    return inputFault([&] { Crowd(device(), flatGround(), scene); });
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::string event = "two.json: events[1]";
@@ -504,13 +506,7 @@ TEST_F(EventsTest, AboutNobodyAreRefusedWhenTheCrowdIsMade) {
 TEST_F(EventsTest, OfHerdsThatCannotBeAreRefusedWhenTheCrowdIsMade) {
   const auto faultIn = [&](Scene scene, const std::vector<decltype(Event::what)>& events) -> std::string {
     for (const auto& what : events) scene.events.push_back({1, what});
-    try {
-      Crowd crowd(device(), flatGround(), scene);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), Error::Kind::input);
-      return error.what();
-    }
-    return "taken";
+    return inputFault([&] { Crowd(device(), flatGround(), scene); });
   };
   const auto faultOf = [&](const std::vector<decltype(Event::what)>& events) {
     return faultIn(twoHerds(), events);

@@ -24,6 +24,7 @@ using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 class SizesTest : public GpuTest {};
 class SizedControllersTest : public GpuTest, public ::testing::WithParamInterface<Controller> {};
+class SizedRigsTest : public SizedControllersTest {};
 class SizesInputTest : public GpuTest {};
 
 Scene sizedScene(uint32_t agents, std::vector<float> sizes, Controller controller = Controller::adaptive) {
@@ -73,9 +74,7 @@ TEST_P(SizedControllersTest, AreReplayed) {
 }
 
 // A creature of twice the size moves as a rig of twice the size does, bit for bit.
-TEST_P(SizedControllersTest, MoveAsARigOfThatSizeDoes) {
-  if (GetParam() != Controller::adaptive && GetParam() != Controller::loop)
-    GTEST_SKIP() << "clips are of a file, whose rig has one size";
+TEST_P(SizedRigsTest, MoveAsARigOfThatSizeDoes) {
   const Heightfield ground = rollingGround();
   Crowd sized(device(), ground, sizedScene(20, {2}, GetParam()));
   Crowd rigged(device(), ground, sizedScene(20, {}, GetParam()), {.rigs = {crowd::scaled(spiderRig(), 2)}});
@@ -111,6 +110,9 @@ TEST_P(SizedControllersTest, GoOnFromAState) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, SizedControllersTest, ::testing::ValuesIn(allControllers),
+                         [](const auto& param) { return testNameOf(param.param); });
+// The others play the clips of a file, whose rig has one size.
+INSTANTIATE_TEST_SUITE_P(, SizedRigsTest, ::testing::Values(Controller::adaptive, Controller::loop),
                          [](const auto& param) { return testNameOf(param.param); });
 
 TEST_F(SizesTest, OneSizeIsNone) {
