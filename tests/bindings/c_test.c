@@ -1117,7 +1117,8 @@ static void testDecoding(const skitter_crowd* crowd, const float* bodies, const 
   float headings[20];
   skitter_body body, moved;
   skitter_bone bone;
-  skitter_step step;
+  skitter_step step, other;
+  float longer[8];
   size_t count = 0;
   int agent, leg, k;
 
@@ -1140,6 +1141,13 @@ static void testDecoding(const skitter_crowd* crowd, const float* bodies, const 
       /* A foot lands within a leg, 1 m, and a stride of its body. */
       OK(skitter_decode_step(steps + 8 * (8 * agent + leg), bodies + 16 * agent, NULL, &step));
       CHECK(apart(step.landing, body.position) < 2.5 && fabs(step.landing[1] - body.position[1]) < 2.5);
+      memcpy(longer, steps + 8 * (8 * agent + leg), sizeof longer);
+      longer[0] += 0.25f, longer[1] += 0.5f, longer[2] -= 0.25f;
+      OK(skitter_decode_step(longer, bodies + 16 * agent, NULL, &other));
+      CHECK(memcmp(other.lift_off, step.lift_off, sizeof step.lift_off) == 0);
+      for (k = 0; k < 3; ++k)
+        CHECK(fabs(other.landing[k] - other.lift_off[k] - ((double)longer[k] - longer[4 + k])) < 1e-9);
+      CHECK(other.first_tick == longer[3]);
     }
   }
   REFUSED(skitter_decode_body(bodies, far, &body), "origin is (inf, 0, 0)");
