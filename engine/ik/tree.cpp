@@ -9,6 +9,7 @@
 #include "gpu/kernel.h"
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
+#include "ik/records.h"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
 #include "skitter/error.h"
