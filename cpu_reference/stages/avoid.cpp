@@ -1,0 +1,181 @@
+#include "cpu_reference/stages/avoid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace skitter::reference {
+namespace {
+
+// docs/stages/avoid.md. Seconds, shares and leg lengths a second.
+constexpr double horizon = 2, pushTime = 0.5;
+constexpr double rightBias = 0.05;
+constexpr double softness = 0.05;
+constexpr int sweeps = 6;
+constexpr double pushSpeed = 0.3, steadySpeed = 0.05;
+
+// Rounding errors of the size that a float32 computation makes; none by default.
+class Rounding {
+ public:
+  explicit Rounding(const AvoidErrors& errors) : most_(errors.number), random_(errors.seed) {}
+
+  double operator()(double value, double size) {
+    if (most_ == 0) return value;
+    return value + size * most_ * std::uniform_real_distribution<double>(-1, 1)(random_);
+  }
+  glm::dvec2 operator()(const glm::dvec2& value, double size) {
+    return {(*this)(value.x, size), (*this)(value.y, size)};
+  }
+
+ private:
+  double most_;
+  std::mt19937_64 random_;
+};
+
+// Another agent, relative to the one that looks.
+struct Seen {
+  const Walker* walker;
+  int64_t x, z;       // quanta
+  int64_t distance2;  // between the middles, squared
+  int64_t radii;      // of both
+};
+
+std::vector<Seen> inReach(const AvoidTuning& tuning, const Walker& self, std::span<const Walker> all) {
+  std::vector<Seen> seen;
+  for (const Walker& other : all) {
+    if (other.number == self.number) continue;
+    const int64_t x = other.x - self.x, z = other.z - self.z, radii = self.radius + other.radius;
+    const int64_t reach = radii + tuning.look;
+    if (x * x + z * z <= reach * reach) seen.push_back({&other, x, z, x * x + z * z, radii});
+  }
+  std::ranges::sort(seen, [](const Seen& a, const Seen& b) {
+    const int64_t powerA = a.distance2 - a.radii * a.radii, powerB = b.distance2 - b.radii * b.radii;
+    return std::tie(powerA, a.walker->number) < std::tie(powerB, b.walker->number);
+  });
+  return seen;
+}
+
+// Turned by a right angle to its right: an agent that faces +z has +x to its left.
+glm::dvec2 rightOf(const glm::dvec2& v) { return {-v.y, v.x}; }
+
+// Two agents in one place part along a line that depends on their numbers only.
+glm::dvec2 partingLine(int64_t a, int64_t b) {
+  const auto low = static_cast<uint32_t>(std::min(a, b)), high = static_cast<uint32_t>(std::max(a, b));
+  const uint32_t drawn = (low * 0x9E3779B1u) ^ (high * 0x85EBCA77u);
+  const glm::dvec2 line{(drawn >> 28) - 7.5, (drawn >> 24 & 15) - 7.5};
+  return glm::normalize(a < b ? line : -line);
+}
+
+HalfPlane planeOf(const AvoidTuning& tuning, const Walker& self, const Seen& seen, int right,
+                  Rounding& rounded) {
+  const Walker& other = *seen.walker;
+  HalfPlane plane{.neighbour = other.number, .sideMargin = std::numeric_limits<double>::infinity()};
+  const glm::dvec2 p = glm::dvec2(seen.x, seen.z) / tuning.quanta;
+  const double d = std::sqrt(static_cast<double>(seen.distance2)) / tuning.quanta;
+  const double radii = static_cast<double>(seen.radii) / tuning.quanta;
+  const double size = glm::length(self.velocity) + glm::length(other.velocity) + (d + radii) / horizon;
+  const glm::dvec2 v = rounded(self.velocity - other.velocity, 2 * size);
+  glm::dvec2 change;
+  if (seen.distance2 <= seen.radii * seen.radii) {
+    plane.n = seen.distance2 > 0 ? -p / d : partingLine(self.number, other.number);
+    change = ((radii - d) / pushTime - glm::dot(plane.n, v)) * plane.n;
+  } else {
+    const glm::dvec2 w = rounded(v - p / horizon, 2 * size);
+    const double along = glm::dot(w, p), speed = glm::length(w);
+    if (along < 0 && along * along > radii * radii * speed * speed) {
+      plane.n = w / std::max(speed, 1e-9);
+      change = (radii / horizon - speed) * plane.n;
+    } else {
+      const double leg =
+          std::sqrt(static_cast<double>(seen.distance2 - seen.radii * seen.radii)) / tuning.quanta;
+      const double across = p.x * w.y - p.y * w.x + rightBias * d * speed;
+      plane.sideMargin = std::abs(across) / d;
+      plane.right = right >= 0 ? right : (across >= 0 ? 1 : 0);
+      const double side = plane.right == 1 ? 1 : -1;
+      const glm::dvec2 edge =
+          side * glm::dvec2(p.x * leg - side * p.y * radii, side * p.x * radii + p.y * leg) / (d * d);
+      plane.n = {-edge.y, edge.x};
+      change = glm::dot(v, edge) * edge - v;
+    }
+  }
+  plane.n = rounded(plane.n, 8);
+  const double share = other.yields ? 0.5 : 1;
+  plane.bound = rounded(glm::dot(plane.n, self.velocity + share * change), 8 * size);
+  return plane;
+}
+
+// Nearest to `wanted`: soft half-planes, by projected Gauss-Seidel on their multipliers, the nearest
+// neighbour last.
+glm::dvec2 solved(const std::vector<HalfPlane>& planes, const glm::dvec2& wanted, Rounding& rounded) {
+  std::vector<double> pushes(planes.size(), 0.0);
+  glm::dvec2 v = wanted;
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (size_t k = planes.size(); k-- > 0;) {
+      const HalfPlane& plane = planes[k];
+      const double lacking = plane.bound - glm::dot(plane.n, v) - softness * pushes[k];
+      const double push = std::max(
+          0.0, rounded(pushes[k] + lacking / (1 + softness), 4 * (std::abs(plane.bound) + glm::length(v))));
+      v = rounded(v + (push - pushes[k]) * plane.n, 2 * (glm::length(v) + push));
+      pushes[k] = push;
+    }
+  return v;
+}
+
+}  // namespace
+
+Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yields, double quanta) {
+  const auto inQuanta = [&](double tile, double local) {
+    return static_cast<int64_t>(tile * tileSize * quanta) + static_cast<int64_t>(std::floor(local * quanta));
+  };
+  return {number, inQuanta(body.tileX, body.localX), inQuanta(body.tileZ, body.localZ),
+          radius, body.speed * body.heading,         yields};
+}
+
+AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker& self,
+                  std::span<const Walker> all, const glm::dvec2& desired, bool asleep,
+                  const AvoidChoices& choices, const AvoidErrors& errors) {
+  AvoidResult result;
+  result.standMargin = std::numeric_limits<double>::infinity();
+  if (body.absent) {
+    result.asleep = true;
+    return result;
+  }
+  Rounding rounded(errors);
+  std::vector<Seen> seen = inReach(tuning, self, all);
+  result.seen = static_cast<int64_t>(seen.size());
+  if (seen.size() > mostNeighbours) seen.resize(mostNeighbours);
+
+  const double speed = glm::length(desired);
+  double close = 0, press = 0;
+  for (const Seen& other : seen) {
+    const double d = std::sqrt(static_cast<double>(other.distance2)) / tuning.quanta;
+    const double radii = static_cast<double>(other.radii) / tuning.quanta;
+    const double closeness = std::clamp(2 - d / radii, 0.0, 1.0);
+    const glm::dvec2 p = glm::dvec2(other.x, other.z) / tuning.quanta;
+    close = std::max(close, closeness);
+    press = std::max(press, closeness * std::max(0.0, glm::dot(p, desired)) / std::max(d * speed, 1e-6));
+    const size_t place = result.planes.size();
+    const int right = place < choices.right.size() ? choices.right[place] : -1;
+    result.planes.push_back(planeOf(tuning, self, other, right, rounded));
+  }
+
+  const double aside = rounded(press * std::max(0.0, 1 - body.speed / std::max(speed, 1e-6)), 8);
+  const glm::dvec2 wanted =
+      rounded((desired + aside * rightOf(desired)) / std::sqrt(1 + aside * aside), 8 * speed);
+  glm::dvec2 v = solved(result.planes, wanted, rounded);
+  const double most = std::max(speed, pushSpeed * tuning.legLength);
+  v *= std::min(1.0, most / std::max(glm::length(v), 1e-6));
+  const double slow = steadySpeed * tuning.legLength * close, moves = glm::length(v);
+  v = (v + slow * body.heading) * (moves / std::max(moves + slow, 1e-6));
+  result.velocity = v;
+
+  const double standing = 1e-2 * tuning.legLength;
+  if (asleep) {
+    result.standMargin = std::abs(glm::length(v) - standing);
+    result.asleep = choices.stands >= 0 ? choices.stands == 1 : glm::length(v) < standing;
+  }
+  return result;
+}
+
+}  // namespace skitter::reference

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "cpu_reference/types.h"
+
+namespace skitter::reference {
+
+// An agent as others see it: its place in whole quanta, and its velocity x, z.
+struct Walker {
+  int64_t number = 0;  // in the crowd
+  int64_t x = 0, z = 0, radius = 0;
+  glm::dvec2 velocity{0};
+  bool yields = false;  // its herd avoids
+};
+
+struct AvoidTuning {
+  double quanta = 1024;  // in a metre
+  int64_t look = 0;      // quanta between footprints, up to which another agent is seen
+  double legLength = 1;
+};
+
+// What one neighbour asks: n . v >= bound.
+struct HalfPlane {
+  int64_t neighbour = 0;  // its number
+  glm::dvec2 n{0};
+  double bound = 0;
+  // How far the choice of the side is from the other one, m/s; infinite where there is none.
+  double sideMargin = 0;
+  int right = -1;  // 1 or 0: the side that was taken; -1 where there is none
+};
+
+// Decisions that the caller takes instead of the rule, to recompute the other side of a tie.
+struct AvoidChoices {
+  std::vector<int> right = {};  // 0 or 1: forced, of the half-plane in that place
+  int stands = -1;
+};
+
+// Errors as float32 makes them, drawn uniformly: Monte Carlo arithmetic (Parker 1997).
+struct AvoidErrors {
+  double number = 0;  // share of a number
+  uint64_t seed = 0;
+};
+
+struct AvoidResult {
+  glm::dvec2 velocity{0};
+  bool asleep = false;
+  int64_t seen = 0;               // agents in reach, those that the cap drops among them
+  std::vector<HalfPlane> planes;  // of the nearest, the nearest first
+  double standMargin = 0;         // of |v| from what counts as standing, m/s; infinite where not asked
+};
+
+constexpr size_t mostNeighbours = 8;
+
+// A walker of that body, with a footprint of that radius in quanta.
+Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yields, double quanta);
+
+// `self` as others see it; `all` are the walkers of the crowd, itself among them. `desired` and `asleep` are
+// navigate's.
+AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker& self,
+                  std::span<const Walker> all, const glm::dvec2& desired, bool asleep,
+                  const AvoidChoices& choices = {}, const AvoidErrors& errors = {});
+
+}  // namespace skitter::reference
