@@ -69,7 +69,7 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
 
 void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::AgentBody previous = bodyOf(moment.before, moment.agent);
-  const glm::dvec2 desired = desiredOf(moment.after, moment.agent);
+  const glm::dvec2 desired = velocityOf(moment.after, moment.agent);
   std::vector<reference::Step> steps;
   const size_t legs = static_cast<size_t>(setting.legs);
   std::vector<double> misses;
@@ -113,7 +113,7 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
 
 void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::AgentBody previous = bodyOf(moment.before, moment.agent);
-  const glm::dvec2 desired = desiredOf(moment.after, moment.agent);
+  const glm::dvec2 desired = velocityOf(moment.after, moment.agent);
   const auto inputs = tolerance::blindGround(setting.heights, setting.extent, setting.creature, previous);
   const auto run = [&](int turnSign) {
     return reference::blindBody(setting.tuning, setting.heights, setting.creature, previous, desired,

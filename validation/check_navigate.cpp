@@ -50,7 +50,7 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
   const double near = tolerance::goalDistance(setting.extent);
   const double breath = tolerance::breathedOut(tuning, rest.gait);
   // A sleeper decides again and again what it fell asleep by: that is one tie.
-  const bool slept = asleepOf(moment.before, moment.agent) && asleepOf(moment.after, moment.agent);
+  const bool slept = mayRest(moment.before, moment.agent) && mayRest(moment.after, moment.agent);
   for (int choice = 0; choice < 32; ++choice) {
     reference::NavigateChoices choices;
     const auto bit = [&](int i) { return choice >> i & 1; };

@@ -7,6 +7,7 @@ namespace skitter::validation {
 // Each is in the check_X.cpp of its stage.
 using StageCheck = void(const Setting& setting, const Moment& moment, Judge& judge);
 StageCheck checkNavigate;
+StageCheck checkAvoid;
 StageCheck checkBody, checkBlindBody;
 StageCheck checkClip;
 StageCheck checkGait, checkLoopGait, checkKeyPoseGait;
@@ -27,6 +28,7 @@ const std::vector<Controller> blind = {loop, clip, planted, Controller::keyPoses
 
 const std::vector<Check> checks = {
     {StageId::navigate, every, checkNavigate},
+    {StageId::avoid, every, checkAvoid},
     {StageId::body, {adaptive}, checkBody, {Record::body}},
     {StageId::body, blind, checkBlindBody, {Record::body}},
     {StageId::clip, {clip, planted}, checkClip, {Record::play}},
@@ -65,6 +67,8 @@ std::vector<const Check*> checksOf(Controller controller, std::span<const StageI
 
 bool isLeftOut(StageId stage, const HerdState& before, const HerdState& after) {
   switch (stage) {
+    case StageId::avoid:
+      return after.avoid.empty();
     case StageId::swing:
       return after.foot.empty();
     case StageId::pose:

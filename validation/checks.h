@@ -5,12 +5,13 @@
 // What the check of each stage, in check_X.cpp, is given, and the table of them all (checks.cpp).
 namespace skitter::validation {
 
-// The two states around tick n, and the agent to look at.
+// The two states around tick n, the agent to look at, and who is around it.
 struct Moment {
   uint64_t n;
   const HerdState& before;
   const HerdState& after;
   size_t agent;  // of those that the states hold
+  const Surroundings& around;
   // Among all whom these are a sample of.
   size_t number() const { return after.sample.first + agent * after.sample.stride; }
 };

@@ -164,8 +164,22 @@ glm::dvec2 desiredOf(const HerdState& state, size_t agent) {
   return load(state.steer, at(agent, shared::STEER_STRIDE));
 }
 
-bool asleepOf(const HerdState& state, size_t agent) {
+bool mayRest(const HerdState& state, size_t agent) {
   return load(state.steer, at(agent, shared::STEER_STRIDE)).z == 1;
+}
+
+glm::dvec2 velocityOf(const HerdState& state, size_t agent) {
+  if (state.avoid.empty()) return desiredOf(state, agent);
+  return load(state.avoid, at(agent, shared::AVOID_STRIDE));
+}
+
+bool asleepOf(const HerdState& state, size_t agent) {
+  if (state.avoid.empty()) return mayRest(state, agent);
+  return load(state.avoid, at(agent, shared::AVOID_STRIDE)).z == 1;
+}
+
+double seenOf(const HerdState& state, size_t agent) {
+  return load(state.avoid, at(agent, shared::AVOID_STRIDE)).w;
 }
 
 void putSteer(HerdState& state, size_t agent, const glm::dvec2& desired, bool asleep) {

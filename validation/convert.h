@@ -20,8 +20,14 @@ reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, i
 reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones);
 
 reference::Goal goalOf(const HerdState& state, size_t agent);
+// What navigate wants, and whether it lets the agent sleep.
 glm::dvec2 desiredOf(const HerdState& state, size_t agent);
+bool mayRest(const HerdState& state, size_t agent);
+// What the later stages go by: the same, or avoid's where the herd avoids.
+glm::dvec2 velocityOf(const HerdState& state, size_t agent);
 bool asleepOf(const HerdState& state, size_t agent);
+// Agents in reach, as avoid has them.
+double seenOf(const HerdState& state, size_t agent);
 reference::AgentBody bodyOf(const HerdState& state, size_t agent);
 reference::Gait gaitOf(const HerdState& state, size_t agent);
 // Without lift and tangent where the controller has no arcs.

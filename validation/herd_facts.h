@@ -1,6 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "crowd/grid.h"
 #include "crowd/herd.h"
+#include "crowd/readback.h"
+#include "validation/convert.h"
 #include "validation/replay.h"
 
 // Apart from replay.h, which does without a device.
@@ -14,10 +21,41 @@ inline HerdFacts herdFacts(const crowd::Kind& kind, const Heightfield& terrain) 
 }
 
 // The same of a herd's agents that have one size, who are replayed by themselves.
-inline HerdFacts herdFacts(const Crowd::Impl& crowd, const crowd::HerdRun& of) {
-  HerdFacts facts = herdFacts(crowd.kinds[of.run->kind], crowd.terrain);
+inline HerdFacts herdFacts(const Crowd::Impl& crowd, const crowd::HerdRun& of, const Heightfield& terrain) {
+  const crowd::Kind& kind = crowd.kinds[of.run->kind];
+  HerdFacts facts = herdFacts(kind, terrain);
   facts.firstAgent = of.run->firstOfHerd;
+  if (!kind.avoids) return facts;
+  const crowd::Quanta quanta = crowd::quantaOf(crowd);
+  facts.avoid = {
+      .quanta = quanta.inMetre, .look = quanta.lookOf(kind), .legLength = kind.parameters.legLength};
+  facts.firstNumber = crowd::numberOf(crowd, kind) + of.run->firstAgent;
   return facts;
+}
+
+inline HerdFacts herdFacts(const Crowd::Impl& crowd, const crowd::HerdRun& of) {
+  return herdFacts(crowd, of, crowd.terrain);
+}
+
+// Everybody as the last tick left them, where somebody avoids; else nobody. Waits for the device.
+inline Surroundings surroundingsOf(const Crowd::Impl& crowd) {
+  Surroundings all;
+  if (!crowd::avoids(crowd)) return all;
+  const crowd::Quanta quanta = crowd::quantaOf(crowd);
+  constexpr std::array records = {Record::body};
+  for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
+    const HerdState state = crowd::downloadRecords(crowd, h, records);
+    for (uint32_t agent = 0; agent < state.agents; ++agent) {
+      const crowd::SizeRun& run = crowd.herds[h].runOf(agent);
+      const crowd::Kind& kind = crowd.kinds[run.kind];
+      const reference::AgentBody body = bodyOf(state, agent);
+      const int64_t number = int64_t{crowd::numberOf(crowd, kind)} + run.firstAgent + agent - run.firstOfHerd;
+      if (!body.absent)
+        all.push_back(reference::walkerOf(body, number, quanta.radiusOf(kind), kind.avoids, quanta.inMetre));
+    }
+  }
+  std::ranges::sort(all, {}, &reference::Walker::number);
+  return all;
 }
 
 }  // namespace skitter::validation

@@ -90,6 +90,8 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   // The reference has no `automatic`.
   setting.ik = {static_cast<reference::IkSolver>(herd.ik.solver - shared::SOLVER_FABRIK), herd.ik.approach,
                 herd.ik.polish};
+  setting.avoid = herd.avoid;
+  setting.firstNumber = herd.firstNumber;
   if (crowd::traitsOf(herd.controller).playsClips)
     setting.clips = clipTableOf(herd.clips, setting.legs, setting.bones);
   if (herd.controller == Controller::keyPoses)
@@ -103,7 +105,7 @@ Replay::Replay(const HerdFacts& herd, std::vector<crowd::StageId> only)
     judges_.emplace_back(nameOf(check->stage), herd.firstAgent);
 }
 
-void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
+void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, const Surroundings& around) {
   if (before.agents != after.agents) {
     throw inputError("replay: found " + std::to_string(after.agents) + " agents after the tick, expected " +
                      std::to_string(before.agents));
@@ -120,7 +122,7 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after) {
       if (after.agents > 0 && crowd::infoOf(record).kept == crowd::Kept::bound && after.of(record).empty())
         throw inputError(std::string("replay: found no ") + crowd::infoOf(record).name + " records");
     for (size_t agent = 0; agent < before.agents; ++agent) {
-      const Moment moment{n, before, after, agent};
+      const Moment moment{n, before, after, agent, around};
       const bool asleep = asleepOf(after, agent);
       // Nobody is there: measure adds nothing.
       if (check.stage == crowd::StageId::measure && bodyOf(after, agent).absent) {

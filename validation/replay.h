@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cpu_reference/clips/table.h"
+#include "cpu_reference/stages/avoid.h"
 #include "cpu_reference/stages/ik.h"
 #include "cpu_reference/stages/swing_key_poses.h"
 #include "cpu_reference/types.h"
@@ -30,7 +31,13 @@ struct HerdFacts {
   crowd::ClipRecords clips = {};  // where clips are played
   crowd::KeyPoses keyPoses = {};  // of controller key-poses
   uint32_t firstAgent = 0;        // the number in the herd of agent 0 of the states, for messages
+  // Where the herd avoids: how, and the number in the crowd of that agent.
+  reference::AvoidTuning avoid = {};
+  int64_t firstNumber = 0;
 };
+
+// All agents that are there, of the whole crowd: as they were before a tick.
+using Surroundings = std::vector<reference::Walker>;
 
 // What every check needs to know about the herd.
 struct Setting {
@@ -43,6 +50,8 @@ struct Setting {
   reference::IkPlan ik;
   reference::ClipTable clips;
   reference::KeyPoses keyPoses;
+  reference::AvoidTuning avoid;
+  int64_t firstNumber = 0;
 };
 
 // `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit
@@ -70,9 +79,10 @@ class Replay {
   Replay& operator=(const Replay&) = delete;
 
   // `n` is the tick that led from `before` to `after`, states of the same agents: all of these are compared.
-  // A state without poses, metrics or footfalls leaves pose, measure or footfall out. Throws Error(input)
-  // when a record buffer's size does not fit the number of agents.
-  void tick(uint64_t n, const HerdState& before, const HerdState& after);
+  // A state without poses, metrics or footfalls leaves pose, measure or footfall out. `around`, before the
+  // tick and by their numbers, is for a herd that avoids. Throws Error(input) when a record buffer's size
+  // does not fit the number of agents, or such a herd's agents are not among `around`.
+  void tick(uint64_t n, const HerdState& before, const HerdState& after, const Surroundings& around = {});
 
   // The terrain was edited before the next tick (Crowd::editHeights).
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);

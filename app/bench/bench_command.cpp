@@ -177,6 +177,10 @@ int bench(const BenchOptions& options) {
   files.reads("--baseline", options.baseline);
   files.writes("--json", options.json);
   files.check();
+  for (size_t h = 0; h < scene.herds.size(); ++h)
+    if (scene.herds[h].avoid)
+      throw inputError(fmt::format(
+          "bench: herds[{}].avoid of {} is true, expected false: the opponents do not avoid", h, scene.name));
   if (options.failAbove && options.baseline.empty())
     throw inputError("--fail-above needs --baseline FILE to compare with");
   const Heightfield terrain = scene.loadTerrain();

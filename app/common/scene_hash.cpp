@@ -65,7 +65,7 @@ void add(Hash& hash, const Goal& goal) {
 
 void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, phase, colour, tint] = herd;
+               sizes, avoid, phase, colour, tint] = herd;
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
@@ -88,6 +88,7 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
     hash.add(uint64_t{sizes.size()});
     for (const float size : sizes) hash.add(size);
   }
+  if (avoid) hash.add("avoid");
   if (phase) {
     hash.add("phase");
     hash.add(*phase);

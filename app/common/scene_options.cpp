@@ -101,6 +101,7 @@ void SceneOptions::addCountTo(CLI::App& command, const char* agentsHelp) {
           fmt::format("how every herd's legs move: {} (docs/scene.md) [the scene's]",
                       namesOf(allControllers)))
       ->type_name("NAME");
+  command.add_flag("--avoid", avoid, "agents of every herd keep clear of those near them");
 }
 
 void SceneOptions::addTerrainTo(CLI::App& command) {
@@ -180,6 +181,10 @@ std::vector<SceneOptions::Change> SceneOptions::changes() const {
   ofEveryHerd("--controller", controller, &Herd::controller);
   ofEveryHerd("--solver", solver, &Herd::solver);
   ofEveryHerd("--stepping", stepping, &Herd::stepping);
+  if (avoid)
+    all.push_back({"--avoid", [](Scene& result) {
+                     for (Herd& herd : result.herds) herd.avoid = true;
+                   }});
   if (seed) all.push_back({fmt::format("--seed {}", *seed), [this](Scene& result) { result.seed = *seed; }});
   if (!terrain.empty())
     all.push_back({fmt::format("--terrain {}", terrain), [this](Scene& result) {

@@ -36,6 +36,7 @@ struct SceneOptions {
   std::optional<Solver> solver;  // of every herd, like the next two; none: the scene's own
   std::optional<Controller> controller;
   std::optional<Stepping> stepping;
+  bool avoid = false;   // every herd does
   std::string terrain;  // empty: the scene's own
   std::optional<Size> terrainSize;
   std::optional<std::pair<double, double>> spacing, heights;
@@ -47,8 +48,8 @@ struct SceneOptions {
   // one. Throws Error(device) where there is none.
   std::vector<std::string> devices() const;
 
-  // `agentsHelp` says what happens without --agents; null: neither --agents nor --controller, of which the
-  // command has lists.
+  // `agentsHelp` says what happens without --agents; null: neither --agents and --controller, of which the
+  // command has lists, nor --avoid.
   void addTo(CLI::App& command, const char* agentsHelp);
   // The scene as the flags leave it. Throws Error(input).
   Scene load() const;

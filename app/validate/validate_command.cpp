@@ -185,6 +185,15 @@ Scene sceneOf(SceneOptions options) {
   return options.load();
 }
 
+void refuseFreeRunOf(const ValidateOptions& options, const Scene& scene) {
+  for (size_t h = 0; options.freeRun && h < scene.herds.size(); ++h)
+    if (scene.herds[h].avoid)
+      throw inputError(
+          fmt::format("--free-run: herds[{}].avoid of {} is true, expected false: the reference walks each "
+                      "herd by itself",
+                      h, scene.name));
+}
+
 int validate(const ValidateOptions& options) {
   if (options.timeout) stopAfter(*options.timeout);
   Files files;
@@ -194,6 +203,7 @@ int validate(const ValidateOptions& options) {
   options.scene.declare(files, scene);
   files.check();
   validation::expectComparable(scene, options.stages, "--stages");
+  refuseFreeRunOf(options, scene);
   Validation validation{.options = options,
                         .scene = scene,
                         .several = options.scene.device == "all",

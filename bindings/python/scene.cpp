@@ -75,6 +75,7 @@ void bindHerd(py::module_& module) {
           "sizes", [](const Herd& self) { return py::tuple(py::cast(self.sizes)); },
           [](Herd& self, std::vector<float> sizes) { self.sizes = std::move(sizes); },
           "How large its creatures are, times the rig: each draws one of at most 16; empty: 1.")
+      .def_readwrite("avoid", &Herd::avoid, "Whether its agents keep clear of those near them.")
       .def_readwrite("phase", &Herd::phase,
                      "Where in its gait or clip each agent begins, 0 to 1; None: drawn by the seed.")
       .def_readwrite("colour", &Herd::colour, "Linear red, green and blue, 0 to 1; None: the model's.")

@@ -157,6 +157,7 @@ class Herd:
     spawn: Spawn
     goal: Goal
     sizes: Sequence[float]
+    avoid: bool
     phase: Optional[float]
     colour: Optional[Sequence[float]]
     tint: Optional[float]

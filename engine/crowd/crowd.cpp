@@ -18,6 +18,7 @@
 #include "crowd/controllers/controllers.h"
 #include "crowd/events.h"
 #include "crowd/frame.h"
+#include "crowd/grid.h"
 #include "crowd/herd.h"
 #include "crowd/kinds.h"
 #include "crowd/page.h"
@@ -136,9 +137,11 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
       gpu::HostBuffer(context, sizeof(shared::Parameters), gpu::HostUse::upload, "parameters");
   crowd::setParameters(crowd, crowd::usualDt, kind);
   kind.reserves = from.reserve > 0;
+  kind.avoids = from.avoid;
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
-  for (const Stage& stage : crowd::stagesOf(kind.controller, asked)) kind.stages.push_back({stage});
+  for (const Stage& stage : crowd::stagesOf(kind.controller, asked, kind.avoids))
+    kind.stages.push_back({stage});
   return kind;
 }
 
@@ -215,12 +218,13 @@ void fillAll(Impl& crowd, bool spawn) {
     needed += crowd::bytesOf(crowd, kind);
     agents += kind.agents;
   }
-  expectMemory(*crowd.context, agents, needed);
+  expectMemory(*crowd.context, agents, needed + crowd::bytesOfGrid(crowd));
   if (agents > Scene::maxAgents)
     throw inputError(std::to_string(agents) + " agents, expected at most " +
                      std::to_string(Scene::maxAgents));
   for (uint32_t k = 0; k < crowd.kinds.size(); ++k)
     if (!crowd.kinds[k].stages.empty()) fill(crowd, k, spawn);
+  crowd::shareGround(crowd);
 }
 
 // A herd of those kinds, one a size. `generation`, which is even, is that of places where somebody is.
@@ -413,8 +417,9 @@ HerdId admit(Impl& crowd, uint32_t number, const Herd& from, std::vector<crowd::
   for (size_t i = 0; i < slots.size(); ++i) put(crowd.kinds, slots[i], std::move(kinds[i]));
   put(crowd.herds, number, std::move(herd));
   try {
+    for (const uint32_t k : slots) fill(crowd, k);
+    crowd::shareGround(crowd);
     for (const uint32_t k : slots) {
-      fill(crowd, k);
       settle(crowd, std::span(&crowd.kinds[k], 1));
       gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
         gpu::allToAll(cmd);
@@ -428,6 +433,7 @@ HerdId admit(Impl& crowd, uint32_t number, const Herd& from, std::vector<crowd::
       kinds[i].pages.clear();
     }
     vacate(crowd, number);
+    crowd::shareGround(crowd);
     throw;
   }
   ++crowd.revision;
@@ -512,7 +518,12 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   constexpr auto counted = gpu::computeToIndirectAndCompute;
   constexpr auto written = gpu::computeToCompute;
   using enum crowd::StageId;
+  if (crowd.grid) {
+    crowd.timer.next(cmd, last = "grid");
+    crowd.grid->record(crowd, cmd);
+  }
   run(navigate, written);
+  run(avoid, written);
   run(wake, counted);
   run(body, written);
   run({navigate, body, gait}, counted);
@@ -558,6 +569,7 @@ void Crowd::removeHerd(HerdId id) {
       if (herd.presence.has(agent)) remove(agentId(id.index, agent));
   }
   vacate(crowd, id.index);
+  crowd::shareGround(crowd);
 }
 
 bool Crowd::has(HerdId id) const {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "crowd/grid.h"
 #include "crowd/page.h"
 #include "crowd/watch.h"
 #include "gpu/barrier.h"
@@ -23,6 +24,7 @@ uint32_t invocations(const Kind& kind, const Page& page, Stage::Over over) {
     case Stage::Over::blocks:
       return agents / shared::BLOCK;
     case Stage::Over::everyone:
+    case Stage::Over::crowd:
     case Stage::Over::agents:
     case Stage::Over::listed:
     case Stage::Over::watched:
@@ -49,6 +51,7 @@ shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, co
     const Watch watch = watchAt(tick, crowd.watchEvery, page);
     return {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0, 0};
   }
+  if (over == Stage::Over::crowd) return crowd.grid->constantsOf(crowd, kind, page);
   return {page.agents,
           static_cast<float>(tick),
           page.firstAgent,

@@ -29,6 +29,8 @@
 // What a crowd is made of on the device; the stages and the renderer read it.
 namespace skitter::crowd {
 
+struct Grid;
+
 // A run of a kind's agents whose records fit the device's bindings.
 struct Page : ForRecords<gpu::Buffer> {
   uint32_t firstAgent = 0;
@@ -40,6 +42,7 @@ struct Page : ForRecords<gpu::Buffer> {
   gpu::Buffer counters;                 // indirect arguments and counts
   gpu::Buffer histogram;                // of reach errors
   gpu::Buffer tint;                     // of each agent, where its kind is tinted; only pictures read it
+  gpu::Bindings counted, scattered;     // of the crowd's grid, if it has one
   std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
@@ -49,6 +52,7 @@ struct Kind {
   std::vector<uint64_t> firstAgents;  // the first agent of each of its herds
   uint64_t agents = 0;                // places for them
   bool reserves = false;              // places may be empty
+  bool avoids = false;                // stages after avoid go by its velocity
   int herdSteps = 0;                  // 2 to their power is at least the number of herds in a page
   float size = 1;                     // of its creatures, times the rig that was loaded
   Rig rig;                            // of that size
@@ -143,6 +147,7 @@ namespace skitter {
 
 struct Crowd::Impl {
   const gpu::Context* context = nullptr;
+  std::unique_ptr<crowd::Grid> grid;  // where everybody is; none unless a herd avoids
   CrowdOptions options;
   Heightfield terrain;  // heights in memory too: cameras and tools look up the ground
   gpu::Image heights;   // R32F, columns x rows, in state sampled; what every stage and the picture read

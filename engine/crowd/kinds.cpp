@@ -17,8 +17,8 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, phase, colour, tint] = herd;
-  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning),
+               sizes, avoid, phase, colour, tint] = herd;
+  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid),
                         std::tuple(reserve > 0));
 }
 
@@ -41,11 +41,11 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
     if (found == kinds.firstHerds.end()) kinds.firstHerds.push_back(i);
   }
   if (kinds.firstHerds.size() > mostKinds)
-    throw inputError(
-        fmt::format("{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning or "
-                    "size, expected at most {}: each of them, and each size of one, has pipelines of its "
-                    "own; equal herds share them, whatever their agents, spawn and goal",
-                    scene.name, kinds.firstHerds.size(), mostKinds));
+    throw inputError(fmt::format(
+        "{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning, "
+        "avoid or size, expected at most {}: each of them, and each size of one, has pipelines of its "
+        "own; equal herds share them, whatever their agents, spawn and goal",
+        scene.name, kinds.firstHerds.size(), mostKinds));
   return kinds;
 }
 

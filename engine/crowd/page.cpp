@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "crowd/grid.h"
 #include "crowd/record.h"
 #include "crowd/stage.h"
 #include "gpu/barrier.h"
@@ -59,10 +60,30 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Kind& kind, const Page& p
       return {binding, &page.awake};
     case BINDING_FOOTFALL_OUT:
       return {binding, &page.footfall};
+    case BINDING_CELL:
+      return {binding, &crowd.grid->cells};
+    case BINDING_PLACE:
+      return {binding, &crowd.grid->places};
+    case BINDING_WALKER:
+      return {binding, &crowd.grid->walkers};
+    case BINDING_DROPPED:
+      return {binding, &crowd.grid->dropped};
     default:
       throw std::logic_error("a stage has binding " + std::to_string(binding) +
                              ", which nothing is bound to");
   }
+}
+
+gpu::Bindings bindingsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page,
+                         const ReadyStage& stage) {
+  // Avoid's velocity takes the place of navigate's.
+  const bool isSteered = kind.avoids && !stage.makes.has(StageId::avoid);
+  std::vector<gpu::Binding> list;
+  for (const gpu::BindingDecl& declared : stage.bindings) {
+    list.push_back(bindingOf(crowd, kind, page, declared.binding));
+    if (isSteered && declared.binding == shared::BINDING_STEER) list.back().resource = &page.avoid;
+  }
+  return stage.first.bind(*crowd.context, list);
 }
 
 bool keeps(const Kind& kind, const CrowdOptions& options, Record record) {
@@ -257,11 +278,9 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::spa
     page.footfallRoom = static_cast<uint32_t>(page.footfall.size() / (shared::FOOTFALL_STRIDE * 16));
     spawn(*crowd.context, buffers, kind, spawners, staging, page);
     if (kind.herdSteps > 0) uploadHerds(*crowd.context, kind, page);
-    for (size_t i = 0; i < kind.stages.size(); ++i) {
-      std::vector<gpu::Binding> list;
-      for (const gpu::BindingDecl& declared : kind.stages[i].bindings)
-        list.push_back(bindingOf(crowd, kind, page, declared.binding));
-      page.bindings.push_back(kind.stages[i].first.bind(*crowd.context, list));
+    for (const ReadyStage& stage : kind.stages) {
+      page.bindings.emplace_back();
+      if (stage.over != Stage::Over::crowd) page.bindings.back() = bindingsOf(crowd, kind, page, stage);
     }
   }
   return pages;

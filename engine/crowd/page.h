@@ -51,6 +51,9 @@ std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Kind& kind);
 // What a stage's binding of that number (shaders/shared/bindings.h) is bound to. Throws std::logic_error for
 // a number that is none of them.
 gpu::Binding bindingOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page, uint32_t binding);
+// Those of a stage of the kind.
+gpu::Bindings bindingsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page,
+                         const ReadyStage& stage);
 
 // The most agents whose records fit the device's bindings. Throws Error(device) when not even one does.
 uint32_t agentsPerPage(const Crowd::Impl& crowd, const Kind& kind);
@@ -62,7 +65,8 @@ int herdStepsOf(const Crowd::Impl& crowd, const Kind& kind);
 uint64_t bytesOf(const Crowd::Impl& crowd, const Kind& kind);
 
 // All agents of the kind: buffers, the records that they begin with, and a descriptor set a stage. `spawners`
-// are those of its herds; without them all records begin as zeros.
+// are those of its herds; without them all records begin as zeros. Stages that see the whole crowd have no
+// bindings yet (crowd/grid.h).
 std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::span<const Spawner> spawners);
 
 // A herd's agents that are in one page.

@@ -1,6 +1,7 @@
 #include "crowd/radius.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "crowd/controller.h"
 
@@ -52,6 +53,12 @@ float radiusOf(const Crowd::Impl& crowd, const Herd& herd) {
   float radius = 0;
   for (const SizeRun& run : herd.runs) radius = std::max(radius, radiusOf(crowd.kinds[run.kind]));
   return radius;
+}
+
+float footprintRadius(const Rig& rig) {
+  float home = 0;
+  for (const Leg& leg : rig.legs) home = std::max(home, std::hypot(leg.home.x, leg.home.z));
+  return std::max(rig.bodyRadius, home / 2);
 }
 
 }  // namespace skitter::crowd

@@ -12,8 +12,10 @@
 namespace skitter::crowd {
 namespace {
 
-bool isAskedFor(StageId stage, const CrowdOptions& options) {
+bool isAskedFor(StageId stage, const CrowdOptions& options, bool avoids) {
   switch (stage) {
+    case StageId::avoid:
+      return avoids;
     case StageId::wake:
       return options.sleep;
     case StageId::pose:
@@ -54,12 +56,12 @@ bool keepsFeet(const CrowdOptions& options) {
   return options.feet || options.measure || options.footfalls > 0;
 }
 
-std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) {
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids) {
   const ControllerStages& of = controllerStages(controller);
   std::vector<Stage> stages = of.all(options);
   std::erase_if(stages, [&](const Stage& stage) {
-    return std::ranges::any_of(allStages,
-                               [&](StageId id) { return stage.makes.has(id) && !isAskedFor(id, options); });
+    return std::ranges::any_of(
+        allStages, [&](StageId id) { return stage.makes.has(id) && !isAskedFor(id, options, avoids); });
   });
   if (options.fuse && of.fused != nullptr)
     for (const Stage& fused : of.fused()) fuse(options, fused, stages);

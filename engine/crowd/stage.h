@@ -27,8 +27,9 @@ struct StageNeeds {
 // One compute shader: the stages that it makes, the records that it binds, and what it runs over.
 struct Stage {
   // agents, legs, joints (of the clips' palette): of those that are awake; listed: the legs that begin a
-  // step, counted on the device; watched: agents whom measure looks at.
-  enum class Over { everyone, everyLeg, blocks, agents, legs, joints, listed, watched };
+  // step, counted on the device; watched: agents whom measure looks at; crowd: everyone, who sees the whole
+  // crowd in its grid.
+  enum class Over { everyone, crowd, everyLeg, blocks, agents, legs, joints, listed, watched };
 
   StageSet makes;
   gpu::ShaderCode code;
@@ -53,8 +54,8 @@ struct ReadyStage : Stage {
 // once feet.
 bool keepsFeet(const CrowdOptions& options);
 
-// A controller's stages, in order, less those that make what nobody asked for.
-std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options);
+// A controller's stages, in order, less those that make what nobody asked for. `avoids`: the herd does.
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids = false);
 StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs);
 // Makes the pipelines, for the kind's rig, controller and tuning.
 void makeKernels(const StageNeeds& needs, ReadyStage& stage);

@@ -379,7 +379,8 @@ void derive(Impl& crowd, const std::vector<StageSet>& stages) {
   for (Kind& kind : crowd.kinds) {
     if (kind.stages.empty()) continue;
     setParameters(crowd, 0, kind);
-    for (const Page& page : kind.pages) gpu::clear(*crowd.context, page.steer);  // nobody sleeps
+    for (const Page& page : kind.pages)  // nobody sleeps
+      gpu::clear(*crowd.context, kind.avoids ? page.avoid : page.steer);
   }
   clearCounters(crowd);
   listAwake(crowd);

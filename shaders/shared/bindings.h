@@ -39,6 +39,12 @@ BINDING BINDING_AWAKE = 63;
 BINDING BINDING_AWAKE_OUT = 64;
 BINDING BINDING_FOOTFALL_OUT = 65;
 
+// The grid of the whole crowd, where a herd avoids (skitter/records.h).
+BINDING BINDING_CELL = 66;
+BINDING BINDING_PLACE = 67;
+BINDING BINDING_WALKER = 68;
+BINDING BINDING_DROPPED = 69;  // neighbours that the cap dropped since the start: uint, low and high
+
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
 BINDING CONSTANT_BONES = 1;
@@ -82,6 +88,8 @@ struct TickConstants {
   uint32_t watched;
   uint32_t room;
   // navigate: seconds of standing after which an agent may sleep in this tick.
+  // avoid: `first` is the number in the crowd of the page's first agent, `every` are the grid's buckets, `watched`
+  // those in a row, `room` is how far agents look (quanta), `sleepTime` metres a quantum.
   float sleepTime;
 #else
   uint count;

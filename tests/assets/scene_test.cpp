@@ -57,7 +57,7 @@ TEST(Scene, EveryKey) {
                "spawn": {"kind": "grid", "spacing": 3, "centre": [1, -2], "heading": 1.5},
                "goal": {"kind": "point", "target": [5, 6], "speed": 0}},
               {"agents": 0, "reserve": 9, "goal": {"kind": "none"}},
-              {"agents": 0, "goal": {"kind": "velocity", "velocity": [0.5, -1]}}],
+              {"agents": 0, "avoid": true, "goal": {"kind": "velocity", "velocity": [0.5, -1]}}],
     "camera": {"kind": "fixed", "position": [1, 2, 3], "target": [4, 5, 6], "distance": 2, "fieldOfView": 1}
   })",
                                  "all.json", "folder");
@@ -89,6 +89,8 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(scene.capacity(), 16u);
   EXPECT_EQ(scene.herds[2].goal.kind, Goal::Kind::velocity);
   EXPECT_EQ(scene.herds[2].goal.velocity, glm::vec2(0.5f, -1));
+  EXPECT_TRUE(scene.herds[2].avoid);
+  EXPECT_FALSE(scene.herds[1].avoid);
   EXPECT_EQ(scene.herds[1].goal.kind, Goal::Kind::none);
   EXPECT_EQ(scene.camera.kind, Camera::Kind::fixed);
   EXPECT_EQ(scene.camera.target, glm::vec3(4, 5, 6));
@@ -217,6 +219,7 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"camera": {"kind": "fixed"}})", "camera.position equals camera.target"},
       {R"({"herds": [{"phase": "togeter"}]})",
        "\"togeter\"; did you mean together? Expected one of \"random\""},
+      {R"({"herds": [{"avoid": 1}]})", "herds[0].avoid is 1, expected true or false"},
       {R"({"herds": [{"phase": 1.5}]})", "herds[0].phase is 1.5, expected a number from 0 to 1"},
       {R"({"herds": [{"sizes": 2}]})", "herds[0].sizes is 2, expected an array of at most 16 numbers"},
       {R"({"herds": [{"sizes": [1, 0.04]}]})",
@@ -444,7 +447,7 @@ class RandomScenes {
   Herd herd() {
     Herd made;
     auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-           phase, colour, tint] = made;
+           avoid, phase, colour, tint] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -465,6 +468,7 @@ class RandomScenes {
     goal = this->goal();
     sizes.resize(whole(0, Herd::maxSizes));
     for (float& size : sizes) size = real(0.1, 10);
+    avoid = coin();
     maybe(phase, 0, 1);
     if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
     maybe(tint, 0, 1);

@@ -14,7 +14,7 @@ namespace {
 using ReadbackTest = GpuTest;
 
 // Three kinds, nobody in one herd, two sizes in one, pages that end within herds; no two agents touch.
-Scene severalHerds() {
+Scene herdsToRead() {
   Scene scene = sceneOf(5);
   scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 3, .centre = {-30, 0}};
   scene.herds.resize(4, scene.herds[0]);
@@ -29,8 +29,8 @@ Scene severalHerds() {
 const CrowdOptions options{.measure = false, .pageAgents = 24};
 
 TEST_F(ReadbackTest, HoldsTheBodiesOfItsTick) {
-  Crowd crowd(device(), rollingGround(), severalHerds(), options);
-  Crowd same(device(), rollingGround(), severalHerds(), options);
+  Crowd crowd(device(), rollingGround(), herdsToRead(), options);
+  Crowd same(device(), rollingGround(), herdsToRead(), options);
   Readback readback(device(), crowd);
   EXPECT_FALSE(readback.latest());
   std::vector<std::vector<std::vector<float>>> history(1);  // by tick and herd
@@ -98,7 +98,7 @@ TEST_F(ReadbackTest, SkipsTicksWhenEverySlotIsOnItsWay) {
 }
 
 TEST_F(ReadbackTest, ReadsTheHerdsThatAreNamed) {
-  const Scene scene = severalHerds();
+  const Scene scene = herdsToRead();
   Crowd crowd(device(), rollingGround(), scene, options);
   Readback readback(device(), crowd, {.herds = {3, 0}});
   gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
@@ -132,7 +132,7 @@ TEST_F(ReadbackTest, ReadsTheHerdsThatAreNamed) {
 }
 
 TEST_F(ReadbackTest, RefusesWhatCannotBe) {
-  Crowd crowd(device(), rollingGround(), severalHerds(), options);
+  Crowd crowd(device(), rollingGround(), herdsToRead(), options);
   const auto expectRefused = [&](const ReadbackOptions& wanted, const std::string& message) {
     try {
       Readback(device(), crowd, wanted);
@@ -147,7 +147,7 @@ TEST_F(ReadbackTest, RefusesWhatCannotBe) {
 }
 
 TEST_F(ReadbackTest, OfAHerdThatIsGoneIsRefused) {
-  Scene scene = severalHerds();
+  Scene scene = herdsToRead();
   scene.events = {{2 * kTick, HerdRemoval{3}}};
   Crowd crowd(device(), rollingGround(), scene, options);
   Readback all(device(), crowd), first(device(), crowd, {.herds = {0}});
@@ -179,7 +179,7 @@ TEST_F(ReadbackTest, OfAHerdThatIsGoneIsRefused) {
 
 // From straight above each agent, from aside, and where nobody is.
 TEST_F(ReadbackTest, PicksTheAgentUnderTheRay) {
-  Crowd crowd(device(), rollingGround(), severalHerds(), options);
+  Crowd crowd(device(), rollingGround(), herdsToRead(), options);
   Readback readback(device(), crowd);
   for (int i = 0; i < 20; ++i)
     gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {

@@ -79,9 +79,10 @@ std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const 
   validation::Replay replay(facts);
   HerdState before = crowd.download(0);
   for (int i = 0; i < ticks; ++i) {
+    const validation::Surroundings around = validation::surroundingsOf(implOf(crowd));
     simulate(device, crowd, 1, dt);
     HerdState after = crowd.download(0);
-    replay.tick(crowd.tick(), before, after);
+    replay.tick(crowd.tick(), before, after, around);
     before = std::move(after);
   }
   return replay.results();
@@ -97,14 +98,14 @@ std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crow
   const std::vector<crowd::HerdRun> runs = crowd::allRuns(impl);
   for (const crowd::HerdRun& of : runs) {
     before.push_back(crowd::download(impl, *of.run));
-    replays.push_back(
-        std::make_unique<validation::Replay>(validation::herdFacts(impl.kinds[of.run->kind], terrain)));
+    replays.push_back(std::make_unique<validation::Replay>(validation::herdFacts(impl, of, terrain)));
   }
   for (int i = 0; i < ticks; ++i) {
+    const validation::Surroundings around = validation::surroundingsOf(impl);
     simulate(device, crowd, 1, dt);
     for (size_t r = 0; r < runs.size(); ++r) {
       HerdState after = crowd::download(impl, *runs[r].run);
-      replays[r]->tick(crowd.tick(), before[r], after);
+      replays[r]->tick(crowd.tick(), before[r], after, around);
       before[r] = std::move(after);
     }
   }

@@ -59,7 +59,8 @@ void expectComparable(const Scene& scene, std::span<const crowd::StageId> stages
   const auto isCompared = [&](crowd::StageId stage) {
     return std::ranges::any_of(herds, [&](const Herd* herd) {
       const std::vector<CheckedStage> compared = checkedStages(herd->controller);
-      return std::ranges::find(compared, stage, &CheckedStage::stage) != compared.end();
+      return (stage != crowd::StageId::avoid || herd->avoid) &&
+             std::ranges::find(compared, stage, &CheckedStage::stage) != compared.end();
     });
   };
   for (const crowd::StageId stage : stages)
@@ -81,6 +82,7 @@ const std::vector<HerdState>& Lockstep::begin() {
   samples_.clear();
   for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd_)))
     samples_.push_back(sampleAt(seed_, crowd_.tick() + 1, of.run->agents, agentsATick));
+  around_ = surroundingsOf(implOf(crowd_));
   return before_ = download();
 }
 
@@ -93,7 +95,7 @@ void Lockstep::edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows,
 const std::vector<HerdState>& Lockstep::end() {
   after_ = download();
   for (size_t r = 0; r < compared_.size(); ++r)
-    compared_[r].replay->tick(crowd_.tick(), before_[r], after_[r]);
+    compared_[r].replay->tick(crowd_.tick(), before_[r], after_[r], around_);
   return after_;
 }
 

@@ -66,6 +66,7 @@ class Lockstep {
   bool hasBegun_ = false;
   std::vector<AgentSample> samples_;  // of each size of each herd, in this tick
   std::vector<HerdState> before_, after_;
+  Surroundings around_;
   std::vector<Compared> compared_;  // those that are there, as crowd::allRuns
   std::vector<Compared> gone_;
 };

@@ -115,7 +115,7 @@ void checkKeys(const Goal& goal, const std::string& file, const std::string& pat
 template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
   auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-         phase, colour, tint] = herd;
+         avoid, phase, colour, tint] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -129,6 +129,7 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.object("spawn", spawn);
   fields.object("goal", goal);
   fields.key("sizes", sizes, Herd::maxSizes, Herd::minSize, Herd::maxSize);
+  fields.key("avoid", avoid);
   fields.phase("phase", phase);
   fields.colour("colour", colour);
   fields.key("tint", tint, 0, 1);

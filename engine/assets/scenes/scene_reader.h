@@ -59,6 +59,12 @@ class Reader {
   void key(const char* key, std::optional<Number>& value, double least, double most) {
     if (const auto* json = find(key)) value = static_cast<Number>(number(*json, pathOf(key), least, most));
   }
+  void key(const char* key, bool& value) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_boolean()) fail(pathOf(key), *json, "true or false");
+    value = json->get<bool>();
+  }
   template <typename Integer>
   void integer(const char* key, Integer& value, uint64_t least, uint64_t most) {
     if (const auto* json = find(key)) value = static_cast<Integer>(whole(*json, pathOf(key), least, most));

@@ -32,6 +32,7 @@ class Writer {
     if (!isWithin(value, least, most)) failRange(pathOf(key), value, least, most);
     json_[key] = value;
   }
+  void key(const char* key, const bool& value) { json_[key] = value; }
   template <typename Number>
   void key(const char* key, const std::optional<Number>& value, double least, double most) {
     if (value) this->key(key, *value, least, most);

@@ -28,7 +28,7 @@ void addClips(const Kind& kind, gpu::KernelInfo& info) {
 const ControllerStages clipController = {
     .all =
         [](const CrowdOptions& options) {
-          std::vector stages{navigateStage(), wakeStage(), blindBodyStage(), clipStage()};
+          std::vector stages{navigateStage(), avoidStage(), wakeStage(), blindBodyStage(), clipStage()};
           // For controller clip, only measure, footfalls and the host read feet.
           if (keepsFeet(options)) stages.push_back(clipSwingStage());
           for (const Stage& stage : {clipPoseStage(), measureStage(), footfallStage()})

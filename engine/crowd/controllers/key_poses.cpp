@@ -15,8 +15,9 @@ void prepareKeyPoses(const gpu::Context& context, const skitter::Herd& from, con
 const ControllerStages keyPosesController = {
     .all =
         [](const CrowdOptions&) {
-          return std::vector{navigateStage(),     wakeStage(), blindBodyStage(), keyPoseGaitStage(),
-                             keyPoseSwingStage(), poseStage(), measureStage(),   footfallStage()};
+          return std::vector{navigateStage(),  avoidStage(),       wakeStage(),
+                             blindBodyStage(), keyPoseGaitStage(), keyPoseSwingStage(),
+                             poseStage(),      measureStage(),     footfallStage()};
         },
     .prepare = prepareKeyPoses,
 };

@@ -6,9 +6,8 @@ namespace skitter::crowd {
 const ControllerStages loopController = {
     .all =
         [](const CrowdOptions&) {
-          return std::vector{navigateStage(), wakeStage(),      blindBodyStage(),
-                             loopGaitStage(), loopSwingStage(), ikStage(),
-                             poseStage(),     measureStage(),   footfallStage()};
+          return std::vector{navigateStage(),  avoidStage(), wakeStage(), blindBodyStage(), loopGaitStage(),
+                             loopSwingStage(), ikStage(),    poseStage(), measureStage(),   footfallStage()};
         },
 };
 

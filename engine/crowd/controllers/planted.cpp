@@ -19,9 +19,9 @@ void preparePlanted(const gpu::Context& context, const skitter::Herd& from, cons
 const ControllerStages plantedController = {
     .all =
         [](const CrowdOptions&) {
-          return std::vector{navigateStage(),    wakeStage(),         blindBodyStage(),
-                             clipStage(),        plantedSwingStage(), plantedIkStage(),
-                             plantedPoseStage(), measureStage(),      footfallStage()};
+          return std::vector{navigateStage(), avoidStage(),        wakeStage(),      blindBodyStage(),
+                             clipStage(),     plantedSwingStage(), plantedIkStage(), plantedPoseStage(),
+                             measureStage(),  footfallStage()};
         },
     .specialise = addClips,
     .prepare = preparePlanted,

@@ -133,6 +133,12 @@ struct FootfallBuffer {
   uint32_t firstOfHerd = 0;             // the number in the herd of firstAgent
 };
 
+// How a crowd shares its ground: of all agents and ticks since it was made.
+struct Crowding {
+  // Agents in reach of one that avoids, beyond the 8 that it keeps clear of (docs/stages/avoid.md).
+  uint64_t droppedNeighbours = 0;
+};
+
 // Device memory of one kind of records, of all of a herd's agents: its share of the pages, where equal herds
 // have them in common.
 struct MemoryUse {
@@ -283,6 +289,7 @@ class SKITTER_API Crowd {
   // The footfalls of the last tick recorded, by agent and leg. Empty without CrowdOptions::footfalls.
   std::vector<Footfall> footfalls(uint32_t herd) const;
   uint64_t droppedFootfalls(uint32_t herd) const;  // for want of room, since the start
+  Crowding crowding() const;                       // zeros unless a herd avoids (Herd::avoid)
   // Agents of all herds that slept in the last tick; 0 without CrowdOptions::sleep.
   uint64_t sleeping() const;
   uint64_t stateHash() const;                 // of every record that the next tick depends on

@@ -85,6 +85,22 @@ SKITTER_CONST float GOAL_VELOCITY = 3.0;
 //   [0] desired velocity x, z (m/s), 1 if the agent sleeps, unused
 SKITTER_CONST int STEER_STRIDE = 1;
 
+// avoid, per agent of a herd that avoids, written by avoid: the later stages take it in place of steer.
+//   [0] velocity x, z (m/s), 1 if the agent sleeps, agents in reach
+SKITTER_CONST int AVOID_STRIDE = 1;
+// Neighbours that an agent keeps clear of.
+SKITTER_CONST int NEIGHBOURS = 8;
+
+// Where everybody is in a crowd with a herd that avoids, built anew in each tick (shaders/grid). Agents are
+// numbered through the crowd, kind after kind. Lengths are in quanta (docs/stages/avoid.md).
+//   cell, each    [0] place of the first agent in the three cells of its row, agents in these, place of its
+//                 own first agent, agents in all
+//   place, each   [0] X, Z, radius, agent                        cell after cell
+//   walker, each agent
+//                 [0] X, Z, radius, 1 if its herd avoids
+//                 [1] velocity x, z (m/s), cell, unused
+SKITTER_CONST int WALKER_STRIDE = 2;
+
 // The agents that may sleep: nobody, anybody, or who has breathed out.
 SKITTER_CONST int SLEEP_NEVER = 0;
 SKITTER_CONST int SLEEP_STILL = 1;
@@ -311,6 +327,7 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
 #define SKITTER_RECORDS(RECORD) \
   RECORD(GOAL,   goal,   10, agent,   GOAL_STRIDE,                     always,     true,  true) \
   RECORD(STEER,  steer,  12, agent,   STEER_STRIDE,                    always,     false, false) \
+  RECORD(AVOID,  avoid,  46, agent,   AVOID_STRIDE,                    bound,      false, false) \
   RECORD(BODY,   body,   14, agent,   BODY_STRIDE,                     always,     true,  true) \
   RECORD(GAIT,   gait,   16, agent,   GAIT_STRIDE,                     always,     true,  true) \
   RECORD(STEP,   step,   18, leg,     STEP_STRIDE,                     always,     true,  true) \

@@ -75,6 +75,8 @@ struct Herd {
   // rig is. Each agent draws one by the seed; one that is there twice is drawn twice as often. Agents are
   // numbered size after size, in the order of the first ones here.
   std::vector<float> sizes = {};
+  // Whether its agents keep clear of those near them, of all herds (docs/stages/avoid.md).
+  bool avoid = false;
   // Where in the cycle of its gait or clip each agent begins, 0 to 1; none: drawn by the seed.
   std::optional<float> phase = {};
   // The herd's colour: each of the model's becomes this one, lighter or darker as it was. Linear RGB, 0 to 1;

@@ -1,0 +1,244 @@
+#include "crowd/grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <memory>
+
+#include "crowd/page.h"
+#include "crowd/radius.h"
+#include "embedded/grid_count_comp_storage.h"
+#include "embedded/grid_count_comp_texel.h"
+#include "embedded/grid_place_comp_storage.h"
+#include "embedded/grid_place_comp_texel.h"
+#include "embedded/grid_scatter_comp_storage.h"
+#include "embedded/grid_scatter_comp_texel.h"
+#include "embedded/grid_sum_comp_storage.h"
+#include "embedded/grid_sum_comp_texel.h"
+#include "gpu/barrier.h"
+#include "gpu/context.h"
+#include "gpu/submit.h"
+#include "gpu/transfer.h"
+#include "skitter/error.h"
+
+namespace skitter::crowd {
+namespace {
+
+// Squares of reaches must be ints.
+constexpr uint32_t longestReachInQuanta = 32767;
+constexpr float finestQuanta = 1024;  // in a metre
+constexpr float lookLegLengths = 2;
+// Cells are longer than any reach by this, for the float32 cell number of a place within 4 km, of cells of at
+// least `leastCell`, errs by a 250th.
+constexpr float cellMargin = 1.01f;
+constexpr uint32_t leastCell = 128;  // quanta
+constexpr uint32_t leastBuckets = 256, leastRun = 64, mostRuns = 4096;
+
+uint64_t agentsOf(const Crowd::Impl& crowd) {
+  uint64_t agents = 0;
+  for (const Kind& kind : crowd.kinds) agents += kind.agents;
+  return agents;
+}
+
+uint64_t bytesABinding(const gpu::Context& context) {
+  const uint64_t storage = context.limits().maxStorageBufferRange;
+  return context.texelLoads() ? std::min(storage, uint64_t{context.limits().maxTexelBufferElements} * 16)
+                              : storage;
+}
+
+// At least twice as many as agents, where bindings reach so many.
+uint32_t bucketsFor(const Crowd::Impl& crowd) {
+  const uint64_t wanted = std::bit_ceil(std::max<uint64_t>(2 * agentsOf(crowd), leastBuckets));
+  return static_cast<uint32_t>(std::min(wanted, std::bit_floor(bytesABinding(*crowd.context) / 16)));
+}
+
+uint64_t walkerBytes(uint64_t agents) { return agents * shared::WALKER_STRIDE * 16; }
+
+template <class Each>
+void eachPage(const Crowd::Impl& crowd, const Each& each) {
+  for (const Kind& kind : crowd.kinds)
+    for (const Page& page : kind.pages) each(kind, page);
+}
+
+void bindPages(Crowd::Impl& crowd) {
+  using namespace shared;
+  const Grid& grid = *crowd.grid;
+  for (Kind& kind : crowd.kinds)
+    for (Page& page : kind.pages) {
+      page.counted =
+          grid.count.bind(*crowd.context, {{BINDING_BODY, &page.body}, {BINDING_GRID_COUNT, &grid.counts}});
+      page.scattered = grid.scatter.bind(*crowd.context, {{BINDING_BODY, &page.body},
+                                                          {BINDING_GRID_CELL, &grid.cells},
+                                                          {BINDING_GRID_COUNT, &grid.counts},
+                                                          {BINDING_GRID_PLACE_OUT, &grid.places},
+                                                          {BINDING_GRID_WALKER_OUT, &grid.walkers}});
+      for (size_t i = 0; i < kind.stages.size(); ++i)
+        if (kind.stages[i].over == Stage::Over::crowd)
+          page.bindings[i] = bindingsOf(crowd, kind, page, kind.stages[i]);
+    }
+}
+
+}  // namespace
+
+uint32_t Quanta::radiusOf(const Kind& kind) const {
+  return std::max(1u, static_cast<uint32_t>(std::lround(footprintRadius(kind.rig) * inMetre)));
+}
+
+uint32_t Quanta::lookOf(const Kind& kind) const {
+  return static_cast<uint32_t>(std::lround(lookLegLengths * kind.rig.legLength * inMetre));
+}
+
+Quanta quantaOf(const Crowd::Impl& crowd) {
+  for (Quanta quanta{.inMetre = finestQuanta};; quanta.inMetre /= 2) {
+    uint32_t widest = 0, farthest = 0;
+    for (const Kind& kind : crowd.kinds)
+      if (!kind.stages.empty()) widest = std::max(widest, quanta.radiusOf(kind));
+    for (const Kind& kind : crowd.kinds)
+      if (kind.avoids) farthest = std::max(farthest, quanta.radiusOf(kind) + quanta.lookOf(kind));
+    quanta.longestReach = farthest + widest;
+    if (quanta.longestReach <= longestReachInQuanta) return quanta;
+  }
+}
+
+uint32_t numberOf(const Crowd::Impl& crowd, const Kind& kind) {
+  uint64_t number = 0;
+  for (const Kind& each : crowd.kinds) {
+    if (&each == &kind) break;
+    number += each.agents;
+  }
+  return static_cast<uint32_t>(number);
+}
+
+bool avoids(const Crowd::Impl& crowd) { return std::ranges::any_of(crowd.kinds, &Kind::avoids); }
+
+uint64_t bytesOfGrid(const Crowd::Impl& crowd) {
+  if (!avoids(crowd)) return 0;
+  const uint64_t agents = agentsOf(crowd), buckets = bucketsFor(crowd);
+  return buckets * (16 + 4) + agents * 16 + walkerBytes(agents);
+}
+
+Grid::Grid(const Crowd::Impl& crowd) : quanta(quantaOf(crowd)), buckets(bucketsFor(crowd)) {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  const gpu::Context& context = *crowd.context;
+  const uint64_t agents = agentsOf(crowd), reach = bytesABinding(context);
+  if (walkerBytes(agents) > reach)
+    throw deviceError(fmt::format("{}: a binding reaches {} bytes, {} agents among whom some avoid need {}",
+                                  context.report().name, reach, agents, walkerBytes(agents)));
+  row = 1u << (std::bit_width(buckets) - 1) / 2;
+  run = std::max(leastRun, buckets / mostRuns);
+  counts = gpu::Buffer(context, uint64_t{buckets} * 4, "grid counts");
+  sums = gpu::Buffer(context, uint64_t{buckets / run} * 4, "grid sums");
+  cells = gpu::Buffer(context, uint64_t{buckets} * 16, "grid cells");
+  places = gpu::Buffer(context, agents * 16, "grid places");
+  walkers = gpu::Buffer(context, walkerBytes(agents), "grid walkers");
+  dropped = gpu::Buffer(context, 16, "grid counters");
+
+  const auto kernel = [&](const char* name, const gpu::ShaderCode& code,
+                          std::vector<gpu::BindingDecl> bindings) {
+    return gpu::Kernel(context, {name, code, std::move(bindings), sizeof(GridConstants)});
+  };
+  count = kernel("grid_count", {embedded::grid_count_comp_texel(), embedded::grid_count_comp_storage()},
+                 {{BINDING_BODY, load4}, {BINDING_GRID_COUNT, store}});
+  sum = kernel("grid_sum", {embedded::grid_sum_comp_texel(), embedded::grid_sum_comp_storage()},
+               {{BINDING_GRID_COUNTED, load4}, {BINDING_GRID_SUM_OUT, store}});
+  place = kernel("grid_place", {embedded::grid_place_comp_texel(), embedded::grid_place_comp_storage()},
+                 {{BINDING_GRID_COUNTED, load4}, {BINDING_GRID_SUM, load4}, {BINDING_GRID_CELL_OUT, store}});
+  scatter =
+      kernel("grid_scatter", {embedded::grid_scatter_comp_texel(), embedded::grid_scatter_comp_storage()},
+             {{BINDING_BODY, load4},
+              {BINDING_GRID_CELL, load4},
+              {BINDING_GRID_COUNT, store},
+              {BINDING_GRID_PLACE_OUT, store},
+              {BINDING_GRID_WALKER_OUT, store}});
+  summed = sum.bind(context, {{BINDING_GRID_COUNTED, &counts}, {BINDING_GRID_SUM_OUT, &sums}});
+  placed = place.bind(
+      context, {{BINDING_GRID_COUNTED, &counts}, {BINDING_GRID_SUM, &sums}, {BINDING_GRID_CELL_OUT, &cells}});
+  gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
+    cmd.fillBuffer(counts.handle(), 0, VK_WHOLE_SIZE, GRID_EMPTY);
+    for (const gpu::Buffer* buffer : {&sums, &cells, &places, &walkers, &dropped})
+      cmd.fillBuffer(buffer->handle(), 0, VK_WHOLE_SIZE, 0);
+    gpu::allToAll(cmd);
+  });
+}
+
+shared::GridConstants Grid::gridConstantsOf(const Crowd::Impl& crowd, const Kind& kind,
+                                            const Page& page) const {
+  return {.count = page.agents,
+          .first = numberOf(crowd, kind) + page.firstAgent,
+          .buckets = buckets,
+          .row = row,
+          .run = run,
+          .quanta = quanta.inMetre,
+          .cells = 1 / std::max(cellMargin * static_cast<float>(quanta.longestReach),
+                                static_cast<float>(leastCell)),
+          .radius = static_cast<float>(quanta.radiusOf(kind)),
+          .avoids = kind.avoids ? 1.0f : 0.0f};
+}
+
+shared::TickConstants Grid::constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page) const {
+  return {.count = page.agents,
+          .tick = 0,
+          .first = numberOf(crowd, kind) + page.firstAgent,
+          .every = buckets,
+          .watched = row,
+          .room = quanta.lookOf(kind),
+          .sleepTime = 1 / quanta.inMetre};
+}
+
+void Grid::record(const Crowd::Impl& crowd, vk::CommandBuffer cmd) const {
+  const auto overAgents = [&](const gpu::Kernel& kernel, gpu::Bindings Page::*bindings) {
+    eachPage(crowd, [&](const Kind& kind, const Page& page) {
+      kernel.dispatch(cmd, page.*bindings, gpu::bytesOf(gridConstantsOf(crowd, kind, page)),
+                      gpu::groupsFor(page.agents, shared::WORK_GROUP));
+    });
+    gpu::computeToCompute(cmd);
+  };
+  shared::GridConstants runs{};
+  runs.count = buckets / run;
+  runs.buckets = buckets;
+  runs.run = run;
+  const auto overRuns = [&](const gpu::Kernel& kernel, const gpu::Bindings& bindings) {
+    kernel.dispatch(cmd, bindings, gpu::bytesOf(runs), gpu::groupsFor(runs.count, shared::WORK_GROUP));
+    gpu::computeToCompute(cmd);
+  };
+  overAgents(count, &Page::counted);
+  overRuns(sum, summed);
+  overRuns(place, placed);
+  overAgents(scatter, &Page::scattered);
+}
+
+void shareGround(Crowd::Impl& crowd) {
+  if (!crowd.grid && !avoids(crowd)) return;
+  crowd.context->waitIdle();
+  std::unique_ptr<Grid> before = std::move(crowd.grid);
+  if (!avoids(crowd)) return;
+  crowd.grid = std::make_unique<Grid>(crowd);
+  if (before)
+    gpu::upload(*crowd.context, crowd.grid->dropped,
+                gpu::download<uint32_t>(*crowd.context, before->dropped));
+  bindPages(crowd);
+  // No tick pays for the translation to machine code.
+  gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
+    crowd.grid->record(crowd, cmd);
+    gpu::allToAll(cmd);
+  });
+}
+
+}  // namespace skitter::crowd
+
+namespace skitter {
+
+Crowding Crowd::crowding() const {
+  Crowding crowding;
+  if (!impl_->grid) return crowding;
+  impl_->context->waitIdle();
+  const std::vector<uint32_t> words = gpu::download<uint32_t>(*impl_->context, impl_->grid->dropped);
+  crowding.droppedNeighbours = uint64_t{words[1]} << 32 | words[0];
+  return crowding;
+}
+
+}  // namespace skitter

@@ -1,0 +1,24 @@
+#include "crowd/stage.h"
+#include "embedded/avoid_comp_storage.h"
+#include "embedded/avoid_comp_texel.h"
+#include "shared/bindings.h"
+
+namespace skitter::crowd {
+
+Stage avoidStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {StageId::avoid,
+          {embedded::avoid_comp_texel(), embedded::avoid_comp_storage()},
+          {{BINDING_PARAMETERS, uniform},
+           {BINDING_STEER, load4},
+           {BINDING_AVOID_OUT, store},
+           {BINDING_BODY, load4},
+           {BINDING_CELL, load4},
+           {BINDING_PLACE, load4},
+           {BINDING_WALKER, load4},
+           {BINDING_DROPPED, store}},
+          Stage::Over::crowd};
+}
+
+}  // namespace skitter::crowd

@@ -1,0 +1,90 @@
+#ifndef AVOID_GLSL
+#define AVOID_GLSL
+// How an agent keeps clear of its neighbours (docs/stages/avoid.md).
+
+const float AVOID_HORIZON = 2.0, AVOID_PUSH_TIME = 0.5;
+const float AVOID_RIGHT_BIAS = 0.05;
+const float AVOID_SOFTNESS = 0.05;
+const int AVOID_SWEEPS = 6;
+const float AVOID_PUSH_SPEED = 0.3, AVOID_STEADY_SPEED = 0.05;
+
+// 1. The agents of least power, the least first, of equal ones that with the lesser number; unused ones are last.
+struct Nearest {
+  int power[NEIGHBOURS], number[NEIGHBOURS];
+};
+
+Nearest nobodyNear() {
+  Nearest n;
+  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
+    n.power[k] = 0x7FFFFFFF;
+    n.number[k] = -1;
+  }
+  return n;
+}
+
+bool isBefore(int power, int number, int otherPower, int otherNumber) {
+  return power < otherPower || (power == otherPower && number < otherNumber);
+}
+
+void insertNearest(inout Nearest n, int power, int number) {
+  bool before = isBefore(power, number, n.power[NEIGHBOURS - 1], n.number[NEIGHBOURS - 1]);
+  [[unroll]] for (int k = NEIGHBOURS - 1; k > 0; --k) {
+    bool earlier = isBefore(power, number, n.power[k - 1], n.number[k - 1]);
+    n.power[k] = earlier ? n.power[k - 1] : before ? power : n.power[k];
+    n.number[k] = earlier ? n.number[k - 1] : before ? number : n.number[k];
+    before = earlier;
+  }
+  n.power[0] = before ? power : n.power[0];
+  n.number[0] = before ? number : n.number[0];
+}
+
+// 3. Where two agents part that are in one place.
+vec2 partingLine(int a, int b) {
+  uint drawn = (uint(min(a, b)) * 0x9E3779B1u) ^ (uint(max(a, b)) * 0x85EBCA77u);
+  vec2 line = unit(vec2(float(drawn >> 28), float(drawn >> 24 & 15u)) - 7.5);
+  return a < b ? line : -line;
+}
+
+// What a neighbour allows: n . v >= bound.
+struct HalfPlane {
+  vec2 n;
+  float bound;
+};
+
+// `p` leads to the neighbour, d long; `radii` of both; `power`: d^2 - radii^2. `own` is the agent's velocity,
+// `v` less the neighbour's; `apart`: where they part if d is 0.
+HalfPlane halfPlaneOf(vec2 p, float d, float radii, float power, vec2 own, vec2 v, float share, vec2 apart) {
+  vec2 w = v - p * (1.0 / AVOID_HORIZON);
+  float along = dot(w, p), speed2 = dot(w, w), speed = sqrt(speed2);
+  vec2 n, change;
+  if (power <= 0.0) {
+    n = d > 0.0 ? p * (-1.0 / d) : apart;
+    change = ((radii - d) * (1.0 / AVOID_PUSH_TIME) - dot(n, v)) * n;
+  } else if (along < 0.0 && along * along > radii * radii * speed2) {
+    n = w * (1.0 / max(speed, 1e-9));
+    change = (radii * (1.0 / AVOID_HORIZON) - speed) * n;
+  } else {
+    float side = p.x * w.y - p.y * w.x + AVOID_RIGHT_BIAS * d * speed >= 0.0 ? 1.0 : -1.0;
+    vec2 tangent = p * sqrt(power), normal = vec2(-p.y, p.x) * radii;
+    vec2 edge = (side * tangent + normal) * (1.0 / (d * d));
+    n = vec2(-edge.y, edge.x);
+    change = dot(v, edge) * edge - v;
+  }
+  return HalfPlane(n, dot(n, own + share * change));
+}
+
+// 4. Nearest to `v`.
+vec2 solvePlanes(HalfPlane planes[NEIGHBOURS], vec2 v) {
+  float push[NEIGHBOURS];
+  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) push[k] = 0.0;
+  [[unroll]] for (int sweep = 0; sweep < AVOID_SWEEPS; ++sweep)
+    [[unroll]] for (int k = NEIGHBOURS - 1; k >= 0; --k) {
+      float lacking = planes[k].bound - dot(planes[k].n, v) - AVOID_SOFTNESS * push[k];
+      float more = max(0.0, push[k] + lacking * (1.0 / (1.0 + AVOID_SOFTNESS)));
+      v += (more - push[k]) * planes[k].n;
+      push[k] = more;
+    }
+  return v;
+}
+
+#endif

@@ -1,0 +1,98 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "stages/stage.glsl"
+#include "lib/rarely.glsl"
+#include "lib/avoid.glsl"
+
+LOAD4_BUFFER(BINDING_STEER, steers);
+STORE4_BUFFER(BINDING_AVOID_OUT, avoidsOut);
+LOAD4_BUFFER(BINDING_BODY, bodies);
+LOAD4_BUFFER(BINDING_CELL, cells);
+LOAD4_BUFFER(BINDING_PLACE, places);
+LOAD4_BUFFER(BINDING_WALKER, walkers);
+layout(set = 0, binding = BINDING_DROPPED, std430) buffer DroppedBlock { uint dropped[]; };
+#include "stages/absent.glsl"
+
+int buckets = int(constants.every), row = int(constants.watched), look = int(constants.room);
+float metres = constants.sleepTime;
+
+// The agents in the three cells of a row.
+ivec2 runOf(int bucket) { return ivec2(LOAD4(cells, bucket & (buckets - 1)).xy); }
+
+// The nearest to an agent, and how many are in reach.
+Nearest nearestTo(int number, vec4 self, int bucket, out int seen) {
+  Nearest nearest = nobodyNear();
+  ivec2 a = runOf(bucket - row), b = runOf(bucket), c = runOf(bucket + row);
+  int all = int(LOAD4(cells, bucket).w), ab = a.y + b.y, count = ab + c.y;
+  seen = 0;
+  for (int i = 0; i < count; ++i) {
+    int at = i < a.y ? a.x + i : i < ab ? b.x + i - a.y : c.x + i - ab;
+    vec4 other = LOAD4(places, at >= all ? at - all : at);
+    int x = abs(int(other.x - self.x)), z = abs(int(other.y - self.y)), radii = int(other.z + self.z);
+    int reach = radii + look, distance2 = x * x + z * z, who = int(other.w);
+    // Where x or z is beyond reach, the square may be beyond an int.
+    bool inReach = who != number && max(x, z) <= reach && distance2 <= reach * reach;
+    int power = distance2 - radii * radii;
+    seen += inReach ? 1 : 0;
+    RARELY(inReach && isBefore(power, who, nearest.power[NEIGHBOURS - 1], nearest.number[NEIGHBOURS - 1]))
+      insertNearest(nearest, power, who);
+  }
+  return nearest;
+}
+
+void count(int neighbours) {
+  uint before = atomicAdd(dropped[0], uint(neighbours));
+  if (before + uint(neighbours) < before) atomicAdd(dropped[1], 1u);
+}
+
+void main() {
+  int agent = int(gl_GlobalInvocationID.x);
+  if (agent >= int(constants.count)) return;
+  if (absent(agent)) {
+    STORE4(avoidsOut, agent, vec4(0.0, 0.0, 1.0, 0.0));
+    return;
+  }
+  int number = int(constants.first) + agent;
+  vec4 steer = LOAD4(steers, agent), moving = LOAD4(bodies, agent * BODY_STRIDE + 1);
+  vec4 self = LOAD4(walkers, number * WALKER_STRIDE), going = LOAD4(walkers, number * WALKER_STRIDE + 1);
+  int seen;
+  Nearest nearest = nearestTo(number, self, int(going.z), seen);
+  RARELY(seen > NEIGHBOURS) count(seen - NEIGHBOURS);
+
+  vec2 wanted = steer.xy;
+  float speed = length(wanted), near = 0.0, press = 0.0;
+  HalfPlane planes[NEIGHBOURS];
+  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
+    bool there = nearest.number[k] >= 0;
+    int at = max(nearest.number[k], 0) * WALKER_STRIDE;
+    vec4 other = LOAD4(walkers, at), moves = LOAD4(walkers, at + 1);
+    int power = there ? nearest.power[k] : 1, radii = int(other.z + self.z);
+    vec2 p = (other.xy - self.xy) * metres;
+    // Their squares are whole numbers, and power is known: nothing cancels.
+    float d = sqrt(float(there ? power + radii * radii : 1)) * metres, r = float(radii) * metres;
+    float closeness = there ? clamp(2.0 - d / r, 0.0, 1.0) : 0.0;
+    near = max(near, closeness);
+    press = max(press, closeness * max(0.0, dot(p, wanted)) / max(d * speed, 1e-6));
+    planes[k] = halfPlaneOf(p, d, r, float(power) * (metres * metres), going.xy, going.xy - moves.xy,
+                            other.w != 0.0 ? 0.5 : 1.0, partingLine(number, nearest.number[k]));
+    // Nobody forbids anything.
+    planes[k].n = there ? planes[k].n : vec2(0.0);
+    planes[k].bound = there ? planes[k].bound : -1.0;
+  }
+
+  float aside = press * max(0.0, 1.0 - moving.z / max(speed, 1e-6));
+  vec2 velocity = (wanted + aside * vec2(-wanted.y, wanted.x)) / sqrt(1.0 + aside * aside);
+  bool forbidden = false;
+  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k)
+    forbidden = forbidden || planes[k].bound > dot(planes[k].n, velocity);
+  RARELY(forbidden) velocity = solvePlanes(planes, velocity);
+  float most = max(speed, AVOID_PUSH_SPEED * parameters.legLength), moved = length(velocity);
+  velocity *= moved > most ? most / moved : 1.0;
+  moved = min(moved, most);
+  float steady = AVOID_STEADY_SPEED * parameters.legLength * near;
+  // Devices need not divide a number by itself exactly.
+  velocity = near > 0.0 ? (velocity + steady * moving.xy) * (moved / max(moved + steady, 1e-6)) : velocity;
+  bool asleep = steer.z != 0.0 && length(velocity) < 1e-2 * parameters.legLength;
+  STORE4(avoidsOut, agent, vec4(velocity, asleep ? 1.0 : 0.0, float(seen)));
+}

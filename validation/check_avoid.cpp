@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "cpu_reference/stages/avoid.h"
+#include "cpu_reference/stages/tolerances.h"
+#include "skitter/error.h"
+#include "skitter/records.h"
+#include "validation/checks.h"
+#include "validation/convert.h"
+
+namespace skitter::validation {
+namespace {
+
+namespace tolerance = reference::tolerance;
+
+// More ties than this at once are not tried: two half-planes in doubt are rare already.
+constexpr size_t mostSidesInDoubt = 6;
+// Solves with errors of float32's size, from whose spread the velocity's tolerance is measured.
+constexpr int erringSolves = 16;
+
+// An agent, and what the stage of it is given.
+struct Avoiding {
+  const Setting& setting;
+  const Moment& moment;
+  reference::AgentBody body;
+  reference::Walker self;
+  glm::dvec2 desired;
+  bool mayRest;
+
+  reference::AvoidResult run(const reference::AvoidChoices& choices) const {
+    return reference::avoid(setting.avoid, body, self, moment.around, desired, mayRest, choices);
+  }
+};
+
+// The agent of that number; the end where it is not around.
+Surroundings::const_iterator walkerAt(const Moment& moment, int64_t number) {
+  const auto found = std::ranges::lower_bound(moment.around, number, {}, &reference::Walker::number);
+  return found != moment.around.end() && found->number == number ? found : moment.around.end();
+}
+
+Avoiding avoidingOf(const Setting& setting, const Moment& moment) {
+  Avoiding agent{.setting = setting,
+                 .moment = moment,
+                 .body = bodyOf(moment.before, moment.agent),
+                 .self = {},
+                 .desired = desiredOf(moment.after, moment.agent),
+                 .mayRest = mayRest(moment.after, moment.agent)};
+  if (agent.body.absent) return agent;
+  const int64_t number = setting.firstNumber + static_cast<int64_t>(moment.number());
+  const auto found = walkerAt(moment, number);
+  if (found == moment.around.end())
+    throw inputError("replay: the surroundings lack an agent whose herd avoids");
+  agent.self = *found;
+  return agent;
+}
+
+// The sizes of what a half-plane is computed from, m/s.
+double sizeOf(const Avoiding& agent) {
+  double fastest = glm::length(agent.self.velocity) + glm::length(agent.desired);
+  int64_t widest = 0;
+  for (const reference::Walker& other : agent.moment.around) {
+    fastest = std::max(fastest, glm::length(other.velocity));
+    widest = std::max(widest, other.radius);
+  }
+  // Lengths are at most a reach; a horizon of 2 s makes half as many m/s of them.
+  const auto reach = static_cast<double>(agent.self.radius + widest + agent.setting.avoid.look);
+  return 2 * fastest + reach / agent.setting.avoid.quanta;
+}
+
+// How far a float32 solve may be off. It is six standard deviations of solves that err at random, which take
+// the same sides, for where rounding leads depends on how the half-planes lie to each other; and what float32
+// errs by where no half-plane is met: a normalisation, a root and ten operations.
+double bound(const Avoiding& agent, const reference::AvoidResult& result) {
+  reference::AvoidChoices same;
+  std::vector<reference::Walker> neighbours;
+  for (const reference::HalfPlane& plane : result.planes) {
+    same.right.push_back(plane.right);
+    neighbours.push_back(*walkerAt(agent.moment, plane.neighbour));
+  }
+  double squares = 0;
+  for (int i = 0; i < erringSolves; ++i) {
+    const reference::AvoidErrors errors{.number = tolerance::roundoff, .seed = static_cast<uint64_t>(i) + 1};
+    const glm::dvec2 erring = reference::avoid(agent.setting.avoid, agent.body, agent.self, neighbours,
+                                               agent.desired, agent.mayRest, same, errors)
+                                  .velocity;
+    const glm::dvec2 apart = erring - result.velocity;
+    squares += glm::dot(apart, apart);
+  }
+  return tolerance::deviations * std::sqrt(squares / erringSolves) + 16 * tolerance::roundoff * sizeOf(agent);
+}
+
+Sample compareAvoid(const Avoiding& agent, const reference::AvoidResult& expected, double allowed) {
+  const Moment& moment = agent.moment;
+  const glm::dvec2 got = velocityOf(moment.after, moment.agent);
+  Sample sample;
+  sample.finite("avoid", records(moment.after.avoid, moment.agent, shared::AVOID_STRIDE));
+  sample.same("agents in reach", static_cast<double>(expected.seen), seenOf(moment.after, moment.agent));
+  sample.same("asleep", expected.asleep, records(moment.after.avoid, moment.agent, shared::AVOID_STRIDE)[2]);
+  sample.compare("velocity, m/s", glm::length(got - expected.velocity), allowed, {expected.velocity, 0, 0},
+                 {got, 0, 0});
+  return sample;
+}
+
+}  // namespace
+
+void checkAvoid(const Setting& setting, const Moment& moment, Judge& judge) {
+  const Avoiding agent = avoidingOf(setting, moment);
+  const reference::AvoidResult result = agent.run({});
+  const double allowed = agent.body.absent ? 0 : bound(agent, result);
+  const Sample sample = compareAvoid(agent, result, allowed);
+  if (sample.passes()) return judge.add(moment.n, moment.number(), -1, sample);
+
+  // Which side of somebody to pass on: the cross product over the distance errs by 16 roundings of
+  // velocities.
+  std::vector<size_t> inDoubt;
+  const double near = 16 * tolerance::roundoff * sizeOf(agent);
+  for (size_t k = 0; k < result.planes.size() && inDoubt.size() < mostSidesInDoubt; ++k)
+    if (result.planes[k].sideMargin < near) inDoubt.push_back(k);
+  for (size_t sides = 0; sides < size_t{1} << inDoubt.size(); ++sides) {
+    reference::AvoidChoices choices;
+    choices.right.assign(result.planes.size(), -1);
+    for (size_t i = 0; i < inDoubt.size(); ++i) choices.right[inDoubt[i]] = static_cast<int>(sides >> i & 1);
+    const reference::AvoidResult other = agent.run(choices);
+    const double otherAllowed = bound(agent, other);
+    for (const int stands : {-1, 0, 1}) {
+      if (stands >= 0 && !(other.standMargin < otherAllowed)) continue;
+      choices.stands = stands;
+      const Sample tie = compareAvoid(agent, agent.run(choices), otherAllowed);
+      if (tie.passes()) return judge.add(moment.n, moment.number(), -1, tie, true);
+    }
+  }
+  judge.add(moment.n, moment.number(), -1, sample);
+}
+
+}  // namespace skitter::validation
