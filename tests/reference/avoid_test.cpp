@@ -1,0 +1,186 @@
+#include "cpu_reference/stages/avoid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace skitter::test {
+namespace {
+
+using reference::AvoidResult;
+using reference::Walker;
+
+// Agents of half a metre, and of legs of a metre, who face +z.
+class Avoid : public testing::Test {
+ protected:
+  static constexpr int64_t metre = 1024;
+  reference::AvoidTuning tuning{.quanta = metre, .look = 2 * metre, .legLength = 1};
+
+  static Walker at(int64_t number, double x, double z, const glm::dvec2& velocity = glm::dvec2(0)) {
+    return {.number = number,
+            .x = std::llround(x * metre),
+            .z = std::llround(z * metre),
+            .radius = metre / 2,
+            .velocity = velocity,
+            .yields = true};
+  }
+  // What the first of them does.
+  AvoidResult first(const std::vector<Walker>& all, const glm::dvec2& desired, bool mayRest = false) const {
+    reference::AgentBody body;
+    body.speed = glm::length(all[0].velocity);
+    body.heading = body.speed > 0 ? all[0].velocity / body.speed : glm::dvec2(0, 1);
+    return reference::avoid(tuning, body, all[0], all, desired, mayRest);
+  }
+};
+
+TEST_F(Avoid, aLoneAgentGoesAsItWants) {
+  const AvoidResult result = first({at(0, 1, 2, {0, 1})}, {0.3, 0.7});
+  EXPECT_EQ(result.velocity, glm::dvec2(0.3, 0.7));
+  EXPECT_EQ(result.seen, 0);
+  EXPECT_TRUE(result.planes.empty());
+}
+
+// w is (0, 1), and the cone's right side is at an angle of 30 degrees to the way.
+TEST_F(Avoid, headOnBothPassOnTheirRight) {
+  const double lacking = 0.5 / 1.05, c = std::sqrt(3) / 2;
+  const std::vector<Walker> all = {at(3, 0, 0, {0, 1}), at(5, 0, 2, {0, -1})};
+  const AvoidResult result = first(all, {0, 1});
+  ASSERT_EQ(result.planes.size(), 1u);
+  EXPECT_EQ(result.planes[0].neighbour, 5);
+  EXPECT_EQ(result.planes[0].right, 1);
+  EXPECT_NEAR(result.planes[0].n.x, -c, 1e-12);
+  EXPECT_NEAR(result.planes[0].n.y, -0.5, 1e-12);
+  EXPECT_NEAR(result.planes[0].bound, 0, 1e-12);
+  EXPECT_NEAR(result.velocity.x, -c * lacking, 1e-9);
+  EXPECT_NEAR(result.velocity.y, 1 - 0.5 * lacking, 1e-9);
+  const AvoidResult other = first({all[1], all[0]}, {0, -1});
+  EXPECT_NEAR(other.velocity.x, c * lacking, 1e-9);
+  EXPECT_NEAR(other.velocity.y, -1 + 0.5 * lacking, 1e-9);
+}
+
+TEST_F(Avoid, whoDoesNotYieldIsGivenWay) {
+  std::vector<Walker> all = {at(0, 0, 0, {0, 1}), at(1, 0, 2, {0, -1})};
+  all[1].yields = false;
+  const AvoidResult result = first(all, {0, 1});
+  EXPECT_NEAR(result.planes.at(0).bound, 0.5, 1e-12);
+  EXPECT_NEAR(result.velocity.y, 1 - 0.5 * 1 / 1.05, 1e-9);
+}
+
+// 2 m ahead, standing: the round end of the cone asks for (2 - 1) / 2 m/s along the way.
+TEST_F(Avoid, slowingIsEnoughBeforeSomebodyWhoIsReachedLate) {
+  std::vector<Walker> all = {at(0, 0, 0, {0, 0.9}), at(1, 0, 2)};
+  all[1].yields = false;
+  const AvoidResult result = first(all, {0, 0.9});
+  ASSERT_EQ(result.planes.size(), 1u);
+  EXPECT_EQ(result.planes[0].right, -1);
+  EXPECT_NEAR(result.planes[0].n.y, -1, 1e-12);
+  EXPECT_NEAR(result.planes[0].bound, -0.5, 1e-12);
+}
+
+TEST_F(Avoid, whoOverlapPart) {
+  const AvoidResult result = first({at(0, 0, 0), at(1, 0, 0.75)}, {0, 0});
+  ASSERT_EQ(result.planes.size(), 1u);
+  EXPECT_NEAR(result.planes[0].n.y, -1, 1e-12);
+  EXPECT_NEAR(result.planes[0].bound, 0.25, 1e-12);
+  const double back = 0.25 / 1.05;
+  EXPECT_NEAR(result.velocity.x, 0, 1e-12);
+  EXPECT_NEAR(result.velocity.y, (0.05 - back) * back / (back + 0.05), 1e-9);
+}
+
+TEST_F(Avoid, inOnePlaceTheyPartAlongOneLine) {
+  const std::vector<Walker> all = {at(4, 3, 3), at(9, 3, 3)};
+  const glm::dvec2 n = first(all, {0, 0}).planes.at(0).n, m = first({all[1], all[0]}, {0, 0}).planes.at(0).n;
+  EXPECT_NEAR(glm::length(n), 1, 1e-12);
+  EXPECT_NEAR(glm::length(n + m), 0, 1e-12);
+}
+
+TEST_F(Avoid, whoIsBlockedTurnsRight) {
+  const AvoidResult result = first({at(0, 0, 0), at(1, 0, 1)}, {0, 1});
+  EXPECT_LT(result.velocity.x, -0.6);
+  EXPECT_LT(std::abs(result.velocity.y), 0.1);
+}
+
+TEST_F(Avoid, noSpeedAboveTheWantedOneButToPart) {
+  // From all sides but one.
+  const std::vector<Walker> all = {at(0, 0, 0), at(1, 0.2, 0), at(2, 0, 0.2), at(3, 0, -0.2)};
+  const double parting = glm::length(first(all, {0, 0}).velocity);
+  EXPECT_GT(parting, 0.2);
+  EXPECT_LE(parting, 0.3 + 1e-9);
+  EXPECT_LE(glm::length(first(all, {1, 0}).velocity), 1 + 1e-9);
+}
+
+// Lattice points of one distance, the numbers the other way round.
+TEST_F(Avoid, theNearestAreOfLeastPowerThenNumber) {
+  std::vector<Walker> all = {at(100, 0, 0)};
+  int64_t number = 30;
+  for (const auto& [x, z] : std::vector<std::pair<int64_t, int64_t>>{{1500, 0},
+                                                                     {0, 1500},
+                                                                     {-1500, 0},
+                                                                     {0, -1500},
+                                                                     {900, 1200},
+                                                                     {-900, 1200},
+                                                                     {900, -1200},
+                                                                     {-900, -1200},
+                                                                     {1200, 900},
+                                                                     {-1200, 900},
+                                                                     {1200, -900},
+                                                                     {-1200, -900}}) {
+    Walker other = at(--number, 0, 0);
+    other.x = x, other.z = z;
+    all.push_back(other);
+  }
+  // Farther, but larger: 1,800^2 - 1,612^2 is less than 1,500^2 - 1,024^2.
+  Walker large = at(99, 0, 0);
+  large.x = 1800, large.radius = 1100;
+  all.push_back(large);
+  // Just in reach, and just out of it.
+  Walker far = at(1, 0, 0);
+  far.z = 3072;
+  all.push_back(far);
+  far.number = 2, far.z = 3073;
+  all.push_back(far);
+  const AvoidResult result = first(all, {0, 1});
+  EXPECT_EQ(result.seen, 14);
+  std::vector<int64_t> numbers;
+  for (const reference::HalfPlane& plane : result.planes) numbers.push_back(plane.neighbour);
+  EXPECT_EQ(numbers, (std::vector<int64_t>{99, 18, 19, 20, 21, 22, 23, 24}));
+}
+
+TEST_F(Avoid, theOrderOfOthersDoesNotMatter) {
+  std::vector<Walker> all = {at(7, 0, 0, {0, 1}), at(1, 1, 1, {-1, 0}), at(2, -1, 1.5, {0.5, 0}),
+                             at(3, 0, 2, {0, -1}), at(4, 0.5, -1, {0, 1})};
+  const glm::dvec2 velocity = first(all, {0, 1}).velocity;
+  std::reverse(all.begin() + 1, all.end());
+  EXPECT_EQ(first(all, {0, 1}).velocity, velocity);
+}
+
+TEST_F(Avoid, aSleeperIsWokenByWhoComes) {
+  EXPECT_TRUE(first({at(0, 0, 0), at(1, 0, 1.5)}, {0, 0}, true).asleep);
+  EXPECT_FALSE(first({at(0, 0, 0), at(1, 0, 1.5, {0, -1})}, {0, 0}, true).asleep);
+  EXPECT_FALSE(first({at(0, 0, 0), at(1, 0, 1.5)}, {0, 0}, false).asleep);
+}
+
+TEST_F(Avoid, nobodyIsInAnEmptyPlace) {
+  reference::AgentBody body;
+  body.absent = true;
+  const AvoidResult result = reference::avoid(tuning, body, {}, {}, {0, 0}, true);
+  EXPECT_TRUE(result.asleep);
+  EXPECT_EQ(result.velocity, glm::dvec2(0));
+}
+
+TEST_F(Avoid, placesAreWholeQuanta) {
+  reference::AgentBody body;
+  body.tileX = -2, body.localX = 15.9999;
+  body.tileZ = 3, body.localZ = 0.5;
+  body.heading = {0.6, 0.8}, body.speed = 2;
+  const Walker walker = reference::walkerOf(body, 11, 400, true, 1024);
+  EXPECT_EQ(walker.x, -2 * 16384 + 16383);
+  EXPECT_EQ(walker.z, 3 * 16384 + 512);
+  EXPECT_EQ(walker.radius, 400);
+  EXPECT_NEAR(glm::length(walker.velocity - glm::dvec2(1.2, 1.6)), 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace skitter::test
