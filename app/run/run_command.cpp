@@ -282,6 +282,7 @@ void Run::finish() {
     for (uint32_t h = 0; h < crowd_->herdCount(); ++h)
       if (const crowd::Herd& herd = implOf(*crowd_).herds[h]; !herd.isGone())
         summary_.herds.push_back({h, crowd_->rig(h).name, herd.from.agents, crowd_->fidelity(h)});
+    summary_.crowding = crowd_->crowding();
     if (options_.sleep) summary_.sleeping = crowd_->sleeping();
     summary_.stateHash = crowd_->stateHash();
     summary_.memory = memoryOf(*crowd_);

@@ -163,6 +163,7 @@ CrowdOptions RunOptions::crowdOptions(const OutTarget& target, bool inWindow) co
   crowd.measure = !unmeasured;
   crowd.watchEvery = watchEvery;
   crowd.sleep = sleep;
+  crowd.crowding = crowding;
   crowd.pageAgents = pageAgents;
   crowd.feet = !trace.empty() || inWindow;
   if (!footfalls.empty()) crowd.footfalls = UINT32_MAX;  // all that can be
@@ -224,6 +225,7 @@ void RunOptions::addTo(CLI::App& command) {
   command.add_flag(
       "--sleep", sleep,
       "pass over agents that have stood still for seconds, until their goal or the ground moves");
+  command.add_flag("--crowding", crowding, "measure how far agents overlap each other");
   command.add_flag("--paused", paused, "a window waits for its first key (Space)");
   command.add_flag("--timings", timings, "time every stage on the device's clock (software devices may lie)");
   command.add_flag("--poses", poses, "pose every agent though nobody draws it, for what that costs");

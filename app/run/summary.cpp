@@ -55,6 +55,24 @@ void printFidelity(const Fidelity& f, uint32_t watchEvery) {
                        100 * f.margin, 100 * f.marginLeast, 100 * f.unstable));
 }
 
+void printCrowding(const Crowding& crowding) {
+  if (crowding.overlapMost)
+    printRow("crowding",
+             fmt::format("agents overlap by at most {:.1f} %, {:.4f} % an agent; {:.4f} pairs an agent",
+                         100 * *crowding.overlapMost, 100 * crowding.overlapMean.value_or(0),
+                         crowding.pairs.value_or(0)));
+  if (crowding.droppedNeighbours.value_or(0) > 0)
+    printRow("neighbours", fmt::format("{} were in reach beyond the nearest {}", *crowding.droppedNeighbours,
+                                       shared::NEIGHBOURS));
+}
+
+nlohmann::ordered_json jsonOf(const Crowding& crowding) {
+  return {{"overlapMost", orNull(crowding.overlapMost)},
+          {"overlapMean", orNull(crowding.overlapMean)},
+          {"pairs", orNull(crowding.pairs)},
+          {"droppedNeighbours", orNull(crowding.droppedNeighbours)}};
+}
+
 void printMemory(const std::vector<MemoryUse>& memory, uint64_t agents) {
   const double each = 1 / static_cast<double>(std::max<uint64_t>(agents, 1));
   uint64_t all = 0;
@@ -120,6 +138,7 @@ void Summary::print() const {
     printMemory(memory, agents);
   }
   printFidelity(fidelity, watchEvery);
+  printCrowding(crowding);
   for (size_t i = 0; i < herds.size() && herds.size() > 1; ++i) {
     fmt::print("herd {}: {}, {} agents\n", herds[i].number, herds[i].rig, herds[i].agents);
     printFidelity(herds[i].fidelity, watchEvery);
@@ -153,6 +172,7 @@ nlohmann::ordered_json Summary::json() const {
           {"cpuMicrosecondsPerAgentTick", orNull(cpuMicroseconds(*this))},
           {"watchEvery", watchEvery},
           {"fidelity", jsonOf(fidelity)},
+          {"crowding", jsonOf(crowding)},
           {"herds", perHerd},
           {"stateHash", fmt::format("{:016x}", stateHash)}};
 }

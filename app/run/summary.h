@@ -34,11 +34,12 @@ struct Summary {
   std::optional<uint64_t> wantedTicks;  // none where a window runs until it is closed
   bool interrupted = false;
   TickTimes times;
-  std::vector<StageTime> drawing;    // sums over all frames; empty unless asked for
-  bool cpuTold = true;               // the CPU time is the simulation's alone
-  uint32_t watchEvery = 1;           // the figures are of one agent of this many at a time
-  Fidelity fidelity;                 // of all herds
-  std::vector<HerdFigures> herds;    // that are there at the end
+  std::vector<StageTime> drawing;  // sums over all frames; empty unless asked for
+  bool cpuTold = true;             // the CPU time is the simulation's alone
+  uint32_t watchEvery = 1;         // the figures are of one agent of this many at a time
+  Fidelity fidelity;               // of all herds
+  std::vector<HerdFigures> herds;  // that are there at the end
+  Crowding crowding;
   std::optional<uint64_t> sleeping;  // agents at the end; none where they may not
   uint64_t stateHash = 0;
   std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times

@@ -9,6 +9,7 @@
 
 #include "crowd/controller.h"
 #include "crowd/herd.h"
+#include "crowd/radius.h"
 #include "skitter/error.h"
 #include "skitter/records.h"
 
@@ -132,6 +133,7 @@ nlohmann::ordered_json describe(const Rig& rig, uint32_t agents) {
   return {{"rig", rig.name},
           {"agents", agents},
           {"legLength", rig.legLength},
+          {"footprintRadius", crowd::footprintRadius(rig)},
           {"legNames", legNames},
           {"groupNames", rig.groups},
           {"groups", groups},

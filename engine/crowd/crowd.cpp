@@ -521,6 +521,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   if (crowd.grid) {
     crowd.timer.next(cmd, last = "grid");
     crowd.grid->record(crowd, cmd);
+    crowd.agentTicks += crowd.agentsInTick;
   }
   run(navigate, written);
   run(avoid, written);

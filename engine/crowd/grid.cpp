@@ -12,6 +12,8 @@
 #include "crowd/radius.h"
 #include "embedded/grid_count_comp_storage.h"
 #include "embedded/grid_count_comp_texel.h"
+#include "embedded/grid_overlap_comp_storage.h"
+#include "embedded/grid_overlap_comp_texel.h"
 #include "embedded/grid_place_comp_storage.h"
 #include "embedded/grid_place_comp_texel.h"
 #include "embedded/grid_scatter_comp_storage.h"
@@ -57,6 +59,8 @@ uint32_t bucketsFor(const Crowd::Impl& crowd) {
 
 uint64_t walkerBytes(uint64_t agents) { return agents * shared::WALKER_STRIDE * 16; }
 
+bool hasGrid(const Crowd::Impl& crowd) { return crowd.options.crowding || avoids(crowd); }
+
 template <class Each>
 void eachPage(const Crowd::Impl& crowd, const Each& each) {
   for (const Kind& kind : crowd.kinds)
@@ -97,7 +101,8 @@ Quanta quantaOf(const Crowd::Impl& crowd) {
     for (const Kind& kind : crowd.kinds)
       if (!kind.stages.empty()) widest = std::max(widest, quanta.radiusOf(kind));
     for (const Kind& kind : crowd.kinds)
-      if (kind.avoids) farthest = std::max(farthest, quanta.radiusOf(kind) + quanta.lookOf(kind));
+      if (!kind.stages.empty())
+        farthest = std::max(farthest, quanta.radiusOf(kind) + (kind.avoids ? quanta.lookOf(kind) : 0));
     quanta.longestReach = farthest + widest;
     if (quanta.longestReach <= longestReachInQuanta) return quanta;
   }
@@ -115,7 +120,7 @@ uint32_t numberOf(const Crowd::Impl& crowd, const Kind& kind) {
 bool avoids(const Crowd::Impl& crowd) { return std::ranges::any_of(crowd.kinds, &Kind::avoids); }
 
 uint64_t bytesOfGrid(const Crowd::Impl& crowd) {
-  if (!avoids(crowd)) return 0;
+  if (!hasGrid(crowd)) return 0;
   const uint64_t agents = agentsOf(crowd), buckets = bucketsFor(crowd);
   return buckets * (16 + 4) + agents * 16 + walkerBytes(agents);
 }
@@ -135,7 +140,7 @@ Grid::Grid(const Crowd::Impl& crowd) : quanta(quantaOf(crowd)), buckets(bucketsF
   cells = gpu::Buffer(context, uint64_t{buckets} * 16, "grid cells");
   places = gpu::Buffer(context, agents * 16, "grid places");
   walkers = gpu::Buffer(context, walkerBytes(agents), "grid walkers");
-  dropped = gpu::Buffer(context, 16, "grid counters");
+  crowding = gpu::Buffer(context, shared::CROWDING_WORDS * 4, "crowding");
 
   const auto kernel = [&](const char* name, const gpu::ShaderCode& code,
                           std::vector<gpu::BindingDecl> bindings) {
@@ -157,12 +162,24 @@ Grid::Grid(const Crowd::Impl& crowd) : quanta(quantaOf(crowd)), buckets(bucketsF
   summed = sum.bind(context, {{BINDING_GRID_COUNTED, &counts}, {BINDING_GRID_SUM_OUT, &sums}});
   placed = place.bind(
       context, {{BINDING_GRID_COUNTED, &counts}, {BINDING_GRID_SUM, &sums}, {BINDING_GRID_CELL_OUT, &cells}});
+  if (crowd.options.crowding) {
+    overlap =
+        kernel("grid_overlap", {embedded::grid_overlap_comp_texel(), embedded::grid_overlap_comp_storage()},
+               {{BINDING_GRID_CELL, load4}, {BINDING_GRID_PLACE, load4}, {BINDING_GRID_CROWDING, store}});
+    overlapped = overlap.bind(
+        context,
+        {{BINDING_GRID_CELL, &cells}, {BINDING_GRID_PLACE, &places}, {BINDING_GRID_CROWDING, &crowding}});
+  }
   gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
     cmd.fillBuffer(counts.handle(), 0, VK_WHOLE_SIZE, GRID_EMPTY);
-    for (const gpu::Buffer* buffer : {&sums, &cells, &places, &walkers, &dropped})
+    for (const gpu::Buffer* buffer : {&sums, &cells, &places, &walkers, &crowding})
       cmd.fillBuffer(buffer->handle(), 0, VK_WHOLE_SIZE, 0);
     gpu::allToAll(cmd);
   });
+}
+
+float Grid::cellsAQuantum() const {
+  return 1 / std::max(cellMargin * static_cast<float>(quanta.longestReach), static_cast<float>(leastCell));
 }
 
 shared::GridConstants Grid::gridConstantsOf(const Crowd::Impl& crowd, const Kind& kind,
@@ -173,8 +190,7 @@ shared::GridConstants Grid::gridConstantsOf(const Crowd::Impl& crowd, const Kind
           .row = row,
           .run = run,
           .quanta = quanta.inMetre,
-          .cells = 1 / std::max(cellMargin * static_cast<float>(quanta.longestReach),
-                                static_cast<float>(leastCell)),
+          .cells = cellsAQuantum(),
           .radius = static_cast<float>(quanta.radiusOf(kind)),
           .avoids = kind.avoids ? 1.0f : 0.0f};
 }
@@ -197,35 +213,43 @@ void Grid::record(const Crowd::Impl& crowd, vk::CommandBuffer cmd) const {
     });
     gpu::computeToCompute(cmd);
   };
-  shared::GridConstants runs{};
-  runs.count = buckets / run;
-  runs.buckets = buckets;
-  runs.run = run;
+  shared::GridConstants shape{};
+  shape.count = buckets / run;
+  shape.buckets = buckets;
+  shape.row = row;
+  shape.run = run;
+  shape.quanta = quanta.inMetre;
+  shape.cells = cellsAQuantum();
   const auto overRuns = [&](const gpu::Kernel& kernel, const gpu::Bindings& bindings) {
-    kernel.dispatch(cmd, bindings, gpu::bytesOf(runs), gpu::groupsFor(runs.count, shared::WORK_GROUP));
+    kernel.dispatch(cmd, bindings, gpu::bytesOf(shape), gpu::groupsFor(shape.count, shared::WORK_GROUP));
     gpu::computeToCompute(cmd);
   };
   overAgents(count, &Page::counted);
   overRuns(sum, summed);
   overRuns(place, placed);
   overAgents(scatter, &Page::scattered);
+  if (!overlap) return;
+  overlap.dispatch(cmd, overlapped, gpu::bytesOf(shape),
+                   gpu::groupsFor(static_cast<uint32_t>(agentsOf(crowd)), shared::WORK_GROUP));
+  gpu::computeToCompute(cmd);
 }
 
 void shareGround(Crowd::Impl& crowd) {
-  if (!crowd.grid && !avoids(crowd)) return;
+  if (!crowd.grid && !hasGrid(crowd)) return;
   crowd.context->waitIdle();
   std::unique_ptr<Grid> before = std::move(crowd.grid);
-  if (!avoids(crowd)) return;
+  if (!hasGrid(crowd)) return;
   crowd.grid = std::make_unique<Grid>(crowd);
-  if (before)
-    gpu::upload(*crowd.context, crowd.grid->dropped,
-                gpu::download<uint32_t>(*crowd.context, before->dropped));
   bindPages(crowd);
   // No tick pays for the translation to machine code.
   gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
     crowd.grid->record(crowd, cmd);
     gpu::allToAll(cmd);
   });
+  // What that has counted is of no tick.
+  std::vector<uint32_t> words(shared::CROWDING_WORDS);
+  if (before) words = gpu::download<uint32_t>(*crowd.context, before->crowding);
+  gpu::upload(*crowd.context, crowd.grid->crowding, words);
 }
 
 }  // namespace skitter::crowd
@@ -236,8 +260,16 @@ Crowding Crowd::crowding() const {
   Crowding crowding;
   if (!impl_->grid) return crowding;
   impl_->context->waitIdle();
-  const std::vector<uint32_t> words = gpu::download<uint32_t>(*impl_->context, impl_->grid->dropped);
-  crowding.droppedNeighbours = uint64_t{words[1]} << 32 | words[0];
+  using namespace shared;
+  const std::vector<uint32_t> words = gpu::download<uint32_t>(*impl_->context, impl_->grid->crowding);
+  const auto wide = [&](size_t at) { return uint64_t{words[at + 1]} << 32 | words[at]; };
+  const auto shares = [](auto number) { return static_cast<double>(number) / CROWDING_SHARES; };
+  if (crowd::avoids(*impl_)) crowding.droppedNeighbours = wide(CROWDING_DROPPED);
+  if (!impl_->options.crowding) return crowding;
+  const auto agentTicks = static_cast<double>(std::max<uint64_t>(impl_->agentTicks, 1));
+  crowding.overlapMost = shares(words[CROWDING_MOST]);
+  crowding.overlapMean = shares(wide(CROWDING_OVERLAP)) / agentTicks;
+  crowding.pairs = static_cast<double>(wide(CROWDING_PAIRS)) / agentTicks;
   return crowding;
 }
 

@@ -11,7 +11,7 @@ namespace skitter::crowd {
 // How a crowd with a herd that avoids counts places (docs/stages/avoid.md).
 struct Quanta {
   float inMetre = 0;
-  uint32_t longestReach = 0;  // of any agent that avoids, quanta
+  uint32_t longestReach = 0;  // of any agent, quanta; of those who do not avoid their footprints
 
   uint32_t radiusOf(const Kind& kind) const;  // of its agents' footprints
   uint32_t lookOf(const Kind& kind) const;    // how far they see beyond footprints
@@ -23,24 +23,26 @@ uint32_t numberOf(const Crowd::Impl& crowd, const Kind& kind);
 
 bool avoids(const Crowd::Impl& crowd);
 
-// Where everybody is, for stage avoid: agents of all kinds and pages, cell after cell. Refers to nothing of
-// the crowd; its kinds' pages have the bindings.
+// Where everybody is, for stage avoid and for CrowdOptions::crowding: agents of all kinds and pages, cell
+// after cell. Refers to nothing of the crowd; its kinds' pages have the bindings.
 struct Grid {
   // With room for the agents that the crowd has. Throws Error(device) where a binding does not reach them.
   explicit Grid(const Crowd::Impl& crowd);
 
-  // Sorts all agents, as their bodies are, with a barrier after it.
+  // Sorts all agents, as their bodies are, and measures overlaps if that is asked for, with a barrier after
+  // it.
   void record(const Crowd::Impl& crowd, vk::CommandBuffer cmd) const;
   // What avoid is told.
   shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page) const;
   shared::GridConstants gridConstantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page) const;
+  float cellsAQuantum() const;
 
   Quanta quanta;
   uint32_t buckets = 0, row = 0, run = 0;
   gpu::Buffer counts, sums, cells, places, walkers;
-  gpu::Buffer dropped;  // neighbours that the cap dropped since the crowd was made
-  gpu::Kernel count, sum, place, scatter;
-  gpu::Bindings summed, placed;
+  gpu::Buffer crowding;  // CROWDING_ figures since the crowd was made
+  gpu::Kernel count, sum, place, scatter, overlap;
+  gpu::Bindings summed, placed, overlapped;
 };
 
 // Device memory of the grid that the crowd needs.

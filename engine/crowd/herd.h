@@ -165,6 +165,7 @@ struct Crowd::Impl {
   uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground; 0: never
   uint64_t tick = 0;
   uint64_t agentsInTick = 0;  // who were there in it
+  uint64_t agentTicks = 0;    // and in all since the crowd was made, where crowding is measured
   float dt = 0;               // of the first tick; 0 before it
   gpu::StageTimer timer;
   Scene scene;                  // that it was made of

@@ -66,8 +66,8 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Kind& kind, const Page& p
       return {binding, &crowd.grid->places};
     case BINDING_WALKER:
       return {binding, &crowd.grid->walkers};
-    case BINDING_DROPPED:
-      return {binding, &crowd.grid->dropped};
+    case BINDING_CROWDING:
+      return {binding, &crowd.grid->crowding};
     default:
       throw std::logic_error("a stage has binding " + std::to_string(binding) +
                              ", which nothing is bound to");

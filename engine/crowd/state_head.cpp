@@ -73,8 +73,8 @@ void eachKey(StateComing& coming, const Visit& visit) {
 }
 template <class Visit>
 void eachKey(CrowdOptions& options, const Visit& visit) {
-  auto& [pose, measure, watchEvery, feet, footfalls, sleep, fuse, timestamps, pageAgents, shaders, rigs] =
-      options;
+  auto& [pose, measure, watchEvery, feet, footfalls, sleep, crowding, fuse, timestamps, pageAgents, shaders,
+         rigs] = options;
   visit("pose", pose);
   visit("measure", measure);
   visit("watchEvery", watchEvery);
@@ -82,8 +82,8 @@ void eachKey(CrowdOptions& options, const Visit& visit) {
   visit("footfalls", footfalls);
   visit("sleep", sleep);
   visit("fuse", fuse);
-  // timestamps and pageAgents are the device's matter, and shaders are experiments. A program that made rigs
-  // has them.
+  // What crowding has counted is not saved. timestamps and pageAgents are the device's matter, and shaders
+  // are experiments. A program that made rigs has them.
 }
 template <class Visit>
 void eachKey(Heightfield& terrain, const Visit& visit) {

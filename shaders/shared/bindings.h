@@ -43,7 +43,7 @@ BINDING BINDING_FOOTFALL_OUT = 65;
 BINDING BINDING_CELL = 66;
 BINDING BINDING_PLACE = 67;
 BINDING BINDING_WALKER = 68;
-BINDING BINDING_DROPPED = 69;  // neighbours that the cap dropped since the start: uint, low and high
+BINDING BINDING_CROWDING = 69;  // CROWDING_
 
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;

@@ -20,6 +20,8 @@ GRID BINDING_GRID_CELL = 4;
 GRID BINDING_GRID_CELL_OUT = 5;
 GRID BINDING_GRID_PLACE_OUT = 6;
 GRID BINDING_GRID_WALKER_OUT = 7;
+GRID BINDING_GRID_PLACE = 8;
+GRID BINDING_GRID_CROWDING = 9;
 
 // Counts begin as the bits of 2^23 as a float, whose last place is 1: integer atomics count in them, and loads
 // of vec4 read them as numbers.

@@ -4,6 +4,8 @@
 #include "stages/stage.glsl"
 #include "lib/rarely.glsl"
 #include "lib/avoid.glsl"
+#include "lib/cells.glsl"
+#include "lib/sum64.glsl"
 
 LOAD4_BUFFER(BINDING_STEER, steers);
 STORE4_BUFFER(BINDING_AVOID_OUT, avoidsOut);
@@ -11,24 +13,20 @@ LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_CELL, cells);
 LOAD4_BUFFER(BINDING_PLACE, places);
 LOAD4_BUFFER(BINDING_WALKER, walkers);
-layout(set = 0, binding = BINDING_DROPPED, std430) buffer DroppedBlock { uint dropped[]; };
+layout(set = 0, binding = BINDING_CROWDING, std430) buffer CrowdingBlock { uint crowding[]; };
 #include "stages/absent.glsl"
 
 int buckets = int(constants.every), row = int(constants.watched), look = int(constants.room);
 float metres = constants.sleepTime;
 
-// The agents in the three cells of a row.
-ivec2 runOf(int bucket) { return ivec2(LOAD4(cells, bucket & (buckets - 1)).xy); }
-
 // The nearest to an agent, and how many are in reach.
 Nearest nearestTo(int number, vec4 self, int bucket, out int seen) {
   Nearest nearest = nobodyNear();
-  ivec2 a = runOf(bucket - row), b = runOf(bucket), c = runOf(bucket + row);
-  int all = int(LOAD4(cells, bucket).w), ab = a.y + b.y, count = ab + c.y;
+  Runs runs = LOAD_RUNS(bucket, row, buckets);
+  int count = agentsIn(runs);
   seen = 0;
   for (int i = 0; i < count; ++i) {
-    int at = i < a.y ? a.x + i : i < ab ? b.x + i - a.y : c.x + i - ab;
-    vec4 other = LOAD4(places, at >= all ? at - all : at);
+    vec4 other = LOAD4(places, placeIn(runs, i));
     int x = abs(int(other.x - self.x)), z = abs(int(other.y - self.y)), radii = int(other.z + self.z);
     int reach = radii + look, distance2 = x * x + z * z, who = int(other.w);
     // Where x or z is beyond reach, the square may be beyond an int.
@@ -39,11 +37,6 @@ Nearest nearestTo(int number, vec4 self, int bucket, out int seen) {
       insertNearest(nearest, power, who);
   }
   return nearest;
-}
-
-void count(int neighbours) {
-  uint before = atomicAdd(dropped[0], uint(neighbours));
-  if (before + uint(neighbours) < before) atomicAdd(dropped[1], 1u);
 }
 
 void main() {
@@ -58,7 +51,7 @@ void main() {
   vec4 self = LOAD4(walkers, number * WALKER_STRIDE), going = LOAD4(walkers, number * WALKER_STRIDE + 1);
   int seen;
   Nearest nearest = nearestTo(number, self, int(going.z), seen);
-  RARELY(seen > NEIGHBOURS) count(seen - NEIGHBOURS);
+  RARELY(seen > NEIGHBOURS) ADD64(crowding, CROWDING_DROPPED, uint(seen - NEIGHBOURS));
 
   vec2 wanted = steer.xy;
   float speed = length(wanted), near = 0.0, press = 0.0;

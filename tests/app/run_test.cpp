@@ -18,6 +18,30 @@ std::set<std::string> keysOf(const nlohmann::json& object) {
   return keys;
 }
 
+TEST_F(Running, CrowdingIsMeasuredWhereItIsAskedFor) {
+  const auto crowdingOf = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"run",
+                                          SKITTER_ROOT "/assets/scenes/head-on.json",
+                                          "--headless",
+                                          "--frames",
+                                          "1200",
+                                          "--no-measure",
+                                          "--crowding",
+                                          "--json",
+                                          file("run.json"),
+                                          "--force",
+                                          "--agents",
+                                          "36"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(skitter(arguments).code, 0);
+    return json("run.json").at("crowding");
+  };
+  const nlohmann::json avoiding = crowdingOf({"--avoid"});
+  EXPECT_TRUE(avoiding.at("droppedNeighbours").is_number_unsigned());
+  EXPECT_LT(avoiding.at("overlapMost"), 0.6);
+  EXPECT_LT(avoiding.at("overlapMean"), 0.05);
+}
+
 TEST_F(Running, JsonHasTheDocumentedFields) {
   const Result result = skitter({"run", "--headless", "--agents", "20", "--frames", "30", "--seed", "7",
                                  "--json", file("run.json"), "--timings"});
@@ -26,10 +50,13 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   const nlohmann::json run = json("run.json");
   EXPECT_EQ(keysOf(run), (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
                                                 "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity",
-                                                "herds", "sleeping", "stateHash", "ticksWanted",
+                                                "crowding", "herds", "sleeping", "stateHash", "ticksWanted",
                                                 "interrupted", "manifest", "resumedAt"}));
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
   EXPECT_TRUE(run.at("resumedAt").is_null()) << "it began at the start";
+  EXPECT_EQ(keysOf(run.at("crowding")),
+            (std::set<std::string>{"overlapMost", "overlapMean", "pairs", "droppedNeighbours"}));
+  for (const nlohmann::json& figure : run.at("crowding")) EXPECT_TRUE(figure.is_null()) << "not asked for";
   EXPECT_EQ(run.at("agents"), 20);
   EXPECT_EQ(run.at("ticks"), 30);
   EXPECT_EQ(run.at("ticksWanted"), 30);

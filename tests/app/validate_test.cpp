@@ -45,6 +45,21 @@ TEST_F(Validate, EveryStageAgreesWithTheReference) {
   }
 }
 
+TEST_F(Validate, AgentsThatAvoidEachOtherAgreeWithTheReference) {
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    const Result result =
+        skitter({"validate", SKITTER_ROOT "/assets/scenes/head-on.json", "--avoid", "--controller",
+                 nameOf(controller), "--agents", "25", "--frames", "30", "--json", file("v.json")});
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    EXPECT_EQ(stagesThatAgree(json("v.json")), replayedOnThePage({nameOf(controller)}, true));
+  }
+  expectRefusal(skitter({"validate", "--avoid", "--free-run"}), 2,
+                {"--free-run: herds[0].avoid of", "is true"});
+  expectRefusal(skitter({"validate", "--stages", "avoid"}), 2,
+                {"--stages: no herd of", "has avoid compared"});
+}
+
 // Neither changes a bit of what is compared.
 TEST_F(Validate, PagesAndFusionChangeNothing) {
   const std::vector<std::string> plain = {"validate", "--agents", "40", "--frames", "40", "--dt", "0.15"};

@@ -79,29 +79,35 @@ std::vector<crowd::Stage> everyStage() {
   return stages;
 }
 
-std::vector<std::string> namesOf(Controller controller, bool fuse, bool sleep) {
+std::vector<std::string> namesOf(Controller controller, bool fuse, bool sleep, bool avoids = false) {
   CrowdOptions options = everything(fuse);
   options.sleep = sleep;
   std::vector<std::string> names;
-  for (const crowd::Stage& stage : crowd::stagesOf(controller, options)) names.push_back(stage.makes.name());
+  for (const crowd::Stage& stage : crowd::stagesOf(controller, options, avoids))
+    names.push_back(stage.makes.name());
   return names;
 }
 
 TEST(Stages, AreThoseOfTheirPage) {
   for (const Controller controller : allControllers)
-    EXPECT_EQ(namesOf(controller, false, true), stagesOnThePage({nameOf(controller)})) << nameOf(controller);
+    EXPECT_EQ(namesOf(controller, false, true, true), stagesOnThePage({nameOf(controller)}))
+        << nameOf(controller);
 }
 
 TEST(Stages, AreMadeAtOnceWhereTheyStandInARow) {
   for (const Controller controller : allControllers)
     for (const bool sleep : {false, true})
-      EXPECT_EQ(fmt::format("{}", fmt::join(namesOf(controller, true, sleep), "+")),
-                fmt::format("{}", fmt::join(namesOf(controller, false, sleep), "+")));
+      for (const bool avoids : {false, true})
+        EXPECT_EQ(fmt::format("{}", fmt::join(namesOf(controller, true, sleep, avoids), "+")),
+                  fmt::format("{}", fmt::join(namesOf(controller, false, sleep, avoids), "+")));
   using testing::IsSupersetOf;
   EXPECT_THAT(namesOf(Controller::adaptive, true, false), IsSupersetOf({"navigate+body+gait", "swing+ik"}));
   // Where agents sleep, wake comes after navigate.
   EXPECT_THAT(namesOf(Controller::adaptive, true, true),
               IsSupersetOf({"navigate", "wake", "body+gait", "swing+ik"}));
+  // Or avoid.
+  EXPECT_THAT(namesOf(Controller::adaptive, true, false, true),
+              IsSupersetOf({"navigate", "avoid", "body+gait", "swing+ik"}));
   CrowdOptions options = everything(true);
   options.shaders = {{.stage = "ik", .texel = {}, .storage = {}}};
   EXPECT_THAT(crowd::stagesOf(Controller::adaptive, options),
@@ -112,7 +118,7 @@ TEST(Records, ReplayHoldsAllThatAStageWrites) {
   for (const Controller controller : allControllers) {
     const std::vector<validation::CheckedStage> checked = validation::checkedStages(controller);
     auto next = checked.begin();
-    for (const crowd::Stage& stage : crowd::stagesOf(controller, everything(false))) {
+    for (const crowd::Stage& stage : crowd::stagesOf(controller, everything(false), true)) {
       if (stage.makes == crowd::StageId::wake) continue;
       SCOPED_TRACE(std::string(nameOf(controller)) + ", " + stage.makes.name());
       ASSERT_NE(next, checked.end());
@@ -135,7 +141,9 @@ TEST(Records, HaveBindingsOfTheirOwn) {
       shared::BINDING_KEY,        shared::BINDING_CLIP,      shared::BINDING_CLIP_FRAME,
       shared::BINDING_CLIP_ROW,   shared::BINDING_CLIP_LEG,  shared::BINDING_CLIP_JOINT,
       shared::BINDING_LIST,       shared::BINDING_COUNTERS,  shared::BINDING_HISTOGRAM,
-      shared::BINDING_AWAKE,      shared::BINDING_AWAKE_OUT, shared::BINDING_FOOTFALL_OUT};
+      shared::BINDING_AWAKE,      shared::BINDING_AWAKE_OUT, shared::BINDING_FOOTFALL_OUT,
+      shared::BINDING_CELL,       shared::BINDING_PLACE,     shared::BINDING_WALKER,
+      shared::BINDING_CROWDING};
   for (const Record record : allRecords)
     for (const uint32_t binding : {crowd::infoOf(record).binding, crowd::infoOf(record).binding + 1})
       EXPECT_TRUE(taken.insert(binding).second) << crowd::infoOf(record).name << ": " << binding;

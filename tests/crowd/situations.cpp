@@ -36,6 +36,18 @@ void raiseAll(Crowd& crowd, float by) {
   crowd.editHeights(0, 0, crowd.terrain().columns, crowd.terrain().rows, heights);
 }
 
+// Agents around one place walk to it.
+Results meeting(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(49, 1, 1, controller);
+  scene.herds[0].avoid = true;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1.4f};
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0.3f, 0.2f}};
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 20);
+  return replay(device, crowd, ground, 200);
+}
+
 Results walking(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = rollingGround();
   Crowd crowd(device, ground, sceneOf(64, 1, 1, controller), options);
@@ -221,6 +233,7 @@ Results beyondTheLimits(Device& device, Controller controller, const CrowdOption
 const std::vector<Situation>& situations() {
   static const std::vector<Situation> all = {
       {"walking", {Controller::adaptive}, walking},
+      {"meeting", {Controller::adaptive, Controller::clip}, meeting},
       {"fallingAsleep", {Controller::adaptive}, fallingAsleep},
       {"atTheEdge", {Controller::adaptive}, atTheEdge},
       {"goingByVelocity", {Controller::adaptive, Controller::loop}, goingByVelocity},

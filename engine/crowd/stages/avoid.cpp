@@ -17,7 +17,7 @@ Stage avoidStage() {
            {BINDING_CELL, load4},
            {BINDING_PLACE, load4},
            {BINDING_WALKER, load4},
-           {BINDING_DROPPED, store}},
+           {BINDING_CROWDING, store}},
           Stage::Over::crowd};
 }
 

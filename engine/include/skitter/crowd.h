@@ -50,6 +50,7 @@ struct CrowdOptions {
                             // 0: none
   bool sleep = false;  // an agent that has stood still for seconds is passed over, without a breath, until
                        // its goal or the ground moves: standing crowds cost next to nothing
+  bool crowding = false;  // measure how far agents overlap (Crowd::crowding)
   bool fuse = true;    // stages that are faster when fused are fused: the same records, in fewer passes
   bool timestamps = false;                // time every stage on the device
   uint32_t pageAgents = 0;                // most agents per page; 0: as many as the device's limits allow
@@ -133,10 +134,17 @@ struct FootfallBuffer {
   uint32_t firstOfHerd = 0;             // the number in the herd of firstAgent
 };
 
-// How a crowd shares its ground: of all agents and ticks since it was made.
+// How a crowd shares its ground: all agents and ticks since the crowd was made, or made of a state. Positions
+// are those with which a tick begins. Two agents overlap by max(0, r_i + r_j - d) / (2 min(r_i, r_j)), where
+// r are the radii of their footprints (docs/stages/avoid.md) and d is the horizontal distance of their
+// bodies.
 struct Crowding {
-  // Agents in reach of one that avoids, beyond the 8 that it keeps clear of (docs/stages/avoid.md).
-  uint64_t droppedNeighbours = 0;
+  // Agents in reach of one that avoids, beyond the 8 that it keeps clear of; none unless a herd avoids.
+  std::optional<uint64_t> droppedNeighbours = {};
+  // With CrowdOptions::crowding, else none.
+  std::optional<double> overlapMost = {};
+  std::optional<double> overlapMean = {};  // sum over all pairs, for each agent and tick
+  std::optional<double> pairs = {};        // that overlap, for each agent and tick
 };
 
 // Device memory of one kind of records, of all of a herd's agents: its share of the pages, where equal herds

@@ -101,6 +101,16 @@ SKITTER_CONST int NEIGHBOURS = 8;
 //                 [1] velocity x, z (m/s), cell, unused
 SKITTER_CONST int WALKER_STRIDE = 2;
 
+// Figures of the grid since the start, unsigned integers of which the first three have two words, low and
+// high: neighbours that the cap dropped; overlaps of pairs, a share each, in CROWDING_SHARES; pairs that
+// overlapped; the greatest overlap.
+SKITTER_CONST int CROWDING_DROPPED = 0;
+SKITTER_CONST int CROWDING_OVERLAP = 2;
+SKITTER_CONST int CROWDING_PAIRS = 4;
+SKITTER_CONST int CROWDING_MOST = 6;
+SKITTER_CONST int CROWDING_WORDS = 8;
+SKITTER_CONST float CROWDING_SHARES = 65536.0;
+
 // The agents that may sleep: nobody, anybody, or who has breathed out.
 SKITTER_CONST int SLEEP_NEVER = 0;
 SKITTER_CONST int SLEEP_STILL = 1;
