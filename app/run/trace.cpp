@@ -150,7 +150,8 @@ void addSizes(const Crowd::Impl& crowd, uint32_t herd, nlohmann::ordered_json& d
     described["sizes"].push_back({{"firstAgent", run.firstOfHerd},
                                   {"agents", run.agents},
                                   {"size", crowd.kinds[run.kind].size},
-                                  {"legLength", crowd.kinds[run.kind].rig.legLength}});
+                                  {"legLength", crowd.kinds[run.kind].rig.legLength},
+                                  {"footprintRadius", crowd::footprintRadius(crowd.kinds[run.kind].rig)}});
 }
 
 // Without legs where the herd is gone.
