@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <tuple>
 
 namespace skitter::reference {
@@ -18,7 +19,8 @@ constexpr double pushSpeed = 0.3, steadySpeed = 0.05;
 // Rounding errors of the size that a float32 computation makes; none by default.
 class Rounding {
  public:
-  explicit Rounding(const AvoidErrors& errors) : most_(errors.number), random_(errors.seed) {}
+  explicit Rounding(const AvoidErrors& errors)
+      : most_(errors.number), random_(static_cast<std::minstd_rand::result_type>(errors.seed)) {}
 
   double operator()(double value, double size) {
     if (most_ == 0) return value;
@@ -30,7 +32,7 @@ class Rounding {
 
  private:
   double most_;
-  std::mt19937_64 random_;
+  std::minstd_rand random_;  // begins at once, and there are many
 };
 
 // Another agent, relative to the one that looks.

@@ -275,7 +275,7 @@ class SKITTER_API Crowd {
   uint32_t watchEvery() const;   // the fidelity figures are of one agent of this many at a time
   uint64_t agentCount() const;   // who is there, as the host has said
   uint64_t capacity() const;     // places for agents, empty ones among them
-  uint64_t memoryBytes() const;  // device memory of all records
+  uint64_t memoryBytes() const;  // device memory of all records, without the grid of avoid
   std::vector<MemoryUse> memoryUse(uint32_t herd) const;
   // At the first of the herd's sizes, and at that of an agent, which is `size` times the rig as loaded. Throw
   // Error(input) where the herd has no such place.
