@@ -359,6 +359,9 @@ TEST_F(Trace, SizesAreListed) {
   for (const nlohmann::json& size : herd.at("sizes")) {
     EXPECT_EQ(size.at("firstAgent"), next);
     EXPECT_NEAR(size.at("legLength").get<double>(), size.at("size").get<double>(), 1e-6);
+    EXPECT_NEAR(size.at("footprintRadius").get<double>() * herds[1].at("legLength").get<double>(),
+                herds[1].at("footprintRadius").get<double>() * size.at("legLength").get<double>(), 1e-5);
+    EXPECT_GT(size.at("footprintRadius").get<double>(), 0.1 * size.at("legLength").get<double>());
     const double larger = size.at("size").get<double>() / 2;
     for (const uint64_t end = next + size.at("agents").get<uint64_t>(); next < end; ++next) {
       double length = 0;
