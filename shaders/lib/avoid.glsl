@@ -8,7 +8,7 @@ const float AVOID_SOFTNESS = 0.05;
 const int AVOID_SWEEPS = 6;
 const float AVOID_PUSH_SPEED = 0.3, AVOID_STEADY_SPEED = 0.05;
 
-// 1. The agents of least power, the least first, of equal ones that with the lesser number; unused ones are last.
+// 1. The agents of least power, the least first, of equal ones that with the lesser number; unused ones last.
 struct Nearest {
   int power[NEIGHBOURS], number[NEIGHBOURS];
 };

@@ -1,8 +1,8 @@
 #ifndef SUM64_GLSL
 #define SUM64_GLSL
 
-// Adds to a number of 64 bits in two words of a buffer, the lower one first. It is a macro because GLSL cannot pass a
-// buffer to a function.
+// Adds to a number of 64 bits in two words of a buffer, the lower one first. It is a macro because GLSL cannot
+// pass a buffer to a function.
 #define ADD64(words, at, value)                                        \
   {                                                                    \
     uint before_ = atomicAdd(words[at], value);                        \

@@ -1,4 +1,4 @@
-// The grid of a crowd that shares its ground (shaders/grid, docs/stages/avoid.md): bindings and push constants.
+// The grid of a crowd that shares its ground (shaders/grid, docs/stages/avoid.md): bindings, push constants.
 #ifndef SKITTER_GRID_H
 #define SKITTER_GRID_H
 
@@ -23,8 +23,8 @@ GRID BINDING_GRID_WALKER_OUT = 7;
 GRID BINDING_GRID_PLACE = 8;
 GRID BINDING_GRID_CROWDING = 9;
 
-// Counts begin as the bits of 2^23 as a float, whose last place is 1: integer atomics count in them, and loads
-// of vec4 read them as numbers.
+// Counts begin as the bits of 2^23 as a float, whose last place is 1: integer atomics count in them, and
+// loads of vec4 read them as numbers.
 #ifdef __cplusplus
 inline constexpr uint32_t GRID_EMPTY = 0x4B000000u;
 inline constexpr float GRID_EMPTY_NUMBER = 8388608.0f;
