@@ -65,7 +65,7 @@ void add(Hash& hash, const Goal& goal) {
 
 void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, phase, colour, tint] = herd;
+               sizes, avoid, ways, phase, colour, tint] = herd;
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
@@ -89,6 +89,11 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
     for (const float size : sizes) hash.add(size);
   }
   if (avoid) hash.add("avoid");
+  if (ways) {
+    const auto& [climb, steepest, step] = *ways;
+    hash.add("ways");
+    for (const float each : {climb, steepest, step}) hash.add(each);
+  }
   if (phase) {
     hash.add("phase");
     hash.add(*phase);
@@ -106,6 +111,28 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   hash.add(centre);
   hash.add(heading);
   add(hash, goal);
+}
+
+void add(Hash& hash, const Disc& disc) {
+  const auto& [centre, radius] = disc;
+  hash.add("disc");
+  hash.add(centre);
+  hash.add(radius);
+}
+
+void add(Hash& hash, const Capsule& capsule) {
+  const auto& [from, to, radius] = capsule;
+  hash.add("capsule");
+  hash.add(from);
+  hash.add(to);
+  hash.add(radius);
+}
+
+void add(Hash& hash, const ConvexPolygon& polygon) {
+  const auto& [corners] = polygon;
+  hash.add("polygon");
+  hash.add(uint64_t{corners.size()});
+  for (const glm::vec2& corner : corners) hash.add(corner);
 }
 
 void add(Hash& hash, const Mound& mound) {
@@ -206,11 +233,12 @@ void add(Hash& hash, FileHashes& fileHashes, const Event& event) {
 uint64_t sceneHash(const Scene& scene, const Heightfield& terrain) {
   Hash hash;
   FileHashes fileHashes;
-  const auto& [name, source, herds, camera, events, seed] = scene;
+  const auto& [name, source, herds, camera, events, obstacles, seed] = scene;
   hash.add(seed);
   hash.add(uint64_t{herds.size()});
   for (const Herd& herd : herds) add(hash, fileHashes, herd);
   for (const Event& event : events) add(hash, fileHashes, event);
+  for (const auto& [shape] : obstacles) std::visit([&](const auto& each) { add(hash, each); }, shape);
   hash.add(uint64_t{terrain.columns});
   hash.add(terrain.spacingX);
   hash.add(terrain.spacingZ);

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include "assets/scenes/obstacles.h"
 #include "crowd/controllers/controllers.h"
 #include "crowd/events.h"
 #include "crowd/frame.h"
@@ -33,6 +34,7 @@
 #include "crowd/tint.h"
 #include "crowd/tuning.h"
 #include "crowd/watch.h"
+#include "crowd/ways/ways.h"
 #include "gpu/barrier.h"
 #include "gpu/context.h"
 #include "gpu/device_memory.h"
@@ -138,9 +140,10 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   crowd::setParameters(crowd, crowd::usualDt, kind);
   kind.reserves = from.reserve > 0;
   kind.avoids = from.avoid;
+  kind.wayNeeds = from.ways;
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
-  for (const Stage& stage : crowd::stagesOf(kind.controller, asked, kind.avoids))
+  for (const Stage& stage : crowd::stagesOf(kind.controller, asked, kind.avoids, kind.wayNeeds.has_value()))
     kind.stages.push_back({stage});
   return kind;
 }
@@ -170,6 +173,7 @@ void fill(Impl& crowd, uint32_t k, bool spawns = true) {
   crowd::Kind& kind = crowd.kinds[k];
   for (crowd::ReadyStage& stage : kind.stages)
     crowd::makeKernels({*crowd.context, crowd.options, kind}, stage);
+  crowd::beginWays(crowd, k);
   std::vector<crowd::Spawner> spawners;
   if (spawns)
     for (const crowd::HerdRun& of : crowd::runsOf(crowd, k))
@@ -197,6 +201,11 @@ std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, con
                      std::to_string(static_cast<int>(terrain.extentZ())) + " m, expected at most " +
                      std::to_string(static_cast<int>(2 * Scene::maxCoordinate)) +
                      " m a side; --scale or the scene's scale makes it smaller");
+  if (scene.obstacles.size() > Scene::maxObstacles)
+    throw inputError(fmt::format("{}: {} obstacles, expected at most {}", scene.name, scene.obstacles.size(),
+                                 Scene::maxObstacles));
+  for (size_t i = 0; i < scene.obstacles.size(); ++i)
+    scenes::checkObstacle(scene.obstacles[i], fmt::format("{}: obstacles[{}]", scene.name, i));
   crowd.terrain = terrain;
   crowd.heights = gpu::Image(
       context, {vk::Format::eR32Sfloat, {terrain.columns, terrain.rows}, vk::ImageUsageFlagBits::eSampled},
@@ -352,6 +361,7 @@ std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
   fillAll(crowd, false);
   warmUp(crowd, crowd.kinds);
   crowd::restore(crowd, state);
+  crowd::leadEverybody(crowd);
   return made;
 }
 
@@ -493,6 +503,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   const vk::CommandBuffer cmd(commandBuffer);
   crowd::setTick(crowd, dt);
   crowd::letEventsHappen(*this);
+  if (!crowd.edits.empty()) crowd::renewWays(crowd);
   const uint64_t tick = ++crowd.tick;
   crowd.agentsInTick = agentCount();
 

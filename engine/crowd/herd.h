@@ -17,6 +17,7 @@
 #include "crowd/size_run.h"
 #include "crowd/stage.h"
 #include "crowd/tuning.h"
+#include "crowd/ways/fields.h"
 #include "gpu/buffer.h"
 #include "gpu/image.h"
 #include "gpu/kernel.h"
@@ -53,6 +54,7 @@ struct Kind {
   uint64_t agents = 0;                // places for them
   bool reserves = false;              // places may be empty
   bool avoids = false;                // stages after avoid go by its velocity
+  std::optional<Ways> wayNeeds;       // where its herds find their way
   int herdSteps = 0;                  // 2 to their power is at least the number of herds in a page
   float size = 1;                     // of its creatures, times the rig that was loaded
   Rig rig;                            // of that size
@@ -73,7 +75,8 @@ struct Kind {
   gpu::Buffer rigBuffer;
   std::vector<ReadyStage> stages;  // of the controller, those that were asked for
   std::vector<Page> pages;
-  AgentChanges changes;  // for the next tick
+  std::unique_ptr<WayFields> ways;  // where its herds find their way, once it has agents
+  AgentChanges changes;             // for the next tick
 
   // The place among the kind's herds of the one that an agent is of.
   uint32_t herdOf(uint64_t agent) const;

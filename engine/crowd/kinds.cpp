@@ -17,8 +17,8 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, phase, colour, tint] = herd;
-  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid),
+               sizes, avoid, ways, phase, colour, tint] = herd;
+  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways),
                         std::tuple(reserve > 0));
 }
 
@@ -43,7 +43,7 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
   if (kinds.firstHerds.size() > mostKinds)
     throw inputError(fmt::format(
         "{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning, "
-        "avoid or size, expected at most {}: each of them, and each size of one, has pipelines of its "
+        "avoid, ways or size, expected at most {}: each of them, and each size of one, has pipelines of its "
         "own; equal herds share them, whatever their agents, spawn and goal",
         scene.name, kinds.firstHerds.size(), mostKinds));
   return kinds;
@@ -60,6 +60,17 @@ void checkSpawn(const Spawn& spawn, const std::string& what) {
   expectWithin(name, "spawn.centre x", double{spawn.centre.x}, -most, most, "m");
   expectWithin(name, "spawn.centre z", double{spawn.centre.y}, -most, most, "m");
   expectWithin(name, "spawn.heading", double{spawn.heading}, -1000, 1000, "radians");
+}
+
+// The ranges of a scene file.
+void checkWays(const Ways& ways, const std::string& what) {
+  const auto expect = [&](const char* key, float value, float least, float most) {
+    if (!(value >= least && value <= most))
+      throw inputError(fmt::format("{}: ways.{} is {}, expected {} to {}", what, key, value, least, most));
+  };
+  expect("climb", ways.climb, 0, Ways::maxClimb);
+  expect("steepest", ways.steepest, Ways::minLimit, Ways::maxLimit);
+  expect("step", ways.step, Ways::minLimit, Ways::maxLimit);
 }
 
 }  // namespace
@@ -81,6 +92,7 @@ void checkHerd(const skitter::Herd& herd, const std::string& what) {
         fmt::format("{}: {} agents and reserve, expected at most {}", what, places, Scene::maxAgents));
   checkSpawn(herd.spawn, what);
   expectGoal([&] { return what; }, herd.goal);
+  if (herd.ways) checkWays(*herd.ways, what);
   if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
     throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
   if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))

@@ -66,6 +66,8 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Kind& kind, const Page& p
       return {binding, &crowd.grid->places};
     case BINDING_WALKER:
       return {binding, &crowd.grid->walkers};
+    case BINDING_WAY:
+      return {binding, &kind.ways->records()};
     case BINDING_CROWDING:
       return {binding, &crowd.grid->crowding};
     default:

@@ -50,13 +50,15 @@ void addParameters(const shared::Parameters& parameters, gpu::KernelInfo& info) 
 #undef ADD_KNOWN
 }
 
+bool isNavigate(const Stage& stage) { return stage.makes == StageId::navigate; }
+
 }  // namespace
 
 bool keepsFeet(const CrowdOptions& options) {
   return options.feet || options.measure || options.footfalls > 0;
 }
 
-std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids) {
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids, bool findsWays) {
   const ControllerStages& of = controllerStages(controller);
   std::vector<Stage> stages = of.all(options);
   std::erase_if(stages, [&](const Stage& stage) {
@@ -64,7 +66,9 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
         allStages, [&](StageId id) { return stage.makes.has(id) && !isAskedFor(id, options, avoids); });
   });
   if (options.fuse && of.fused != nullptr)
-    for (const Stage& fused : of.fused()) fuse(options, fused, stages);
+    for (const Stage& fused : of.fused())
+      if (!findsWays || !fused.makes.has(StageId::navigate)) fuse(options, fused, stages);
+  if (findsWays) std::ranges::replace_if(stages, isNavigate, wayNavigateStage());
   for (Stage& stage : stages)
     if (stage.isOfTheAwake()) stage.bindings.push_back({shared::BINDING_AWAKE, gpu::BindingKind::load4});
   return stages;

@@ -55,7 +55,9 @@ struct ReadyStage : Stage {
 bool keepsFeet(const CrowdOptions& options);
 
 // A controller's stages, in order, less those that make what nobody asked for. `avoids`: the herd does.
-std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids = false);
+// `findsWays`: it goes by fields.
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids = false,
+                            bool findsWays = false);
 StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs);
 // Makes the pipelines, for the kind's rig, controller and tuning.
 void makeKernels(const StageNeeds& needs, ReadyStage& stage);
@@ -72,6 +74,7 @@ void addRigLegs(const Kind& kind, gpu::KernelInfo& info);
 SKITTER_STAGES(SKITTER_STAGE)
 #undef SKITTER_STAGE
 // Forms for single controllers, and fused stages, in the file of their last stage.
+Stage wayNavigateStage();
 Stage blindBodyStage();
 Stage bodyAndGaitStage();
 Stage navigateBodyAndGaitStage();

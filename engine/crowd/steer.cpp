@@ -1,9 +1,14 @@
 // What the host says while a crowd runs; engine/crowd/changes.h carries it to the device.
 #include <fmt/format.h>
 
+#include <map>
+#include <span>
+#include <vector>
+
 #include "crowd/page.h"
 #include "crowd/spawn.h"
 #include "crowd/steer.h"
+#include "crowd/ways/ways.h"
 #include "skitter/crowd.h"
 #include "skitter/error.h"
 
@@ -49,8 +54,20 @@ AgentChange& changeOf(Crowd::Impl& crowd, const SizeRun& run, uint32_t agent) {
   return kind.changes.of(run.ofKind(agent), kind.agents);
 }
 
+std::map<uint32_t, std::vector<Goal>> goalsByHerd(std::span<const AgentGoal> goals) {
+  std::map<uint32_t, std::vector<Goal>> byHerd;
+  for (const auto& [id, goal] : goals) byHerd[id.herd()].push_back(goal);
+  return byHerd;
+}
+
 void expectReserve(const crowd::Herd& herd, uint32_t number) {
   crowd::expectReserve([&] { return nameOf(number); }, herd.from.reserve > 0);
+}
+
+// Fields for the goals of one agent, some or all of a herd.
+void lead(Crowd::Impl& crowd, const crowd::Herd& herd, std::span<const Goal> goals, uint32_t number) {
+  for (const SizeRun& run : herd.runs)
+    crowd::leadTo(crowd, herd, run, goals, [&] { return nameOf(number); });
 }
 
 // Sets goals of a herd's agents that have one size.
@@ -90,6 +107,7 @@ void setSpeedOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agent, flo
 void Crowd::steer(uint32_t number, const Goal& goal) {
   const crowd::Herd& herd = impl_->presentHerdAt(number);
   expectGoal([&] { return nameOf(number); }, goal);
+  lead(*impl_, herd, std::span(&goal, 1), number);
   steerAll(*impl_, herd, [&](uint32_t) -> const Goal& { return goal; });
 }
 
@@ -97,6 +115,7 @@ void Crowd::steer(uint32_t number, std::span<const Goal> goals) {
   const crowd::Herd& herd = impl_->presentHerdAt(number);
   expectOneEach(herd, number, goals.size(), "goals");
   forEach(herd, [&](uint32_t agent) { expectGoal([&] { return nameOf(number, agent); }, goals[agent]); });
+  lead(*impl_, herd, goals, number);
   steerAll(*impl_, herd, [&](uint32_t agent) -> const Goal& { return goals[agent]; });
 }
 
@@ -105,6 +124,8 @@ void Crowd::steer(std::span<const AgentGoal> goals) {
     expectSomebody(*impl_, id);
     expectGoal([&] { return nameOf(id.herd(), id.agent()); }, goal);
   }
+  for (const auto& [number, wanted] : goalsByHerd(goals))
+    lead(*impl_, impl_->herds[number], wanted, number);
   for (const auto& [id, goal] : goals) {
     const crowd::Herd& herd = impl_->herds[id.herd()];
     Steerer(*impl_, herd, herd.runOf(id.agent())).steer(id.agent(), goal);
@@ -185,6 +206,7 @@ AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
         fmt::format("herd {}: all of its {} places are taken, expected an empty one: a larger reserve "
                     "has more",
                     number, herd.agents));
+  crowd::leadTo(*impl_, herd, herd.runOf(*empty), std::span(&goal, 1), name);
   herd.presence.come(*empty);
   const SizeRun& run = herd.runOf(*empty);
   AgentChange& change = changeOf(*impl_, run, *empty);

@@ -45,6 +45,9 @@ BINDING BINDING_PLACE = 67;
 BINDING BINDING_WALKER = 68;
 BINDING BINDING_CROWDING = 69;  // CROWDING_
 
+// The fields of herds that find their way (shared/ways.h).
+BINDING BINDING_WAY = 70;
+
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
 BINDING CONSTANT_BONES = 1;

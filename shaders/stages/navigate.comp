@@ -7,6 +7,10 @@ STORE4_BUFFER(BINDING_GOAL_OUT, goalsOut);
 STORE4_BUFFER(BINDING_STEER_OUT, steersOut);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_GAIT, gaits);
+#ifdef WAYS
+#include "shared/ways.h"
+LOAD4_BUFFER(BINDING_WAY, ways);
+#endif
 #include "stages/navigate.glsl"
 #include "stages/absent.glsl"
 layout(constant_id = CONSTANT_SLEEP) const int SLEEP = SLEEP_NEVER;

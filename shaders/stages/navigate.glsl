@@ -4,10 +4,42 @@
 #include "lib/navigate.glsl"
 #include "lib/rarely.glsl"
 
+#ifdef WAYS
+#include "lib/ways.glsl"
+
+// The number of the field of that goal; that of the fields where it has none.
+int fieldOf(vec2 target) {
+  int fields = int(LOAD4(ways, 0).x), found = fields;
+  for (int k = 0; k < fields; ++k)
+    if (LOAD4(ways, WAY_HEADS + k).xy == target) found = k;
+  return found;
+}
+
+// `straight`, or the velocity along the way where a field leads to the goal.
+vec2 alongWay(vec2 position, vec4 manner, vec4 ends, vec2 straight) {
+  vec4 shape = LOAD4(ways, 0);
+  int field = fieldOf(ends.xy);
+  if (manner.z != GOAL_POINT || field >= int(shape.x)) return straight;
+  vec2 stop = LOAD4(ways, WAY_HEADS + field).zw;
+  vec2 apart = stop - position;
+  vec4 near = vec4(stop, ends.zw);
+  if (dot(apart, apart) < WAY_STRAIGHT * WAY_STRAIGHT * shape.w * shape.w)
+    return navigate(parameters, position, manner, near);
+  vec2 u = clamp((position - LOAD4(ways, 1).xy) / shape.w - 0.5, vec2(0.0), shape.yz - 1.0);
+  vec2 i = min(floor(u), shape.yz - 2.0);
+  int cells = int(shape.y) * int(shape.z), cell = int(i.y) * int(shape.y) + int(i.x);
+  vec4 times = LOAD4(ways, WAY_TIMES + field * cells + cell);
+  return turnedBack(parameters, position, downhill(parameters, manner.xy, times, u - i));
+}
+#endif
+
 vec2 makeVelocity(int agent, vec2 position) {
   vec4 ends = LOAD4(goals, agent * GOAL_STRIDE), manner = LOAD4(goals, agent * GOAL_STRIDE + 1);
   vec4 swapped = ends;
   vec2 velocity = navigate(parameters, position, manner, swapped);
+#ifdef WAYS
+  velocity = alongWay(position, manner, ends, velocity);
+#endif
   RARELY(swapped != ends) STORE4(goalsOut, agent * GOAL_STRIDE, swapped);
   return velocity;
 }

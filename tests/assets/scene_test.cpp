@@ -154,6 +154,25 @@ TEST(Scene, EventsOfEveryKind) {
   for (size_t e = 0; e < expected.size(); ++e) EXPECT_TRUE(scene.events[e] == expected[e]) << e;
 }
 
+TEST(Scene, ObstaclesOfEveryShape) {
+  const Scene scene = parseScene(R"({
+    "obstacles": [{"disc": {"centre": [1, -2], "radius": 3}},
+                  {"capsule": {"from": [0, 1], "to": [4, 5], "radius": 0.5}},
+                  {"polygon": {"corners": [[0, 0], [0, 2], [2, 2], [2, 0]]}}],
+    "herds": [{"ways": {}}, {"ways": {"climb": 0, "steepest": 2, "step": 0.1}}, {}]
+  })",
+                                 "walls.json", "");
+  const std::vector<Obstacle> expected{
+      {Disc{.centre = {1, -2}, .radius = 3}},
+      {Capsule{.from = {0, 1}, .to = {4, 5}, .radius = 0.5f}},
+      {ConvexPolygon{.corners = {{0, 0}, {0, 2}, {2, 2}, {2, 0}}}},
+  };
+  EXPECT_EQ(scene.obstacles, expected);
+  EXPECT_EQ(scene.herds[0].ways, Ways{});
+  EXPECT_EQ(scene.herds[1].ways, (Ways{.climb = 0, .steepest = 2, .step = 0.1f}));
+  EXPECT_FALSE(scene.herds[2].ways);
+}
+
 TEST(Scene, LooksOfAHerd) {
   const auto herd = [](const char* keys) {
     return parseScene(fmt::format(R"({{"herds": [{{{}}}]}})", keys), "looks.json", "").herds.at(0);
@@ -291,6 +310,28 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": [{"removeHerd": 1024}]})",
        "events[0].removeHerd is 1024, expected a whole number from 0 to 1023"},
       {R"({"events": [{"removeHerd": 1, "addHerd": {}}]})", "events[0] has 2 of mound, edit, goal"},
+      {R"({"herds": [{"ways": true}]})", "herds[0].ways is true, expected an object"},
+      {R"({"herds": [{"ways": {"climb": -1}}]})", "herds[0].ways.climb is -1, expected a number from 0 to 100"},
+      {R"({"herds": [{"ways": {"steepest": 0}}]})", "herds[0].ways.steepest is 0"},
+      {R"({"herds": [{"ways": {"stp": 1}}]})", "herds[0].ways.stp is no known key; did you mean step?"},
+      {R"({"obstacles": {}})", "obstacles is an object, expected an array of at most 4096 obstacles"},
+      {R"({"obstacles": [{}]})", "obstacles[0] has 0 of disc, capsule, polygon, expected one"},
+      {R"({"obstacles": [{"disc": {"radius": 0}}]})",
+       "obstacles[0].disc.radius is 0, expected a number from 0.01 to 4096"},
+      {R"({"obstacles": [{"disc": {"centre": [0, 4097]}}]})", "obstacles[0].disc.centre[1] is 4097"},
+      {R"({"obstacles": [{"capsule": {"radius": -1}}]})", "obstacles[0].capsule.radius is -1"},
+      {R"({"obstacles": [{"capsule": {"form": [0, 1]}}]})",
+       "obstacles[0].capsule.form is no known key; did you mean from?"},
+      {R"({"obstacles": [{"polygon": {}}]})", "obstacles[0].polygon.corners has 0, expected 3 to 64"},
+      {R"({"obstacles": [{"polygon": {"corners": [[0, 0], [1, 0, 2]]}}]})",
+       "obstacles[0].polygon.corners[1] is an array of 3, expected an array of 2 numbers"},
+      {R"({"obstacles": [{"polygon": {"corners": [[0, 0], [1, 0], [2, 0]]}}]})",
+       "obstacles[0].polygon.corners is not convex: [2] is on the wrong side of the edge from [0] to [1]"},
+      {R"({"obstacles": [{"disc": {}}, {"polygon": {"corners": [[0, 0], [4, 0], [1, 1], [0, 4]]}}]})",
+       "obstacles[1].polygon.corners is not convex: [0] is on the wrong side of the edge from [1] to [2]"},
+      // A star turns one way at every corner.
+      {R"({"obstacles": [{"polygon": {"corners": [[0, 10], [6, -8], [-9, 3], [9, 3], [-6, -8]]}}]})",
+       "obstacles[0].polygon.corners is not convex"},
       {R"({"seed": 1, "seed": 2})", "\"seed\" appears twice"},
       {R"({"seed": NaN})", "line 1"},
       {"", "not valid JSON"},
@@ -356,7 +397,7 @@ class RandomScenes {
 
   Scene scene() {
     Scene made;
-    auto& [name, terrain, herds, camera, events, seed] = made;
+    auto& [name, terrain, herds, camera, events, obstacles, seed] = made;
     name = text();
     terrain = coin() ? decltype(Scene::terrain)(noise()) : terrainFile();
     herds.resize(whole(0, 3));
@@ -368,6 +409,8 @@ class RandomScenes {
       at = last += real(0, 5);
       what = happening();
     }
+    obstacles.resize(whole(0, 3));
+    for (auto& [shape] : obstacles) shape = this->shape();
     seed = random_();
     return made;
   }
@@ -394,6 +437,36 @@ class RandomScenes {
     if (coin()) value = static_cast<Value>(real(least, most));
   }
 
+  decltype(Obstacle::shape) shape() {
+    switch (whole(0, 2)) {
+      case 0: {
+        Disc made;
+        auto& [centre, radius] = made;
+        centre = place();
+        radius = real(0.01, 4096);
+        return made;
+      }
+      case 1: {
+        Capsule made;
+        auto& [from, to, radius] = made;
+        from = place();
+        to = place();
+        radius = real(0, 4096);
+        return made;
+      }
+      default: {
+        ConvexPolygon made;
+        auto& [corners] = made;
+        const glm::vec2 centre(real(-4000, 4000), real(-4000, 4000));
+        const auto count = static_cast<int>(whole(3, 8));
+        for (int i = 0; i < count; ++i) {
+          const float angle = static_cast<float>(i) * 6.2831853f / static_cast<float>(count);
+          corners.push_back(centre + 50.0f * glm::vec2(std::cos(angle), std::sin(angle)));
+        }
+        return made;
+      }
+    }
+  }
   TerrainNoise noise() {
     TerrainNoise made;
     auto& [columns, rows, spacing, amplitude, wavelength, octaves, gain, seed] = made;
@@ -447,7 +520,7 @@ class RandomScenes {
   Herd herd() {
     Herd made;
     auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-           avoid, phase, colour, tint] = made;
+           avoid, ways, phase, colour, tint] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -469,6 +542,7 @@ class RandomScenes {
     sizes.resize(whole(0, Herd::maxSizes));
     for (float& size : sizes) size = real(0.1, 10);
     avoid = coin();
+    if (coin()) ways = {real(0, 100), real(0.01, 100), real(0.01, 100)};
     maybe(phase, 0, 1);
     if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
     maybe(tint, 0, 1);

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <type_traits>
 
 #include "assets/files/file.h"
 #include "assets/files/json.h"
 #include "assets/heights/heightfield_limits.h"
+#include "assets/scenes/obstacles.h"
 #include "assets/scenes/scene_reader.h"
 #include "assets/scenes/scene_writer.h"
 #include "embedded/crossing_json.h"
@@ -113,9 +115,50 @@ void checkKeys(const Goal& goal, const std::string& file, const std::string& pat
 }
 
 template <class Fields>
+void keysOf(Fields& fields, Ways& ways) {
+  auto& [climb, steepest, step] = ways;
+  fields.key("climb", climb, 0, Ways::maxClimb);
+  fields.key("steepest", steepest, Ways::minLimit, Ways::maxLimit);
+  fields.key("step", step, Ways::minLimit, Ways::maxLimit);
+}
+
+template <class Fields>
+void keysOf(Fields& fields, Disc& disc) {
+  auto& [centre, radius] = disc;
+  fields.key("centre", centre, Scene::maxCoordinate);
+  fields.key("radius", radius, Disc::minRadius, Scene::maxCoordinate);
+}
+template <class Fields>
+void keysOf(Fields& fields, Capsule& capsule) {
+  auto& [from, to, radius] = capsule;
+  fields.key("from", from, Scene::maxCoordinate);
+  fields.key("to", to, Scene::maxCoordinate);
+  fields.key("radius", radius, 0, Scene::maxCoordinate);
+}
+template <class Fields>
+void keysOf(Fields& fields, ConvexPolygon& polygon) {
+  auto& [corners] = polygon;
+  fields.places("corners", corners, ConvexPolygon::maxCorners, Scene::maxCoordinate);
+}
+// The keys of an obstacle, of which `key` says what it is.
+template <class Fields, class Shape>
+  requires std::is_same_v<Shape, Disc> || std::is_same_v<Shape, Capsule> || std::is_same_v<Shape, ConvexPolygon>
+void keysOf(Fields& fields, const char* key, Shape& shape) {
+  fields.object(key, shape);
+}
+template <class Fields>
+void keysOf(Fields& fields, Obstacle& obstacle) {
+  auto& [shape] = obstacle;
+  fields.oneOf({"disc", "capsule", "polygon"}, shape);
+}
+void checkKeys(const Obstacle& obstacle, const std::string& file, const std::string& path) {
+  checkObstacle(obstacle, fmt::format("{}: {}", file, path));
+}
+
+template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
   auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-         avoid, phase, colour, tint] = herd;
+         avoid, ways, phase, colour, tint] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -130,6 +173,7 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.object("goal", goal);
   fields.key("sizes", sizes, Herd::maxSizes, Herd::minSize, Herd::maxSize);
   fields.key("avoid", avoid);
+  fields.object("ways", ways);
   fields.phase("phase", phase);
   fields.colour("colour", colour);
   fields.key("tint", tint, 0, 1);
@@ -299,13 +343,14 @@ void checkKeys(const Event& event, const std::string& file, const std::string& p
 
 template <class Fields>
 void keysOf(Fields& fields, Scene& scene) {
-  auto& [name, terrain, herds, camera, events, seed] = scene;
+  auto& [name, terrain, herds, camera, events, obstacles, seed] = scene;
   fields.key("name", name);
   fields.integer("seed", seed, 0, UINT64_MAX);
   fields.object("terrain", terrain);
   fields.objects("herds", herds, Scene::maxHerds, "herds");
   fields.object("camera", camera);
   fields.objects("events", events, Scene::maxEvents, "events");
+  fields.objects("obstacles", obstacles, Scene::maxObstacles, "obstacles");
 }
 void checkKeys(const Scene& scene, const std::string& file, const std::string&) {
   for (size_t e = 1; e < scene.events.size(); ++e)

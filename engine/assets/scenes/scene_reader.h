@@ -126,6 +126,22 @@ class Reader {
       values.push_back(static_cast<float>(number(item, path, least, most)));
     }
   }
+  // x, z of each.
+  void places(const char* key, std::vector<glm::vec2>& values, size_t mostValues, double limit) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_array() || json->size() > mostValues)
+      fail(pathOf(key), *json, fmt::format("an array of at most {} places", mostValues));
+    values.clear();
+    for (const nlohmann::json& item : *json) {
+      const std::string path = fmt::format("{}[{}]", pathOf(key), values.size());
+      if (!item.is_array() || item.size() != 2) fail(path, item, "an array of 2 numbers");
+      const auto coordinate = [&](size_t i) {
+        return static_cast<float>(number(item[i], fmt::format("{}[{}]", path, i), -limit, limit));
+      };
+      values.emplace_back(coordinate(0), coordinate(1));
+    }
+  }
   // Whole numbers from 0 on, at least one: a missing key means something else than none.
   void integers(const char* key, std::vector<uint32_t>& values, size_t mostValues, uint32_t most) {
     const auto* json = find(key);

@@ -73,6 +73,17 @@ class Writer {
     for (const float value : values)
       array.push_back(number(value, fmt::format("{}[{}]", pathOf(key), array.size()), least, most));
   }
+  void places(const char* key, const std::vector<glm::vec2>& values, size_t mostValues, double limit) {
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    expectAtMost(mostValues, values.size(), key);
+    for (const glm::vec2& value : values) {
+      const std::string path = fmt::format("{}[{}]", pathOf(key), array.size());
+      const auto coordinate = [&](int i) {
+        return number(value[i], fmt::format("{}[{}]", path, i), -limit, limit);
+      };
+      array.push_back(nlohmann::ordered_json::array({coordinate(0), coordinate(1)}));
+    }
+  }
   void integers(const char* key, const std::vector<uint32_t>& values, size_t mostValues, uint32_t most) {
     if (values.empty()) return;
     nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();

@@ -1,6 +1,8 @@
 #include "crowd/stage.h"
 #include "embedded/navigate_comp_storage.h"
 #include "embedded/navigate_comp_texel.h"
+#include "embedded/navigate_ways_comp_storage.h"
+#include "embedded/navigate_ways_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -17,6 +19,13 @@ Stage navigateStage() {
            {BINDING_BODY, load4},
            {BINDING_GAIT, load4}},
           Stage::Over::everyone};
+}
+
+Stage wayNavigateStage() {
+  Stage stage = navigateStage();
+  stage.code = {embedded::navigate_ways_comp_texel(), embedded::navigate_ways_comp_storage()};
+  stage.bindings.push_back({shared::BINDING_WAY, gpu::BindingKind::load4});
+  return stage;
 }
 
 }  // namespace skitter::crowd

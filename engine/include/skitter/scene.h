@@ -14,6 +14,7 @@
 #include "skitter/heightfield.h"
 #include "skitter/solver.h"
 #include "skitter/tuning.h"
+#include "skitter/ways.h"
 
 namespace skitter {
 
@@ -77,6 +78,8 @@ struct Herd {
   std::vector<float> sizes = {};
   // Whether its agents keep clear of those near them, of all herds (docs/stages/avoid.md).
   bool avoid = false;
+  // Where its agents go to a goal of kind point around obstacles and impassable ground (docs/ways.md).
+  std::optional<Ways> ways = {};
   // Where in the cycle of its gait or clip each agent begins, 0 to 1; none: drawn by the seed.
   std::optional<float> phase = {};
   // The herd's colour: each of the model's becomes this one, lighter or darker as it was. Linear RGB, 0 to 1;
@@ -219,7 +222,7 @@ struct Event {
 };
 
 struct SKITTER_API Scene {
-  static constexpr size_t maxHerds = 1024, maxEvents = 4096;
+  static constexpr size_t maxHerds = 1024, maxEvents = 4096, maxObstacles = 4096;
   static constexpr uint32_t maxAgents = 1 << 24;  // of all herds: records hold an agent's index as a float
   static constexpr float maxCoordinate = 4096;  // metres from the origin: feet beyond are placed too coarsely
 
@@ -227,7 +230,8 @@ struct SKITTER_API Scene {
   std::variant<TerrainNoise, TerrainFile> terrain;
   std::vector<Herd> herds{Herd{}};
   Camera camera;
-  std::vector<Event> events;  // by time; Crowd::record lets them happen
+  std::vector<Event> events;        // by time; Crowd::record lets them happen
+  std::vector<Obstacle> obstacles;  // herds with ways go around them
   uint64_t seed = 1;
 
   Heightfield loadTerrain() const;  // throws Error(input)

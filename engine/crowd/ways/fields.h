@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "crowd/ways/stops.h"
+#include "gpu/buffer.h"
+#include "gpu/kernel.h"
+#include "shared/ways.h"
+#include "skitter/ways.h"
+
+namespace skitter::crowd {
+
+// A cost grid and the fields of some goals on the device (docs/ways.md). What changes them waits for the device.
+class WayFields {
+ public:
+  // Of no goals.
+  WayFields(const gpu::Context& context, CostGrid grid);
+
+  // All fields are solved anew.
+  void setGrid(CostGrid grid);
+  // Solves fields of `targets`, of which none has one, where they are finite and room is for them: at most
+  // shared::MOST_WAYS goals less those in `kept`. Fields of goals that are not in `kept` may be dropped.
+  void add(std::span<const glm::vec2> targets, std::span<const glm::vec2> kept);
+  // Those that add() did not drop.
+  std::vector<glm::vec2> goals() const;
+  bool has(const glm::vec2& target) const;
+
+  const CostGrid& grid() const { return grid_; }
+  const Regions& regions() const { return regions_; }
+  // Stops of a goal that has a field.
+  const Stops& stopsAt(const glm::vec2& target) const;
+  // BINDING_WAY; another buffer whenever moves() is another number.
+  const gpu::Buffer& records() const { return records_; }
+  // Counts changes of any kind.
+  uint32_t revision() const { return revision_; }
+  uint32_t moves() const { return moves_; }
+  // Times at the middles of the cells, of a goal that has a field.
+  std::vector<float> times(const glm::vec2& target) const;
+
+ private:
+  struct Field {
+    glm::vec2 target;
+    Stops stops;
+  };
+  size_t cells() const { return grid_.cost.size(); }
+  size_t indexOf(const glm::vec2& target) const;
+  shared::WayConstants constantsOf(size_t first, bool inside) const;
+  void makeRoom(uint32_t fields);
+  void uploadCosts() const;
+  void uploadHeads() const;
+  void solve(std::span<const size_t> fields);
+
+  const gpu::Context* context_;
+  CostGrid grid_;
+  Regions regions_;
+  std::vector<Field> fields_;
+  uint32_t room_ = 0, revision_ = 0, moves_ = 0;
+  gpu::Buffer costs_, times_, states_, records_;
+  gpu::Kernel solve_, gather_;
+  gpu::Bindings solveBindings_, gatherBindings_;
+};
+
+}  // namespace skitter::crowd

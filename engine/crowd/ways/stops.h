@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "skitter/ways.h"
+
+namespace skitter::crowd {
+
+// The regions of a grid without its impassable cells: the number of each cell's, from 0 on.
+struct Regions {
+  static constexpr uint32_t none = UINT32_MAX;  // of an impassable cell
+
+  std::vector<uint32_t> of;
+  uint32_t count = 0;
+};
+Regions regionsOf(const CostGrid& grid);
+
+// Where agents stop who have a goal (docs/ways.md).
+struct Stops {
+  struct Cell {
+    size_t cell;
+    float time;
+  };
+  std::vector<Cell> cells;        // where times are given
+  glm::vec2 stop{0};              // the goal, or the nearest of the cells' middles
+  uint32_t region = Regions::none;    // that the goal is in
+};
+// None where no cell is passable. `goal` is finite.
+std::optional<Stops> stopsOf(const CostGrid& grid, const Regions& regions, const glm::vec2& goal);
+
+// The cell of a place, or the nearest one.
+size_t cellAt(const CostGrid& grid, const glm::vec2& place);
+
+}  // namespace skitter::crowd

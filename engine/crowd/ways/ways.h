@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "crowd/herd.h"
+
+// How the kinds of a crowd come to their fields (docs/ways.md).
+namespace skitter::crowd {
+
+// The kind's grid, and the fields of the goals that its herds have and that events of the scene name, as far
+// as there is room. Before its pages are made, which bind them. Of a kind whose herds find no way: nothing.
+void beginWays(Crowd::Impl& crowd, uint32_t kind);
+
+// Fields for goals that agents of a run are about to have. Waits for the device where one is new. Throws
+// Error(input) where all fields are of goals that agents have; `name` makes the text that says who it is about.
+void leadTo(Crowd::Impl& crowd, const Herd& herd, const SizeRun& run, std::span<const Goal> goals,
+            const std::function<std::string()>& name);
+
+// Fields for the goals that all agents have, as their records say, as far as there is room.
+void leadEverybody(Crowd::Impl& crowd);
+
+// All grids and fields, for the ground as it is. Waits for the device.
+void renewWays(Crowd::Impl& crowd);
+
+}  // namespace skitter::crowd
