@@ -10,6 +10,27 @@ namespace {
 
 namespace tolerance = reference::tolerance;
 
+double cellOf(const Setting& setting) { return setting.ways.front().cell; }
+
+double wayBound(const Setting& setting, const reference::WayResult& way) {
+  return tolerance::wayVelocity(setting.extent, cellOf(setting), way, setting.tuning.slowRadius);
+}
+
+// Ties of the way: choices 0 to 15 take one side or the other of each.
+void decideWay(const Setting& setting, const reference::WayResult& way, double arrivalRadius, int choice,
+               reference::WayChoices& choices) {
+  const double cell = cellOf(setting), place = tolerance::wayPlace(setting.extent, cell);
+  if (way.straightMargin < tolerance::goalDistance(setting.extent) + 8 * tolerance::roundoff * cell)
+    choices.straight = choice & 1;
+  if (way.stopMargin < tolerance::wayTime(setting.extent, cell, way.rise, arrivalRadius))
+    choices.stops = choice >> 1 & 1;
+  for (int axis = 0; axis < 2; ++axis) {
+    if ((choice >> (2 + axis) & 1) == 0) continue;
+    if (way.lowerMargin[axis] < place) choices.besides[axis] = -1;
+    if (way.upperMargin[axis] < place) choices.besides[axis] = 1;
+  }
+}
+
 Sample compare(const Setting& setting, const Moment& moment, const reference::AgentBody& body,
                const reference::NavigateResult& expected) {
   const reference::Goal got = goalOf(moment.after, moment.agent);
@@ -21,11 +42,13 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
   sample.same("goal kind", static_cast<double>(expected.goal.kind), static_cast<double>(got.kind));
   const bool given = expected.goal.kind == reference::GoalKind::velocity;
   const double speed = std::max(given ? glm::length(expected.desired) : expected.goal.speed, 1e-6);
-  const double distance = glm::length(expected.goal.target - body.world());
+  const auto& way = expected.way;
+  const double distance = way ? way->away : glm::length(expected.goal.target - body.world());
   sample.same("asleep", expected.asleep, records(moment.after.steer, moment.agent, shared::STEER_STRIDE)[2]);
   sample.compare("desired velocity / speed", glm::length(desired - expected.desired) / speed,
-                 given ? 8 * tolerance::roundoff
-                       : tolerance::desiredVelocity(setting.extent, distance, setting.tuning.slowRadius),
+                 way && !way->straight ? wayBound(setting, *way)
+                 : given               ? 8 * tolerance::roundoff
+                         : tolerance::desiredVelocity(setting.extent, distance, setting.tuning.slowRadius),
                  {expected.desired, 0, 0}, {desired, 0, 0});
   return sample;
 }
@@ -41,7 +64,7 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
                              .edited = moment.after.watched,
                              .breathes = setting.controller == Controller::adaptive};
   const auto run = [&](const reference::NavigateChoices& choices) {
-    return reference::navigate(tuning, body, goal, rest, choices);
+    return reference::navigate(tuning, body, goal, rest, choices, setting.ways);
   };
   const reference::NavigateResult result = run({});
   const Sample sample = compare(setting, moment, body, result);
@@ -51,16 +74,18 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
   const double breath = tolerance::breathedOut(tuning, rest.gait);
   // A sleeper decides again and again what it fell asleep by: that is one tie.
   const bool slept = mayRest(moment.before, moment.agent) && mayRest(moment.after, moment.agent);
-  for (int choice = 0; choice < 32; ++choice) {
+  for (int choice = 0; choice < (result.way ? 512 : 32); ++choice) {
     reference::NavigateChoices choices;
+    if (result.way) decideWay(setting, *result.way, goal.arrivalRadius, choice >> 5, choices.way);
     const auto bit = [&](int i) { return choice >> i & 1; };
     if (result.arrivalMargin < near) choices.arrived = bit(0);
     for (int axis = 0; axis < 2; ++axis) {
       if (result.edgeMargin[axis] < near) choices.turnedBack[axis] = bit(1 + axis);
     }
     const reference::NavigateResult steered = run(choices);
-    const double stands = tolerance::stands(setting.extent, glm::length(steered.desired), tuning.slowRadius,
-                                            1e-2 * tuning.legLength);
+    double stands = tolerance::stands(setting.extent, glm::length(steered.desired), tuning.slowRadius,
+                                      1e-2 * tuning.legLength);
+    if (steered.way && !steered.way->straight) stands += goal.speed * wayBound(setting, *steered.way);
     if (steered.standMargin < stands) choices.stands = bit(3);
     if (steered.breathMargin < breath) choices.breathedOut = bit(4);
     const Sample other = compare(setting, moment, body, run(choices));

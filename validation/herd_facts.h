@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "crowd/grid.h"
 #include "crowd/herd.h"
@@ -13,11 +14,31 @@
 // Apart from replay.h, which does without a device.
 namespace skitter::validation {
 
+// The fields of a kind. Waits for the device.
+inline std::vector<reference::Way> waysOf(const crowd::Kind& kind) {
+  std::vector<reference::Way> all;
+  if (!kind.ways) return all;
+  const CostGrid& grid = kind.ways->grid();
+  for (const glm::vec2& goal : kind.ways->goals()) {
+    const std::vector<float> times = kind.ways->times(goal);
+    all.push_back({.goal = goal,
+                   .stop = kind.ways->stopsAt(goal).stop,
+                   .columns = grid.columns,
+                   .rows = grid.rows,
+                   .cell = grid.cell,
+                   .origin = grid.origin,
+                   .times = {times.begin(), times.end()}});
+  }
+  return all;
+}
+
 // The facts of a herd's kind. Call it once the tick length is known: the parameters are complete only then.
 // The facts refer to the kind's rig.
 inline HerdFacts herdFacts(const crowd::Kind& kind, const Heightfield& terrain) {
-  return {kind.rig, terrain,         kind.parameters, kind.rigRecords,
-          kind.ik,  kind.controller, kind.clips,      kind.keyPoses};
+  HerdFacts facts{kind.rig, terrain,         kind.parameters, kind.rigRecords,
+                  kind.ik,  kind.controller, kind.clips,      kind.keyPoses};
+  facts.ways = waysOf(kind);
+  return facts;
 }
 
 // The same of a herd's agents that have one size, who are replayed by themselves.

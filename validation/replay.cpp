@@ -92,6 +92,7 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
                 herd.ik.polish};
   setting.avoid = herd.avoid;
   setting.firstNumber = herd.firstNumber;
+  setting.ways = herd.ways;
   if (crowd::traitsOf(herd.controller).playsClips)
     setting.clips = clipTableOf(herd.clips, setting.legs, setting.bones);
   if (herd.controller == Controller::keyPoses)

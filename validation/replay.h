@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cpu_reference/clips/table.h"
@@ -9,6 +10,7 @@
 #include "cpu_reference/stages/ik.h"
 #include "cpu_reference/stages/swing_key_poses.h"
 #include "cpu_reference/types.h"
+#include "cpu_reference/ways/way.h"
 #include "crowd/clip_records.h"
 #include "crowd/controller.h"
 #include "crowd/key_poses.h"
@@ -34,6 +36,7 @@ struct HerdFacts {
   // Where the herd avoids: how, and the number in the crowd of that agent.
   reference::AvoidTuning avoid = {};
   int64_t firstNumber = 0;
+  std::vector<reference::Way> ways = {};  // the fields of its kind, as they are on the device
 };
 
 // All agents that are there, of the whole crowd: as they were before a tick.
@@ -52,6 +55,7 @@ struct Setting {
   reference::KeyPoses keyPoses;
   reference::AvoidTuning avoid;
   int64_t firstNumber = 0;
+  std::vector<reference::Way> ways;
 };
 
 // `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit
@@ -86,6 +90,9 @@ class Replay {
 
   // The terrain was edited before the next tick (Crowd::editHeights).
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
+
+  // The fields are others from the next tick() on.
+  void setWays(std::vector<reference::Way> ways) { setting_.ways = std::move(ways); }
 
   // The stages that are compared, in order, less those that every tick left out.
   std::vector<StageResult> results() const;

@@ -1,5 +1,6 @@
 #include "cpu_reference/stages/navigate.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -51,6 +52,25 @@ void steer(const Tuning& tuning, const AgentBody& body, const Goal& goal, const 
   turnBack(tuning, position, choices, result);
 }
 
+// Along the field of the goal; whether there is one. Who is near its stop goes there as without one.
+bool followField(const Tuning& tuning, const AgentBody& body, const Goal& goal, std::span<const Way> ways,
+                 const NavigateChoices& choices, NavigateResult& result) {
+  if (goal.kind != GoalKind::point) return false;
+  const auto way =
+      std::find_if(ways.begin(), ways.end(), [&](const Way& each) { return each.goal == goal.target; });
+  if (way == ways.end()) return false;
+  result.way = followWay(tuning, *way, body.world(), goal.speed, goal.arrivalRadius, choices.way);
+  if (result.way->straight) {
+    Goal near = goal;
+    near.target = way->stop;
+    steer(tuning, body, near, choices, result);
+  } else {
+    result.desired = result.way->desired;
+    turnBack(tuning, body.world(), choices, result);
+  }
+  return true;
+}
+
 void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const NavigateChoices& choices,
            NavigateResult& result) {
   if (!rest.allowed || rest.edited) return;
@@ -72,10 +92,10 @@ void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const 
 }  // namespace
 
 NavigateResult navigate(const Tuning& tuning, const AgentBody& body, const Goal& goal, const Rest& rest,
-                        const NavigateChoices& choices) {
-  NavigateResult result{goal, glm::dvec2(0), body.absent, never, glm::dvec2(never), never, never};
+                        const NavigateChoices& choices, std::span<const Way> ways) {
+  NavigateResult result{goal, glm::dvec2(0), body.absent, never, glm::dvec2(never), never, never, {}};
   if (body.absent) return result;
-  steer(tuning, body, goal, choices, result);
+  if (!followField(tuning, body, goal, ways, choices, result)) steer(tuning, body, goal, choices, result);
   sleep(tuning, body, rest, choices, result);
   return result;
 }

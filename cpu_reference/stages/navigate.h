@@ -1,6 +1,10 @@
 #pragma once
 
+#include <optional>
+#include <span>
+
 #include "cpu_reference/types.h"
+#include "cpu_reference/ways/way.h"
 
 namespace skitter::reference {
 
@@ -22,6 +26,7 @@ struct NavigateResult {
   // Likewise of sleep: of |v| from what counts as standing (m/s), and of the phase from the first tick of a
   // breath. The other conditions compare records as they are, and no rounding can turn them.
   double standMargin = 0, breathMargin = 0;
+  std::optional<WayResult> way = {};  // of an agent who has a field to go by
 };
 
 // A decision that the caller takes instead of the rule, to recompute the other side of a tie.
@@ -29,9 +34,11 @@ struct NavigateChoices {
   int arrived = -1;                  // 0 or 1: forced
   glm::ivec2 turnedBack = {-1, -1};  // per axis, 0 or 1: forced
   int stands = -1, breathedOut = -1;
+  WayChoices way = {};
 };
 
+// `ways`: the fields of its kind.
 NavigateResult navigate(const Tuning& tuning, const AgentBody& body, const Goal& goal, const Rest& rest = {},
-                        const NavigateChoices& choices = {});
+                        const NavigateChoices& choices = {}, std::span<const Way> ways = {});
 
 }  // namespace skitter::reference

@@ -10,6 +10,7 @@
 #include "cpu_reference/stages/foothold.h"
 #include "cpu_reference/stages/gait.h"
 #include "cpu_reference/types.h"
+#include "cpu_reference/ways/way.h"
 
 // How far a float32 implementation of docs/stages.md may be from the reference, stage by stage, when both
 // start from the same float32 records. First-order bounds: each operation errs by `roundoff` of its result;
@@ -39,6 +40,20 @@ inline double goalDistance(double extent) { return 4 * roundoff * extent; }
 // and one normalisation.
 inline double desiredVelocity(double extent, double distance, double slowRadius) {
   return goalDistance(extent) * (1 / std::max(distance, 1e-9) + 1 / slowRadius) + 8 * roundoff;
+}
+// The place of an agent among cells, in cells: the world coordinate errs by 1 rounding, less the origin by 2,
+// a division of twice the extent by 10 and the half by 2.
+inline double wayPlace(double extent, double cell) { return 16 * roundoff * extent / cell; }
+// A time between those of cells, which are the same bits: three lerps, and the place.
+inline double wayTime(double extent, double cell, double rise, double time) {
+  return wayPlace(extent, cell) * rise + 8 * roundoff * time;
+}
+// Desired velocity along a field, as a share of the speed. The gradient turns with the place on both axes;
+// its differences and lerps err by 8 roundings of the largest one; it is normalised; and the time is a share
+// of the slow radius.
+inline double wayVelocity(double extent, double cell, const WayResult& way, double slowRadius) {
+  return 2 * wayPlace(extent, cell) * way.turning + 8 * roundoff * way.magnified +
+         wayTime(extent, cell, way.rise, slowRadius) / slowRadius + 12 * roundoff;
 }
 // Its length, whatever its direction: the distance over the slow radius, a normalisation and a length.
 // Against `standing`, a product of two.

@@ -66,8 +66,7 @@ void expectReserve(const crowd::Herd& herd, uint32_t number) {
 
 // Fields for the goals of one agent, some or all of a herd.
 void lead(Crowd::Impl& crowd, const crowd::Herd& herd, std::span<const Goal> goals, uint32_t number) {
-  for (const SizeRun& run : herd.runs)
-    crowd::leadTo(crowd, herd, run, goals, [&] { return nameOf(number); });
+  for (const SizeRun& run : herd.runs) crowd::leadTo(crowd, herd, run, goals, [&] { return nameOf(number); });
 }
 
 // Sets goals of a herd's agents that have one size.
@@ -124,8 +123,7 @@ void Crowd::steer(std::span<const AgentGoal> goals) {
     expectSomebody(*impl_, id);
     expectGoal([&] { return nameOf(id.herd(), id.agent()); }, goal);
   }
-  for (const auto& [number, wanted] : goalsByHerd(goals))
-    lead(*impl_, impl_->herds[number], wanted, number);
+  for (const auto& [number, wanted] : goalsByHerd(goals)) lead(*impl_, impl_->herds[number], wanted, number);
   for (const auto& [id, goal] : goals) {
     const crowd::Herd& herd = impl_->herds[id.herd()];
     Steerer(*impl_, herd, herd.runOf(id.agent())).steer(id.agent(), goal);

@@ -94,6 +94,7 @@ void Lockstep::edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows,
 
 const std::vector<HerdState>& Lockstep::end() {
   after_ = download();
+  followWays();
   for (size_t r = 0; r < compared_.size(); ++r)
     compared_[r].replay->tick(crowd_.tick(), before_[r], after_[r], around_);
   return after_;
@@ -149,6 +150,19 @@ void Lockstep::letEventsHappen() {
     for (const Compared& each : compared_) each.replay->edit(at.x, at.z, at.columns, at.rows, heights);
   }
   if (crowd::changesWait(impl)) crowd::applyChanges(impl);
+}
+
+// The tick has gone by the fields as they are now.
+void Lockstep::followWays() {
+  const Crowd::Impl& impl = implOf(crowd_);
+  size_t r = 0;
+  for (const crowd::HerdRun& of : crowd::allRuns(impl)) {
+    Compared& each = compared_[r++];
+    const crowd::Kind& kind = impl.kinds[of.run->kind];
+    if (!kind.ways || kind.ways->revision() == each.wayRevision) continue;
+    each.replay->setWays(waysOf(kind));
+    each.wayRevision = kind.ways->revision();
+  }
 }
 
 // The reference of a herd that has come begins with the ground as it is.

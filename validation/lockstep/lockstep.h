@@ -53,11 +53,13 @@ class Lockstep {
     bool hasPlaces;
     bool isBrief;  // it was not there from the first tick to the last
     std::unique_ptr<Replay> replay;
+    uint32_t wayRevision = 0;  // of the fields that the replay has
   };
 
   std::vector<HerdState> download() const;
   void letEventsHappen();
   void followHerds();
+  void followWays();
 
   Crowd& crowd_;
   uint64_t seed_;

@@ -52,9 +52,10 @@ void check(const ConvexPolygon& polygon, const std::string& what) {
   for (size_t i = 0; i < n; ++i)
     for (size_t k = 2; k < n; ++k)
       if (!(sense * areaOf(corners[i], corners[(i + 1) % n], corners[(i + k) % n]) > 0))
-        throw inputError(fmt::format("{} is not convex: [{}] is on the wrong side of the edge from [{}] to "
-                                     "[{}], or on its line",
-                                     name, (i + k) % n, i, (i + 1) % n));
+        throw inputError(
+            fmt::format("{} is not convex: [{}] is on the wrong side of the edge from [{}] to "
+                        "[{}], or on its line",
+                        name, (i + k) % n, i, (i + 1) % n));
 }
 
 }  // namespace

@@ -142,10 +142,8 @@ void keysOf(Fields& fields, ConvexPolygon& polygon) {
 }
 // The keys of an obstacle, of which `key` says what it is.
 template <class Fields, class Shape>
-  requires std::is_same_v<Shape, Disc> || std::is_same_v<Shape, Capsule> || std::is_same_v<Shape, ConvexPolygon>
-void keysOf(Fields& fields, const char* key, Shape& shape) {
-  fields.object(key, shape);
-}
+requires std::is_same_v<Shape, Disc> || std::is_same_v<Shape, Capsule> || std::is_same_v<Shape, ConvexPolygon>
+void keysOf(Fields& fields, const char* key, Shape& shape) { fields.object(key, shape); }
 template <class Fields>
 void keysOf(Fields& fields, Obstacle& obstacle) {
   auto& [shape] = obstacle;

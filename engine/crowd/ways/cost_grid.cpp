@@ -106,7 +106,8 @@ ShapeBounds boundsOf(const ConvexPolygon& polygon) {
 
 // The first of `count` cells whose middle may be at `place` or beyond.
 uint32_t cellFrom(double place, double origin, double cell, uint32_t count) {
-  return static_cast<uint32_t>(std::clamp(std::floor((place - origin) / cell - 0.5), 0.0, static_cast<double>(count)));
+  return static_cast<uint32_t>(
+      std::clamp(std::floor((place - origin) / cell - 0.5), 0.0, static_cast<double>(count)));
 }
 
 template <class Shape>

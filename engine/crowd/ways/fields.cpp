@@ -28,11 +28,11 @@ bool contains(std::span<const glm::vec2> list, const glm::vec2& target) {
 WayFields::WayFields(const gpu::Context& context, CostGrid grid) : context_(&context) {
   using namespace shared;
   using enum gpu::BindingKind;
-  solve_ =
-      gpu::Kernel(context, {"way_solve",
-                            embedded::way_solve_comp(),
-                            {{BINDING_WAY_COST, store}, {BINDING_WAY_TIME, store}, {BINDING_WAY_STATE, store}},
-                            sizeof(WayConstants)});
+  solve_ = gpu::Kernel(context,
+                       {"way_solve",
+                        embedded::way_solve_comp(),
+                        {{BINDING_WAY_COST, store}, {BINDING_WAY_TIME, store}, {BINDING_WAY_STATE, store}},
+                        sizeof(WayConstants)});
   gather_ = gpu::Kernel(context, {"way_gather",
                                   embedded::way_gather_comp(),
                                   {{BINDING_WAY_TIME, store}, {BINDING_WAY_OUT, store}},
@@ -122,9 +122,8 @@ void WayFields::makeRoom(uint32_t fields) {
   states_ = gpu::Buffer(context, MOST_WAYS * sizeof(uint32_t), "way states");
   records_ = gpu::Buffer(context, (WAY_TIMES + room_ * cells()) * vec4Bytes, "ways");
   gpu::clear(context, records_);
-  solveBindings_ = solve_.bind(context, {{BINDING_WAY_COST, &costs_},
-                                         {BINDING_WAY_TIME, &times_},
-                                         {BINDING_WAY_STATE, &states_}});
+  solveBindings_ = solve_.bind(
+      context, {{BINDING_WAY_COST, &costs_}, {BINDING_WAY_TIME, &times_}, {BINDING_WAY_STATE, &states_}});
   gatherBindings_ = gather_.bind(context, {{BINDING_WAY_TIME, &times_}, {BINDING_WAY_OUT, &records_}});
 }
 

@@ -12,7 +12,8 @@
 
 namespace skitter::crowd {
 
-// A cost grid and the fields of some goals on the device (docs/ways.md). What changes them waits for the device.
+// A cost grid and the fields of some goals on the device (docs/ways.md). What changes them waits for the
+// device.
 class WayFields {
  public:
   // Of no goals.

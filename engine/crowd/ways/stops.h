@@ -23,9 +23,9 @@ struct Stops {
     size_t cell;
     float time;
   };
-  std::vector<Cell> cells;        // where times are given
-  glm::vec2 stop{0};              // the goal, or the nearest of the cells' middles
-  uint32_t region = Regions::none;    // that the goal is in
+  std::vector<Cell> cells = {};     // where times are given
+  glm::vec2 stop{0};                // the goal, or the nearest of the cells' middles
+  uint32_t region = Regions::none;  // that the goal is in
 };
 // None where no cell is passable. `goal` is finite.
 std::optional<Stops> stopsOf(const CostGrid& grid, const Regions& regions, const glm::vec2& goal);

@@ -106,8 +106,7 @@ void beginWays(Crowd::Impl& crowd, uint32_t k) {
   kind.ways = std::make_unique<WayFields>(*crowd.context, gridFor(crowd, kind));
   Targets targets;
   const std::vector<HerdRun> runs = runsOf(crowd, k);
-  for (const HerdRun& of : runs)
-    addTarget(spawnerOf(crowd, *of.herd, *of.run), of.herd->from.goal, targets);
+  for (const HerdRun& of : runs) addTarget(spawnerOf(crowd, *of.herd, *of.run), of.herd->from.goal, targets);
   for (const HerdRun& of : runs)
     addEventTargets(crowd, of.number, spawnerOf(crowd, *of.herd, *of.run), targets);
   kind.ways->add(fitting(*kind.ways, targets, {}), {});
@@ -129,9 +128,10 @@ void leadTo(Crowd::Impl& crowd, const Herd& herd, const SizeRun& run, std::span<
   }
   const Targets fresh = fitting(*kind.ways, targets, kept);
   if (fresh.size() < static_cast<size_t>(std::ranges::count_if(targets, isNew)))
-    throw inputError(fmt::format("{}: its goals, and those of agents like it, are more than {} places that "
-                                 "ways lead to, expected at most as many",
-                                 name(), shared::MOST_WAYS));
+    throw inputError(
+        fmt::format("{}: its goals, and those of agents like it, are more than {} places that "
+                    "ways lead to, expected at most as many",
+                    name(), shared::MOST_WAYS));
   changeWays(crowd, kind, [&](WayFields& ways) { ways.add(fresh, kept); });
 }
 

@@ -15,7 +15,8 @@ namespace skitter::crowd {
 void beginWays(Crowd::Impl& crowd, uint32_t kind);
 
 // Fields for goals that agents of a run are about to have. Waits for the device where one is new. Throws
-// Error(input) where all fields are of goals that agents have; `name` makes the text that says who it is about.
+// Error(input) where all fields are of goals that agents have; `name` makes the text that says who it is
+// about.
 void leadTo(Crowd::Impl& crowd, const Herd& herd, const SizeRun& run, std::span<const Goal> goals,
             const std::function<std::string()>& name);
 

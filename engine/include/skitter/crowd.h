@@ -230,8 +230,8 @@ class SKITTER_API Crowd {
   // goals it needs one of its own against the tick before: from COMPUTE_SHADER, SHADER_STORAGE_WRITE to
   // COMPUTE_SHADER, SHADER_STORAGE_READ | SHADER_STORAGE_WRITE. What the host says counts, where both do.
   std::vector<GoalBuffer> goalBuffers(uint32_t herd) const;
-  // How many agents of a herd with ways have a goal that no way leads to from where they are: they stop at the
-  // nearest place that one leads to (docs/ways.md). Waits for the device.
+  // How many agents of a herd with ways have a goal that no way leads to from where they are: they stop at
+  // the nearest place that one leads to (docs/ways.md). Waits for the device.
   uint32_t cannotReach(uint32_t herd) const;
   // The handle of the agent in that place of the herd. Throws Error(input) where nobody is.
   AgentId agentId(uint32_t herd, uint32_t agent) const;

@@ -59,7 +59,7 @@ struct CostGrid {
   glm::vec2 origin{0};             // x, z of the corner of cell (0, 0)
   // cost[row * columns + column] is the time that a metre through the cell takes, over that of flat ground:
   // at least 1, infinite where it is impassable.
-  std::vector<float> cost;
+  std::vector<float> cost = {};
 
   bool operator==(const CostGrid&) const = default;
 };
