@@ -181,6 +181,10 @@ int bench(const BenchOptions& options) {
     if (scene.herds[h].avoid)
       throw inputError(fmt::format(
           "bench: herds[{}].avoid of {} is true, expected false: the opponents do not avoid", h, scene.name));
+  for (size_t h = 0; h < scene.herds.size(); ++h)
+    if (scene.herds[h].ways)
+      throw inputError(fmt::format(
+          "bench: herds[{}] of {} has ways, expected none: the opponents go straight", h, scene.name));
   if (options.failAbove && options.baseline.empty())
     throw inputError("--fail-above needs --baseline FILE to compare with");
   const Heightfield terrain = scene.loadTerrain();

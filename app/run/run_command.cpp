@@ -85,6 +85,7 @@ class Run {
   using Clock = std::chrono::steady_clock;
 
   void raiseObstacle();
+  void tellWhoCannotReach() const;
   void afterTick();
   void save();
   void restart(std::optional<Controller> controller);
@@ -184,6 +185,7 @@ void Run::start() {
     crowd_.emplace(*device_, terrain_, scene_, crowdOptions);
     raiseObstacle();
   }
+  tellWhoCannotReach();
   starting.reset();
   manifest_.terrain = &terrain_;
   manifest_.add(device_->report());
@@ -205,6 +207,17 @@ void Run::start() {
 
 void Run::raiseObstacle() {
   if (options_.obstacle && !scene_.herds.empty()) obstacle_.emplace(*crowd_);
+}
+
+// Once, as the run begins.
+void Run::tellWhoCannotReach() const {
+  for (uint32_t herd = 0; herd < crowd_->herdCount(); ++herd)
+    if (const uint32_t count = crowd_->cannotReach(herd); count > 0)
+      fmt::print(
+          stderr,
+          "skitter: herd {}: no way leads {} of {} agents to their goals; they stop at the nearest places "
+          "that one leads to\n",
+          herd, count, crowd_->agentCount(herd));
 }
 
 void Run::afterTick() {

@@ -47,6 +47,12 @@ void bindHerd(py::module_& module) {
       .def_readwrite("start", &ClipCut::from, "Seconds of the clip; a scene file calls it `from`.")
       .def_readwrite("end", &ClipCut::to, "Seconds of the clip; a scene file calls it `to`.");
 
+  py::class_<Ways>(module, "Ways", "What ground is to a herd that finds its way (docs/ways.md).")
+      .def(py::init<>())
+      .def_readwrite("climb", &Ways::climb, "How much longer a metre takes for each metre of rise a metre.")
+      .def_readwrite("steepest", &Ways::steepest, "Rise over run beyond which ground is impassable.")
+      .def_readwrite("step", &Ways::step, "Leg lengths, height of a ledge that is just passable.");
+
   py::class_<Herd, std::shared_ptr<Herd>> herd(module, "Herd", "Agents with one rig, controller and spawn.");
   herd.def(py::init([](uint32_t agents) {
              Herd made;
@@ -76,6 +82,8 @@ void bindHerd(py::module_& module) {
           [](Herd& self, std::vector<float> sizes) { self.sizes = std::move(sizes); },
           "How large its creatures are, times the rig: each draws one of at most 16; empty: 1.")
       .def_readwrite("avoid", &Herd::avoid, "Whether its agents keep clear of those near them.")
+      .def_readwrite("ways", &Herd::ways,
+                     "Ways, where agents go around what is in the way; None: they go straight.")
       .def_readwrite("phase", &Herd::phase,
                      "Where in its gait or clip each agent begins, 0 to 1; None: drawn by the seed.")
       .def_readwrite("colour", &Herd::colour, "Linear red, green and blue, 0 to 1; None: the model's.")

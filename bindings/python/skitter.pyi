@@ -141,6 +141,14 @@ class ClipCut:
     end: float
     def __init__(self) -> None: ...
 
+class Ways:
+    """What ground is to a herd that finds its way (docs/ways.md)."""
+
+    climb: float
+    steepest: float
+    step: float
+    def __init__(self) -> None: ...
+
 class Herd:
     """Agents with one rig, controller and spawn."""
 
@@ -158,6 +166,7 @@ class Herd:
     goal: Goal
     sizes: Sequence[float]
     avoid: bool
+    ways: Optional[Ways]
     phase: Optional[float]
     colour: Optional[Sequence[float]]
     tint: Optional[float]

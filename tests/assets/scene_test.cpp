@@ -329,7 +329,7 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"obstacles": [{"polygon": {"corners": [[0, 0], [1, 0], [2, 0]]}}]})",
        "obstacles[0].polygon.corners is not convex: [2] is on the wrong side of the edge from [0] to [1]"},
       {R"({"obstacles": [{"disc": {}}, {"polygon": {"corners": [[0, 0], [4, 0], [1, 1], [0, 4]]}}]})",
-       "obstacles[1].polygon.corners is not convex: [0] is on the wrong side of the edge from [1] to [2]"},
+       "obstacles[1].polygon.corners is not convex: [3] is on the wrong side of the edge from [1] to [2]"},
       // A star turns one way at every corner.
       {R"({"obstacles": [{"polygon": {"corners": [[0, 10], [6, -8], [-9, 3], [9, 3], [-6, -8]]}}]})",
        "obstacles[0].polygon.corners is not convex"},

@@ -48,6 +48,19 @@ Results meeting(Device& device, Controller controller, const CrowdOptions& optio
   return replay(device, crowd, ground, 200);
 }
 
+// Round the end of a wall to a goal behind it, and on to the goal.
+Results findingWays(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(36, 2, 1, controller);
+  scene.obstacles = {{Capsule{.from = {-16, 0}, .to = {3, 0}, .radius = 0.3f}}};
+  scene.herds[0].ways = Ways{};
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1, .centre = {0, -4}};
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 5}, .speed = 2};
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 60);
+  return replay(device, crowd, ground, 400);
+}
+
 Results walking(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = rollingGround();
   Crowd crowd(device, ground, sceneOf(64, 1, 1, controller), options);
@@ -234,6 +247,7 @@ const std::vector<Situation>& situations() {
   static const std::vector<Situation> all = {
       {"walking", {Controller::adaptive}, walking},
       {"meeting", {Controller::adaptive, Controller::clip}, meeting},
+      {"findingWays", {Controller::adaptive, Controller::clip}, findingWays},
       {"fallingAsleep", {Controller::adaptive}, fallingAsleep},
       {"atTheEdge", {Controller::adaptive}, atTheEdge},
       {"goingByVelocity", {Controller::adaptive, Controller::loop}, goingByVelocity},

@@ -10,7 +10,7 @@ FOLDERS = ["engine/include", "shaders", "engine/base", "engine/gpu", "engine/ass
 # Within these the same holds of their own folders; "" is the folder itself.
 INNER = {
     "engine/assets": ["files", "models", "rigs", "clips", "heights", "scenes"],
-    "cpu_reference": ["", "ik", "spline", "clips", "stages"],
+    "cpu_reference": ["", "ik", "spline", "clips", "ways", "stages"],
 }
 INCLUDE_ROOTS = ["", "engine", "engine/include", "shaders"]
 

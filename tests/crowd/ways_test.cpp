@@ -1,0 +1,327 @@
+// Herds that find their way (docs/ways.md).
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "assets/files.h"
+#include "cpu_reference/ways/grid.h"
+#include "crowd/radius.h"
+#include "crowd/simulation.h"
+#include "crowd/ways/fields.h"
+#include "skitter/error.h"
+#include "skitter/state.h"
+#include "validation/convert.h"
+#include "validation/herd_facts.h"
+
+namespace skitter::test {
+namespace {
+
+using WayFieldsTest = GpuTest;
+using WaysTest = GpuTest;
+using WaysReplayTest = GpuLoadTest;
+
+constexpr float kImpassable = std::numeric_limits<float>::infinity();
+// How far a field may be from the reference: rounds end when none changes a cell by 1e-5 of itself, and the
+// few cells that a change then still moves on to add as much again; float32 rounds a thousand times on the
+// way.
+constexpr double kFieldTolerance = 1e-4;
+
+CostGrid gridOf(uint32_t columns, uint32_t rows, const std::function<float(uint32_t, uint32_t)>& cost) {
+  CostGrid grid{.columns = columns, .rows = rows, .cell = 0.5f};
+  grid.origin = -0.25f * glm::vec2(columns, rows);
+  for (uint32_t row = 0; row < rows; ++row)
+    for (uint32_t column = 0; column < columns; ++column) grid.cost.push_back(cost(column, row));
+  return grid;
+}
+
+CostGrid level(uint32_t columns, uint32_t rows) {
+  return gridOf(columns, rows, [](uint32_t, uint32_t) { return 1.0f; });
+}
+// Walls every four rows, open at alternating ends.
+CostGrid maze(uint32_t columns, uint32_t rows) {
+  return gridOf(columns, rows, [=](uint32_t column, uint32_t row) {
+    const bool open = row % 8 == 3 ? column + 3 >= columns : column < 3;
+    return row % 4 == 3 && !open ? kImpassable : 1.0f;
+  });
+}
+CostGrid hillside(uint32_t columns, uint32_t rows) {
+  return gridOf(columns, rows, [](uint32_t column, uint32_t row) {
+    const auto x = static_cast<float>(column), z = static_cast<float>(row);
+    return 1.5f + std::sin(0.3f * x) * std::sin(0.17f * z) * 0.5f;
+  });
+}
+CostGrid wallWithGap(uint32_t columns, uint32_t rows) {
+  return gridOf(columns, rows, [=](uint32_t column, uint32_t row) {
+    return row == rows / 2 && column != columns / 3 ? kImpassable : 1.0f;
+  });
+}
+
+reference::WayGrid referenceOf(const CostGrid& grid) {
+  return {.columns = grid.columns,
+          .rows = grid.rows,
+          .cell = grid.cell,
+          .origin = grid.origin,
+          .cost = {grid.cost.begin(), grid.cost.end()},
+          .margin = std::vector<double>(grid.cost.size(), 1)};
+}
+
+void expectAsReference(const crowd::WayFields& fields, const glm::vec2& goal) {
+  ASSERT_TRUE(fields.has(goal));
+  const reference::WayGrid grid = referenceOf(fields.grid());
+  const std::vector<double> expected =
+      reference::wayTimes(grid, reference::wayStarts(grid, goal), double{shared::WAY_INSIDE_COST});
+  const std::vector<float> times = fields.times(goal);
+  ASSERT_EQ(times.size(), expected.size());
+  for (size_t at = 0; at < times.size(); ++at)
+    ASSERT_NEAR(times[at], expected[at], kFieldTolerance * std::max(expected[at], grid.cell))
+        << "cell " << at % grid.columns << ", " << at / grid.columns;
+}
+
+TEST_F(WayFieldsTest, AreThoseOfTheReference) {
+  const std::vector<CostGrid> grids = {level(2, 2),  level(2, 3),       level(129, 1 + 127),
+                                       maze(61, 83), hillside(97, 130), wallWithGap(75, 40),
+                                       maze(200, 9), level(3, 300)};
+  const std::vector<glm::vec2> goals = {{0.1f, 0.2f}, {-0.3f, -0.4f}, {1000, -1000}, {0.25f, 0.25f}};
+  for (const CostGrid& grid : grids) {
+    SCOPED_TRACE(testing::Message() << grid.columns << " x " << grid.rows);
+    crowd::WayFields fields(context(), grid);
+    fields.add(goals, {});
+    for (const glm::vec2& goal : goals) expectAsReference(fields, goal);
+  }
+}
+
+TEST_F(WayFieldsTest, AreTheSameBitsWhateverIsSolvedBeside) {
+  crowd::WayFields alone(context(), maze(61, 83)), among(context(), maze(61, 83));
+  const glm::vec2 goal(3, 4);
+  alone.add(std::vector<glm::vec2>{goal}, {});
+  among.add(std::vector<glm::vec2>{{0, 1}, goal}, {});
+  among.add(std::vector<glm::vec2>{{-9, 5}, {2, 2}, {3, 3}}, {});
+  EXPECT_EQ(alone.times(goal), among.times(goal));
+  among.setGrid(level(61, 83));
+  EXPECT_NE(alone.times(goal), among.times(goal));
+  among.setGrid(maze(61, 83));
+  EXPECT_EQ(alone.times(goal), among.times(goal));
+}
+
+TEST_F(WayFieldsTest, LeaveWhatNobodyUses) {
+  crowd::WayFields fields(context(), level(20, 20));
+  std::vector<glm::vec2> goals;
+  for (int i = 0; i < shared::MOST_WAYS; ++i) goals.emplace_back(0.3f * static_cast<float>(i) - 3, 1);
+  fields.add(goals, {});
+  std::vector<glm::vec2> kept = goals;
+  kept.erase(kept.begin() + 5);
+  const glm::vec2 fresh(0.5f, -2);
+  fields.add(std::vector<glm::vec2>{fresh}, kept);
+  EXPECT_FALSE(fields.has(goals[5]));
+  for (const glm::vec2& goal : kept) EXPECT_TRUE(fields.has(goal));
+  expectAsReference(fields, fresh);
+  expectAsReference(fields, goals[4]);
+}
+
+TEST_F(WayFieldsTest, AreNoneWhereNothingIsPassable) {
+  crowd::WayFields fields(context(), gridOf(7, 5, [](uint32_t, uint32_t) { return kImpassable; }));
+  fields.add(std::vector<glm::vec2>{{0, 0}}, {});
+  EXPECT_FALSE(fields.has({0, 0}));
+  fields.setGrid(level(7, 5));
+  fields.add(std::vector<glm::vec2>{{0, 0}}, {});
+  expectAsReference(fields, {0, 0});
+}
+
+TEST(CostGrid, IsThatOfTheReference) {
+  const Heightfield ground =
+      generateHeightfield({.columns = 150, .rows = 97, .amplitude = 9, .wavelength = 12});
+  const std::vector<Obstacle> obstacles = {{Disc{.centre = {3, -4}, .radius = 2.5f}},
+                                           {Capsule{.from = {-30, 8}, .to = {12, 10}, .radius = 0}},
+                                           {ConvexPolygon{.corners = {{20, 2}, {27, 4}, {22, 11}}}},
+                                           {Disc{.centre = {500, 0}, .radius = 1}}};
+  const Traveller traveller{.legLength = 0.9f, .footprint = 0.6f, .margin = 2, .ways = {.steepest = 0.9f}};
+  const CostGrid grid = costGrid(ground, obstacles, traveller);
+  const reference::Heights heights{ground.heights.data(),    150, 97, double{ground.originX()},
+                                   double{ground.originZ()}, 2,   2};
+  const reference::WayGrid expected = reference::wayGrid(heights,
+                                                         {.discs = {{{3, -4}, 2.5}, {{500, 0}, 1}},
+                                                          .capsules = {{{-30, 8}, {12, 10}, 0}},
+                                                          .polygons = {{{{20, 2}, {27, 4}, {22, 11}}}}},
+                                                         {.legLength = double{0.9f},
+                                                          .footprint = double{0.6f},
+                                                          .edgeMargin = 2,
+                                                          .climb = 1.5,
+                                                          .steepest = double{0.9f},
+                                                          .step = 0.5});
+  ASSERT_EQ(grid.columns, expected.columns);
+  ASSERT_EQ(grid.rows, expected.rows);
+  EXPECT_NEAR(grid.cell, expected.cell, 1e-6);
+  size_t passable = 0;
+  for (size_t at = 0; at < grid.cost.size(); ++at) {
+    if (std::isfinite(grid.cost[at]) != expected.passable(at)) {
+      // Heights of some metres and places of 40 m in float32, over half a cell.
+      EXPECT_LT(expected.margin[at], 1e-4) << at;
+      continue;
+    }
+    if (!expected.passable(at)) continue;
+    ++passable;
+    EXPECT_NEAR(grid.cost[at], expected.cost[at], 1e-4) << at;
+  }
+  EXPECT_GT(passable, grid.cost.size() / 10);
+  EXPECT_LT(passable, grid.cost.size() * 9 / 10);
+}
+
+TEST(CostGrid, RefusesObstaclesThatAreNone) {
+  const Heightfield ground = flatGround();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Obstacle> wrong = {{Disc{.centre = {nan, 0}}},
+                                       {Disc{.radius = nan}},
+                                       {Capsule{.to = {0, 5000}}},
+                                       {ConvexPolygon{}},
+                                       {ConvexPolygon{.corners = {{0, 0}, {1, 0}, {0.5f, 0}}}}};
+  for (const Obstacle& obstacle : wrong) EXPECT_THROW(costGrid(ground, {&obstacle, 1}, {}), Error);
+}
+
+// Agents south of a wall that is open in the east; their goal is north of it.
+Scene walledScene(uint32_t agents, Controller controller = Controller::adaptive) {
+  Scene scene = sceneOf(agents, 2, 1, controller);
+  scene.obstacles = {{Capsule{.from = {-40, 0}, .to = {8, 0}, .radius = 0.3f}}};
+  scene.herds[0].ways = Ways{};
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1, .centre = {0, -8}};
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 7}, .speed = 2};
+  return scene;
+}
+
+double farthestFrom(const Crowd& crowd, const glm::dvec2& place) {
+  const HerdState state = crowd.download(0);
+  double farthest = 0;
+  for (size_t i = 0; i < state.agents; ++i) {
+    const glm::dvec3 at = positionOf(state, i);
+    farthest = std::max(farthest, std::hypot(at.x - place.x, at.z - place.y));
+  }
+  return farthest;
+}
+
+TEST_F(WaysTest, AgentsGoRoundAWallToTheirGoal) {
+  Crowd crowd(device(), flatGround(), walledScene(9));
+  EXPECT_EQ(crowd.cannotReach(0), 0u);
+  for (int part = 0; part < 120; ++part) {
+    simulate(device(), crowd, 15);
+    const HerdState state = crowd.download(0);
+    for (size_t i = 0; i < state.agents; ++i) {
+      const glm::dvec3 at = positionOf(state, i);
+      EXPECT_TRUE(at.x > 8 || std::abs(at.z) > 0.3) << i << " is in the wall at " << at.x << ", " << at.z;
+    }
+  }
+  EXPECT_LT(farthestFrom(crowd, {0, 7}), 1);
+}
+
+TEST_F(WaysTest, AgentsStopAtTheNearestPlaceThatTheyReach) {
+  Scene scene = walledScene(9);
+  scene.obstacles = {{Capsule{.from = {-40, 0}, .to = {40, 0}, .radius = 0.3f}}};
+  Crowd crowd(device(), flatGround(), scene);
+  EXPECT_EQ(crowd.cannotReach(0), 9u);
+  simulate(device(), crowd, 900);
+  // The wall, its growth, a cell and the arrival radius of half a leg.
+  EXPECT_LT(farthestFrom(crowd, {0, 0}), 0.3 + 1 + 0.5 + 0.5);
+  EXPECT_EQ(crowd.cannotReach(0), 9u);
+}
+
+TEST_F(WaysTest, AGoalInAnObstacleIsApproached) {
+  Scene scene = walledScene(9);
+  scene.obstacles = {{Disc{.centre = {0, 7}, .radius = 3}}};
+  Crowd crowd(device(), flatGround(), scene);
+  EXPECT_EQ(crowd.cannotReach(0), 9u);
+  simulate(device(), crowd, 1200);
+  EXPECT_LT(farthestFrom(crowd, {0, 7}), 3 + 1 + 0.5 + 0.5);
+}
+
+TEST_F(WaysTest, EverySizeOfHerdHasTheSameHashTwice) {
+  for (const uint32_t agents : {0u, 1u, 37u}) {
+    uint64_t hashes[2];
+    for (uint64_t& hash : hashes) {
+      Crowd crowd(device(), flatGround(), walledScene(agents));
+      simulate(device(), crowd, 60);
+      hash = crowd.stateHash();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]) << agents;
+  }
+}
+
+TEST_F(WaysTest, ObstaclesAreNothingToHerdsWithoutWays) {
+  Scene scene = walledScene(20), open = scene;
+  scene.herds[0].ways = open.herds[0].ways = {};
+  open.obstacles = {};
+  Crowd among(device(), flatGround(), scene), without(device(), flatGround(), open);
+  for (Crowd* crowd : {&among, &without}) simulate(device(), *crowd, 60);
+  EXPECT_EQ(among.stateHash(), without.stateHash());
+  EXPECT_EQ(among.cannotReach(0), 0u);
+}
+
+TEST_F(WaysTest, ACrowdOfAStateGoesOnAsBefore) {
+  Crowd crowd(device(), flatGround(), walledScene(12));
+  crowd.steer(0, Goal{.kind = Goal::Kind::point, .target = {-6, 5}, .speed = 1});
+  simulate(device(), crowd, 60);
+  Crowd again(device(), parseState(crowd.saveToMemory(), "a state"));
+  for (Crowd* each : {&crowd, &again}) simulate(device(), *each, 60);
+  EXPECT_EQ(crowd.stateHash(), again.stateHash());
+}
+
+TEST_F(WaysTest, GoalsAreRefusedWhereFieldsAreTooMany) {
+  Crowd crowd(device(), flatGround(), walledScene(20));
+  const auto goalOf = [](uint32_t i) {
+    return Goal{.kind = Goal::Kind::point, .target = {static_cast<float>(i), 9}};
+  };
+  std::vector<Goal> goals;
+  for (uint32_t i = 0; i < 20; ++i) goals.push_back(goalOf(i % 15));
+  crowd.steer(0, goals);
+  simulate(device(), crowd, 1);
+  const AgentGoal last{crowd.agentId(0, 15), goalOf(15)};
+  crowd.steer({&last, 1});
+  simulate(device(), crowd, 1);
+  const uint64_t hash = crowd.stateHash();
+  const AgentGoal more{crowd.agentId(0, 0), goalOf(17)};
+  EXPECT_NE(inputFault([&] { crowd.steer({&more, 1}); }).find("16"), std::string::npos);
+  const AgentGoal wrong{crowd.agentId(0, 0), {.kind = Goal::Kind::point, .target = {NAN, 0}}};
+  EXPECT_THROW(crowd.steer({&wrong, 1}), Error);
+  EXPECT_EQ(crowd.stateHash(), hash);
+  // Those that nobody has any more make room.
+  crowd.steer(0, goalOf(3));
+  simulate(device(), crowd, 1);
+  crowd.steer({&more, 1});
+  simulate(device(), crowd, 1);
+  EXPECT_EQ(crowd.cannotReach(0), 0u);
+}
+
+// New goals and new ground on the way, in lock step.
+TEST_P(WaysReplayTest, TheReferenceFollowsGoalsAndEdits) {
+  Heightfield ground = smallRollingGround();
+  Crowd crowd(device(), ground, walledScene(24));
+  for (int part = 0; part < 4; ++part) {
+    if (part == 1) crowd.steer(0, Goal{.kind = Goal::Kind::point, .target = {-5, 4}, .speed = 2});
+    if (part == 2) {
+      const std::vector<float> ridge(4 * 3, 5.0f);
+      crowd.editHeights(30, 30, 4, 3, ridge);
+    }
+    if (part == 3) crowd.steer(0, Goal{.kind = Goal::Kind::point, .target = {40, 40}, .speed = 2});
+    simulate(device(), crowd, 1);
+    expectAllPass(replay(device(), crowd, crowd.terrain(), 40));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, WaysReplayTest, bothLoadPaths(), loadPathName);
+
+TEST_F(WaysTest, EditsMakeFieldsAnew) {
+  Crowd crowd(device(), flatGround(), walledScene(4));
+  const auto times = [&] {
+    const crowd::WayFields& ways = *implOf(crowd).kindOf(0).ways;
+    return ways.times(ways.goals().at(0));
+  };
+  const std::vector<float> before = times();
+  const std::vector<float> ridge(20 * 3, 4.0f);
+  crowd.editHeights(60, 40, 20, 3, ridge);
+  EXPECT_EQ(times(), before);
+  simulate(device(), crowd, 1);
+  EXPECT_NE(times(), before);
+  expectAsReference(*implOf(crowd).kindOf(0).ways, implOf(crowd).kindOf(0).ways->goals().at(0));
+}
+
+}  // namespace
+}  // namespace skitter::test
