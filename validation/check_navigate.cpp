@@ -12,7 +12,7 @@ namespace tolerance = reference::tolerance;
 
 double cellOf(const Setting& setting) { return setting.ways.front().cell; }
 
-double wayBound(const Setting& setting, const reference::WayResult& way) {
+double fieldBound(const Setting& setting, const reference::WayResult& way) {
   return tolerance::wayVelocity(setting.extent, cellOf(setting), way, setting.tuning.slowRadius);
 }
 
@@ -46,7 +46,7 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
   const double distance = way ? way->away : glm::length(expected.goal.target - body.world());
   sample.same("asleep", expected.asleep, records(moment.after.steer, moment.agent, shared::STEER_STRIDE)[2]);
   sample.compare("desired velocity / speed", glm::length(desired - expected.desired) / speed,
-                 way && !way->straight ? wayBound(setting, *way)
+                 way && !way->straight ? fieldBound(setting, *way)
                  : given               ? 8 * tolerance::roundoff
                          : tolerance::desiredVelocity(setting.extent, distance, setting.tuning.slowRadius),
                  {expected.desired, 0, 0}, {desired, 0, 0});
@@ -85,7 +85,7 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
     const reference::NavigateResult steered = run(choices);
     double stands = tolerance::stands(setting.extent, glm::length(steered.desired), tuning.slowRadius,
                                       1e-2 * tuning.legLength);
-    if (steered.way && !steered.way->straight) stands += goal.speed * wayBound(setting, *steered.way);
+    if (steered.way && !steered.way->straight) stands += goal.speed * fieldBound(setting, *steered.way);
     if (steered.standMargin < stands) choices.stands = bit(3);
     if (steered.breathMargin < breath) choices.breathedOut = bit(4);
     const Sample other = compare(setting, moment, body, run(choices));

@@ -19,6 +19,9 @@ struct Moment {
 // A sleeper's records must be those of before the tick, bit for bit; adds what is not.
 void checkKept(const Setting& setting, const Moment& moment, Record record, Judge& judge);
 
+// A field against fast marching over the same costs.
+Sample compareWay(const reference::WayField& field);
+
 // What holds a stage of some controllers against the reference: adds a sample an agent, a leg or, for clips,
 // a joint to its judge.
 struct Check {

@@ -15,8 +15,8 @@
 namespace skitter::validation {
 
 // The fields of a kind. Waits for the device.
-inline std::vector<reference::Way> waysOf(const crowd::Kind& kind) {
-  std::vector<reference::Way> all;
+inline std::vector<reference::WayField> waysOf(const crowd::Kind& kind) {
+  std::vector<reference::WayField> all;
   if (!kind.ways) return all;
   const CostGrid& grid = kind.ways->grid();
   for (const glm::vec2& goal : kind.ways->goals()) {
@@ -27,6 +27,7 @@ inline std::vector<reference::Way> waysOf(const crowd::Kind& kind) {
                    .rows = grid.rows,
                    .cell = grid.cell,
                    .origin = grid.origin,
+                   .cost = {grid.cost.begin(), grid.cost.end()},
                    .times = {times.begin(), times.end()}});
   }
   return all;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "base/split_mix.h"
 #include "crowd/controller.h"
@@ -122,6 +123,9 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
     for (const Record record : check.writes)
       if (after.agents > 0 && crowd::infoOf(record).kept == crowd::Kept::bound && after.of(record).empty())
         throw inputError(std::string("replay: found no ") + crowd::infoOf(record).name + " records");
+    if (check.stage == crowd::StageId::navigate && std::exchange(waysAreNew_, false))
+      for (const reference::WayField& field : setting_.ways)
+        judges_[c].add(n, before.sample.first, -1, compareWay(field));
     for (size_t agent = 0; agent < before.agents; ++agent) {
       const Moment moment{n, before, after, agent, around};
       const bool asleep = asleepOf(after, agent);

@@ -36,7 +36,7 @@ struct HerdFacts {
   // Where the herd avoids: how, and the number in the crowd of that agent.
   reference::AvoidTuning avoid = {};
   int64_t firstNumber = 0;
-  std::vector<reference::Way> ways = {};  // the fields of its kind, as they are on the device
+  std::vector<reference::WayField> ways = {};  // the fields of its kind, as they are on the device
 };
 
 // All agents that are there, of the whole crowd: as they were before a tick.
@@ -55,7 +55,7 @@ struct Setting {
   reference::KeyPoses keyPoses;
   reference::AvoidTuning avoid;
   int64_t firstNumber = 0;
-  std::vector<reference::Way> ways;
+  std::vector<reference::WayField> ways;
 };
 
 // `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit
@@ -92,7 +92,10 @@ class Replay {
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
 
   // The fields are others from the next tick() on.
-  void setWays(std::vector<reference::Way> ways) { setting_.ways = std::move(ways); }
+  void setWays(std::vector<reference::WayField> ways) {
+    setting_.ways = std::move(ways);
+    waysAreNew_ = true;
+  }
 
   // The stages that are compared, in order, less those that every tick left out.
   std::vector<StageResult> results() const;
@@ -103,6 +106,7 @@ class Replay {
   Setting setting_;
   std::vector<crowd::StageId> only_;
   std::vector<Judge> judges_;
+  bool waysAreNew_ = true;     // no tick has compared them
   std::vector<bool> leftOut_;  // by every tick so far; before the first, none is
 };
 

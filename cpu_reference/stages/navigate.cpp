@@ -53,11 +53,11 @@ void steer(const Tuning& tuning, const AgentBody& body, const Goal& goal, const 
 }
 
 // Along the field of the goal; whether there is one. Who is near its stop goes there as without one.
-bool followField(const Tuning& tuning, const AgentBody& body, const Goal& goal, std::span<const Way> ways,
-                 const NavigateChoices& choices, NavigateResult& result) {
+bool followField(const Tuning& tuning, const AgentBody& body, const Goal& goal,
+                 std::span<const WayField> ways, const NavigateChoices& choices, NavigateResult& result) {
   if (goal.kind != GoalKind::point) return false;
   const auto way =
-      std::find_if(ways.begin(), ways.end(), [&](const Way& each) { return each.goal == goal.target; });
+      std::find_if(ways.begin(), ways.end(), [&](const WayField& each) { return each.goal == goal.target; });
   if (way == ways.end()) return false;
   result.way = followWay(tuning, *way, body.world(), goal.speed, goal.arrivalRadius, choices.way);
   if (result.way->straight) {
@@ -92,7 +92,7 @@ void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const 
 }  // namespace
 
 NavigateResult navigate(const Tuning& tuning, const AgentBody& body, const Goal& goal, const Rest& rest,
-                        const NavigateChoices& choices, std::span<const Way> ways) {
+                        const NavigateChoices& choices, std::span<const WayField> ways) {
   NavigateResult result{goal, glm::dvec2(0), body.absent, never, glm::dvec2(never), never, never, {}};
   if (body.absent) return result;
   if (!followField(tuning, body, goal, ways, choices, result)) steer(tuning, body, goal, choices, result);

@@ -39,6 +39,6 @@ struct NavigateChoices {
 
 // `ways`: the fields of its kind.
 NavigateResult navigate(const Tuning& tuning, const AgentBody& body, const Goal& goal, const Rest& rest = {},
-                        const NavigateChoices& choices = {}, std::span<const Way> ways = {});
+                        const NavigateChoices& choices = {}, std::span<const WayField> ways = {});
 
 }  // namespace skitter::reference

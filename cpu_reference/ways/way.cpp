@@ -13,7 +13,7 @@ bool taken(bool rule, int choice) { return choice >= 0 ? choice == 1 : rule; }
 
 }  // namespace
 
-WayResult followWay(const Tuning& tuning, const Way& way, const glm::dvec2& position, double speed,
+WayResult followWay(const Tuning& tuning, const WayField& way, const glm::dvec2& position, double speed,
                     double arrivalRadius, const WayChoices& choices) {
   WayResult result;
   result.away = glm::length(way.stop - position);

@@ -7,11 +7,12 @@
 namespace skitter::reference {
 
 // The field of a goal, as stage navigate goes by it (docs/ways.md).
-struct Way {
+struct WayField {
   glm::dvec2 goal{0}, stop{0};
   size_t columns = 0, rows = 0;
   double cell = 0;
   glm::dvec2 origin{0};
+  std::vector<double> cost = {};   // of the cells
   std::vector<double> times = {};  // at the middles of the cells
 };
 
@@ -34,7 +35,7 @@ struct WayResult {
   // difference of the times around, as a share of the gradient's length and in itself.
   double turning = 0, magnified = 0, rise = 0;
 };
-WayResult followWay(const Tuning& tuning, const Way& way, const glm::dvec2& position, double speed,
+WayResult followWay(const Tuning& tuning, const WayField& way, const glm::dvec2& position, double speed,
                     double arrivalRadius, const WayChoices& choices = {});
 
 }  // namespace skitter::reference

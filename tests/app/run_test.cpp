@@ -42,6 +42,24 @@ TEST_F(Running, CrowdingIsMeasuredWhereItIsAskedFor) {
   EXPECT_LT(avoiding.at("overlapMean"), 0.05);
 }
 
+TEST_F(Running, WhoCannotReachAGoalIsToldOnce) {
+  const auto heard =
+      [&](const char* obstacles) {
+        std::ofstream(file("way.json"))
+            << R"({"terrain": {"columns": 65, "rows": 65, "amplitude": 0}, "obstacles": [)" << obstacles
+            << R"(], "herds": [{"agents": 4, "ways": {},
+      "spawn": {"kind": "grid", "centre": [0, -5]}, "goal": {"kind": "point", "target": [0, 5]}}]})";
+        const Result result = skitter({"run", file("way.json"), "--headless", "--frames", "3"});
+        EXPECT_EQ(result.code, 0) << result.err;
+        return result.err;
+      };
+  const std::string told = "herd 0: no way leads 4 of 4 agents to their goals";
+  const std::string walled = heard(R"({"capsule": {"from": [-16, 0], "to": [16, 0]}})");
+  EXPECT_NE(walled.find(told), std::string::npos) << walled;
+  EXPECT_EQ(walled.find(told), walled.rfind(told));
+  EXPECT_EQ(heard("").find("no way"), std::string::npos);
+}
+
 TEST_F(Running, JsonHasTheDocumentedFields) {
   const Result result = skitter({"run", "--headless", "--agents", "20", "--frames", "30", "--seed", "7",
                                  "--json", file("run.json"), "--timings"});

@@ -60,6 +60,15 @@ TEST_F(Validate, AgentsThatAvoidEachOtherAgreeWithTheReference) {
                 {"--stages: no herd of", "has avoid compared"});
 }
 
+TEST_F(Validate, AgentsThatFindTheirWayAgreeWithTheReference) {
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    const Result result = skitter({"validate", SKITTER_ROOT "/assets/scenes/maze.json", "--controller",
+                                   nameOf(controller), "--agents", "9", "--frames", "60"});
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+  }
+}
+
 // Neither changes a bit of what is compared.
 TEST_F(Validate, PagesAndFusionChangeNothing) {
   const std::vector<std::string> plain = {"validate", "--agents", "40", "--frames", "40", "--dt", "0.15"};

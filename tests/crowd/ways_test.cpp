@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "assets/files.h"
+#include "cpu_reference/stages/tolerances.h"
 #include "cpu_reference/ways/grid.h"
 #include "crowd/radius.h"
 #include "crowd/simulation.h"
@@ -23,11 +24,6 @@ using WaysTest = GpuTest;
 using WaysReplayTest = GpuLoadTest;
 
 constexpr float kImpassable = std::numeric_limits<float>::infinity();
-// How far a field may be from the reference: rounds end when none changes a cell by 1e-5 of itself, and the
-// few cells that a change then still moves on to add as much again; float32 rounds a thousand times on the
-// way.
-constexpr double kFieldTolerance = 1e-4;
-
 CostGrid gridOf(uint32_t columns, uint32_t rows, const std::function<float(uint32_t, uint32_t)>& cost) {
   CostGrid grid{.columns = columns, .rows = rows, .cell = 0.5f};
   grid.origin = -0.25f * glm::vec2(columns, rows);
@@ -75,7 +71,7 @@ void expectAsReference(const crowd::WayFields& fields, const glm::vec2& goal) {
   const std::vector<float> times = fields.times(goal);
   ASSERT_EQ(times.size(), expected.size());
   for (size_t at = 0; at < times.size(); ++at)
-    ASSERT_NEAR(times[at], expected[at], kFieldTolerance * std::max(expected[at], grid.cell))
+    ASSERT_NEAR(times[at], expected[at], reference::tolerance::wayField * std::max(expected[at], grid.cell))
         << "cell " << at % grid.columns << ", " << at / grid.columns;
 }
 

@@ -212,7 +212,7 @@ class FollowWay : public testing::Test {
  protected:
   reference::Tuning tuning = validation::tuningOf(parametersFor(flatField()));
   // Times rise by 2 in x and by 1 in z from cell to cell.
-  reference::Way way{.goal = {50, 50},
+  reference::WayField way{.goal = {50, 50},
                      .stop = {40, 41},
                      .columns = 4,
                      .rows = 3,
@@ -246,7 +246,7 @@ TEST_F(FollowWay, IsStraightNearTheStop) {
 
 TEST_F(FollowWay, IsForGoalsOfKindPointThatHaveAField) {
   reference::Goal goal{{50, 50}, {0, 0}, 1, 0.5, reference::GoalKind::point};
-  const std::vector<reference::Way> ways = {way};
+  const std::vector<reference::WayField> ways = {way};
   const auto velocity = [&] { return reference::navigate(tuning, bodyAt(1, 1), goal, {}, {}, ways).desired; };
   EXPECT_LT(velocity().x, 0);
   goal.target.x = 50.001;
