@@ -251,8 +251,10 @@ void Colony::change(const std::vector<uint32_t>& cells, const std::vector<float>
   }
   if (!best_.arrived) return;
   const uint64_t length = lengthOf(best_.cells);
-  if (length <= longestTrip) best_.length = static_cast<uint32_t>(length);
-  else best_ = {}, found_ = 0;
+  if (length <= longestTrip)
+    best_.length = static_cast<uint32_t>(length);
+  else
+    best_ = {}, found_ = 0;
 }
 
 uint64_t Colony::shortest() const {

@@ -23,8 +23,8 @@ struct ColonyRecipe {
   uint32_t evaporation = 0;  // rho, 1/4096
   uint32_t least = 16;       // tau_min, 2^-20
   uint32_t bestEvery = 0;
-  uint32_t greed = 0;  // q_0, 2^-32
-  uint32_t wear = 0;   // xi, 1/4096
+  uint32_t greed = 0;   // q_0, 2^-32
+  uint32_t wear = 0;    // xi, 1/4096
   uint32_t forget = 0;  // gamma, 1/4096
   uint32_t forgetRadius = 0;
 };
@@ -46,7 +46,7 @@ class Colony {
   void iterate();
   void change(const std::vector<uint32_t>& cells, const std::vector<float>& costs);
 
-  uint32_t iteration() const { return iteration_; }  // those done
+  uint32_t iteration() const { return iteration_; }                      // those done
   const std::vector<uint32_t>& pheromone() const { return pheromone_; }  // eight a cell, 2^-20
   const std::vector<ColonyTrip>& trips() const { return trips_; }        // of the last iteration
   const ColonyTrip& best() const { return best_; }
