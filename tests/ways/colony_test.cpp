@@ -88,7 +88,7 @@ TEST_F(ColonyTest, DeadEndsDepositNothing) {
 
 TEST_F(ColonyTest, OneAntComesBackOutOfADeadEnd) {
   ColonyCase each = drawnCase("dead end", "11111n1g");
-  each.options.ants = 1;
+  each.options.ants = each.options.crew = 1;
   for (each.options.seed = 0; each.options.seed < 16; ++each.options.seed) {
     Colony colony = colonyOf(each);
     colony.search(1);

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
-
-#include "skitter/error.h"
 
 namespace skitter::test {
 namespace {
@@ -51,7 +50,8 @@ std::string differenceOfTrip(const std::string& what, const std::optional<Colony
 uint32_t indexOf(const ColonyCase& each, glm::uvec2 cell) { return cell.y * each.grid.columns + cell.x; }
 
 ColonyCase drawnCase(const std::string& name, const std::string& picture) {
-  ColonyCase each{.name = name, .grid = {.columns = 0, .rows = 0, .cell = 0.5f, .origin = {-3, 2}}};
+  ColonyCase each{.name = name,
+                  .grid = {.columns = 0, .rows = 0, .cell = 0.5f, .origin = {-3, 2}, .cost = {}}};
   std::istringstream lines(picture);
   for (std::string line; std::getline(lines, line); ++each.grid.rows) {
     each.grid.columns = static_cast<uint32_t>(line.size());
@@ -69,7 +69,7 @@ ColonyCase drawnCase(const std::string& name, const std::string& picture) {
 ColonyCase threatCase(uint32_t side, uint64_t seed) {
   Dice dice(seed);
   ColonyCase each{.name = fmt::format("threats {} of side {}", seed, side),
-                  .grid = {.columns = side, .rows = side, .cell = 1, .origin = {0, 0}},
+                  .grid = {.columns = side, .rows = side, .cell = 1, .origin = {0, 0}, .cost = {}},
                   .nest = {side * 6 / 100, side / 2},
                   .goal = {side * 94 / 100, side / 2}};
   std::vector<double> cost(size_t{side} * side, 1);
@@ -108,7 +108,7 @@ reference::Colony referenceOf(const ColonyCase& each) {
   reference::ColonyRecipe recipe;
   recipe.rule = options.rule == ColonyRule::mmas ? reference::ColonyRule::mmas : reference::ColonyRule::acs;
   recipe.ants = options.ants;
-  recipe.crew = options.crew;
+  recipe.crew = std::min(options.crew, options.ants);
   recipe.steps = options.steps == 0 ? 8 * (grid.columns + grid.rows) : options.steps;
   recipe.passes = options.passes;
   recipe.seed = options.seed;

@@ -1,4 +1,8 @@
 // The colony on the device, held against the reference to the bit after each iteration.
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "support/gpu_fixture.h"
 #include "ways/maps.h"
 
@@ -33,7 +37,7 @@ TEST_F(ColonyParityTest, BothRules) {
 
 TEST_F(ColonyParityTest, EveryNumberOfAnts) {
   for (const uint32_t ants : {1u, 7u, 8u, 9u, 65u}) {
-    ColonyCase each = drawnCase("ants " + std::to_string(ants), trap);
+    ColonyCase each = drawnCase(fmt::format("{} ants", ants), trap);
     each.options.ants = ants;
     each.options.crew = ants > 3 ? 3 : 1;
     expectSame(each, 4);
@@ -43,7 +47,7 @@ TEST_F(ColonyParityTest, EveryNumberOfAnts) {
 TEST_F(ColonyParityTest, GridsOfEverySize) {
   for (const char* picture : {"n", "ng", "n11111g", "n\n1\ng", "n1\n1g", "n1#\n#1#\n#1g"}) {
     ColonyCase each = drawnCase(picture, picture);
-    each.options.ants = 5;
+    each.options.ants = each.options.crew = 5;
     expectSame(each, 3);
   }
 }
@@ -82,30 +86,35 @@ TEST_F(ColonyParityTest, EveryOptionAwayFromItsDefault) {
 
 TEST_F(ColonyParityTest, FewSteps) {
   for (const uint32_t steps : {1u, 2u, 30u}) {
-    ColonyCase each = drawnCase("steps " + std::to_string(steps), trap);
+    ColonyCase each = drawnCase(fmt::format("{} steps", steps), trap);
     each.options.steps = steps;
     expectSame(each, 2);
   }
 }
 
-// 200 moves of cost 1000 do not yet reach the longest trip; 5000 of them do (LONGEST_TRIP, 2^31 - 1 of 512000
-// a move).
+// A way there and back around a wall: 4001 moves of 512000 are less than the longest trip, 2^31 - 1
+// (LONGEST_TRIP), and 4401 are more.
 TEST_F(ColonyParityTest, TripsThatBecomeTooLong) {
-  for (const uint32_t length : {200u, 4096u}) {
-    ColonyCase each{.name = "costly " + std::to_string(length),
-                    .grid = {.columns = length, .rows = 1, .cell = 1, .origin = {0, 0}},
+  for (const uint32_t columns : {2000u, 2200u}) {
+    ColonyCase each{.name = fmt::format("{} columns", columns),
+                    .grid = {.columns = columns, .rows = 3, .cell = 1, .origin = {0, 0}, .cost = {}},
                     .nest = {0, 0},
-                    .goal = {length - 1, 0}};
-    each.grid.cost.assign(length, 1000.0f);
-    each.options.ants = 3;
+                    .goal = {0, 2}};
+    each.grid.cost.assign(size_t{3} * columns, 1000.0f);
+    for (uint32_t column = 0; column + 1 < columns; ++column)
+      each.grid.cost[size_t{columns} + column] = INFINITY;
+    each.options.ants = each.options.crew = 3;
     expectSame(each, 1);
+    reference::Colony truth = referenceOf(each);
+    truth.iterate();
+    EXPECT_EQ(truth.best().arrived, columns == 2000);
   }
 }
 
 TEST_F(ColonyParityTest, ChangesOfTheMap) {
   for (const ColonyRule rule : allColonyRules)
     for (const float forget : {0.0f, 0.4f, 1.0f}) {
-      ColonyCase each = drawnCase(std::string("changes ") + nameOf(rule), trap);
+      ColonyCase each = drawnCase(fmt::format("changes, {}", nameOf(rule)), trap);
       each.options.rule = rule;
       each.options.forget = forget;
       Colony colony(device(), each.grid, each.nest, each.goal, each.options);
