@@ -5,7 +5,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # From the bottom to the top. A file may include what is in its own folder or in one before it.
-FOLDERS = ["engine/include", "shaders", "engine/base", "engine/gpu", "engine/assets", "engine/ik", "engine/spline",
+FOLDERS = ["engine/include", "shaders", "engine/base", "engine/gpu", "engine/assets", "engine/ik", "engine/spline", "engine/ways",
            "engine/crowd", "engine/render", "cpu_reference", "validation", "bench", "experiments", "bindings", "app"]
 # Within these the same holds of their own folders; "" is the folder itself.
 INNER = {

@@ -64,7 +64,7 @@ class SKITTER_API Colony {
     uint32_t ants = 64;  // 1 to maxAnts
     uint64_t seed = 1;
     uint32_t steps = 0;    // of an ant, at most; 0: eight times columns and rows, up to maxSteps
-    uint32_t crew = 8;     // ants whose first is tightened, 1 to ants; more: less work, fewer ways compared
+    uint32_t crew = 4;     // ants whose first is tightened, 1 to ants; more: less work, fewer ways compared
     uint32_t passes = 32;  // of tightening, at most; 0: none
     uint32_t beta = 1;     // power of the heuristic, 0 to 8; more: straighter, sooner stuck
     float margin = 1;      // straight moves of detour that halve the heuristic, 1/512 to 64
