@@ -63,11 +63,11 @@ class SKITTER_API Colony {
     ColonyRule rule = ColonyRule::mmas;
     uint32_t ants = 64;  // 1 to maxAnts
     uint64_t seed = 1;
-    uint32_t steps = 0;    // of an ant, at most; 0: eight times columns and rows, up to maxSteps
-    uint32_t crew = 4;     // ants whose first is tightened, 1 to ants; more: less work, fewer ways compared
-    uint32_t passes = 32;  // of tightening, at most; 0: none
-    uint32_t beta = 1;     // power of the heuristic, 0 to 8; more: straighter, sooner stuck
-    float margin = 1;      // straight moves of detour that halve the heuristic, 1/512 to 64
+    uint32_t steps = 0;  // of an ant, at most; 0: eight times columns and rows, up to maxSteps
+    uint32_t crew = 4;   // ants whose first is tightened, at least 1, at most all; more: less work, less sure
+    uint32_t passes = 32;       // of tightening, at most; 0: none
+    uint32_t beta = 1;          // power of the heuristic, 0 to 8; more: straighter, sooner stuck
+    float margin = 1;           // straight moves of detour that halve the heuristic, 1/512 to 64
     float evaporation = 0.1f;   // rho, more than 0 and less than 1
     float least = 0.002f;       // tau_min of mmas, tau_0 of acs; share of the most, 2^-16 to less than 1
     uint32_t bestEvery = 5;     // mmas: iterations from one turn of the best path to the next; 0: none
@@ -78,7 +78,8 @@ class SKITTER_API Colony {
     std::vector<Shader> shaders = {};  // in place of the built-in ones, for experiments
   };
 
-  // nest and goal: column and row, within the grid. Either may be impassable; then no ant arrives.
+  // nest and goal: column and row, within the grid. Either may be impassable; then no ant leaves or arrives.
+  // Where they are one cell the path is that cell.
   Colony(Device&, const CostGrid&, glm::uvec2 nest, glm::uvec2 goal, const Options&);
   ~Colony();
   Colony(Colony&&) noexcept;
