@@ -1,10 +1,10 @@
 // The comparison with the reference is seen to fail: one small error in a shader (tests/ways/CMakeLists.txt
 // says which), and it must refuse.
 #include "embedded/broken_best_comp.h"
-#include "embedded/broken_candidate_comp.h"
 #include "embedded/broken_deposit_comp.h"
 #include "embedded/broken_length_comp.h"
 #include "embedded/broken_roulette_comp.h"
+#include "embedded/broken_tie_comp.h"
 #include "support/gpu_fixture.h"
 #include "ways/maps.h"
 
@@ -20,7 +20,7 @@ std::vector<ColonyMutant> colonyMutants() {
   using namespace embedded;
   return {{"roulette", "walk", broken_roulette_comp()},
           {"length", "walk", broken_length_comp()},
-          {"candidate", "tighten", broken_candidate_comp()},
+          {"tie", "tighten", broken_tie_comp()},
           {"best", "judge", broken_best_comp()},
           {"deposit", "update", broken_deposit_comp()}};
 }
