@@ -1,14 +1,17 @@
 #include "skitter/decode.h"
 
-#include <cassert>
+#include <fmt/format.h>
 
+#include "skitter/error.h"
 #include "skitter/records.h"
 
 namespace skitter {
 namespace {
 
 glm::vec4 load(std::span<const float> record, size_t index) {
-  assert(record.size() >= 4 * (index + 1));
+  if (record.size() < 4 * (index + 1))
+    throw inputError(
+        fmt::format("a record of {} floats, expected at least {}", record.size(), 4 * (index + 1)));
   const float* v = record.data() + 4 * index;
   return {v[0], v[1], v[2], v[3]};
 }

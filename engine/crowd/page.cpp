@@ -319,7 +319,7 @@ RunSample sampleOf(uint32_t firstAgent, uint32_t agents, const AgentSample& samp
   const uint32_t first = firstAgent <= sample.first ? sample.first - firstAgent
                          : past > 0                 ? sample.stride - past
                                                     : 0;
-  return {first, agents > first ? (agents - first + sample.stride - 1) / sample.stride : 0};
+  return {first, agents > first ? (agents - first - 1) / sample.stride + 1 : 0};
 }
 
 }  // namespace skitter::crowd

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cassert>
-#include <cmath>
-
 #include "crowd/controller.h"
+#include "crowd/host_space.h"
 #include "crowd/page.h"
 #include "embedded/instances_comp_storage.h"
 #include "embedded/instances_comp_texel.h"
@@ -176,9 +174,7 @@ Palettes::Palettes(Device& device, const Crowd& crowd, uint32_t herd,
   made.generation = made.crowd->herds[herd].generation;
   made.entries = entriesOfKind(kind);
   made.options = options;
-  if (!(options.space.metresPerUnit > 0) || !std::isfinite(options.space.metresPerUnit))
-    throw inputError(
-        fmt::format("metresPerUnit {}, expected a finite length above 0", options.space.metresPerUnit));
+  crowd::checkSpace(options.space);
   for (const crowd::SizeRun& run : made.crowd->herds[herd].runs) {
     std::vector<glm::vec4> starts(made.entries, glm::vec4(0));
     if (!crowd::traitsOf(made.controller).playsClips) {
@@ -210,7 +206,8 @@ uint32_t Palettes::entriesOf(const Crowd& crowd, uint32_t herd) {
 
 void Palettes::record(VkCommandBuffer commandBuffer, const glm::dvec3& origin, uint32_t target) const {
   const Impl& palettes = *impl_;
-  assert(target < palettes.targets.size());
+  if (target >= palettes.targets.size())
+    throw inputError(fmt::format("palettes: target {}, expected one of {}", target, palettes.targets.size()));
   palettes.crowd->expectHerd("palettes", {palettes.herd, palettes.generation});
   const glm::dmat3 turn = palettes.options.space.turned();
   const glm::dvec2 tile = glm::floor(glm::dvec2(origin.x, origin.z) / double{shared::TILE_SIZE});

@@ -1,7 +1,8 @@
 #include "crowd/picking.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "gpu/context.h"
 #include "gpu/transfer.h"
 #include "skitter/decode.h"
+#include "skitter/error.h"
 
 namespace skitter {
 namespace crowd {
@@ -28,6 +30,14 @@ void eachSphere(std::span<const PickRun> runs, const glm::dvec3& origin, const C
     }
 }
 
+glm::dvec3 directionOf(const Ray& ray) {
+  const glm::dvec3& d = ray.direction;
+  const double length = glm::length(d);
+  if (length > 0 && std::isfinite(length)) return d / length;
+  throw inputError(
+      fmt::format("the ray's direction is ({}, {}, {}), expected any length but 0", d.x, d.y, d.z));
+}
+
 // Metres along the ray to the sphere, 0 from within; infinite where it misses.
 double along(const Ray& ray, const glm::dvec3& direction, const glm::dvec3& middle, double radius) {
   const glm::dvec3 to = middle - ray.start;
@@ -43,9 +53,8 @@ double along(const Ray& ray, const glm::dvec3& direction, const glm::dvec3& midd
 PickSphere pickSphereOf(const Rig& rig) { return {rig.bodyHeight, std::max(rig.bodyRadius, rig.bodyHeight)}; }
 
 std::optional<Picked> pick(std::span<const PickRun> runs, const Ray& ray, const glm::dvec3& origin) {
-  assert(glm::length(ray.direction) > 0);
+  const glm::dvec3 direction = directionOf(ray);
   std::optional<Picked> best;
-  const glm::dvec3 direction = glm::normalize(ray.direction);
   eachSphere(runs, origin, [&](const PickRun& run, uint32_t agent, const glm::dvec3& middle) {
     const double distance = along(ray, direction, middle, double{run.sphere.radius});
     if (distance > ray.length || !std::isfinite(distance) || (best && best->distance <= distance)) return;

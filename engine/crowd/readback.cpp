@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
 #include <cstring>
 #include <span>
 
@@ -15,6 +14,7 @@
 #include "gpu/transfer.h"
 #include "skitter/crowd.h"
 #include "skitter/decode.h"
+#include "skitter/error.h"
 
 namespace skitter {
 namespace {
@@ -80,7 +80,7 @@ void appendWatch(const Crowd::Impl& crowd, const Part& part, uint32_t offset, st
 
 HerdState recordsOf(const Crowd::Impl& crowd, std::span<const Part> parts, std::span<const Record> records,
                     const AgentSample& sample) {
-  assert(sample.stride > 0);
+  if (sample.stride == 0) throw inputError("a sample of agents with stride 0, expected at least 1");
   crowd.context->waitIdle();
   HerdState state;
   state.tick = crowd.tick;

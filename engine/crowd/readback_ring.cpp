@@ -55,6 +55,9 @@ std::span<const float> Snapshot::bodies(uint32_t herd) const {
 }
 
 BodyState Snapshot::body(uint32_t herd, uint32_t agent, const glm::dvec3& origin) const {
+  if (agent >= agents(herd))
+    throw inputError(fmt::format("readback: herd {}, agent {}: expected one of the {} that were read", herd,
+                                 agent, agents(herd)));
   return bodyOf(bodies(herd).subspan(agent * bodyFloats, bodyFloats), origin);
 }
 

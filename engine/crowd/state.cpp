@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cstring>
 #include <optional>
 #include <set>
@@ -448,7 +447,8 @@ bool isNumberedSo(const std::vector<SizeRun>& runs, const Numbering& numbering) 
 }  // namespace
 
 void restoreHerds(Impl& crowd, const State& state) {
-  assert(state.source);
+  if (!state.source)
+    throw inputError("a state that no file or bytes were read for, expected one of loadState()");
   const auto& [name, head] = std::tie(state.source->name, state.source->head);
   if (head.rigsAreCallers && state.options.rigs.empty())
     throw inputError(

@@ -8,6 +8,7 @@
 #include "gpu/instance.h"
 #include "gpu/record_access.h"
 #include "gpu/submit.h"
+#include "skitter/error.h"
 
 #include <fmt/format.h>
 
@@ -175,6 +176,7 @@ VkQueue Device::queue() const { return context_->queueHandle(); }
 uint32_t Device::queueFamily() const { return context_->queueFamily(); }
 void Device::waitIdle() const { context_->waitIdle(); }
 void Device::run(const std::function<void(VkCommandBuffer)>& record) const {
+  if (!record) throw inputError("Device::run was given no function, expected one that records commands");
   gpu::submitAndWait(*context_, record);
 }
 std::vector<uint8_t> Device::pipelineCacheData() const {

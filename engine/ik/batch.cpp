@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -13,6 +12,7 @@
 #include "gpu/kernel.h"
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
+#include "ik/limits.h"
 #include "ik/records.h"
 #include "ik/seeds.h"
 #include "ik/skeleton.h"
@@ -62,6 +62,11 @@ void checkOptions(const Chain& chain, uint32_t chains, const Options& options) {
   const float restPull = restPullOf(chain, options);
   if (!(restPull >= 0 && restPull <= 1))
     throw inputError(fmt::format("the rest pull is {}, expected 0 to 1", restPull));
+}
+
+void expectContinuing(const Options& options) {
+  if (options.start != Start::previous)
+    throw inputError("start poses were given to a batch that starts at rest, expected Start::previous");
 }
 
 // What BATCH_LIST begins with; the numbers of the chains follow.
@@ -116,6 +121,10 @@ struct Batch::Impl {
   std::vector<Page> pages;
   gpu::Buffer given[6];  // the caller's, in the order of Buffers; the last, the state, never is
 
+  const Page& pageAt(uint32_t page) const {
+    if (page < pages.size()) return pages[page];
+    throw inputError(fmt::format("page {} of a batch, expected one of its {}", page, pages.size()));
+  }
   uint64_t stateStride() const {
     return positional ? bones : static_cast<uint64_t>(shared::stateStride(static_cast<int>(bones), twists));
   }
@@ -339,7 +348,6 @@ std::vector<glm::vec4> Batch::Impl::download(const gpu::Buffer Page::*buffer, si
 
 void Batch::Impl::upload(const gpu::Buffer Page::*buffer, size_t use, uint32_t each,
                          std::span<const glm::vec4> data) {
-  assert(data.size() == size_t{chains} * each);
   for (Page& page : pages) {
     const auto part = data.subspan(0, size_t{page.chains} * each);
     gpu::upload(*context, given[use] ? given[use] : page.*buffer, part);
@@ -368,11 +376,14 @@ uint64_t Batch::memoryBytes() const {
 }
 
 void Batch::setTargets(std::span<const glm::vec3> targets) {
+  expectCount("targets", targets.size(), impl_->chains);
   impl_->upload(&Impl::Page::target, 0, 1, widened(targets));
 }
 
 void Batch::setBases(std::span<const Base> bases) {
-  assert(impl_->options.bases);
+  if (!impl_->options.bases)
+    throw inputError("bases were given to a batch of chains at 0, expected Options::bases");
+  expectCount("bases", bases.size(), impl_->chains);
   std::vector<glm::vec4> records;
   for (const Base& base : bases) {
     records.emplace_back(base.position, 0.0f);
@@ -388,7 +399,8 @@ void Batch::reset() {
 void Batch::setJoints(std::span<const glm::vec3> joints) {
   Impl& batch = *impl_;
   const uint32_t n = batch.bones;
-  assert(batch.options.start == Start::previous && joints.size() == size_t{batch.chains} * (n + 1));
+  expectContinuing(batch.options);
+  expectCount("joints", joints.size(), size_t{batch.chains} * (n + 1));
   std::vector<glm::vec4> records, bases;
   if (batch.options.bases) bases = batch.download(&Impl::Page::base, 1, shared::BASE_STRIDE);
   std::vector<float> states;
@@ -419,6 +431,7 @@ std::vector<glm::vec4> Batch::downloadStates() const {
 
 void Batch::setStates(std::span<const glm::vec4> states) {
   const auto stride = static_cast<uint32_t>(impl_->stateStride());
+  expectCount("vec4 of states", states.size(), size_t{impl_->chains} * stride);
   impl_->ownState ? impl_->upload(&Impl::Page::state, 5, stride, states)
                   : impl_->upload(&Impl::Page::joint, 2, stride, states);
 }
@@ -477,7 +490,8 @@ std::vector<glm::vec3> Batch::downloadJoints() const {
 }
 
 std::vector<glm::quat> Batch::downloadRotations() const {
-  assert(impl_->options.rotations);
+  if (!impl_->options.rotations)
+    throw inputError("rotations of a batch that writes none, expected Options::rotations");
   std::vector<glm::quat> rotations;
   for (const glm::vec4& q : impl_->download(&Impl::Page::rotation, 3, impl_->bones))
     rotations.emplace_back(q.w, q.x, q.y, q.z);
@@ -499,11 +513,11 @@ namespace {
 Span spanOf(const gpu::Buffer& buffer) { return {buffer.handle(), buffer.size()}; }
 }  // namespace
 
-Span Batch::targets(uint32_t page) const { return spanOf(impl_->pages.at(page).target); }
-Span Batch::bases(uint32_t page) const { return spanOf(impl_->pages.at(page).base); }
-Span Batch::joints(uint32_t page) const { return spanOf(impl_->pages.at(page).joint); }
-Span Batch::rotations(uint32_t page) const { return spanOf(impl_->pages.at(page).rotation); }
-Span Batch::reports(uint32_t page) const { return spanOf(impl_->pages.at(page).report); }
+Span Batch::targets(uint32_t page) const { return spanOf(impl_->pageAt(page).target); }
+Span Batch::bases(uint32_t page) const { return spanOf(impl_->pageAt(page).base); }
+Span Batch::joints(uint32_t page) const { return spanOf(impl_->pageAt(page).joint); }
+Span Batch::rotations(uint32_t page) const { return spanOf(impl_->pageAt(page).rotation); }
+Span Batch::reports(uint32_t page) const { return spanOf(impl_->pageAt(page).report); }
 
 void Batch::use(const Buffers& buffers) {
   Impl& batch = *impl_;

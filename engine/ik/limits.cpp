@@ -35,6 +35,11 @@ Error faultOf(size_t bone, const std::string& fault) {
   return inputError(fmt::format("bone {}: {}", bone, fault));
 }
 
+void expectCount(const char* name, size_t found, size_t expected) {
+  if (found != expected)
+    throw inputError(fmt::format("a batch was given {} {}, expected {}", found, name, expected));
+}
+
 void checkLimits(size_t number, const Bone& bone) {
   checkRange(number, "twist", bone.twistMin, bone.twistMax);
   if (const auto* cone = std::get_if<Cone>(&bone.limit)) checkAngle(number, cone->halfAngle, 3.15f);

@@ -15,6 +15,8 @@ inline constexpr double widestAngle = 3.1;
 bool hasDirection(const glm::vec3& v);
 // An Error(input) that names the bone, counted from 0.
 Error faultOf(size_t bone, const std::string& fault);
+// Refuses lists of another length than a batch needs.
+void expectCount(const char* name, size_t found, size_t expected);
 // Refuses a limit or a twist range that cannot be, by faultOf.
 void checkLimits(size_t number, const Bone& bone);
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 
 #include "embedded/solve_tree_comp_storage.h"
 #include "embedded/solve_tree_comp_texel.h"
@@ -9,6 +8,7 @@
 #include "gpu/kernel.h"
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
+#include "ik/limits.h"
 #include "ik/records.h"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
@@ -77,6 +77,8 @@ TreeBatch::Impl::Impl(Device& device, const Tree& tree, uint32_t count, uint32_t
   using namespace shared;
   using enum gpu::BindingKind;
   if (!(tolerance > 0)) throw inputError(fmt::format("the tolerance is {}, expected more than 0", tolerance));
+  const uint64_t most = uint64_t{context->limits().maxComputeWorkGroupCountX} * WORK_GROUP;
+  if (count > most) throw inputError(fmt::format("{} trees, expected at most {}", count, most));
   constants = {
       .count = trees, .iterations = iterations, .tolerance = tolerance, .reach = 0, .anchor = tree.anchor};
   for (const Tree::Leg& leg : tree.legs) constants.reach = std::max(constants.reach, reachOf(leg));
@@ -118,7 +120,8 @@ TreeBatch& TreeBatch::operator=(TreeBatch&&) noexcept = default;
 
 void TreeBatch::solve(std::span<const glm::vec3> bodies, std::span<const glm::vec3> targets) {
   Impl& batch = *impl_;
-  assert(bodies.size() == batch.trees && targets.size() == size_t{batch.trees} * batch.legs);
+  expectCount("bodies", bodies.size(), batch.trees);
+  expectCount("targets", targets.size(), size_t{batch.trees} * batch.legs);
   gpu::upload(*batch.context, batch.bodies, widened(bodies));
   gpu::upload(*batch.context, batch.targets, widened(targets));
   gpu::submitAndWait(*batch.context, [&](vk::CommandBuffer cmd) {

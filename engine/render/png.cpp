@@ -1,5 +1,6 @@
 #include "render/png.h"
 
+#include <fmt/format.h>
 #include <png.h>
 
 #include <cassert>
@@ -35,6 +36,9 @@ std::string pngOf(uint32_t width, uint32_t height, std::span<const uint8_t> rgba
 
 void writePng(const std::filesystem::path& file, uint32_t width, uint32_t height,
               std::span<const uint8_t> rgba) {
+  if (width == 0 || height == 0 || rgba.size() != size_t{4} * width * height)
+    throw inputError(fmt::format("{}: a picture of {} x {} pixels in {} bytes, expected 4 bytes per pixel",
+                                 file.string(), width, height, rgba.size()));
   writeText(file, render::pngOf(width, height, rgba, render::PngEffort::fast));
 }
 

@@ -2,6 +2,7 @@
 
 #include "crowd/controller.h"
 #include "crowd/herd.h"
+#include "crowd/host_space.h"
 #include "crowd/radius.h"
 #include "render/mesh.h"
 #include "skitter/palettes.h"
@@ -30,6 +31,7 @@ void move(SkinMesh& mesh, const HostSpace& space) {
 }  // namespace
 
 SkinMesh skinMeshOf(const Crowd& crowd, uint32_t herd, const HostSpace& space) {
+  crowd::checkSpace(space);
   const crowd::Kind& kind = implOf(crowd).kindOf(herd);
   const bool clips = crowd::traitsOf(kind.controller).playsClips;
   const std::vector<render::Surface> surfaces =

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cassert>
 #include <chrono>
 #include <fstream>
 #include <optional>
@@ -18,6 +17,8 @@ namespace {
 
 // A frame of 4K takes the encoder a few seconds where many programs share a core.
 constexpr std::chrono::seconds patience{30};
+
+constexpr double mostRate = 1000;  // frames a second
 
 // Whether a file begins as MP4 files do.
 bool isVideo(const std::filesystem::path& file) {
@@ -52,7 +53,14 @@ struct VideoWriter::Impl {
   Impl(const std::filesystem::path& name, uint32_t width, uint32_t height, double framesPerSecond,
        double picturesPerSecond)
       : file(name), frameBytes(size_t(width) * height * 4) {
-    assert(width > 0 && height > 0 && framesPerSecond > 0 && picturesPerSecond >= 0);
+    if (width == 0 || height == 0)
+      throw failed(fmt::format("frames of {} x {} pixels, expected at least 1 x 1", width, height));
+    if (!(framesPerSecond > 0 && framesPerSecond <= mostRate) ||
+        !(picturesPerSecond >= 0 && picturesPerSecond <= mostRate))
+      throw failed(
+          fmt::format("{} frames of {} pictures a second, expected above 0 frames, none or more "
+                      "pictures, and at most {} of both",
+                      framesPerSecond, picturesPerSecond, mostRate));
     try {
       ffmpeg.emplace(encoder(file.part(), width, height, framesPerSecond,
                              picturesPerSecond > 0 ? picturesPerSecond : framesPerSecond),
@@ -83,7 +91,8 @@ VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
 VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;
 
 void VideoWriter::write(std::span<const uint8_t> rgba) {
-  assert(rgba.size() == impl_->frameBytes);
+  if (rgba.size() != impl_->frameBytes)
+    throw impl_->failed(fmt::format("a frame of {} bytes, expected {}", rgba.size(), impl_->frameBytes));
   if (!impl_->ffmpeg->write(std::as_bytes(rgba))) {
     impl_->ffmpeg->finish();
     throw impl_->ffmpegFailed();

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 
 #include "embedded/lengths_comp_storage.h"
 #include "embedded/lengths_comp_texel.h"
@@ -66,6 +65,10 @@ struct SplineBatch::Impl {
   std::vector<Page> pages;
   gpu::Buffer given[givenNone + 1];  // the last never is
 
+  const Page& pageAt(uint32_t page) const {
+    if (page < pages.size()) return pages[page];
+    throw inputError(fmt::format("page {} of a batch, expected one of its {}", page, pages.size()));
+  }
   gpu::ShaderCode code(const char* entry, gpu::ShaderCode builtin) const;
   gpu::Kernel makeKernel(const char* entry, gpu::ShaderCode builtin, std::vector<gpu::BindingDecl>) const;
   void makeKernels();
@@ -197,7 +200,6 @@ void SplineBatch::Impl::bind(Page& page) {
 
 void SplineBatch::Impl::upload(gpu::Buffer Page::*buffer, Given use, uint32_t each,
                                std::span<const glm::vec4> data) {
-  assert(data.size() == size_t{splines} * each);
   for (Page& page : pages) {
     const auto part = data.subspan(0, size_t{page.splines} * each);
     gpu::upload(*context, of(use, page.*buffer), part);
@@ -362,10 +364,10 @@ namespace {
 SplineBatch::Span spanOf(const gpu::Buffer& buffer) { return {buffer.handle(), buffer.size()}; }
 }  // namespace
 
-SplineBatch::Span SplineBatch::keys(uint32_t page) const { return spanOf(impl_->pages.at(page).key); }
-SplineBatch::Span SplineBatch::tangents(uint32_t page) const { return spanOf(impl_->pages.at(page).given); }
-SplineBatch::Span SplineBatch::clocks(uint32_t page) const { return spanOf(impl_->pages.at(page).clock); }
-SplineBatch::Span SplineBatch::motions(uint32_t page) const { return spanOf(impl_->pages.at(page).motion); }
+SplineBatch::Span SplineBatch::keys(uint32_t page) const { return spanOf(impl_->pageAt(page).key); }
+SplineBatch::Span SplineBatch::tangents(uint32_t page) const { return spanOf(impl_->pageAt(page).given); }
+SplineBatch::Span SplineBatch::clocks(uint32_t page) const { return spanOf(impl_->pageAt(page).clock); }
+SplineBatch::Span SplineBatch::motions(uint32_t page) const { return spanOf(impl_->pageAt(page).motion); }
 
 void SplineBatch::use(const Buffers& buffers) {
   Impl& batch = *impl_;

@@ -1,9 +1,12 @@
 #include "skitter/heightfield.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "assets/heights/heightfield_limits.h"
 #include "skitter/error.h"
 
 namespace skitter {
@@ -11,6 +14,16 @@ namespace skitter {
 namespace {
 
 float mix(float a, float b, float t) { return a + t * (b - a); }
+
+// A program's own heightfield may be anything.
+void expectSamples(const Heightfield& field) {
+  if (field.columns >= minSamples && field.rows >= minSamples &&
+      field.heights.size() == uint64_t{field.columns} * field.rows)
+    return;
+  throw inputError(
+      fmt::format("{}: {} x {} samples with {} heights, expected at least {} x {}, each with one", field.name,
+                  field.columns, field.rows, field.heights.size(), minSamples, minSamples));
+}
 
 // The four samples about a place, and where it is between them.
 struct Cell {
@@ -20,6 +33,7 @@ struct Cell {
 };
 
 Cell cellAt(const Heightfield& field, float x, float z) {
+  expectSamples(field);
   // !(u > 0) also sends a NaN to the edge.
   const auto locate = [](float u, uint32_t samples, size_t& index) {
     const float last = static_cast<float>(samples - 1);
@@ -57,8 +71,21 @@ float Heightfield::seenAt(float x, float z) const {
   return at(originX() + folded(x - originX(), extentX()), originZ() + folded(z - originZ(), extentZ()));
 }
 
+void Heightfield::check() const {
+  expectSamples(*this);
+  for (const float spacing : {spacingX, spacingZ})
+    if (!isWithin(spacing, minSpacing, maxSpacing))
+      throw inputError(
+          fmt::format("{}: a spacing of {} m, expected {} to {}", name, spacing, minSpacing, maxSpacing));
+  const auto bad = std::ranges::find_if(heights, [](float h) { return !std::isfinite(h); });
+  if (bad != heights.end())
+    throw inputError(
+        fmt::format("{}: height {} is {}, expected a finite one", name, bad - heights.begin(), *bad));
+}
+
 void Heightfield::edit(uint32_t x0, uint32_t z0, uint32_t editColumns, uint32_t editRows,
                        std::span<const float> samples) {
+  expectSamples(*this);
   const auto text = [](auto value) { return std::to_string(value); };
   if (uint64_t{x0} + editColumns > columns || uint64_t{z0} + editRows > rows)
     throw inputError(name + ": an edit of " + text(editColumns) + " x " + text(editRows) + " samples at " +

@@ -184,6 +184,12 @@ class ModelBuilder {
   size_t unscaled_ = 0, crowded_ = 0, weightless_ = 0;
 };
 
+void expectNode(const Model& model, int node) {
+  if (node < 0 || static_cast<size_t>(node) >= model.nodes.size())
+    throw inputError(
+        fmt::format("{}: node {}, expected one of {} nodes", model.name, node, model.nodes.size()));
+}
+
 }  // namespace
 
 size_t Model::jointCount() const {
@@ -192,6 +198,7 @@ size_t Model::jointCount() const {
 }
 
 bool Model::isAncestor(int ancestor, int node) const {
+  if (node != -1) expectNode(*this, node);
   while (node != -1) {
     node = nodes[static_cast<size_t>(node)].parent;
     if (node == ancestor) return true;
@@ -200,6 +207,7 @@ bool Model::isAncestor(int ancestor, int node) const {
 }
 
 std::string Model::reference(int node) const {
+  expectNode(*this, node);
   const std::string& own = nodes[static_cast<size_t>(node)].name;
   const auto same = [&](const Node& other) { return other.name == own; };
   if (own.empty() || std::count_if(nodes.begin(), nodes.end(), same) > 1) return fmt::format("#{}", node);

@@ -168,9 +168,9 @@ class SKITTER_API Crowd {
   // Loads the scene's rigs, uploads the terrain and spawns every agent. Throws Error(input) for a scene that
   // cannot be (an unknown rig or controller, a count of rigs that is not that of herds, tuning, a spawn or
   // a goal out of its range, more than 100 herds that differ and sizes of these, legs of an adaptive herd
-  // above 100 m, a terrain that reaches beyond 4 km from the origin, an event that names nobody, or a herd
-  // that cannot come or go) and, before any agent is made, Error(device) when memory does not suffice (as
-  // DeviceLimits::availableBytes, but now).
+  // above 100 m, a terrain that cannot be or reaches beyond 4 km from the origin, an event that names nobody,
+  // or a herd that cannot come or go) and, before any agent is made, Error(device) when memory does not
+  // suffice (as DeviceLimits::availableBytes, but now).
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // As it was when it was saved; on another device and in other pages, too: every record has the bits that it
   // had. What the state's options ask for and the state lacks (poses, feet, footfalls) follows from it.
@@ -291,7 +291,8 @@ class SKITTER_API Crowd {
   std::optional<Picked> pick(const Ray& ray, const glm::dvec3& origin = glm::dvec3(0)) const;
   std::optional<Picked> nearest(const glm::dvec3& point, const glm::dvec3& origin = glm::dvec3(0)) const;
 
-  // Each of these waits for the device.
+  // Each of these waits for the device. A number that no herd has throws Error(input), here and above, and so
+  // does a sample with stride 0.
   HerdState download(uint32_t herd, const AgentSample& sample = {}) const;
   Fidelity fidelity() const;  // of all herds
   Fidelity fidelity(uint32_t herd) const;

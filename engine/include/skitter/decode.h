@@ -9,8 +9,8 @@
 #include "skitter/export.h"
 
 // Records (skitter/records.h) as numbers with a meaning, on the host. A record is given as the floats that it
-// begins with: of a HerdState, of a Snapshot (skitter/readback.h) or of the caller's own copy of a buffer. It
-// is a caller's bug if there are too few (asserted).
+// begins with: of a HerdState, of a Snapshot (skitter/readback.h) or of the caller's own copy of a buffer.
+// Too few throw Error(input).
 //
 // World positions are relative to an `origin` that the caller names, in world metres. A body's position
 // is a tile and an offset in it, so x and z are exact to 1e-6 m wherever on the map the body is.

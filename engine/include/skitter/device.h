@@ -220,7 +220,8 @@ class SKITTER_API Device {
   void waitIdle() const;
 
   // Records into a command buffer, submits it and waits: for set-up, tools and first steps, where nothing
-  // else is to go on meanwhile. Throws Error(device) when the device is lost.
+  // else is to go on meanwhile. Throws Error(device) when the device is lost, Error(input)
+  // without a function.
   void run(const std::function<void(VkCommandBuffer)>& record) const;
 
   // For DeviceRequest::pipelineCache in the next run: the pipelines made so far, and the host's where it gave

@@ -8,7 +8,8 @@
 namespace skitter {
 
 // Wrong input or a failing world. what() is one line that names the file or object, what was found and what
-// was expected. A caller's own bug is an assertion, never an Error.
+// was expected. Public functions throw nothing else but std::bad_alloc. Within the engine, a caller's bug is
+// an assertion.
 class SKITTER_API Error : public std::runtime_error {
  public:
   // The values are the exit codes of the `skitter` command.

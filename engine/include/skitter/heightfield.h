@@ -28,6 +28,11 @@ struct SKITTER_API Heightfield {
   float originZ() const { return -0.5f * spacingZ * static_cast<float>(rows - 1); }     // z of row 0
   float extentX() const { return spacingX * static_cast<float>(columns - 1); }
   float extentZ() const { return spacingZ * static_cast<float>(rows - 1); }
+  // Throws Error(input) where a size, a spacing or a sample cannot be. A crowd checks the ground that it is
+  // made on.
+  void check() const;
+  // Each of these throws Error(input) where samples are missing.
+  //
   // Bilinear height at world (x, z), for spawning, cameras and tools; the simulation samples on the device.
   float at(float x, float z) const;
   // The ground's unit normal there, of the same surface.

@@ -124,9 +124,9 @@ struct Span {
   uint64_t bytes = 0;
 };
 
-// N chains of one kind. Not thread-safe. Throws Error(input) for a chain or options that cannot be,
-// Error(device) when memory does not suffice. Chains are split over pages, so that any count up to maxChains
-// fits the device's bindings.
+// N chains of one kind. Not thread-safe. Throws Error(input) for a chain or options that cannot be, for lists
+// that are not one per chain and for a page that it does not have, Error(device) when memory does not
+// suffice. Chains are split over pages, so that any count up to maxChains fits the device's bindings.
 class SKITTER_API Batch {
  public:
   static constexpr uint32_t maxChains = 1 << 24;
@@ -196,6 +196,8 @@ struct Tree {
   float anchor = 0;       // 0: the body goes where its legs pull it; 1: it stays where it was
 };
 
+// Throws Error(input) for a tree, a tolerance or a count that cannot be, and for lists of another length,
+// Error(device) when memory does not suffice.
 class SKITTER_API TreeBatch {
  public:
   TreeBatch(Device&, const Tree&, uint32_t trees, uint32_t iterations = 20, float tolerance = 9e-4f);

@@ -49,8 +49,9 @@ struct SKITTER_API Model {
   std::vector<std::string> notes;  // what is odd or was left out, a line each
 
   size_t jointCount() const;
+  // A `node` that the model does not have throws Error(input); node -1 has no ancestor.
   bool isAncestor(int ancestor, int node) const;
-  // A node's name in a sidecar: its own, or #INDEX where it has none or shares it.
+  // A node's name in a sidecar: its own, or #INDEX where it has none or shares it. Throws likewise.
   std::string reference(int node) const;
 };
 

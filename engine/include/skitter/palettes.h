@@ -61,10 +61,10 @@ struct PaletteOptions {
 // Used by one thread at a time. The crowd outlives it; so do the buffers.
 class SKITTER_API Palettes {
  public:
-  // A target for each frame that may be in flight. Throws Error(input) for a herd that is not there, a range
-  // that is too small or not aligned, palettes of a crowd without poses (CrowdOptions::pose), and quaternions
-  // for palettes of controllers whose matrices stretch (clip, planted); Error(device) where a range is more
-  // than one binding of the device reaches.
+  // A target for each frame that may be in flight. Throws Error(input) for a herd that is not there, a unit
+  // that cannot be, a range that is too small or not aligned, palettes of a crowd without poses
+  // (CrowdOptions::pose), and quaternions for palettes of controllers whose matrices stretch (clip, planted);
+  // Error(device) where a range is more than one binding of the device reaches.
   Palettes(Device& device, const Crowd& crowd, uint32_t herd, const std::vector<PaletteTarget>& targets,
            const PaletteOptions& options = {});
   ~Palettes();
@@ -79,7 +79,7 @@ class SKITTER_API Palettes {
   // render pass. It begins with a barrier that waits for vertex, fragment, compute and transfer work recorded
   // before it, and ends with one that makes the transforms visible to such work recorded after it. `origin`
   // is the point of the world, in metres, that the host's space has its own origin in. Throws Error(input)
-  // where the herd was removed; then nothing is recorded.
+  // where the herd was removed or there is no such target; then nothing is recorded.
   void record(VkCommandBuffer commandBuffer, const glm::dvec3& origin = glm::dvec3(0),
               uint32_t target = 0) const;
 

@@ -11,7 +11,7 @@ namespace skitter {
 // are further away.
 struct Ray {
   glm::dvec3 start{0};
-  glm::dvec3 direction{0, 0, 1};                            // of any length but 0
+  glm::dvec3 direction{0, 0, 1};                            // of any length but 0, else Error(input)
   double length = std::numeric_limits<double>::infinity();  // metres
 };
 

@@ -37,6 +37,7 @@ class SKITTER_API Snapshot {
   uint64_t tick() const { return tick_; }
   uint32_t agents(uint32_t herd) const;
   std::span<const float> bodies(uint32_t herd) const;  // body records, agent by agent (skitter/records.h)
+  // Throws Error(input) for an agent that was not read.
   BodyState body(uint32_t herd, uint32_t agent, const glm::dvec3& origin = glm::dvec3(0)) const;
   // Holds the herd's agents in whatever pose they are; none where there are no agents.
   std::optional<Box> bounds(uint32_t herd, const glm::dvec3& origin = glm::dvec3(0)) const;

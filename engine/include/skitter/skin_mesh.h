@@ -29,7 +29,8 @@ struct SkinMesh {
 };
 
 // In the host's axes and unit, to go with palettes of the same HostSpace. Takes a while: levels are
-// simplified here. Throws Error(input) for a herd that is not there.
+// simplified here. Throws Error(input) for a herd that is not there, and for a unit
+// that is not a finite length above 0.
 SKITTER_API SkinMesh skinMeshOf(const Crowd& crowd, uint32_t herd, const HostSpace& space = {});
 
 }  // namespace skitter

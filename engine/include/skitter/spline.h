@@ -146,8 +146,8 @@ class SKITTER_API Spline {
 };
 
 // N splines of equal point count on the device. Not thread-safe. Throws Error(input) for options that cannot
-// be, Error(device) when memory does not suffice. Splines are split over pages, so that any count fits the
-// device's bindings.
+// be and for a page that it does not have, Error(device) when memory does not suffice. Splines are split over
+// pages, so that any count fits the device's bindings.
 class SKITTER_API SplineBatch {
  public:
   // Device memory, in the caller's hands or the batch's: arrays of vec4 with usage STORAGE_BUFFER and

@@ -28,7 +28,7 @@ struct State {
   std::string note;  // of the program that saved it, JSON; may be empty
 
   // Where the records are read from when a crowd is made: the open file, or the bytes. Shared by all copies,
-  // which one thread at a time may use.
+  // which one thread at a time may use. Without it, making a crowd throws Error(input).
   struct Source;
   std::shared_ptr<Source> source;
 };

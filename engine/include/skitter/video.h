@@ -17,16 +17,16 @@ class SKITTER_API VideoWriter {
  public:
   // `picturesPerSecond` of those given to write() last a second of the video; 0: as many as it has frames.
   // If there are more frames than the video shows, some are left out; if there are fewer, some are repeated.
-  // Both rates at most 1000. Odd sizes are padded to even ones. Throws Error(input) when the file cannot be
-  // written or there is no ffmpeg.
+  // Both rates at most 1000, and framesPerSecond above 0. Odd sizes are padded to even ones. Throws
+  // Error(input) for a size or a rate that cannot be, when the file cannot be written or there is no ffmpeg.
   VideoWriter(const std::filesystem::path& file, uint32_t width, uint32_t height, double framesPerSecond,
               double picturesPerSecond = 0);
   ~VideoWriter();
   VideoWriter(VideoWriter&&) noexcept;
   VideoWriter& operator=(VideoWriter&&) noexcept;
 
-  // Tightly packed RGBA8 sRGB rows, top row first. Throws Error(input) with what ffmpeg said when it has
-  // failed.
+  // Tightly packed RGBA8 sRGB rows, top row first. Throws Error(input) for a picture of another size, and
+  // with what ffmpeg said when it has failed.
   void write(std::span<const uint8_t> rgba);
   // Throws Error(input) when ffmpeg failed, or there was no frame.
   void finish();
