@@ -363,6 +363,8 @@ Rig restoredRig(const crowd::Herd& herd, uint32_t number, const std::vector<Rig>
 
 // Herds and kinds have the numbers that they had, those that are gone among them.
 std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
+  if (!state.source)
+    throw inputError("a state that no file or bytes were read for, expected one of loadState()");
   auto made = beginCrowd(device, state.terrain, state.scene, state.options, state.scene.capacity());
   Impl& crowd = *made;
   crowd::restoreHerds(crowd, state);

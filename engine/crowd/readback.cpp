@@ -44,11 +44,11 @@ void appendRecords(const gpu::Context& context, const Part& part, const gpu::Buf
   }
   std::vector<uint64_t> places;
   places.reserve(here.count * anAgent);
-  for (uint32_t agent = first; agent <= last; agent += sample.stride)
+  for (uint32_t i = 0; i < here.count; ++i) {
+    const auto agent = static_cast<int>(first + i * sample.stride);
     for (int leg = 0; leg < static_cast<int>(anAgent); ++leg)
-      places.push_back(each *
-                       static_cast<uint64_t>(legs > 0 ? shared::legRecord(static_cast<int>(agent), leg, legs)
-                                                      : static_cast<int>(agent)));
+      places.push_back(each * static_cast<uint64_t>(legs > 0 ? shared::legRecord(agent, leg, legs) : agent));
+  }
   if (sample.stride > 1) {
     gpu::downloadPieces(context, buffer, bytes, places, each);
     return;

@@ -447,8 +447,6 @@ bool isNumberedSo(const std::vector<SizeRun>& runs, const Numbering& numbering) 
 }  // namespace
 
 void restoreHerds(Impl& crowd, const State& state) {
-  if (!state.source)
-    throw inputError("a state that no file or bytes were read for, expected one of loadState()");
   const auto& [name, head] = std::tie(state.source->name, state.source->head);
   if (head.rigsAreCallers && state.options.rigs.empty())
     throw inputError(

@@ -49,13 +49,13 @@ struct SKITTER_API Heightfield {
 // beside the file, or `NAME` without a trailing `_WIDTHxHEIGHT`), then in the file itself, then defaults:
 // spacing 0.5 m, codes from 0 to 10 m, scale and exaggeration 1. docs/terrain.md tells it in full.
 struct HeightfieldUnits {
-  std::optional<float> spacingX, spacingZ;  // metres per sample, before scale
+  std::optional<float> spacingX = {}, spacingZ = {};  // metres per sample, before scale
   // Metres at code 0 and at the highest code, before scale; a file of metres is rescaled to this range.
-  std::optional<float> minHeight, maxHeight;
-  std::optional<float> scale;             // uniform: multiplies spacing and heights alike
-  std::optional<float> exaggeration;      // multiplies heights alone
-  std::optional<uint32_t> columns, rows;  // of raw files; others must agree
-  std::optional<double> voidValue;        // a sample of this value, as stored, is a void
+  std::optional<float> minHeight = {}, maxHeight = {};
+  std::optional<float> scale = {};                  // uniform: multiplies spacing and heights alike
+  std::optional<float> exaggeration = {};           // multiplies heights alone
+  std::optional<uint32_t> columns = {}, rows = {};  // of raw files; others must agree
+  std::optional<double> voidValue = {};             // a sample of this value, as stored, is a void
 
   bool operator==(const HeightfieldUnits&) const = default;
 };

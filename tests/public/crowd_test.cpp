@@ -1,0 +1,357 @@
+#include "skitter/crowd.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "public/public.h"
+#include "skitter/decode.h"
+#include "skitter/state.h"
+
+namespace skitter::test {
+namespace {
+
+using PublicCrowd = PublicTest;
+
+BodyState bodyIn(const Crowd& crowd, uint32_t herd, size_t agent) {
+  const std::vector<float> records = crowd.download(herd).body;
+  return bodyOf(std::span(records).subspan(16 * agent, 16));
+}
+
+Goal goingBy(float x, float z) { return {.kind = Goal::Kind::velocity, .velocity = {x, z}}; }
+
+// Two kinds: one may have two more, the other comes to rest on its own.
+Scene twoKinds() {
+  Scene scene = standingScene(4, 2);
+  scene.herds.push_back(standingScene(3).herds[0]);
+  scene.herds[1].controller = Controller::loop;
+  return scene;
+}
+
+TEST_F(PublicCrowd, CountsWhoIsThere) {
+  Crowd first(device(), flatGround(), twoKinds(), {});
+  Crowd crowd = std::move(first);
+  EXPECT_EQ(crowd.herdCount(), 2u);
+  EXPECT_EQ(crowd.agentCount(), 7u);
+  EXPECT_EQ(crowd.agentCount(0), 4u);
+  EXPECT_EQ(crowd.places(0), 6u);
+  EXPECT_EQ(crowd.capacity(), 9u);
+  EXPECT_EQ(crowd.watchEvery(), 1u);
+  EXPECT_EQ(crowd.rig(1).legCount(), 8);
+  EXPECT_EQ(&crowd.rig(0, 5), &crowd.rig(0));
+  EXPECT_EQ(crowd.size(0, 0), 1);
+  EXPECT_EQ(crowd.terrain().columns, 65u);
+  EXPECT_EQ(crowd.tick(), 0u);
+  walk(device(), crowd, 2);
+  EXPECT_EQ(crowd.tick(), 2u);
+  crowd = Crowd(device(), flatGround(), standingScene(1));
+  EXPECT_EQ(crowd.agentCount(), 1u);
+}
+
+TEST_F(PublicCrowd, SharesOfMemoryAreTheWhole) {
+  const Crowd crowd(device(), flatGround(), twoKinds());
+  uint64_t bytes = 0;
+  for (uint32_t herd = 0; herd < 2; ++herd)
+    for (const MemoryUse& use : crowd.memoryUse(herd)) bytes += use.bytes;
+  EXPECT_EQ(bytes, crowd.memoryBytes());
+  EXPECT_GT(bytes, 9u * 64);
+  EXPECT_GT(crowd.stateBytes(), 9u * 64);
+}
+
+TEST_F(PublicCrowd, GoesTheWayThatItIsToldTo) {
+  Crowd crowd(device(), flatGround(), twoKinds());
+  walk(device(), crowd, 1);
+  crowd.steer(0, goingBy(1, 0));
+  crowd.steer(1, std::vector<Goal>(3, goingBy(0, 1)));
+  const AgentGoal one{crowd.agentId(1, 2), goingBy(0, -1)};
+  crowd.steer({&one, 1});
+  walk(device(), crowd, 240);
+  const float along0 = bodyIn(crowd, 0, 1).velocity.x, along1 = bodyIn(crowd, 1, 0).velocity.z;
+  EXPECT_GT(along0, 0.5f);
+  EXPECT_GT(along1, 0.5f);
+  EXPECT_LT(bodyIn(crowd, 1, 2).velocity.z, -0.5f);
+
+  crowd.setSpeed(0, 0.0f);
+  crowd.setSpeed(1, std::vector<float>(3, 0.0f));
+  const AgentSpeed slower{crowd.agentId(1, 2), 0.5f};
+  crowd.setSpeed({&slower, 1});
+  walk(device(), crowd, 120);
+  EXPECT_LT(glm::length(bodyIn(crowd, 0, 1).velocity), 0.1f);
+  EXPECT_LT(glm::length(bodyIn(crowd, 1, 0).velocity), 0.1f);
+  EXPECT_GT(glm::length(bodyIn(crowd, 1, 2).velocity), 0.3f);
+}
+
+TEST_F(PublicCrowd, RefusesToBeSteeredWhereNobodyIs) {
+  Crowd crowd(device(), flatGround(), twoKinds());
+  const uint64_t before = crowd.stateHash();
+  const AgentGoal goal{AgentId(), {}};
+  const AgentSpeed speed{AgentId(1, 9), 1};
+  const AgentPlace place{AgentId(0, 5), {}};
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  expectRefused("herd 7: expected one of the crowd's 2", [&] { crowd.steer(7, Goal{}); });
+  expectRefused("herd 7", [&] { crowd.steer(7, std::vector<Goal>(1)); });
+  expectRefused("herd 0: found 3 goals, expected 6", [&] { crowd.steer(0, std::vector<Goal>(3)); });
+  expectRefused("herd 1023", [&] { crowd.steer({&goal, 1}); });
+  expectRefused("goal.speed is nan", [&] { crowd.steer(0, Goal{.speed = nan}); });
+  expectRefused("the length of goal.velocity is 2000", [&] { crowd.steer(0, goingBy(2000, 0)); });
+  expectRefused("herd 7", [&] { crowd.setSpeed(7, 1); });
+  expectRefused("herd 0: found 1 speeds, expected 6", [&] { crowd.setSpeed(0, std::vector<float>(1)); });
+  expectRefused("herd 1, agent 9 of generation 0: nobody", [&] { crowd.setSpeed({&speed, 1}); });
+  expectRefused("the speed is -1 m/s, expected 0 to 1000", [&] { crowd.setSpeed(0, -1); });
+  expectRefused("herd 0, agent 5", [&] { crowd.teleport({&place, 1}); });
+  expectRefused("x is 99 m", [&] { crowd.teleport(crowd.agentId(0, 0), {.position = {99, 0}}); });
+  expectRefused("the heading is nan", [&] { crowd.teleport(crowd.agentId(0, 0), {.heading = nan}); });
+  expectRefused("herd 7", [&] { crowd.agentId(7, 0); });
+  expectRefused("herd 0, agent 5", [&] { crowd.agentId(0, 5); });
+  expectRefused("herd 7", [&] { crowd.goalBuffers(7); });
+  walk(device(), crowd, 1);
+  Crowd same(device(), flatGround(), twoKinds());
+  EXPECT_EQ(same.stateHash(), before);
+  walk(device(), same, 1);
+  EXPECT_EQ(crowd.stateHash(), same.stateHash());
+}
+
+TEST_F(PublicCrowd, PutsAgentsElsewhere) {
+  Crowd crowd(device(), flatGround(), twoKinds());
+  const AgentPlace place{crowd.agentId(0, 1), {.position = {5, -6}, .heading = 1}};
+  crowd.teleport({&place, 1});
+  crowd.teleport(crowd.agentId(1, 0), {.position = {-7, 8}});
+  walk(device(), crowd, 1);
+  // They stand; what a tick moves them is far below a millimetre.
+  EXPECT_NEAR(bodyIn(crowd, 0, 1).position.x, 5, 1e-3);
+  EXPECT_NEAR(bodyIn(crowd, 0, 1).position.z, -6, 1e-3);
+  EXPECT_NEAR(bodyIn(crowd, 0, 1).heading.x, std::sin(1), 1e-3);
+  EXPECT_NEAR(bodyIn(crowd, 1, 0).position.x, -7, 1e-3);
+  EXPECT_NEAR(bodyIn(crowd, 1, 0).position.z, 8, 1e-3);
+}
+
+TEST_F(PublicCrowd, AgentsComeAndGo) {
+  Crowd crowd(device(), flatGround(), twoKinds());
+  const AgentId gone = crowd.agentId(0, 2);
+  crowd.remove(gone);
+  EXPECT_FALSE(crowd.has(gone));
+  const AgentId came = crowd.add(0, {.position = {1, 2}});
+  EXPECT_EQ(came.agent(), 2u);
+  EXPECT_TRUE(crowd.has(came));
+  EXPECT_EQ(crowd.add(0, {}, goingBy(1, 0)).agent(), 4u);
+  EXPECT_EQ(crowd.agentCount(0), 5u);
+  crowd.add(0, {.position = {4, 4}});
+  walk(device(), crowd, 1);
+  EXPECT_TRUE(bodyIn(crowd, 0, 5).present);
+  expectRefused("herd 0: all of its 6 places are taken", [&] { crowd.add(0, {}); });
+  expectRefused("nobody", [&] { crowd.remove(gone); });
+  expectRefused("herd 1: its reserve is 0", [&] { crowd.remove(crowd.agentId(1, 0)); });
+  expectRefused("herd 1: its reserve is 0", [&] { crowd.add(1, {}, {}); });
+  expectRefused("herd 7", [&] { crowd.add(7, {}); });
+  expectRefused("x is 99 m", [&] { crowd.add(0, {.position = {99, 0}}); });
+}
+
+TEST_F(PublicCrowd, HerdsComeAndGo) {
+  Crowd crowd(device(), flatGround(), twoKinds());
+  const HerdId loop = crowd.herdId(1);
+  crowd.removeHerd(loop);
+  EXPECT_FALSE(crowd.has(loop));
+  EXPECT_EQ(crowd.places(1), 0u);
+  Herd herd = standingScene(2).herds[0];
+  herd.controller = Controller::clip;
+  const HerdId came = crowd.addHerd(herd);
+  EXPECT_EQ(came.index, 1u);
+  EXPECT_NE(came, loop);
+  EXPECT_TRUE(crowd.has(came));
+  EXPECT_EQ(crowd.herdId(1), came);
+  walk(device(), crowd, 1);
+  EXPECT_EQ(crowd.agentCount(), 6u);
+  expectRefused("herd 1 of generation 0", [&] { crowd.removeHerd(loop); });
+  expectRefused("herd 7", [&] { crowd.herdId(7); });
+  herd.rig = "nowhere.glb";
+  expectRefused("nowhere.glb", [&] { crowd.addHerd(herd); });
+  crowd.removeHerd(came);
+  expectRefused("herd 1: was removed", [&] { crowd.herdId(1); });
+}
+
+TEST_F(PublicCrowd, PicksAgents) {
+  Crowd crowd(device(), flatGround(), twoKinds());
+  walk(device(), crowd, 1);
+  const glm::dvec3 origin(3, 0, 1), above = bodyIn(crowd, 0, 3).position + glm::dvec3(0, 9, 0) - origin;
+  const std::optional<Picked> picked = crowd.pick({.start = above, .direction = {0, -3, 0}}, origin);
+  ASSERT_TRUE(picked);
+  EXPECT_EQ(picked->agent, 3u);
+  EXPECT_LT(picked->distance, 9);
+  EXPECT_FALSE(crowd.pick({.start = above, .direction = {0, -3, 0}, .length = 1}, origin));
+  EXPECT_EQ(crowd.nearest(above, origin).value().agent, 3u);
+  expectRefused("the ray's direction is (0, 0, 0)", [&] { crowd.pick({.direction = glm::dvec3(0)}); });
+  expectRefused("the ray's direction is (nan, 0, 0)", [&] { crowd.pick({.direction = {NAN, 0, 0}}); });
+}
+
+TEST_F(PublicCrowd, HandsOutItsBuffers) {
+  Crowd crowd(device(), flatGround(), twoKinds(), {.footfalls = 100});
+  const std::vector<RecordBuffer> bodies = crowd.buffers(0, Record::body);
+  ASSERT_EQ(bodies.size(), 1u);
+  EXPECT_EQ(bodies[0].agents, 6u);
+  EXPECT_EQ(bodies[0].stride, 4u);
+  EXPECT_EQ(bodies[0].bytes, 6u * 64);
+  const OwnBuffer copy(device(), bodies[0].bytes);
+  device().run([&](VkCommandBuffer commands) {
+    crowd.record(commands, tickSeconds);
+    copy.copyFrom(commands, bodies[0].buffer, bodies[0].offset);
+  });
+  EXPECT_EQ(std::vector(copy.floats(), copy.floats() + 6 * 16), crowd.download(0).body);
+  ASSERT_EQ(crowd.goalBuffers(1).size(), 1u);
+  EXPECT_EQ(crowd.goalBuffers(1)[0].agents, 3u);
+  ASSERT_EQ(crowd.footfallBuffers(0).size(), 1u);
+  EXPECT_GT(crowd.footfallBuffers(0)[0].room, 0u);
+  EXPECT_TRUE(crowd.buffers(0, Record::watch).empty());
+  expectRefused("herd 7", [&] { crowd.buffers(7, Record::body); });
+  expectRefused("herd 7", [&] { crowd.footfallBuffers(7); });
+}
+
+TEST_F(PublicCrowd, DownloadsASample) {
+  const Crowd crowd(device(), flatGround(), standingScene(10));
+  const std::vector<float> all = crowd.download(0).body;
+  const HerdState some = crowd.download(0, {.first = 1, .stride = 4});
+  ASSERT_EQ(some.agents, 3u);  // 1, 5 and 9
+  EXPECT_TRUE(std::equal(some.body.begin() + 16, some.body.begin() + 32, all.begin() + 5 * 16));
+  EXPECT_EQ(crowd.download(0, {.first = 9, .stride = UINT32_MAX}).agents, 1u);
+  EXPECT_EQ(crowd.download(0, {.first = 10, .stride = 1}).agents, 0u);
+  expectRefused("stride 0", [&] { crowd.download(0, {.stride = 0}); });
+}
+
+TEST_F(PublicCrowd, TellsHowWellItWalks) {
+  Scene scene = standingScene(4);
+  scene.herds[0].goal = goingBy(0, 1);
+  Crowd crowd(device(), flatGround(), scene, {.footfalls = 100});
+  size_t landed = 0;
+  for (int i = 0; i < 120; ++i) {
+    walk(device(), crowd, 1);
+    for (const Footfall& each : crowd.footfalls(0)) {
+      EXPECT_LT(each.agent, 4u);
+      EXPECT_EQ(each.tick, crowd.tick());
+      ++landed;
+    }
+  }
+  EXPECT_GT(landed, 8u);
+  EXPECT_EQ(crowd.droppedFootfalls(0), 0u);
+  EXPECT_GT(crowd.fidelity().agentTicks, 0u);
+  EXPECT_LE(crowd.fidelity().agentTicks, 4u * 120);
+  EXPECT_EQ(crowd.fidelity(0).agentTicks, crowd.fidelity().agentTicks);
+  EXPECT_EQ(crowd.agentFidelity(0).size(), 4u);
+  EXPECT_LT(crowd.fidelity().penetration, 0.01);
+  EXPECT_EQ(crowd.sleeping(), 0u);
+}
+
+TEST_F(PublicCrowd, RefusesHerdsThatAreNotThere) {
+  const Crowd crowd(device(), flatGround(), twoKinds());
+  const std::string text = "herd 7: expected one of the crowd's 2 herds";
+  expectRefused(text, [&] { crowd.memoryUse(7); });
+  expectRefused(text, [&] { crowd.download(7); });
+  expectRefused(text, [&] { crowd.fidelity(7); });
+  expectRefused(text, [&] { crowd.agentFidelity(7); });
+  expectRefused(text, [&] { crowd.footfalls(7); });
+  expectRefused(text, [&] { crowd.droppedFootfalls(7); });
+  expectRefused(text, [&] { crowd.places(7); });
+  expectRefused(text, [&] { crowd.agentCount(7); });
+  expectRefused(text, [&] { crowd.rig(7); });
+  expectRefused(text, [&] { crowd.rig(7, 0); });
+  expectRefused("herd 0, agent 6: expected one of its 6 places", [&] { crowd.rig(0, 6); });
+  expectRefused("herd 0, agent 6: expected one of its 6 places", [&] { crowd.size(0, 6); });
+  EXPECT_FALSE(crowd.has(AgentId()));
+  EXPECT_FALSE(crowd.has(HerdId{7, 0}));
+}
+
+TEST_F(PublicCrowd, FallsAsleep) {
+  Crowd crowd(device(), flatGround(), standingScene(4), {.sleep = true});
+  // Within 20 s.
+  for (int i = 0; i < 20 && crowd.sleeping() < 4; ++i) walk(device(), crowd, 60);
+  EXPECT_EQ(crowd.sleeping(), 4u);
+  crowd.steer(0, goingBy(0, 1));
+  walk(device(), crowd, 1);
+  EXPECT_EQ(crowd.sleeping(), 0u);
+}
+
+TEST_F(PublicCrowd, TimesItsStages) {
+  Crowd crowd(device(), flatGround(), standingScene(4), {.timestamps = true});
+  walk(device(), crowd, 1);
+  if (device().report().limits.timestampBits > 0) {
+    EXPECT_FALSE(crowd.stageTimes().empty());
+  }
+  crowd.timeStages(false);
+  walk(device(), crowd, 1);
+  EXPECT_TRUE(crowd.stageTimes().empty());
+}
+
+TEST_F(PublicCrowd, TakesEditsOfTheGround) {
+  Crowd crowd(device(), flatGround(), standingScene(4));
+  crowd.editHeights(0, 0, 2, 1, std::vector<float>{1, 2});
+  EXPECT_EQ(crowd.terrain().heights[1], 2);
+  expectRefused("leaves the 65 x 65", [&] { crowd.editHeights(64, 0, 2, 1, std::vector<float>(2)); });
+  expectRefused("has 1 samples", [&] { crowd.editHeights(0, 0, 2, 1, std::vector<float>(1)); });
+  expectRefused("not finite", [&] { crowd.editHeights(0, 0, 1, 1, std::vector<float>{NAN}); });
+  EXPECT_NO_THROW(walk(device(), crowd, 1));
+}
+
+TEST_F(PublicCrowd, SavesItself) {
+  const OwnFolder folder;
+  Crowd crowd(device(), flatGround(), standingScene(4));
+  crowd.save(folder / "own.state");
+  EXPECT_EQ(std::filesystem::file_size(folder / "own.state"), crowd.saveToMemory().size());
+  EXPECT_EQ(Crowd(device(), loadState(folder / "own.state")).stateHash(), crowd.stateHash());
+  expectRefused("not JSON", [&] { crowd.saveToMemory("no JSON"); });
+  expectRefused("nowhere", [&] { crowd.save(folder / "nowhere" / "own.state"); });
+}
+
+TEST_F(PublicCrowd, KeepsItsTick) {
+  Crowd crowd(device(), flatGround(), standingScene(1));
+  const auto record = [&](float dt) {
+    device().run([&](VkCommandBuffer commands) { crowd.record(commands, dt); });
+  };
+  record(tickSeconds);
+  device().run([&](VkCommandBuffer commands) {
+    expectRefused("dt changed from", [&] { crowd.record(commands, 1.0f / 30); });
+    expectRefused("expected a finite time above 0", [&] { crowd.record(commands, 0); });
+    expectRefused("dt nan", [&] { crowd.record(commands, NAN); });
+  });
+  EXPECT_EQ(crowd.tick(), 1u);
+}
+
+TEST_F(PublicCrowd, RefusesScenesThatCannotBe) {
+  const auto refuse = [&](const std::string& text, const auto& change) {
+    Scene scene = standingScene(4);
+    change(scene);
+    expectRefused(text, [&] { Crowd(device(), flatGround(), scene); });
+  };
+  refuse("nowhere.glb", [](Scene& scene) { scene.herds[0].rig = "nowhere.glb"; });
+  refuse("standing: herds[0].tuning.stepHeight", [](Scene& scene) { scene.herds[0].tuning.stepHeight = -1; });
+  refuse("standing: herds[0]: spawn.spacing is 0 m", [](Scene& scene) { scene.herds[0].spawn.spacing = 0; });
+  refuse("goal.speed is 2000", [](Scene& scene) { scene.herds[0].goal = {.speed = 2000}; });
+  refuse("a herd's solver is two-bone", [](Scene& scene) { scene.herds[0].solver = Solver::twoBone; });
+  refuse("herds[0].sizes[0] is 30", [](Scene& scene) { scene.herds[0].sizes = {30}; });
+  refuse("standing: events[0]", [](Scene& scene) { scene.events = {{.at = 0, .what = HerdRemoval{7}}}; });
+}
+
+TEST_F(PublicCrowd, RefusesGroundAndRigsThatCannotBe) {
+  const auto refuseGround = [&](const std::string& text, const auto& change) {
+    Heightfield ground = flatGround();
+    change(ground);
+    expectRefused(text, [&] { Crowd(device(), ground, standingScene(1)); });
+  };
+  refuseGround("65 x 65 samples with 4224 heights", [](Heightfield& ground) { ground.heights.pop_back(); });
+  refuseGround("height 7 is inf", [](Heightfield& ground) { ground.heights[7] = INFINITY; });
+  refuseGround("a spacing of -1 m", [](Heightfield& ground) { ground.spacingX = -1; });
+  refuseGround("expected at most 8192 m a side", [](Heightfield& ground) { ground.spacingX = 1000; });
+  const auto refuseRig = [&](const std::string& text, const auto& change) {
+    Rig rig = spiderRig();
+    change(rig);
+    expectRefused(text, [&] { Crowd(device(), flatGround(), standingScene(1), {.rigs = {rig}}); });
+  };
+  refuseRig("0 legs, expected 1 to 24", [](Rig& rig) { rig.legs.clear(); });
+  refuseRig("has 0 bones, expected 1 to 15", [](Rig& rig) { rig.legs[3].bones.clear(); });
+  refuseRig("a leg length of 0 m", [](Rig& rig) { rig.legLength = 0; });
+  refuseRig("is of group 9", [](Rig& rig) { rig.legs[0].group = 9; });
+  expectRefused("2 rigs were given, expected one for each of 1 herds", [&] {
+    Crowd(device(), flatGround(), standingScene(1), {.rigs = {spiderRig(), spiderRig()}});
+  });
+}
+
+}  // namespace
+}  // namespace skitter::test

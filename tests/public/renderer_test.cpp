@@ -1,0 +1,66 @@
+#include "skitter/renderer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "public/public.h"
+
+namespace skitter::test {
+namespace {
+
+using PublicRenderer = PublicTest;
+
+TEST_F(PublicRenderer, DrawsTheCrowdIntoItsImage) {
+  const Scene scene = standingScene(4);
+  Crowd crowd(device(), flatGround(), scene);
+  walk(device(), crowd, 1);
+  Renderer first(device(), crowd, 64, 48);
+  Renderer renderer = std::move(first);
+  EXPECT_EQ(renderer.width(), 64u);
+  EXPECT_EQ(renderer.height(), 48u);
+  EXPECT_NE(renderer.image(), VkImage{VK_NULL_HANDLE});
+  renderer.timeStages(true);
+  const View view = viewOf(scene, crowd, 0);
+  bool called = false;
+  device().run([&](VkCommandBuffer commands) {
+    renderer.record(commands, view, [&](VkCommandBuffer within) { called = within == commands; });
+  });
+  EXPECT_TRUE(called);
+  if (device().report().limits.timestampBits > 0) {
+    EXPECT_FALSE(renderer.stageTimes().empty());
+  }
+  const std::vector<uint8_t> pixels = renderer.download();
+  ASSERT_EQ(pixels.size(), 64u * 48 * 4);
+  // Ground, sky and legs differ.
+  const auto [least, most] = std::ranges::minmax(pixels);
+  EXPECT_GT(most - least, 30);
+  // The same picture again, to the bit.
+  device().run([&](VkCommandBuffer commands) { renderer.record(commands, view); });
+  EXPECT_EQ(renderer.download(), pixels);
+}
+
+TEST_F(PublicRenderer, LooksFromTheScenesCamera) {
+  Scene scene = standingScene(4);
+  const Crowd crowd(device(), flatGround(), scene);
+  scene.camera = {.kind = Camera::Kind::fixed, .position = {1, 2, 3}, .target = {4, 5, 6}};
+  scene.camera.fieldOfView = 0.5f;
+  EXPECT_EQ(viewOf(scene, crowd, 1).eye, glm::vec3(1, 2, 3));
+  EXPECT_EQ(viewOf(scene, crowd, 1).target, glm::vec3(4, 5, 6));
+  EXPECT_EQ(viewOf(scene, crowd, 1).fieldOfView, 0.5f);
+  scene.camera.kind = Camera::Kind::follow;
+  EXPECT_GT(viewOf(scene, crowd, 1).eye.y, 0);
+  scene.camera.kind = Camera::Kind::path;
+  scene.camera.keys = {{.time = 0}};
+  expectRefused("1 points", [&] { viewOf(scene, crowd, 1); });
+}
+
+TEST_F(PublicRenderer, RefusesWhatCannotBe) {
+  const Crowd crowd(device(), flatGround(), standingScene(1));
+  expectRefused("0 x 48 pixels", [&] { Renderer(device(), crowd, 0, 48); });
+  expectError(Error::Kind::device, "draws at most", [&] { Renderer(device(), crowd, 1 << 20, 48); });
+  const Crowd poseless(device(), flatGround(), standingScene(1), {.pose = false});
+  expectRefused("pose", [&] { Renderer(device(), poseless, 64, 48); });
+}
+
+}  // namespace
+}  // namespace skitter::test
