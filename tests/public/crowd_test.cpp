@@ -21,7 +21,7 @@ BodyState bodyIn(const Crowd& crowd, uint32_t herd, size_t agent) {
 
 Goal goingBy(float x, float z) { return {.kind = Goal::Kind::velocity, .velocity = {x, z}}; }
 
-// Two kinds: one may have two more, the other comes to rest on its own.
+// Two kinds, of which one has room for two more.
 Scene twoKinds() {
   Scene scene = standingScene(4, 2);
   scene.herds.push_back(standingScene(3).herds[0]);
