@@ -65,7 +65,7 @@ void add(Hash& hash, const Goal& goal) {
 
 void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, phase, colour, tint] = herd;
+               sizes, avoid, ways, threat, phase, colour, tint] = herd;
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
@@ -93,6 +93,10 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
     const auto& [climb, steepest, step] = *ways;
     hash.add("ways");
     for (const float each : {climb, steepest, step}) hash.add(each);
+  }
+  if (threat > 0) {
+    hash.add("threat");
+    hash.add(threat);
   }
   if (phase) {
     hash.add("phase");
@@ -216,6 +220,19 @@ void add(Hash& hash, const HerdRemoval& removal) {
   hash.add(uint64_t{herd});
 }
 
+void add(Hash& hash, const Threat& threat) {
+  const auto& [centre, radius] = threat;
+  hash.add("threat");
+  hash.add(centre);
+  hash.add(radius);
+}
+
+void add(Hash& hash, const ThreatChange& change) {
+  const auto& [number, threat] = change;
+  hash.add(uint64_t{number});
+  add(hash, threat);
+}
+
 // Most events name no file.
 template <class What>
 void add(Hash& hash, FileHashes&, const What& what) {
@@ -233,12 +250,13 @@ void add(Hash& hash, FileHashes& fileHashes, const Event& event) {
 uint64_t sceneHash(const Scene& scene, const Heightfield& terrain) {
   Hash hash;
   FileHashes fileHashes;
-  const auto& [name, source, herds, camera, events, obstacles, seed] = scene;
+  const auto& [name, source, herds, camera, events, obstacles, threats, seed] = scene;
   hash.add(seed);
   hash.add(uint64_t{herds.size()});
   for (const Herd& herd : herds) add(hash, fileHashes, herd);
   for (const Event& event : events) add(hash, fileHashes, event);
   for (const auto& [shape] : obstacles) std::visit([&](const auto& each) { add(hash, each); }, shape);
+  for (const Threat& threat : threats) add(hash, threat);
   hash.add(uint64_t{terrain.columns});
   hash.add(terrain.spacingX);
   hash.add(terrain.spacingZ);

@@ -316,6 +316,11 @@ SKITTER_C skitter_result skitter_crowd_add(skitter_crowd* crowd, uint32_t herd, 
                                            const skitter_goal* goal, skitter_agent_id* id);
 SKITTER_C skitter_result skitter_crowd_remove(skitter_crowd* crowd, skitter_agent_id agent);
 
+/* A threat of that number, 0 to 63, comes, moves or, with radius 0, goes: a disc about x, z, metres, that
+ * agents of herds with ways keep off (docs/ways.md). */
+SKITTER_C skitter_result skitter_crowd_set_threat(skitter_crowd* crowd, uint32_t number,
+                                                  const float centre[2], float radius);
+
 /* A handle of a herd: its number, and which one it is of those that have had that number. */
 typedef struct skitter_herd_id {
   uint32_t herd, generation;

@@ -125,6 +125,14 @@ skitter_result skitter_crowd_remove(skitter_crowd* crowd, skitter_agent_id agent
   return guarded([&] { crowdOf(crowd).remove(AgentId::ofBits(agent)); });
 }
 
+skitter_result skitter_crowd_set_threat(skitter_crowd* crowd, uint32_t number, const float centre[2],
+                                        float radius) {
+  return guarded([&] {
+    const float* at = &given(centre, "centre");
+    crowdOf(crowd).setThreat(number, {{at[0], at[1]}, radius});
+  });
+}
+
 skitter_result skitter_crowd_add_herd(skitter_crowd* crowd, const skitter_scene* scene, uint32_t herd,
                                       skitter_herd_id* id) {
   return guarded([&] {

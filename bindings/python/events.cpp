@@ -140,6 +140,24 @@ void bindComing(py::module_& module) {
       .def_readwrite("herd", &HerdRemoval::herd, herdText);
 }
 
+void bindThreats(py::module_& module) {
+  py::class_<ThreatChange> change(module, "ThreatChange",
+                                  "A threat that comes, moves or, with radius 0, goes.");
+  change
+      .def(py::init([](uint32_t number, const glm::vec2& centre, float radius) {
+             return ThreatChange{number, {centre, radius}};
+           }),
+           "number"_a, "centre"_a = glm::vec2(0), "radius"_a = 1.0f)
+      .def_readwrite("number", &ThreatChange::number, "0 to 63.")
+      .def_property(
+          "centre", [](const ThreatChange& self) { return self.threat.centre; },
+          [](ThreatChange& self, const glm::vec2& centre) { self.threat.centre = centre; },
+          "x and z, metres.")
+      .def_property(
+          "radius", [](const ThreatChange& self) { return self.threat.radius; },
+          [](ThreatChange& self, float radius) { self.threat.radius = radius; }, "Metres; 0: it goes.");
+}
+
 // Takes the object for a `Kind` if it is one.
 template <typename Kind>
 bool takes(const py::object& object, What& what) {
@@ -174,8 +192,8 @@ std::vector<Event> eventsIn(const py::list& events) {
     Event one{.at = event.at, .what = {}};
     if (!isTaken(event.what, one.what))
       fail(".what", event.what,
-           "a Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition or "
-           "HerdRemoval");
+           "a Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition, "
+           "HerdRemoval or ThreatChange");
     made.push_back(std::move(one));
   }
   return made;
@@ -185,6 +203,7 @@ void bindEvents(py::module_& module) {
   bindGround(module);
   bindChanges(module);
   bindComing(module);
+  bindThreats(module);
   py::class_<PythonEvent, std::shared_ptr<PythonEvent>>(
       module, "Event", "What happens to a crowd while it runs, at a time (docs/scene.md).")
       .def(py::init([](float at, py::object what) {
@@ -195,7 +214,7 @@ void bindEvents(py::module_& module) {
                      "Seconds from the start: before the first tick that ends then or later.")
       .def_readwrite("what", &PythonEvent::what,
                      "A Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, "
-                     "HerdAddition or HerdRemoval.")
+                     "HerdAddition, HerdRemoval or ThreatChange.")
       .def("__repr__", [](const PythonEvent& self) {
         return fmt::format("<skitter.Event at {} s: {}>", self.at,
                            py::type::of(self.what).attr("__name__").cast<std::string>());

@@ -82,6 +82,8 @@ void bindHerd(py::module_& module) {
           [](Herd& self, std::vector<float> sizes) { self.sizes = std::move(sizes); },
           "How large its creatures are, times the rig: each draws one of at most 16; empty: 1.")
       .def_readwrite("avoid", &Herd::avoid, "Whether its agents keep clear of those near them.")
+      .def_readwrite("threat", &Herd::threat,
+                     "Metres around each of its agents that other herds with ways keep off.")
       .def_readwrite("ways", &Herd::ways,
                      "Ways, where agents go around what is in the way; None: they go straight.")
       .def_readwrite("phase", &Herd::phase,

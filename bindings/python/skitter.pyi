@@ -167,6 +167,7 @@ class Herd:
     sizes: Sequence[float]
     avoid: bool
     ways: Optional[Ways]
+    threat: float
     phase: Optional[float]
     colour: Optional[Sequence[float]]
     tint: Optional[float]
@@ -354,8 +355,25 @@ class HerdRemoval:
     herd: int
     def __init__(self, herd: int) -> None: ...
 
+class ThreatChange:
+    """A threat that comes, moves or, with radius 0, goes."""
+
+    number: int
+    centre: Sequence[float]
+    radius: float
+    def __init__(self, number: int, centre: Sequence[float] = (0, 0), radius: float = 1) -> None: ...
+
 _What = Union[
-    Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition, HerdRemoval
+    Mound,
+    HeightSamples,
+    GoalChange,
+    SpeedChange,
+    Teleport,
+    Addition,
+    Removal,
+    HerdAddition,
+    HerdRemoval,
+    ThreatChange,
 ]
 
 class Event:
@@ -464,6 +482,7 @@ class Crowd:
         self, position: Sequence[float], heading: float = 0, herd: int = 0, goal: Optional[Goal] = None
     ) -> int: ...
     def remove(self, agent: int) -> None: ...
+    def set_threat(self, number: int, centre: Sequence[float] = (0, 0), radius: float = 1) -> None: ...
     def add_herd(self, herd: Herd) -> Tuple[int, int]: ...
     def remove_herd(self, herd: Tuple[int, int]) -> None: ...
     def has_herd(self, herd: Tuple[int, int]) -> bool: ...

@@ -163,7 +163,14 @@ void bindAgents(CrowdClass& bound) {
           [](PythonCrowd& self, uint64_t agent) {
             self.told([&](Crowd& crowd) { crowd.remove(AgentId::ofBits(agent)); });
           },
-          "agent"_a, "Removes the agent of that handle from a herd with a reserve.");
+          "agent"_a, "Removes the agent of that handle from a herd with a reserve.")
+      .def(
+          "set_threat",
+          [](PythonCrowd& self, uint32_t number, const glm::vec2& centre, float radius) {
+            self.told([&](Crowd& crowd) { crowd.setThreat(number, {centre, radius}); });
+          },
+          "number"_a, "centre"_a = glm::vec2(0), "radius"_a = 1.0f,
+          "A disc that agents of herds with ways keep off comes, moves or, with radius 0, goes.");
 }
 
 void bindHerds(CrowdClass& bound) {

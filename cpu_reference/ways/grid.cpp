@@ -45,6 +45,13 @@ double toNearest(const WayObstacles& obstacles, const glm::dvec2& p) {
   return nearest;
 }
 
+double toNearestThreat(const WayObstacles& obstacles, const glm::dvec2& p) {
+  double nearest = infinite;
+  for (const WayDisc& disc : obstacles.threats)
+    if (disc.radius > 0) nearest = std::min(nearest, glm::length(p - disc.centre) - disc.radius);
+  return nearest;
+}
+
 struct Ground {
   double slope = 0, ledge = 0;
 };
@@ -121,9 +128,9 @@ WayGrid wayGrid(const Heights& heights, const WayObstacles& obstacles, const Way
     const glm::dvec2 p = grid.middle(at);
     const Ground ground = groundAround(heights, p, grid.cell);
     const glm::dvec2 inward = sides / 2.0 - tuning.edgeMargin - glm::abs(p);
-    const double decisions[] = {1 - ground.slope / tuning.steepest, 1 - ground.ledge / highest,
-                                toNearest(obstacles, p) / grown - 1,
-                                std::min(inward.x, inward.y) / grid.cell};
+    const double decisions[] = {
+        1 - ground.slope / tuning.steepest, 1 - ground.ledge / highest, toNearest(obstacles, p) / grown - 1,
+        toNearestThreat(obstacles, p) / (grown + grid.cell) - 1, std::min(inward.x, inward.y) / grid.cell};
     const double least = *std::min_element(std::begin(decisions), std::end(decisions));
     grid.cost.push_back(least < 0 ? infinite : 1 + tuning.climb * ground.slope);
     grid.margin.push_back(std::abs(least));

@@ -24,6 +24,7 @@ struct WayObstacles {
   std::vector<WayDisc> discs = {};
   std::vector<WayCapsule> capsules = {};
   std::vector<WayPolygon> polygons = {};
+  std::vector<WayDisc> threats = {};  // a cell farther
 };
 
 // Whom a grid is for.

@@ -158,6 +158,7 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   kind.reserves = from.reserve > 0;
   kind.avoids = from.avoid;
   kind.wayNeeds = from.ways;
+  kind.threat = from.threat;
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
   for (const Stage& stage : crowd::stagesOf(kind.controller, asked, kind.avoids, kind.wayNeeds.has_value()))
@@ -228,6 +229,12 @@ std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, con
                                  Scene::maxObstacles));
   for (size_t i = 0; i < scene.obstacles.size(); ++i)
     scenes::checkObstacle(scene.obstacles[i], fmt::format("{}: obstacles[{}]", scene.name, i));
+  if (scene.threats.size() > Scene::maxThreats)
+    throw inputError(fmt::format("{}: {} threats, expected at most {}", scene.name, scene.threats.size(),
+                                 Scene::maxThreats));
+  for (size_t i = 0; i < scene.threats.size(); ++i)
+    scenes::checkThreat(scene.threats[i], fmt::format("{}: threats[{}]", scene.name, i));
+  crowd.threats = scene.threats;
   crowd.terrain = terrain;
   crowd.heights = gpu::Image(
       context, {vk::Format::eR32Sfloat, {terrain.columns, terrain.rows}, vk::ImageUsageFlagBits::eSampled},
@@ -527,7 +534,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   const vk::CommandBuffer cmd(commandBuffer);
   crowd::setTick(crowd, dt);
   crowd::letEventsHappen(*this);
-  if (!crowd.edits.empty()) crowd::renewWays(crowd);
+  crowd::keepWays(crowd);
   const uint64_t tick = ++crowd.tick;
   crowd.agentsInTick = agentCount();
 

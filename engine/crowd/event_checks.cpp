@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assets/scenes/obstacles.h"
 #include "crowd/events.h"
 #include "crowd/roster.h"
 #include "crowd/steer.h"
@@ -127,6 +128,13 @@ void check(const HerdAddition& addition, const Where& at) {
 void check(const HerdRemoval& removal, const Where& at) {
   herdOf("removeHerd", removal.herd, at);
   at.herds.remove(removal.herd, fmt::format("{}.removeHerd: herd {}", at.event, removal.herd));
+}
+
+void check(const ThreatChange& change, const Where& at) {
+  if (change.number >= Scene::maxThreats)
+    throw inputError(fmt::format("{}.threat.number is {}, expected less than {}", at.event, change.number,
+                                 Scene::maxThreats));
+  scenes::checkThreat(change.threat, at.event + ".threat");
 }
 
 }  // namespace

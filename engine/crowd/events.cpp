@@ -78,6 +78,7 @@ class Rehearsal {
  private:
   void play(const Mound&, const std::string&) {}
   void play(const HeightSamples&, const std::string&) {}
+  void play(const ThreatChange&, const std::string&) {}
   // Goals and speeds.
   template <class Change>
   void play(const Change& change, const std::string& name) {
@@ -189,6 +190,7 @@ class Happening {
   }
   void operator()(const HerdAddition&) const { addComing(implOf(crowd_), number_); }
   void operator()(const HerdRemoval& removal) const { crowd_.removeHerd(crowd_.herdId(removal.herd)); }
+  void operator()(const ThreatChange& change) const { crowd_.setThreat(change.number, change.threat); }
 
  private:
   template <class Ground>

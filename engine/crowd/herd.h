@@ -75,6 +75,8 @@ struct Kind {
   gpu::Buffer rigBuffer;
   std::vector<ReadyStage> stages;  // of the controller, those that were asked for
   std::vector<Page> pages;
+  CostGrid ground;                  // where its herds find their way, without threats
+  float threat = 0;                 // Herd::threat
   std::unique_ptr<WayFields> ways;  // where its herds find their way, once it has agents
   AgentChanges changes;             // for the next tick
 
@@ -126,6 +128,14 @@ struct Herd {
   const SizeRun& runOf(uint32_t agent) const;
 };
 
+// An agent that is a threat, as it was when the host looked last.
+struct SeenThreat {
+  uint32_t kind = 0;  // of its own
+  Threat threat;
+
+  bool operator==(const SeenThreat&) const = default;
+};
+
 // What a run of a herd is known by for as long as the herd is there, whatever becomes of others.
 struct RunKey {
   uint32_t number, generation;  // of the herd
@@ -165,7 +175,10 @@ struct Crowd::Impl {
   size_t begun = 0;           // and how many before the next one
   // The kinds of herds that events will add, by the event's number: without agents and pipelines.
   std::map<size_t, std::vector<crowd::Kind>> coming;
-  uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground; 0: never
+  std::vector<Threat> threats;          // by number: Crowd::setThreat
+  std::vector<crowd::SeenThreat> seen;  // agents that are threats
+  bool threatsAreNew = false;           // no tick has gone by them
+  uint64_t watchUntil = 0;              // the last tick in which gait looks at the ground; 0: never
   uint64_t tick = 0;
   uint64_t agentsInTick = 0;  // who were there in it
   uint64_t agentTicks = 0;    // and in all since the crowd was made, where crowding is measured

@@ -17,9 +17,10 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, phase, colour, tint] = herd;
-  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways),
-                        std::tuple(reserve > 0));
+               sizes, avoid, ways, threat, phase, colour, tint] = herd;
+  return std::tuple_cat(
+      std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways, threat),
+      std::tuple(reserve > 0));
 }
 
 // `areEqual` compares what the rigs of two herds, by number, are.
@@ -43,8 +44,8 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
   if (kinds.firstHerds.size() > mostKinds)
     throw inputError(fmt::format(
         "{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning, "
-        "avoid, ways or size, expected at most {}: each of them, and each size of one, has pipelines of its "
-        "own; equal herds share them, whatever their agents, spawn and goal",
+        "avoid, ways, threat or size, expected at most {}: each of them, and each size of one, has pipelines "
+        "of its own; equal herds share them, whatever their agents, spawn and goal",
         scene.name, kinds.firstHerds.size(), mostKinds));
   return kinds;
 }
@@ -93,6 +94,7 @@ void checkHerd(const skitter::Herd& herd, const std::string& what) {
   checkSpawn(herd.spawn, what);
   expectGoal([&] { return what; }, herd.goal);
   if (herd.ways) checkWays(*herd.ways, what);
+  expectWithin([&] { return what; }, "threat", double{herd.threat}, 0, Scene::maxCoordinate, "m");
   if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
     throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
   if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))

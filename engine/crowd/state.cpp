@@ -264,6 +264,27 @@ void giveChanges(const std::vector<StateChange>& all, Kind& kind) {
   }
 }
 
+std::vector<StateThreat> threatsOf(const Impl& crowd) {
+  std::vector<StateThreat> all;
+  const auto add = [&](int64_t kind, const Threat& threat) {
+    all.push_back({kind, {threat.centre.x, threat.centre.y, threat.radius}});
+  };
+  for (const Threat& threat : crowd.threats) add(-1, threat);
+  for (const SeenThreat& seen : crowd.seen) add(seen.kind, seen.threat);
+  return all;
+}
+
+void giveThreats(const std::vector<StateThreat>& all, Impl& crowd) {
+  crowd.threats.clear();
+  for (const auto& [kind, disc] : all) {
+    const Threat threat{{disc[0], disc[1]}, disc[2]};
+    if (kind < 0)
+      crowd.threats.push_back(threat);
+    else
+      crowd.seen.push_back({static_cast<uint32_t>(kind), threat});
+  }
+}
+
 StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& footfalls,
                   const std::string& note) {
   StateHead head;
@@ -278,6 +299,7 @@ StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& foot
   head.options.watchEvery = crowd.watchEvery;
   head.note = note;
   head.watchUntil = crowd.watchUntil;
+  head.threats = threatsOf(crowd);
   head.rigsAreCallers = crowd.rigsAreCallers;
   for (size_t k = 0; k < crowd.kinds.size(); ++k) {
     const Kind& kind = crowd.kinds[k];
@@ -458,6 +480,7 @@ void restoreHerds(Impl& crowd, const State& state) {
   if (state.dt > 0)
     crowd.begun =
         std::min<uint64_t>(head.begun, eventsAt(crowd.events, state.tick + 1, double{state.dt}).size());
+  giveThreats(head.threats, crowd);
   for (size_t h = 0; h < head.herds.size(); ++h) {
     const StateHerd& saved = head.herds[h];
     Herd& herd = crowd.herds.emplace_back();

@@ -72,6 +72,12 @@ void eachKey(StateComing& coming, const Visit& visit) {
   visit("hashes", hashes);
 }
 template <class Visit>
+void eachKey(StateThreat& threat, const Visit& visit) {
+  auto& [kind, disc] = threat;
+  visit("kind", kind);
+  visit("disc", disc);
+}
+template <class Visit>
 void eachKey(CrowdOptions& options, const Visit& visit) {
   auto& [pose, measure, watchEvery, feet, footfalls, sleep, crowding, fuse, timestamps, pageAgents, shaders,
          rigs] = options;
@@ -191,6 +197,7 @@ Json jsonOf(const StateHead& head) {
   json["scene"] = Json::parse(sceneJson(head.scene));
   json["note"] = noteOf(head.note);
   if (head.begun > 0) json["begun"] = head.begun;
+  if (!head.threats.empty()) json["threats"] = written(copy.threats);
   json["terrain"]["hash"] = fmt::format("{:08x}", checksum(std::as_bytes(std::span(head.terrain.heights))));
   return json;
 }
@@ -201,6 +208,7 @@ StateHead headOf(const Json& json, const std::string& name) try {
   head.scene = parseScene(json.at("scene").dump(), name, "/");
   if (const Json& note = json.at("note"); !note.is_null()) head.note = note.dump();
   head.begun = json.value("begun", uint64_t{0});
+  if (json.contains("threats")) read(json.at("threats"), head.threats);
   checkSides(head.terrain, name);
   checkHerds(head, name);
   for (const StateKind& kind : head.kinds)

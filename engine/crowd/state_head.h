@@ -58,6 +58,11 @@ struct StateComing {
   std::vector<uint32_t> hashes;  // of its kinds, as StateKind::hash
 };
 
+struct StateThreat {
+  int64_t kind = -1;               // of the agent that it is; -1: Crowd::setThreat's, by number
+  std::array<float, 3> disc = {};  // x, z, radius
+};
+
 // The members of State, and what only its crowd needs.
 struct StateHead : State {
   uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground
@@ -67,6 +72,7 @@ struct StateHead : State {
   std::vector<StateKind> kinds;
   std::vector<StateHerd> herds;
   std::vector<StateComing> coming;
+  std::vector<StateThreat> threats;
 };
 
 // Throws Error(input) where the scene or the note cannot be written. The terrain's heights are hashed only.

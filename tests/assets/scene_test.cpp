@@ -262,7 +262,8 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": {}})", "events is an object, expected an array of at most 4096 events"},
       {R"({"events": [{"at": -1, "mound": {}}]})", "events[0].at is -1"},
       {R"({"events": [{"at": 1}]})",
-       "events[0] has 0 of mound, edit, goal, speed, teleport, add, remove, addHerd, removeHerd, expected "
+       "events[0] has 0 of mound, edit, goal, speed, teleport, add, remove, addHerd, removeHerd, threat, "
+       "expected "
        "one"},
       {R"({"events": [{"mound": {}, "edit": {"columns": 1, "rows": 1, "heights": [0]}}]})",
        "events[0] has 2 of mound, edit"},
@@ -333,6 +334,12 @@ TEST(Scene, FaultsNameFileAndField) {
       // A star turns one way at every corner.
       {R"({"obstacles": [{"polygon": {"corners": [[0, 10], [6, -8], [-9, 3], [9, 3], [-6, -8]]}}]})",
        "obstacles[0].polygon.corners is not convex"},
+      {R"({"threats": [{"radius": -1}]})", "threats[0].radius is -1, expected a number from 0 to 4096"},
+      {R"({"herds": [{"threat": -1}]})", "herds[0].threat is -1, expected a number from 0 to 4096"},
+      {R"({"events": [{"threat": {"number": 64}}]})",
+       "events[0].threat.number is 64, expected a whole number from 0 to 63"},
+      {R"({"events": [{"threat": {"raduis": 2}}]})",
+       "events[0].threat.raduis is no known key; did you mean radius?"},
       {R"({"seed": 1, "seed": 2})", "\"seed\" appears twice"},
       {R"({"seed": NaN})", "line 1"},
       {"", "not valid JSON"},
@@ -398,7 +405,7 @@ class RandomScenes {
 
   Scene scene() {
     Scene made;
-    auto& [name, terrain, herds, camera, events, obstacles, seed] = made;
+    auto& [name, terrain, herds, camera, events, obstacles, threats, seed] = made;
     name = text();
     terrain = coin() ? decltype(Scene::terrain)(noise()) : terrainFile();
     herds.resize(whole(0, 3));
@@ -412,6 +419,8 @@ class RandomScenes {
     }
     obstacles.resize(whole(0, 3));
     for (auto& [shape] : obstacles) shape = this->shape();
+    threats.resize(whole(0, 3));
+    for (Threat& each : threats) each = threat();
     seed = random_();
     return made;
   }
@@ -521,7 +530,7 @@ class RandomScenes {
   Herd herd() {
     Herd made;
     auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-           avoid, ways, phase, colour, tint] = made;
+           avoid, ways, threat, phase, colour, tint] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -544,6 +553,7 @@ class RandomScenes {
     for (float& size : sizes) size = real(0.1, 10);
     avoid = coin();
     if (coin()) ways = {real(0, 100), real(0.01, 100), real(0.01, 100)};
+    if (coin()) threat = real(0, 4096);
     maybe(phase, 0, 1);
     if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
     maybe(tint, 0, 1);
@@ -559,7 +569,7 @@ class RandomScenes {
     return made;
   }
   decltype(Event::what) happening() {
-    switch (whole(0, 8)) {
+    switch (whole(0, 9)) {
       case 0:
         return mound();
       case 1:
@@ -611,13 +621,27 @@ class RandomScenes {
         herd = this->herd();
         return made;
       }
-      default: {
+      case 8: {
         HerdRemoval made;
         auto& [herd] = made;
         herd = someHerd();
         return made;
       }
+      default: {
+        ThreatChange made;
+        auto& [number, threat] = made;
+        number = static_cast<uint32_t>(whole(0, 63));
+        threat = this->threat();
+        return made;
+      }
     }
+  }
+  Threat threat() {
+    Threat made;
+    auto& [centre, radius] = made;
+    centre = place();
+    radius = real(0, 4096);
+    return made;
   }
   uint32_t someHerd() { return static_cast<uint32_t>(whole(0, Scene::maxHerds - 1)); }
   std::vector<uint32_t> numbers(uint64_t least) {

@@ -249,6 +249,7 @@ static void testErrors(void) {
   REFUSED(skitter_crowd_teleport(NULL, &m, &place, 1), "crowd is NULL");
   REFUSED(skitter_crowd_add(NULL, 0, &place, NULL, NULL), "crowd is NULL");
   REFUSED(skitter_crowd_remove(NULL, 0), "crowd is NULL");
+  REFUSED(skitter_crowd_set_threat(NULL, 0, numbers, 1), "crowd is NULL");
   REFUSED(skitter_crowd_add_herd(NULL, scene, 0, &herd), "crowd is NULL");
   REFUSED(skitter_crowd_remove_herd(NULL, herd), "crowd is NULL");
   REFUSED(skitter_crowd_herd_id(NULL, 0, &herd), "crowd is NULL");
@@ -521,6 +522,15 @@ static void testSpeeds(skitter_crowd* crowd, const skitter_agent_id* ids) {
   for (i = 0; i < 4; ++i) CHECK(fabs(ways[i][1] - (i == 2 ? 0 : 0.5)) < 0.1);
 }
 
+static void testThreats(skitter_crowd* crowd) {
+  const float centre[2] = {100, 0};
+  OK(skitter_crowd_set_threat(crowd, 63, centre, 2));
+  OK(skitter_crowd_set_threat(crowd, 63, centre, 0));
+  REFUSED(skitter_crowd_set_threat(crowd, 64, centre, 2), "threat 64: expected a number less than 64");
+  REFUSED(skitter_crowd_set_threat(crowd, 0, centre, -1), "threat 0.radius is -1");
+  REFUSED(skitter_crowd_set_threat(crowd, 0, NULL, 1), "centre is NULL");
+}
+
 static void testComingAndGoing(skitter_crowd* crowd) {
   skitter_place place = {5, -5, 1};
   skitter_goal goal = {0};
@@ -618,6 +628,7 @@ static void testSteering(void) {
 
   OK(skitter_crowd_steer(crowd, 0, &goal));
   testSpeeds(crowd, ids);
+  testThreats(crowd);
 
   OK(skitter_crowd_teleport(crowd, ids + 2, &place, 1));
   OK(skitter_crowd_step(crowd, 1, dt));

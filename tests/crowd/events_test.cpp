@@ -297,7 +297,7 @@ TEST_F(EventsTest, FilesOfHerdsAreReadWhenTheCrowdIsMade) {
   for (const Controller controller : {Controller::adaptive, Controller::planted}) {
     Herd herd = guests(3, controller);
     herd.rig = model;
-    scene.events.push_back({0.1f, HerdAddition{std::move(herd)}});
+    scene.events.emplace_back(0.1f, HerdAddition{std::move(herd)});
   }
   Crowd crowd(device(), rollingGround(), scene);
   simulate(device(), crowd, 3);

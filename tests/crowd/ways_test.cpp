@@ -133,13 +133,15 @@ TEST(CostGrid, IsThatOfTheReference) {
                                            {ConvexPolygon{.corners = {{20, 2}, {27, 4}, {22, 11}}}},
                                            {Disc{.centre = {500, 0}, .radius = 1}}};
   const Traveller traveller{.legLength = 0.9f, .footprint = 0.6f, .margin = 2, .ways = {.steepest = 0.9f}};
-  const CostGrid grid = costGrid(ground, obstacles, traveller);
+  CostGrid grid = costGrid(ground, obstacles, traveller);
+  keepOff(grid, std::vector<Threat>{{{-12, -9}, 3.5f}, {{1, 1}, 0}}, traveller);
   const reference::Heights heights{ground.heights.data(),    150, 97, double{ground.originX()},
                                    double{ground.originZ()}, 2,   2};
   const reference::WayGrid expected = reference::wayGrid(heights,
                                                          {.discs = {{{3, -4}, 2.5}, {{500, 0}, 1}},
                                                           .capsules = {{{-30, 8}, {12, 10}, 0}},
-                                                          .polygons = {{{{20, 2}, {27, 4}, {22, 11}}}}},
+                                                          .polygons = {{{{20, 2}, {27, 4}, {22, 11}}}},
+                                                          .threats = {{{-12, -9}, 3.5}, {{1, 1}, 0}}},
                                                          {.legLength = double{0.9f},
                                                           .footprint = double{0.6f},
                                                           .edgeMargin = 2,

@@ -64,4 +64,9 @@ void checkObstacle(const Obstacle& obstacle, const std::string& what) {
   std::visit([&](const auto& shape) { check(shape, what); }, obstacle.shape);
 }
 
+void checkThreat(const Threat& threat, const std::string& what) {
+  expectPlace(threat.centre, what + ".centre");
+  expectRadius(threat.radius, 0, what);
+}
+
 }  // namespace skitter::scenes

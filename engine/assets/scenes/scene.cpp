@@ -145,6 +145,19 @@ template <class Fields, class Shape>
 requires std::is_same_v<Shape, Disc> || std::is_same_v<Shape, Capsule> || std::is_same_v<Shape, ConvexPolygon>
 void keysOf(Fields& fields, const char* key, Shape& shape) { fields.object(key, shape); }
 template <class Fields>
+void keysOf(Fields& fields, Threat& threat) {
+  auto& [centre, radius] = threat;
+  fields.key("centre", centre, Scene::maxCoordinate);
+  fields.key("radius", radius, 0, Scene::maxCoordinate);
+}
+template <class Fields>
+void keysOf(Fields& fields, ThreatChange& change) {
+  auto& [number, threat] = change;
+  fields.integer("number", number, 0, Scene::maxThreats - 1);
+  keysOf(fields, threat);
+}
+
+template <class Fields>
 void keysOf(Fields& fields, Obstacle& obstacle) {
   auto& [shape] = obstacle;
   fields.oneOf({"disc", "capsule", "polygon"}, shape);
@@ -156,7 +169,7 @@ void checkKeys(const Obstacle& obstacle, const std::string& file, const std::str
 template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
   auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-         avoid, ways, phase, colour, tint] = herd;
+         avoid, ways, threat, phase, colour, tint] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -172,6 +185,7 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.key("sizes", sizes, Herd::maxSizes, Herd::minSize, Herd::maxSize);
   fields.key("avoid", avoid);
   fields.object("ways", ways);
+  fields.key("threat", threat, 0, Scene::maxCoordinate);
   fields.phase("phase", phase);
   fields.colour("colour", colour);
   fields.key("tint", tint, 0, 1);
@@ -321,13 +335,18 @@ void keysOf(Fields& fields, const char* key, HerdRemoval& removal) {
   auto& [herd] = removal;
   fields.integer(key, herd, 0, Scene::maxHerds - 1);
 }
+template <class Fields>
+void keysOf(Fields& fields, const char* key, ThreatChange& change) {
+  fields.object(key, change);
+}
 
 template <class Fields>
 void keysOf(Fields& fields, Event& event) {
   auto& [at, what] = event;
   fields.key("at", at, 0, Event::maxTime);
-  fields.oneOf({"mound", "edit", "goal", "speed", "teleport", "add", "remove", "addHerd", "removeHerd"},
-               what);
+  fields.oneOf(
+      {"mound", "edit", "goal", "speed", "teleport", "add", "remove", "addHerd", "removeHerd", "threat"},
+      what);
 }
 void checkKeys(const Event& event, const std::string& file, const std::string& path) {
   const auto expectSome = [&](const char* key, const auto& list) {
@@ -341,7 +360,7 @@ void checkKeys(const Event& event, const std::string& file, const std::string& p
 
 template <class Fields>
 void keysOf(Fields& fields, Scene& scene) {
-  auto& [name, terrain, herds, camera, events, obstacles, seed] = scene;
+  auto& [name, terrain, herds, camera, events, obstacles, threats, seed] = scene;
   fields.key("name", name);
   fields.integer("seed", seed, 0, UINT64_MAX);
   fields.object("terrain", terrain);
@@ -349,6 +368,7 @@ void keysOf(Fields& fields, Scene& scene) {
   fields.object("camera", camera);
   fields.objects("events", events, Scene::maxEvents, "events");
   fields.objects("obstacles", obstacles, Scene::maxObstacles, "obstacles");
+  fields.objects("threats", threats, Scene::maxThreats, "threats");
 }
 void checkKeys(const Scene& scene, const std::string& file, const std::string&) {
   for (size_t e = 1; e < scene.events.size(); ++e)

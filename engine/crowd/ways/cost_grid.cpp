@@ -110,6 +110,11 @@ uint32_t cellFrom(double place, double origin, double cell, uint32_t count) {
       std::clamp(std::floor((place - origin) / cell - 0.5), 0.0, static_cast<double>(count)));
 }
 
+// Half of a cell's diagonal or more, so that no line has a hole.
+double grownBy(const CostGrid& grid, const Traveller& traveller) {
+  return std::max(double{traveller.footprint}, double{grid.cell} / std::sqrt(2.0));
+}
+
 template <class Shape>
 void blockAround(CostGrid& grid, const Shape& shape, double grown) {
   const auto [least, most] = boundsOf(shape);
@@ -141,10 +146,17 @@ CostGrid costGrid(const Heightfield& terrain, std::span<const Obstacle> obstacle
       grid.cost[size_t{row} * grid.columns + column] =
           inside ? costOfGround(heightsAround(terrain, middle, cell), cell, traveller) : impassable;
     }
-  const double grown = std::max(double{traveller.footprint}, cell / std::sqrt(2.0));
   for (const Obstacle& obstacle : obstacles)
-    std::visit([&](const auto& shape) { blockAround(grid, shape, grown); }, obstacle.shape);
+    std::visit([&](const auto& shape) { blockAround(grid, shape, grownBy(grid, traveller)); },
+               obstacle.shape);
   return grid;
+}
+
+// A way cuts corners by less than a cell.
+void keepOff(CostGrid& grid, std::span<const Threat> threats, const Traveller& traveller) {
+  for (size_t i = 0; i < threats.size(); ++i) scenes::checkThreat(threats[i], fmt::format("threats[{}]", i));
+  for (const auto& [centre, radius] : threats)
+    if (radius > 0) blockAround(grid, Disc{centre, radius}, grownBy(grid, traveller) + double{grid.cell});
 }
 
 }  // namespace skitter

@@ -11,6 +11,7 @@
 #include "crowd/radius.h"
 #include "crowd/readback.h"
 #include "crowd/spawn.h"
+#include "crowd/ways/threats.h"
 #include "gpu/context.h"
 #include "gpu/transfer.h"
 #include "skitter/crowd.h"
@@ -28,12 +29,21 @@ void addOnce(Targets& targets, const glm::vec2& target) {
 
 bool isLed(std::span<const float> goal) { return goal[6] == shared::GOAL_POINT; }
 
+Traveller travellerOf(const Kind& kind) {
+  return {.legLength = kind.rig.legLength,
+          .footprint = footprintRadius(kind.rig),
+          .margin = kind.parameters.edgeMargin,
+          .ways = *kind.wayNeeds};
+}
+
+CostGrid groundFor(const Crowd::Impl& crowd, const Kind& kind) {
+  return costGrid(crowd.terrain, crowd.scene.obstacles, travellerOf(kind));
+}
+
 CostGrid gridFor(const Crowd::Impl& crowd, const Kind& kind) {
-  return costGrid(crowd.terrain, crowd.scene.obstacles,
-                  {.legLength = kind.rig.legLength,
-                   .footprint = footprintRadius(kind.rig),
-                   .margin = kind.parameters.edgeMargin,
-                   .ways = *kind.wayNeeds});
+  CostGrid grid = kind.ground;
+  keepOff(grid, threatsTo(crowd, kind), travellerOf(kind));
+  return grid;
 }
 
 // As their records have it: a spawn keeps them off the edge of the map.
@@ -103,6 +113,7 @@ Targets fitting(const WayFields& ways, const Targets& targets, const Targets& ke
 void beginWays(Crowd::Impl& crowd, uint32_t k) {
   Kind& kind = crowd.kinds[k];
   if (!kind.wayNeeds) return;
+  kind.ground = groundFor(crowd, kind);
   kind.ways = std::make_unique<WayFields>(*crowd.context, gridFor(crowd, kind));
   Targets targets;
   const std::vector<HerdRun> runs = runsOf(crowd, k);
@@ -144,9 +155,16 @@ void leadEverybody(Crowd::Impl& crowd) {
   }
 }
 
-void renewWays(Crowd::Impl& crowd) {
-  for (Kind& kind : crowd.kinds)
-    if (kind.ways) changeWays(crowd, kind, [&](WayFields& ways) { ways.setGrid(gridFor(crowd, kind)); });
+void keepWays(Crowd::Impl& crowd) {
+  const bool edited = !crowd.edits.empty(), threatened = threatsHaveMoved(crowd);
+  if (!edited && !threatened) return;
+  for (Kind& kind : crowd.kinds) {
+    if (!kind.ways) continue;
+    if (edited) kind.ground = groundFor(crowd, kind);
+    CostGrid grid = gridFor(crowd, kind);
+    if (grid == kind.ways->grid()) continue;
+    changeWays(crowd, kind, [&](WayFields& ways) { ways.setGrid(std::move(grid)); });
+  }
 }
 
 }  // namespace crowd
@@ -164,9 +182,7 @@ uint32_t Crowd::cannotReach(uint32_t herd) const {
     const float* goal = &state.goal[size_t{agent} * 4 * shared::GOAL_STRIDE];
     const float* body = &state.body[size_t{agent} * 4 * shared::BODY_STRIDE];
     if (!of.presence.has(agent) || goal[6] != shared::GOAL_POINT || !ways.has({goal[0], goal[1]})) continue;
-    const glm::vec2 tile(shared::tileX(body[3]), shared::tileZ(body[3]));
-    const glm::vec2 place = tile * shared::TILE_SIZE + glm::vec2(body[0], body[2]);
-    const uint32_t region = ways.regions().of[crowd::cellAt(ways.grid(), place)];
+    const uint32_t region = ways.regions().of[crowd::cellAt(ways.grid(), crowd::placeOf(body))];
     // Who is in an obstacle gets out of it, nobody knows where.
     if (region == crowd::Regions::none) continue;
     count += region != ways.stopsAt({goal[0], goal[1]}).region;

@@ -23,7 +23,8 @@ void leadTo(Crowd::Impl& crowd, const Herd& herd, const SizeRun& run, std::span<
 // Fields for the goals that all agents have, as their records say, as far as there is room.
 void leadEverybody(Crowd::Impl& crowd);
 
-// All grids and fields, for the ground as it is. Waits for the device.
-void renewWays(Crowd::Impl& crowd);
+// Grids and fields for the ground and the threats of the next tick. Waits for the device where they are
+// others than in the last one, and where it looks at agents that are threats.
+void keepWays(Crowd::Impl& crowd);
 
 }  // namespace skitter::crowd

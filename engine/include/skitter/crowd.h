@@ -185,10 +185,11 @@ class SKITTER_API Crowd {
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, fragment, compute and transfer work recorded after it. Each recorded tick must be submitted
   // once, in order. What Scene::events has for that time happens first, as if the caller had called
-  // editHeights, steer, setSpeed, teleport, add, remove, addHerd or removeHerd just before; no file is read
-  // for that. A tick before which a herd comes or goes takes the queue's lock, allocates, submits and waits
-  // for the device, and is recorded when all that was recorded before it is submitted. The buffers of a herd
-  // that goes are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
+  // editHeights, steer, setSpeed, teleport, add, remove, addHerd, removeHerd or setThreat just before; no
+  // file is read for that. A tick before which a herd comes or goes takes the queue's lock, allocates,
+  // submits and waits for the device, and is recorded when all that was recorded before it is submitted; one
+  // for which fields are computed anew does so, too, and allocates nothing. The buffers of a herd that goes
+  // are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
   // Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an adaptive
   // herd, below 22 microseconds; and where an event cannot happen, because a herd or an agent is not there or
   // no place is left: then none of the tick's events has, and the tick can be recorded again. Throws
@@ -233,6 +234,11 @@ class SKITTER_API Crowd {
   // How many agents of a herd with ways have a goal that no way leads to from where they are: they stop at
   // the nearest place that one leads to (docs/ways.md). Waits for the device.
   uint32_t cannotReach(uint32_t herd) const;
+  // Threats, by numbers of the caller's, below Scene::maxThreats: one comes, moves or, with radius 0, goes.
+  // Those of the scene have their index. Agents of herds with ways keep off, and get out, by fields that the
+  // next recorded tick waits for (docs/ways.md). The latter: all numbers up to the last one in use.
+  void setThreat(uint32_t number, const Threat& threat);
+  const std::vector<Threat>& threats() const;
   // The handle of the agent in that place of the herd. Throws Error(input) where nobody is.
   AgentId agentId(uint32_t herd, uint32_t agent) const;
 

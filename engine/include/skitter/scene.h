@@ -80,6 +80,8 @@ struct Herd {
   bool avoid = false;
   // Where its agents go to a goal of kind point around obstacles and impassable ground (docs/ways.md).
   std::optional<Ways> ways = {};
+  // Metres around each of its agents that other herds with ways keep off, 0 to Scene::maxCoordinate.
+  float threat = 0;
   // Where in the cycle of its gait or clip each agent begins, 0 to 1; none: drawn by the seed.
   std::optional<float> phase = {};
   // The herd's colour: each of the model's becomes this one, lighter or darker as it was. Linear RGB, 0 to 1;
@@ -207,6 +209,14 @@ struct HerdRemoval {
   bool operator==(const HerdRemoval&) const = default;
 };
 
+// A threat that comes, moves or goes, as Crowd::setThreat has it.
+struct ThreatChange {
+  uint32_t number = 0;  // below Scene::maxThreats
+  Threat threat = {};
+
+  bool operator==(const ThreatChange&) const = default;
+};
+
 // Something that happens to a running crowd, just before the first tick that ends at `at` or later.
 struct Event {
   static constexpr float maxTime = 86400;        // seconds
@@ -215,14 +225,14 @@ struct Event {
 
   float at = 0;  // seconds
   std::variant<Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition,
-               HerdRemoval>
+               HerdRemoval, ThreatChange>
       what;
 
   bool operator==(const Event&) const = default;
 };
 
 struct SKITTER_API Scene {
-  static constexpr size_t maxHerds = 1024, maxEvents = 4096, maxObstacles = 4096;
+  static constexpr size_t maxHerds = 1024, maxEvents = 4096, maxObstacles = 4096, maxThreats = 64;
   static constexpr uint32_t maxAgents = 1 << 24;  // of all herds: records hold an agent's index as a float
   static constexpr float maxCoordinate = 4096;  // metres from the origin: feet beyond are placed too coarsely
 
@@ -232,6 +242,7 @@ struct SKITTER_API Scene {
   Camera camera;
   std::vector<Event> events;        // by time; Crowd::record lets them happen
   std::vector<Obstacle> obstacles;  // herds with ways go around them
+  std::vector<Threat> threats;      // and around these; Crowd::setThreat names them by their index
   uint64_t seed = 1;
 
   Heightfield loadTerrain() const;  // throws Error(input)

@@ -40,6 +40,15 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
+// Ground that herds with ways keep off, seen from above. Threats come, move and go while a crowd runs
+// (Crowd::setThreat).
+struct Threat {
+  glm::vec2 centre{0};
+  float radius = 1;  // to Scene::maxCoordinate; 0: there is none
+
+  bool operator==(const Threat&) const = default;
+};
+
 // What ground is to the creatures of a herd that finds its way.
 struct Ways {
   static constexpr double maxClimb = 100, minLimit = 0.01, maxLimit = 100;
@@ -75,5 +84,8 @@ struct Traveller {
 // Throws Error(input) where an obstacle is none that a scene file may have.
 SKITTER_API CostGrid costGrid(const Heightfield& terrain, std::span<const Obstacle> obstacles,
                               const Traveller& traveller);
+// Makes the cells impassable that are too near to a threat. Throws Error(input) where one is none that a
+// scene file may have.
+SKITTER_API void keepOff(CostGrid& grid, std::span<const Threat> threats, const Traveller& traveller);
 
 }  // namespace skitter
