@@ -15,7 +15,8 @@ inline constexpr int own = -1;
 }
 // clang-format off
 #define SKITTER_GOAL_FIELDS(FIELD) \
-  /* World x, z; of kind velocity the target is the desired velocity. */ \
+  /* World x, z; of kind velocity the target is the desired velocity; of kind series the other end is the \
+     number of the place and the draw. */ \
   FIELD(glm::dvec2, target,            glm::dvec2(0),          0,  0) \
   FIELD(glm::dvec2, otherEnd,          glm::dvec2(0),          2,  0) \
   FIELD(double,     speed,             0,                      4,  0) \

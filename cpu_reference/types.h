@@ -74,7 +74,7 @@ struct Creature {
   int groups = 0;
 };
 
-enum class GoalKind { none, point, cross, velocity };
+enum class GoalKind { none, point, cross, velocity, series };
 
 #define REFERENCE_MEMBER(type, name, initial, place, roundings) type name = initial;
 struct Goal {

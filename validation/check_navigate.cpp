@@ -16,7 +16,7 @@ double fieldBound(const Setting& setting, const reference::WayResult& way) {
   return tolerance::wayVelocity(setting.extent, cellOf(setting), way, setting.tuning.slowRadius);
 }
 
-// Ties of the way: choices 0 to 15 take one side or the other of each.
+// Ties of the way: choices 0 to 31 take one side or the other of each.
 void decideWay(const Setting& setting, const reference::WayResult& way, double arrivalRadius, int choice,
                reference::WayChoices& choices) {
   const double cell = cellOf(setting), place = tolerance::wayPlace(setting.extent, cell);
@@ -24,6 +24,8 @@ void decideWay(const Setting& setting, const reference::WayResult& way, double a
     choices.straight = choice & 1;
   if (way.stopMargin < tolerance::wayTime(setting.extent, cell, way.rise, arrivalRadius))
     choices.stops = choice >> 1 & 1;
+  if (way.passMargin < tolerance::wayTime(setting.extent, cell, way.rise, 4 * arrivalRadius))
+    choices.passes = choice >> 4 & 1;
   for (int axis = 0; axis < 2; ++axis) {
     if ((choice >> (2 + axis) & 1) == 0) continue;
     if (way.lowerMargin[axis] < place) choices.besides[axis] = -1;
@@ -64,7 +66,7 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
                              .edited = moment.after.watched,
                              .breathes = setting.controller == Controller::adaptive};
   const auto run = [&](const reference::NavigateChoices& choices) {
-    return reference::navigate(tuning, body, goal, rest, choices, setting.ways);
+    return reference::navigate(tuning, body, goal, rest, choices, setting.ways, setting.wayPlaces);
   };
   const reference::NavigateResult result = run({});
   const Sample sample = compare(setting, moment, body, result);
@@ -74,7 +76,7 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
   const double breath = tolerance::breathedOut(tuning, rest.gait);
   // A sleeper decides again and again what it fell asleep by: that is one tie.
   const bool slept = mayRest(moment.before, moment.agent) && mayRest(moment.after, moment.agent);
-  for (int choice = 0; choice < (result.way ? 512 : 32); ++choice) {
+  for (int choice = 0; choice < (result.way ? 1024 : 32); ++choice) {
     reference::NavigateChoices choices;
     if (result.way) decideWay(setting, *result.way, goal.arrivalRadius, choice >> 5, choices.way);
     const auto bit = [&](int i) { return choice >> i & 1; };

@@ -147,6 +147,7 @@ reference::Goal goalOf(const HerdState& state, size_t agent) {
   to.kind = record[6] == shared::GOAL_CROSS      ? reference::GoalKind::cross
             : record[6] == shared::GOAL_POINT    ? reference::GoalKind::point
             : record[6] == shared::GOAL_VELOCITY ? reference::GoalKind::velocity
+            : record[6] == shared::GOAL_SERIES   ? reference::GoalKind::series
                                                  : reference::GoalKind::none;
   return to;
 }
@@ -157,6 +158,7 @@ void putGoal(HerdState& state, size_t agent, const reference::Goal& from) {
   record[6] = from.kind == reference::GoalKind::cross      ? shared::GOAL_CROSS
               : from.kind == reference::GoalKind::point    ? shared::GOAL_POINT
               : from.kind == reference::GoalKind::velocity ? shared::GOAL_VELOCITY
+              : from.kind == reference::GoalKind::series   ? shared::GOAL_SERIES
                                                            : shared::GOAL_NONE;
 }
 

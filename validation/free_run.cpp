@@ -141,7 +141,8 @@ class Walk {
                                .allowed = state_.sleep,
                                .edited = state_.watched,
                                .breathes = setting_.controller == Controller::adaptive};
-    const auto way = reference::navigate(tuning_, body(), goalOf(state_, agent_), rest, {}, setting_.ways);
+    const auto way = reference::navigate(tuning_, body(), goalOf(state_, agent_), rest, {}, setting_.ways,
+                                         setting_.wayPlaces);
     putGoal(state_, agent_, way.goal);
     putSteer(state_, agent_, way.desired, way.asleep);
     return way.asleep;

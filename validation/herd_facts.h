@@ -33,12 +33,22 @@ inline std::vector<reference::WayField> waysOf(const crowd::Kind& kind) {
   return all;
 }
 
+// The places of goals in series that the kind has.
+inline std::vector<reference::WayPlace> wayPlacesOf(const crowd::Kind& kind) {
+  std::vector<reference::WayPlace> all;
+  if (!kind.ways) return all;
+  for (const glm::vec4& place : kind.ways->places())
+    all.push_back({{place.x, place.y}, static_cast<size_t>(place.z), static_cast<size_t>(place.w)});
+  return all;
+}
+
 // The facts of a herd's kind. Call it once the tick length is known: the parameters are complete only then.
 // The facts refer to the kind's rig.
 inline HerdFacts herdFacts(const crowd::Kind& kind, const Heightfield& terrain) {
   HerdFacts facts{kind.rig, terrain,         kind.parameters, kind.rigRecords,
                   kind.ik,  kind.controller, kind.clips,      kind.keyPoses};
   facts.ways = waysOf(kind);
+  facts.wayPlaces = wayPlacesOf(kind);
   return facts;
 }
 

@@ -94,6 +94,7 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   setting.avoid = herd.avoid;
   setting.firstNumber = herd.firstNumber;
   setting.ways = herd.ways;
+  setting.wayPlaces = herd.wayPlaces;
   if (crowd::traitsOf(herd.controller).playsClips)
     setting.clips = clipTableOf(herd.clips, setting.legs, setting.bones);
   if (herd.controller == Controller::keyPoses)

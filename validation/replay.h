@@ -36,7 +36,8 @@ struct HerdFacts {
   // Where the herd avoids: how, and the number in the crowd of that agent.
   reference::AvoidTuning avoid = {};
   int64_t firstNumber = 0;
-  std::vector<reference::WayField> ways = {};  // the fields of its kind, as they are on the device
+  std::vector<reference::WayField> ways = {};       // the fields of its kind, as they are on the device
+  std::vector<reference::WayPlace> wayPlaces = {};  // those of its goals in series
 };
 
 // All agents that are there, of the whole crowd: as they were before a tick.
@@ -56,6 +57,7 @@ struct Setting {
   reference::AvoidTuning avoid;
   int64_t firstNumber = 0;
   std::vector<reference::WayField> ways;
+  std::vector<reference::WayPlace> wayPlaces;
 };
 
 // `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit
@@ -91,9 +93,10 @@ class Replay {
   // The terrain was edited before the next tick (Crowd::editHeights).
   void edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
 
-  // The fields are others from the next tick() on.
-  void setWays(std::vector<reference::WayField> ways) {
+  // The fields and places are others from the next tick() on.
+  void setWays(std::vector<reference::WayField> ways, std::vector<reference::WayPlace> places) {
     setting_.ways = std::move(ways);
+    setting_.wayPlaces = std::move(places);
     waysAreNew_ = true;
   }
 

@@ -56,11 +56,21 @@ class FileHashes {
 
 // Bindings to all members: a new one does not compile until it is looked at here.
 void add(Hash& hash, const Goal& goal) {
-  const auto& [kind, target, speed, velocity] = goal;
+  const auto& [kind, target, speed, velocity, places, loop, radius, leader, agent] = goal;
   hash.add(static_cast<uint64_t>(kind));
   hash.add(target);
   hash.add(speed);
   if (kind == Goal::Kind::velocity) hash.add(velocity);
+  if (kind == Goal::Kind::route) {
+    hash.add(uint64_t{loop});
+    hash.add(uint64_t{places.size()});
+    for (const glm::vec2& place : places) hash.add(place);
+  }
+  if (kind == Goal::Kind::roam) hash.add(radius);
+  if (kind == Goal::Kind::follow) {
+    hash.add(uint64_t{leader});
+    hash.add(agent ? uint64_t{1} + *agent : uint64_t{0});
+  }
 }
 
 void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {

@@ -10,7 +10,7 @@ using namespace py::literals;
 
 // As scene files name them.
 constexpr std::array spawnKinds{"lanes", "grid"};
-constexpr std::array goalKinds{"cross", "point", "none", "velocity"};
+constexpr std::array goalKinds{"cross", "point", "none", "velocity", "route", "roam", "follow", "flee"};
 constexpr std::array cameraKinds{"follow", "fixed", "orbit", "path"};
 
 PythonScene parsedScene(const py::object& json, const std::filesystem::path& folder) {
@@ -33,10 +33,20 @@ void bindGoals(py::module_& module) {
   defineNamed(
       goal, "kind", &Goal::kind, goalKinds,
       "\"cross\": to the far side of the terrain and back, for ever. \"point\": to `target`, to stand there. "
-      "\"none\": nowhere. \"velocity\": by `velocity`.");
+      "\"none\": nowhere. \"velocity\": by `velocity`. Of herds with ways: \"route\": over `places`. "
+      "\"roam\": "
+      "within `radius` of `target`. \"follow\": an agent or a herd. \"flee\": out of threats.");
   goal.def_readwrite("target", &Goal::target, "x and z, metres.")
       .def_readwrite("velocity", &Goal::velocity, "x and z, metres per second, of kind \"velocity\".")
-      .def_readwrite("speed", &Goal::speed, "Metres per second along the ground, at least 0.");
+      .def_readwrite("speed", &Goal::speed, "Metres per second along the ground, at least 0.")
+      .def_property(
+          "places", [](const Goal& self) { return py::tuple(py::cast(self.places)); },
+          [](Goal& self, std::vector<glm::vec2> places) { self.places = std::move(places); },
+          "1 to 16 x and z, metres, of kind \"route\".")
+      .def_readwrite("loop", &Goal::loop, "Whether the first place of a route follows the last one.")
+      .def_readwrite("radius", &Goal::radius, "Metres about `target`, of kind \"roam\".")
+      .def_readwrite("herd", &Goal::leader, "The herd that kind \"follow\" follows.")
+      .def_readwrite("agent", &Goal::agent, "A place in that herd; None: its middle.");
 }
 
 void bindHerd(py::module_& module) {

@@ -130,6 +130,11 @@ class Goal:
     target: Sequence[float]
     velocity: Sequence[float]
     speed: float
+    places: Sequence[Sequence[float]]
+    loop: bool
+    radius: float
+    herd: int
+    agent: Optional[int]
     def __init__(self) -> None: ...
 
 class ClipCut:

@@ -52,10 +52,10 @@ void steer(const Tuning& tuning, const AgentBody& body, const Goal& goal, const 
   turnBack(tuning, position, choices, result);
 }
 
-// Along the field of the goal; whether there is one. Who is near its stop goes there as without one.
+// Along the field of a goal of kind point; whether there is one. Who is near its stop goes there as without
+// one.
 bool followField(const Tuning& tuning, const AgentBody& body, const Goal& goal,
                  std::span<const WayField> ways, const NavigateChoices& choices, NavigateResult& result) {
-  if (goal.kind != GoalKind::point) return false;
   const auto way =
       std::find_if(ways.begin(), ways.end(), [&](const WayField& each) { return each.goal == goal.target; });
   if (way == ways.end()) return false;
@@ -69,6 +69,23 @@ bool followField(const Tuning& tuning, const AgentBody& body, const Goal& goal,
     turnBack(tuning, body.world(), choices, result);
   }
   return true;
+}
+
+// To the place of a series, wherever that is now, and past it to the next one. Without a field an agent
+// stands.
+void followSeries(const Tuning& tuning, const AgentBody& body, const Goal& goal,
+                  std::span<const WayField> ways, std::span<const WayPlace> places,
+                  const NavigateChoices& choices, NavigateResult& result) {
+  const WayPlace& place = places[static_cast<size_t>(goal.otherEnd.x)];
+  Goal led = goal;
+  led.kind = GoalKind::point;
+  led.target = place.at;
+  result.goal.target = place.at;
+  if (!followField(tuning, body, led, ways, choices, result)) return;
+  if (!result.way->passes || place.choices == 0) return;
+  const WayNext next = wayNext(place, static_cast<uint32_t>(goal.otherEnd.y));
+  result.goal.target = places[next.number].at;
+  result.goal.otherEnd = {static_cast<double>(next.number), static_cast<double>(next.draw)};
 }
 
 void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const NavigateChoices& choices,
@@ -92,10 +109,14 @@ void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const 
 }  // namespace
 
 NavigateResult navigate(const Tuning& tuning, const AgentBody& body, const Goal& goal, const Rest& rest,
-                        const NavigateChoices& choices, std::span<const WayField> ways) {
+                        const NavigateChoices& choices, std::span<const WayField> ways,
+                        std::span<const WayPlace> places) {
   NavigateResult result{goal, glm::dvec2(0), body.absent, never, glm::dvec2(never), never, never, {}};
   if (body.absent) return result;
-  if (!followField(tuning, body, goal, ways, choices, result)) steer(tuning, body, goal, choices, result);
+  if (goal.kind == GoalKind::series)
+    followSeries(tuning, body, goal, ways, places, choices, result);
+  else if (goal.kind != GoalKind::point || !followField(tuning, body, goal, ways, choices, result))
+    steer(tuning, body, goal, choices, result);
   sleep(tuning, body, rest, choices, result);
   return result;
 }

@@ -37,8 +37,9 @@ struct NavigateChoices {
   WayChoices way = {};
 };
 
-// `ways`: the fields of its kind.
+// `ways`: the fields of its kind, and `places` those of its goals in series.
 NavigateResult navigate(const Tuning& tuning, const AgentBody& body, const Goal& goal, const Rest& rest = {},
-                        const NavigateChoices& choices = {}, std::span<const WayField> ways = {});
+                        const NavigateChoices& choices = {}, std::span<const WayField> ways = {},
+                        std::span<const WayPlace> places = {});
 
 }  // namespace skitter::reference

@@ -139,6 +139,12 @@ WayGrid wayGrid(const Heights& heights, const WayObstacles& obstacles, const Way
 }
 
 std::vector<WayStart> wayStarts(const WayGrid& grid, const glm::dvec2& goal) {
+  if (goal == glm::dvec2(wayOut)) {
+    std::vector<WayStart> all;
+    for (size_t at = 0; at < grid.cells(); ++at)
+      if (grid.passable(at)) all.push_back({at, 0});
+    return all;
+  }
   const std::vector<size_t> names = regionNames(grid);
   const size_t goalCell = indexAlong(goal.y, grid.origin.y, grid.cell, grid.rows) * grid.columns +
                           indexAlong(goal.x, grid.origin.x, grid.cell, grid.columns);

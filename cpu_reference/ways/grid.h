@@ -54,7 +54,9 @@ struct WayStart {
   size_t cell = 0;
   double time = 0;
 };
-// Where agents stop whose goal this is, region by region.
+// x and z of the goal of those who flee.
+inline constexpr double wayOut = 1e6;
+// Where agents stop whose goal this is, region by region; who flees, at every passable cell.
 std::vector<WayStart> wayStarts(const WayGrid& grid, const glm::dvec2& goal);
 
 // The times at the middles of all cells, impassable ones at `insideCost`; infinite where nothing leads to a

@@ -31,6 +31,7 @@
 #include "crowd/spawn.h"
 #include "crowd/stage.h"
 #include "crowd/state.h"
+#include "crowd/steer.h"
 #include "crowd/tint.h"
 #include "crowd/tuning.h"
 #include "crowd/watch.h"
@@ -191,7 +192,7 @@ void fill(Impl& crowd, uint32_t k, bool spawns = true) {
   crowd::Kind& kind = crowd.kinds[k];
   for (crowd::ReadyStage& stage : kind.stages)
     crowd::makeKernels({*crowd.context, crowd.options, kind}, stage);
-  crowd::beginWays(crowd, k);
+  crowd::beginWays(crowd, k, spawns);
   std::vector<crowd::Spawner> spawners;
   if (spawns)
     for (const crowd::HerdRun& of : crowd::runsOf(crowd, k))
@@ -332,9 +333,19 @@ void prepareComing(Impl& crowd, uint64_t tick, float dt) {
   }
 }
 
+void expectItsHerds(const Scene& scene, uint32_t h) {
+  const auto name = [&] { return fmt::format("{}: herds[{}]", scene.name, h); };
+  crowd::expectItsHerds(name, scene.herds[h].goal, scene.herds[h], [&](uint32_t number) -> const Herd& {
+    if (number < scene.herds.size()) return scene.herds[number];
+    throw inputError(fmt::format("{}.goal.herd is {}, expected less than {}, the number of herds", name(),
+                                 number, scene.herds.size()));
+  });
+}
+
 std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
                                 const crowd::Kinds& kinds, const CrowdOptions& options) {
   // A state's were checked when its crowd began, with the herds that there were then.
+  for (uint32_t h = 0; h < scene.herds.size(); ++h) expectItsHerds(scene, h);
   const uint64_t places = crowd::checkEvents(scene, terrain, kinds);
   auto made = beginCrowd(device, terrain, scene, options, places);
   Impl& crowd = *made;
@@ -383,6 +394,7 @@ std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
     crowd::Kind kind = makeKind(crowd, herd->from, restoredRig(*herd, h, state.options.rigs), size);
     kind.firstAgents = std::move(crowd.kinds[k].firstAgents);
     kind.agents = crowd.kinds[k].agents;
+    kind.series = std::move(crowd.kinds[k].series);
     for (const crowd::HerdRun& of : runs)
       kind.tinted = kind.tinted || (state.options.pose && crowd::isTinted(of.herd->from));
     crowd.kinds[k] = std::move(kind);
@@ -588,6 +600,8 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
 HerdId Crowd::addHerd(const Herd& from) {
   Impl& crowd = *impl_;
   const Rig loaded = rigFor(from);
+  crowd::expectItsHerds([] { return "a new herd"; }, from.goal, from,
+                        [&](uint32_t leader) -> const Herd& { return crowd.presentHerdAt(leader).from; });
   const uint32_t number = crowd::Roster(crowd).add(from, "a new herd");
   std::vector<crowd::Kind> kinds = kindsFor(crowd, from, loaded);
   return admit(crowd, number, from, kinds);

@@ -77,9 +77,17 @@ void expectItsReserve(uint32_t number, const skitter::Herd& herd, const Where& a
   expectReserve([&] { return fmt::format("{}: herd {}", at.event, number); }, herd.reserve > 0);
 }
 
+template <class Name>
+void checkGoal(const Name& name, const Goal& goal, const skitter::Herd& herd, const Where& at) {
+  expectGoal(name, goal);
+  expectItsHerds(name, goal, herd,
+                 [&](uint32_t number) -> const skitter::Herd& { return herdOf("goal.herd", number, at); });
+}
+
 void check(const GoalChange& change, const Where& at) {
-  checkAgents("agents", change.agents, 0, herdOf("herd", change.herd, at), at);
-  expectGoal([&] { return at.event; }, change.goal);
+  const skitter::Herd& herd = herdOf("herd", change.herd, at);
+  checkAgents("agents", change.agents, 0, herd, at);
+  checkGoal([&] { return at.event; }, change.goal, herd, at);
 }
 
 void check(const SpeedChange& change, const Where& at) {
@@ -98,13 +106,14 @@ void check(const Teleport& teleport, const Where& at) {
 }
 
 void check(const Addition& addition, const Where& at) {
-  expectItsReserve(addition.herd, herdOf("herd", addition.herd, at), at);
+  const skitter::Herd& herd = herdOf("herd", addition.herd, at);
+  expectItsReserve(addition.herd, herd, at);
   expectCount("add", addition.arrivals.size(), 1, at);
   for (size_t i = 0; i < addition.arrivals.size(); ++i) {
     const auto& [place, goal] = addition.arrivals[i];
     const auto name = [&] { return fmt::format("{}.add[{}]", at.event, i); };
     expectPlace(name, at.terrain, place);
-    if (goal) expectGoal(name, *goal);
+    if (goal) checkGoal(name, *goal, herd, at);
   }
 }
 
@@ -122,6 +131,7 @@ void check(const Removal& removal, const Where& at) {
 void check(const HerdAddition& addition, const Where& at) {
   const std::string name = at.event + ".addHerd";
   checkHerd(addition.herd, name);
+  checkGoal([&] { return name; }, addition.herd.goal, addition.herd, at);
   at.herds.add(addition.herd, name);
 }
 

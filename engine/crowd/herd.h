@@ -18,6 +18,7 @@
 #include "crowd/stage.h"
 #include "crowd/tuning.h"
 #include "crowd/ways/fields.h"
+#include "crowd/ways/series.h"
 #include "gpu/buffer.h"
 #include "gpu/image.h"
 #include "gpu/kernel.h"
@@ -75,6 +76,7 @@ struct Kind {
   gpu::Buffer rigBuffer;
   std::vector<ReadyStage> stages;  // of the controller, those that were asked for
   std::vector<Page> pages;
+  SeriesTable series;               // goals in series that its agents have or had, by number
   CostGrid ground;                  // where its herds find their way, without threats
   float threat = 0;                 // Herd::threat
   std::unique_ptr<WayFields> ways;  // where its herds find their way, once it has agents

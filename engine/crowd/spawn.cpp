@@ -1,6 +1,7 @@
 #include "crowd/spawn.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <thread>
@@ -41,6 +42,11 @@ float kindOf(const Goal& goal) {
       return shared::GOAL_POINT;
     case Goal::Kind::velocity:
       return shared::GOAL_VELOCITY;
+    case Goal::Kind::route:
+    case Goal::Kind::roam:
+    case Goal::Kind::follow:
+    case Goal::Kind::flee:
+      return shared::GOAL_SERIES;
     case Goal::Kind::none:
       break;
   }
@@ -110,6 +116,7 @@ Spawner::Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield&
       keyPoses_(kind.keyPoses),
       terrain_(terrain),
       tuning_(kind.parameters),
+      series_(kind.series),
       seed_(seed),
       starts_(starts) {
   // A block about as deep as wide; closer together only where the terrain has no room.
@@ -160,11 +167,16 @@ Place Spawner::startOf(uint32_t agent) const {
 glm::vec4 Spawner::endsOf(const Goal& goal, float lane) const {
   if (goal.kind == Goal::Kind::velocity) return {goal.velocity, 0, 0};
   if (goal.kind == Goal::Kind::point) {
-    const glm::vec2 target(std::clamp(goal.target.x, -limitX_, limitX_),
-                           std::clamp(goal.target.y, -limitZ_, limitZ_));
+    const glm::vec2 target = within(goal.target);
     return {target, target};
   }
+  if (isSeries(goal))
+    if (const Series* series = findSeries(series_, goal)) return {series->places[0], series->places[0]};
   return {lane, limitZ_, std::min(lane + 0.5f * laneSpacing_, limitX_), -limitZ_};
+}
+
+glm::vec2 Spawner::within(const glm::vec2& place) const {
+  return {std::clamp(place.x, -limitX_, limitX_), std::clamp(place.y, -limitZ_, limitZ_)};
 }
 
 Spawner::Placement Spawner::place(uint32_t agent) const {
@@ -175,11 +187,18 @@ Spawner::Placement Spawner::place(uint32_t agent) const {
 
 GoalRecord Spawner::goalRecord(uint32_t agent, const Goal& goal) const {
   const bool hasLane = goal.kind == Goal::Kind::cross || goal.kind == Goal::Kind::none;
-  return goalRecord(hasLane ? startOf(agent).position.x : 0.0f, goal);
+  return goalRecord(agent, hasLane ? startOf(agent).position.x : 0.0f, goal);
 }
 
-GoalRecord Spawner::goalRecord(float x, const Goal& goal) const {
-  const glm::vec4 ends = endsOf(goal, x);
+GoalRecord Spawner::goalRecord(uint32_t agent, float x, const Goal& goal) const {
+  glm::vec4 ends = endsOf(goal, x);
+  if (isSeries(goal)) {
+    const Series* series = findSeries(series_, goal);
+    assert(series != nullptr);
+    const auto draw = static_cast<uint32_t>(base::SplitMix64::draw(~seed_, spotOf(agent) + 1) >> 40);
+    const uint32_t number = firstPlaceOf(*series, draw);
+    ends = {series->places[number - series->first], number, draw};
+  }
   const float speed = goal.kind == Goal::Kind::velocity ? Goal::maxSpeed : goal.speed;
   return {ends.x, ends.y, ends.z, ends.w, speed, 0.5f * rig_.legLength, kindOf(goal), 0};
 }

@@ -51,7 +51,9 @@ class Spawner {
   Placement place(uint32_t agent) const;
   // With the lane in which the agent starts, where the goal is to cross, or through x.
   GoalRecord goalRecord(uint32_t agent, const Goal& goal) const;
-  GoalRecord goalRecord(float x, const Goal& goal) const;
+  GoalRecord goalRecord(uint32_t agent, float x, const Goal& goal) const;
+  // The nearest place at which goals may lie.
+  glm::vec2 within(const glm::vec2& place) const;
   // Agents side by side: place i of the spawn is in row i / lanes(), in lane i % lanes().
   uint32_t lanes() const { return lanes_; }
 
@@ -78,6 +80,7 @@ class Spawner {
   const KeyPoses& keyPoses_;
   const Heightfield& terrain_;
   const shared::Parameters& tuning_;
+  const SeriesTable& series_;
   uint64_t seed_;
   std::span<const uint32_t> starts_;
   uint32_t lanes_ = 1, rows_ = 1;

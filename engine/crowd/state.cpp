@@ -285,6 +285,48 @@ void giveThreats(const std::vector<StateThreat>& all, Impl& crowd) {
   }
 }
 
+std::vector<float> numbersOf(const std::vector<glm::vec2>& places) {
+  std::vector<float> numbers;
+  for (const glm::vec2& place : places) numbers.insert(numbers.end(), {place.x, place.y});
+  return numbers;
+}
+std::vector<glm::vec2> placesOf(const std::vector<float>& numbers) {
+  std::vector<glm::vec2> places;
+  for (size_t i = 0; i + 1 < numbers.size(); i += 2) places.emplace_back(numbers[i], numbers[i + 1]);
+  return places;
+}
+
+std::vector<StateSeries> seriesOf(const Impl& crowd) {
+  std::vector<StateSeries> all;
+  for (uint32_t k = 0; k < crowd.kinds.size(); ++k)
+    for (const auto& [goal, first, places] : crowd.kinds[k].series)
+      all.push_back({.kind = k,
+                     .first = first,
+                     .places = numbersOf(places),
+                     .goal = static_cast<uint32_t>(goal.kind),
+                     .disc = {goal.target.x, goal.target.y, goal.radius},
+                     .named = numbersOf(goal.places),
+                     .loop = goal.loop,
+                     .leader = goal.leader,
+                     .agent = goal.agent ? int64_t{*goal.agent} : -1});
+  return all;
+}
+
+void giveSeries(const std::vector<StateSeries>& all, Impl& crowd) {
+  for (const StateSeries& saved : all) {
+    if (saved.kind >= crowd.kinds.size()) continue;
+    Goal goal{.kind = static_cast<Goal::Kind>(saved.goal),
+              .target = {saved.disc[0], saved.disc[1]},
+              .speed = 0,
+              .places = placesOf(saved.named),
+              .loop = saved.loop,
+              .radius = saved.disc[2],
+              .leader = saved.leader};
+    if (saved.agent >= 0) goal.agent = static_cast<uint32_t>(saved.agent);
+    crowd.kinds[saved.kind].series.push_back({goal, saved.first, placesOf(saved.places)});
+  }
+}
+
 StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& footfalls,
                   const std::string& note) {
   StateHead head;
@@ -300,6 +342,7 @@ StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& foot
   head.note = note;
   head.watchUntil = crowd.watchUntil;
   head.threats = threatsOf(crowd);
+  head.series = seriesOf(crowd);
   head.rigsAreCallers = crowd.rigsAreCallers;
   for (size_t k = 0; k < crowd.kinds.size(); ++k) {
     const Kind& kind = crowd.kinds[k];
@@ -505,6 +548,7 @@ void restoreHerds(Impl& crowd, const State& state) {
     crowd.kinds[k].agents = head.kinds[k].agents;
     crowd.kinds[k].firstAgents = head.kinds[k].firstAgents;
   }
+  giveSeries(head.series, crowd);
 }
 
 void checkState(const Impl& crowd, const State& state) {

@@ -78,6 +78,19 @@ void eachKey(StateThreat& threat, const Visit& visit) {
   visit("disc", disc);
 }
 template <class Visit>
+void eachKey(StateSeries& series, const Visit& visit) {
+  auto& [kind, first, places, goal, disc, named, loop, leader, agent] = series;
+  visit("kind", kind);
+  visit("first", first);
+  visit("places", places);
+  visit("goal", goal);
+  visit("disc", disc);
+  visit("named", named);
+  visit("loop", loop);
+  visit("leader", leader);
+  visit("agent", agent);
+}
+template <class Visit>
 void eachKey(CrowdOptions& options, const Visit& visit) {
   auto& [pose, measure, watchEvery, feet, footfalls, sleep, crowding, fuse, timestamps, pageAgents, shaders,
          rigs] = options;
@@ -198,6 +211,7 @@ Json jsonOf(const StateHead& head) {
   json["note"] = noteOf(head.note);
   if (head.begun > 0) json["begun"] = head.begun;
   if (!head.threats.empty()) json["threats"] = written(copy.threats);
+  if (!head.series.empty()) json["series"] = written(copy.series);
   json["terrain"]["hash"] = fmt::format("{:08x}", checksum(std::as_bytes(std::span(head.terrain.heights))));
   return json;
 }
@@ -209,6 +223,7 @@ StateHead headOf(const Json& json, const std::string& name) try {
   if (const Json& note = json.at("note"); !note.is_null()) head.note = note.dump();
   head.begun = json.value("begun", uint64_t{0});
   if (json.contains("threats")) read(json.at("threats"), head.threats);
+  if (json.contains("series")) read(json.at("series"), head.series);
   checkSides(head.terrain, name);
   checkHerds(head, name);
   for (const StateKind& kind : head.kinds)

@@ -63,6 +63,19 @@ struct StateThreat {
   std::array<float, 3> disc = {};  // x, z, radius
 };
 
+// A goal in series of a kind's table.
+struct StateSeries {
+  uint32_t kind = 0;  // of agents
+  uint32_t first = 0;
+  std::vector<float> places;  // x, z of each, as they are now
+  uint32_t goal = 0;          // Goal::Kind
+  std::array<float, 3> disc = {};
+  std::vector<float> named;  // x, z of each place of the goal
+  bool loop = false;
+  uint32_t leader = 0;
+  int64_t agent = -1;  // -1: the middle of the herd
+};
+
 // The members of State, and what only its crowd needs.
 struct StateHead : State {
   uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground
@@ -73,6 +86,7 @@ struct StateHead : State {
   std::vector<StateHerd> herds;
   std::vector<StateComing> coming;
   std::vector<StateThreat> threats;
+  std::vector<StateSeries> series;
 };
 
 // Throws Error(input) where the scene or the note cannot be written. The terrain's heights are hashed only.

@@ -64,6 +64,14 @@ void expectReserve(const crowd::Herd& herd, uint32_t number) {
   crowd::expectReserve([&] { return nameOf(number); }, herd.from.reserve > 0);
 }
 
+template <class Name>
+void expectGoalOf(const Crowd::Impl& crowd, const Name& name, const Goal& goal, const crowd::Herd& herd) {
+  expectGoal(name, goal);
+  crowd::expectItsHerds(name, goal, herd.from, [&](uint32_t leader) -> const skitter::Herd& {
+    return crowd.presentHerdAt(leader).from;
+  });
+}
+
 // Fields for the goals of one agent, some or all of a herd.
 void lead(Crowd::Impl& crowd, const crowd::Herd& herd, std::span<const Goal> goals, uint32_t number) {
   for (const SizeRun& run : herd.runs) crowd::leadTo(crowd, herd, run, goals, [&] { return nameOf(number); });
@@ -105,7 +113,8 @@ void setSpeedOf(Crowd::Impl& crowd, const crowd::Herd& herd, uint32_t agent, flo
 
 void Crowd::steer(uint32_t number, const Goal& goal) {
   const crowd::Herd& herd = impl_->presentHerdAt(number);
-  expectGoal([&] { return nameOf(number); }, goal);
+  expectGoalOf(
+      *impl_, [&] { return nameOf(number); }, goal, herd);
   lead(*impl_, herd, std::span(&goal, 1), number);
   steerAll(*impl_, herd, [&](uint32_t) -> const Goal& { return goal; });
 }
@@ -113,7 +122,10 @@ void Crowd::steer(uint32_t number, const Goal& goal) {
 void Crowd::steer(uint32_t number, std::span<const Goal> goals) {
   const crowd::Herd& herd = impl_->presentHerdAt(number);
   expectOneEach(herd, number, goals.size(), "goals");
-  forEach(herd, [&](uint32_t agent) { expectGoal([&] { return nameOf(number, agent); }, goals[agent]); });
+  forEach(herd, [&](uint32_t agent) {
+    expectGoalOf(
+        *impl_, [&] { return nameOf(number, agent); }, goals[agent], herd);
+  });
   lead(*impl_, herd, goals, number);
   steerAll(*impl_, herd, [&](uint32_t agent) -> const Goal& { return goals[agent]; });
 }
@@ -121,7 +133,8 @@ void Crowd::steer(uint32_t number, std::span<const Goal> goals) {
 void Crowd::steer(std::span<const AgentGoal> goals) {
   for (const auto& [id, goal] : goals) {
     expectSomebody(*impl_, id);
-    expectGoal([&] { return nameOf(id.herd(), id.agent()); }, goal);
+    expectGoalOf(
+        *impl_, [&] { return nameOf(id.herd(), id.agent()); }, goal, impl_->herds[id.herd()]);
   }
   for (const auto& [number, wanted] : goalsByHerd(goals)) lead(*impl_, impl_->herds[number], wanted, number);
   for (const auto& [id, goal] : goals) {
@@ -195,7 +208,7 @@ AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
   impl_->presentHerdAt(number);
   crowd::Herd& herd = impl_->herdAt(number);
   const auto name = [&] { return fmt::format("herd {}, a new agent", number); };
-  expectGoal(name, goal);
+  expectGoalOf(*impl_, name, goal, herd);
   expectPlace(name, impl_->terrain, place);
   expectReserve(herd, number);
   const std::optional<uint32_t> empty = herd.presence.lowestEmpty();
@@ -209,7 +222,8 @@ AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
   const SizeRun& run = herd.runOf(*empty);
   AgentChange& change = changeOf(*impl_, run, *empty);
   change.goal = true;
-  change.record = crowd::spawnerOf(*impl_, herd, run).goalRecord(place.position.x, goal);
+  change.record =
+      crowd::spawnerOf(*impl_, herd, run).goalRecord(*empty - run.firstOfHerd, place.position.x, goal);
   change.stands = place;
   change.leaves = false;
   return agentId(number, *empty);

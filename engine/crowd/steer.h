@@ -38,11 +38,45 @@ void expectGoal(const Name& name, const Goal& goal) {
     case Goal::Kind::cross:
       expectSpeed(name, "goal.speed", goal.speed);
       return;
+    case Goal::Kind::route:
+      if (goal.places.empty() || goal.places.size() > Goal::maxPlaces)
+        throw inputError(fmt::format("{}: goal.places are {}, expected 1 to {}", name(), goal.places.size(),
+                                     Goal::maxPlaces));
+      for (const glm::vec2& place : goal.places)
+        for (int i = 0; i < 2; ++i)
+          expectWithin(name, i == 0 ? "a goal.places x" : "a goal.places z", double{place[i]}, -most, most,
+                       "m");
+      return expectSpeed(name, "goal.speed", goal.speed);
+    case Goal::Kind::roam:
+      expectWithin(name, "goal.target x", double{goal.target.x}, -most, most, "m");
+      expectWithin(name, "goal.target z", double{goal.target.y}, -most, most, "m");
+      expectWithin(name, "goal.radius", double{goal.radius}, Disc::minRadius, most, "m");
+      return expectSpeed(name, "goal.speed", goal.speed);
+    case Goal::Kind::follow:
+    case Goal::Kind::flee:
+      return expectSpeed(name, "goal.speed", goal.speed);
     case Goal::Kind::none:
       return;
   }
   throw inputError(
       fmt::format("{}: goal.kind is {}, expected one of Goal::Kind", name(), static_cast<int>(goal.kind)));
+}
+
+// `herd` is the one whose agents have the goal, and leaderOf(number) the herd of that number, which it throws
+// for where there is none.
+template <class Name, class LeaderOf>
+void expectItsHerds(const Name& name, const Goal& goal, const skitter::Herd& herd, const LeaderOf& leaderOf) {
+  using enum Goal::Kind;
+  const bool needsWays = goal.kind == route || goal.kind == roam || goal.kind == follow || goal.kind == flee;
+  if (needsWays && !herd.ways)
+    throw inputError(
+        fmt::format("{}: goal.kind is route, roam, follow or flee, expected a herd with ways", name()));
+  if (goal.kind != follow) return;
+  const skitter::Herd& leader = leaderOf(goal.leader);
+  const uint64_t places = uint64_t{leader.agents} + leader.reserve;
+  if (goal.agent && *goal.agent >= places)
+    throw inputError(fmt::format("{}: goal.agent is {}, expected less than {}, the places of herd {}", name(),
+                                 *goal.agent, places, goal.leader));
 }
 
 template <class Name>

@@ -38,7 +38,9 @@ Walk walkOf(const Herd& herd, const crowd::Kind& live, const Heightfield& terrai
     walk.at = glm::clamp(start + velocity * float(seconds), -edge, edge);
     return walk;
   }
-  if (herd.goal.kind == Goal::Kind::none || length < 1e-3f) return walk;
+  // Only the device knows where those go who follow or flee.
+  const bool unknown = herd.goal.kind == Goal::Kind::follow || herd.goal.kind == Goal::Kind::flee;
+  if (herd.goal.kind == Goal::Kind::none || unknown || length < 1e-3f) return walk;
   walk.along = (there - start) / length;
   const double gone = std::max(0.0, seconds) * herd.goal.speed;
   if (gone <= length || herd.goal.kind == Goal::Kind::point) {

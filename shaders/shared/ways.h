@@ -15,11 +15,14 @@ namespace skitter::shared {
 //   [0] number of fields, columns, rows, metres a cell
 //   [1] x, z of the corner of cell (0, 0), unused x 2
 //   [WAY_HEADS + k] field k: x, z of the goal, x, z of its stop
+//   [WAY_PLACES + k] place k of goals in series: x, z, the first of those that may come next, how many (0: none)
 //   [WAY_TIMES + k * cells + cell] time at the middles of cells (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1);
 //     beyond the grid's end those of its last column or row
 WAY WAY_HEADS = 2;
 WAY MOST_WAYS = 16;
-WAY WAY_TIMES = WAY_HEADS + MOST_WAYS;
+WAY WAY_PLACES = WAY_HEADS + MOST_WAYS;
+WAY MOST_PLACES = 64;
+WAY WAY_TIMES = WAY_PLACES + MOST_PLACES;
 
 WAY BINDING_WAY_COST = 0;    // float a cell: cost * cell, less than 0 where impassable: what its time is made of then
 WAY BINDING_WAY_TIME = 1;    // float a cell, field after field: time; WAY_FAR where none is known yet
@@ -36,6 +39,8 @@ WAY WAY_ROUNDS = 4;
 inline constexpr float WAY_FAR = 1e30f;
 // The cost of impassable cells, for those who are in one.
 inline constexpr float WAY_INSIDE_COST = 10;
+// x and z of the goal of those who flee: its times are 0 at every passable cell.
+inline constexpr float WAY_OUT = 1e6f;
 #else
 const float WAY_FAR = 1e30;
 #endif

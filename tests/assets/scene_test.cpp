@@ -340,6 +340,10 @@ TEST(Scene, FaultsNameFileAndField) {
        "events[0].threat.number is 64, expected a whole number from 0 to 63"},
       {R"({"events": [{"threat": {"raduis": 2}}]})",
        "events[0].threat.raduis is no known key; did you mean radius?"},
+      {R"({"herds": [{"goal": {"kind": "route"}}]})",
+       "herds[0].goal.places is empty, kind \"route\" needs 1 to 16"},
+      {R"({"herds": [{"goal": {"places": [[0, 5000]]}}]})", "herds[0].goal.places[0][1] is 5000"},
+      {R"({"herds": [{"goal": {"radius": 0}}]})", "herds[0].goal.radius is 0"},
       {R"({"seed": 1, "seed": 2})", "\"seed\" appears twice"},
       {R"({"seed": NaN})", "line 1"},
       {"", "not valid JSON"},
@@ -561,8 +565,15 @@ class RandomScenes {
   }
   Goal goal() {
     Goal made;
-    auto& [kind, target, speed, velocity] = made;
-    kind = one({Goal::Kind::cross, Goal::Kind::point, Goal::Kind::none, Goal::Kind::velocity});
+    auto& [kind, target, speed, velocity, places, loop, radius, leader, agent] = made;
+    using K = Goal::Kind;
+    kind = one({K::cross, K::point, K::none, K::velocity, K::route, K::roam, K::follow, K::flee});
+    places.resize(whole(1, 3));
+    for (glm::vec2& each : places) each = place();
+    loop = coin();
+    radius = real(0.01, 100);
+    leader = someHerd();
+    if (coin()) agent = static_cast<uint32_t>(whole(0, Scene::maxAgents - 1));
     velocity = {real(-10, 10), real(-10, 10)};
     target = place();
     speed = real(0, 10);

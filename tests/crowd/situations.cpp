@@ -61,6 +61,18 @@ Results findingWays(Device& device, Controller controller, const CrowdOptions& o
   return replay(device, crowd, ground, 400);
 }
 
+// From place to place of a disc.
+Results roaming(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(36, 2, 1, controller);
+  scene.herds[0].ways = Ways{};
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1};
+  scene.herds[0].goal = {.kind = Goal::Kind::roam, .speed = 2, .radius = 6};
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 60);
+  return replay(device, crowd, ground, 240);
+}
+
 Results walking(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = rollingGround();
   Crowd crowd(device, ground, sceneOf(64, 1, 1, controller), options);
@@ -248,6 +260,7 @@ const std::vector<Situation>& situations() {
       {"walking", {Controller::adaptive}, walking},
       {"meeting", {Controller::adaptive, Controller::clip}, meeting},
       {"findingWays", {Controller::adaptive, Controller::clip}, findingWays},
+      {"roaming", {Controller::adaptive, Controller::clip}, roaming},
       {"fallingAsleep", {Controller::adaptive}, fallingAsleep},
       {"atTheEdge", {Controller::adaptive}, atTheEdge},
       {"goingByVelocity", {Controller::adaptive, Controller::loop}, goingByVelocity},

@@ -244,6 +244,60 @@ TEST_F(FollowWay, IsStraightNearTheStop) {
   EXPECT_FALSE(reference::followWay(tuning, way, {2.3, 1}, 3, 0.5).straight);
 }
 
+TEST(WayNext, DrawsOneOfTheChoices) {
+  reference::WayPlace place{{0, 0}, 10, 1};
+  EXPECT_EQ(reference::wayNext(place, 5).number, 10u);
+  // 5 * 1140671485 + 12820163 = 5716177588 = 340 * 2^24 + 11924148.
+  EXPECT_EQ(reference::wayNext(place, 5).draw, 11924148u);
+  place.choices = 8;
+  std::vector<size_t> counts(8, 0);
+  uint32_t draw = 5;
+  for (int i = 0; i < 8000; ++i) {
+    const reference::WayNext next = reference::wayNext(place, draw);
+    ASSERT_LT(next.draw, 1u << 24);
+    ++counts.at(next.number - 10);
+    draw = next.draw;
+  }
+  // Binomial with a standard deviation of 30.
+  for (const size_t count : counts) EXPECT_NEAR(static_cast<double>(count), 1000, 5 * 30);
+}
+
+TEST(WayStarts, OfThoseWhoFleeAreAllPassableCells) {
+  WayGrid grid{.columns = 3, .rows = 2, .cell = 1, .cost = {1, kWall, 2, 1, 1, kWall}};
+  const auto starts = reference::wayStarts(grid, glm::dvec2(reference::wayOut));
+  ASSERT_EQ(starts.size(), 4u);
+  for (const reference::WayStart& start : starts) {
+    EXPECT_TRUE(grid.passable(start.cell));
+    EXPECT_EQ(start.time, 0);
+  }
+  const std::vector<double> times = reference::wayTimes(grid, starts, 10);
+  // Cells beside passable ones on both axes, at cost 10.
+  EXPECT_NEAR(times[1], 10 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(times[5], 10 / std::sqrt(2.0), 1e-12);
+}
+
+TEST_F(FollowWay, GoesOnFromPlaceToPlace) {
+  std::vector<reference::WayField> ways = {way, way};
+  ways[0].goal = {50, 50};
+  ways[1].goal = {60, 60};
+  std::vector<reference::WayPlace> places = {{{50, 50}, 1, 1}, {{60, 60}, 0, 0}};
+  reference::Goal goal{{7, 7}, {0, 123}, 1, 0.5, reference::GoalKind::series};
+  const auto run = [&] { return reference::navigate(tuning, bodyAt(1, 1), goal, {}, {}, ways, places); };
+  // Its time is more than four arrival radii; the place is where the table has it.
+  EXPECT_EQ(run().goal.target, glm::dvec2(50, 50));
+  EXPECT_EQ(run().goal.otherEnd, glm::dvec2(0, 123));
+  EXPECT_LT(run().desired.x, 0);
+  for (double& time : ways[0].times) time -= 8.9;
+  const reference::NavigateResult passed = run();
+  EXPECT_EQ(passed.goal.target, glm::dvec2(60, 60));
+  EXPECT_EQ(passed.goal.otherEnd, glm::dvec2(1, reference::wayNext(places[0], 123).draw));
+  // The last place of a route stays, and without a field an agent stands.
+  places[0].choices = 0;
+  EXPECT_EQ(run().goal.otherEnd, glm::dvec2(0, 123));
+  ways.clear();
+  EXPECT_EQ(run().desired, glm::dvec2(0));
+}
+
 TEST_F(FollowWay, IsForGoalsOfKindPointThatHaveAField) {
   reference::Goal goal{{50, 50}, {0, 0}, 1, 0.5, reference::GoalKind::point};
   const std::vector<reference::WayField> ways = {way};

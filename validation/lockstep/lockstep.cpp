@@ -160,7 +160,7 @@ void Lockstep::followWays() {
     Compared& each = compared_[r++];
     const crowd::Kind& kind = impl.kinds[of.run->kind];
     if (!kind.ways || kind.ways->revision() == each.wayRevision) continue;
-    each.replay->setWays(waysOf(kind));
+    each.replay->setWays(waysOf(kind), wayPlacesOf(kind));
     each.wayRevision = kind.ways->revision();
   }
 }

@@ -102,13 +102,21 @@ void keysOf(Fields& fields, Spawn& spawn) {
 
 template <class Fields>
 void keysOf(Fields& fields, Goal& goal) {
-  auto& [kind, target, speed, velocity] = goal;
-  fields.kind("kind", kind, {"cross", "point", "none", "velocity"});
+  auto& [kind, target, speed, velocity, places, loop, radius, leader, agent] = goal;
+  fields.kind("kind", kind, {"cross", "point", "none", "velocity", "route", "roam", "follow", "flee"});
   fields.key("target", target, Scene::maxCoordinate);
   fields.key("speed", speed, 0, double{Goal::maxSpeed});
   fields.key("velocity", velocity, double{Goal::maxSpeed});
+  fields.places("places", places, Goal::maxPlaces, Scene::maxCoordinate);
+  fields.key("loop", loop);
+  fields.key("radius", radius, Disc::minRadius, Scene::maxCoordinate);
+  fields.integer("herd", leader, 0, Scene::maxHerds - 1);
+  fields.integer("agent", agent, 0, Scene::maxAgents - 1);
 }
 void checkKeys(const Goal& goal, const std::string& file, const std::string& path) {
+  if (goal.kind == Goal::Kind::route && goal.places.empty())
+    throw inputError(
+        fmt::format("{}: {}.places is empty, kind \"route\" needs 1 to {}", file, path, Goal::maxPlaces));
   if (glm::length(goal.velocity) > Goal::maxSpeed)
     throw inputError(fmt::format("{}: {}.velocity is {:.6g} m/s long, expected at most {:.6g}", file, path,
                                  glm::length(goal.velocity), Goal::maxSpeed));

@@ -46,12 +46,9 @@ void WayFields::setGrid(CostGrid grid) {
   regions_ = regionsOf(grid_);
   if (!isAsLarge) makeRoom(std::max(room_, 1u));
   uploadCosts();
-  // In a grid without a passable cell nothing has a field.
-  std::vector<Field> kept;
-  for (const Field& field : fields_)
-    if (std::optional<Stops> stops = stopsOf(grid_, regions_, field.target))
-      kept.push_back({field.target, std::move(*stops)});
-  fields_ = std::move(kept);
+  // In a grid without a passable cell nothing leads anywhere.
+  for (Field& field : fields_)
+    field.stops = stopsOf(grid_, regions_, field.target).value_or(Stops{.stop = field.target});
   std::vector<size_t> all(fields_.size());
   std::iota(all.begin(), all.end(), size_t{0});
   solve(all);
@@ -82,6 +79,19 @@ void WayFields::add(std::span<const glm::vec2> targets, std::span<const glm::vec
     std::iota(fresh.begin(), fresh.end(), size_t{0});
   }
   solve(fresh);
+}
+
+void WayFields::move(const glm::vec2& from, const glm::vec2& to) {
+  const size_t field = indexOf(from);
+  if (field == fields_.size()) return;
+  fields_[field] = {to, stopsOf(grid_, regions_, to).value_or(Stops{.stop = to})};
+  solve({&field, 1});
+}
+
+void WayFields::setPlaces(std::vector<glm::vec4> places) {
+  places_ = std::move(places);
+  ++revision_;
+  uploadHeads();
 }
 
 std::vector<glm::vec2> WayFields::goals() const {
@@ -140,6 +150,7 @@ void WayFields::uploadHeads() const {
   heads[1] = {grid_.origin, 0, 0};
   for (size_t k = 0; k < fields_.size(); ++k)
     heads[shared::WAY_HEADS + k] = {fields_[k].target, fields_[k].stops.stop};
+  std::ranges::copy(places_, heads.begin() + shared::WAY_PLACES);
   gpu::upload(*context_, records_, heads);
 }
 

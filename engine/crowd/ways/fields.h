@@ -24,6 +24,11 @@ class WayFields {
   // Solves fields of `targets`, of which none has one, where they are finite and room is for them: at most
   // shared::MOST_WAYS goals less those in `kept`. Fields of goals that are not in `kept` may be dropped.
   void add(std::span<const glm::vec2> targets, std::span<const glm::vec2> kept);
+  // The field of a goal becomes that of another; where `from` has none, nothing happens.
+  void move(const glm::vec2& from, const glm::vec2& to);
+  // Places of goals in series, at most shared::MOST_PLACES.
+  void setPlaces(std::vector<glm::vec4> places);
+  const std::vector<glm::vec4>& places() const { return places_; }
   // Those that add() did not drop.
   std::vector<glm::vec2> goals() const;
   bool has(const glm::vec2& target) const;
@@ -57,6 +62,7 @@ class WayFields {
   CostGrid grid_;
   Regions regions_;
   std::vector<Field> fields_;
+  std::vector<glm::vec4> places_;  // as WAY_PLACES
   uint32_t room_ = 0, revision_ = 0, moves_ = 0;
   gpu::Buffer costs_, times_, states_, records_;
   gpu::Kernel solve_, gather_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "shared/ways.h"
+
 namespace skitter::crowd {
 namespace {
 
@@ -57,6 +59,12 @@ size_t cellAt(const CostGrid& grid, const glm::vec2& place) {
 }
 
 std::optional<Stops> stopsOf(const CostGrid& grid, const Regions& regions, const glm::vec2& goal) {
+  if (goal == glm::vec2(shared::WAY_OUT)) {
+    Stops out{.stop = goal};
+    for (size_t cell = 0; cell < grid.cost.size(); ++cell)
+      if (regions.of[cell] != Regions::none) out.cells.push_back({cell, 0});
+    return out;
+  }
   if (regions.count == 0) return {};
   const glm::dvec2 target(goal);
   Stops stops{.stop = goal, .region = regions.of[cellAt(grid, goal)]};

@@ -27,7 +27,8 @@ struct Stops {
   glm::vec2 stop{0};                // the goal, or the nearest of the cells' middles
   uint32_t region = Regions::none;  // that the goal is in
 };
-// None where no cell is passable. `goal` is finite.
+// None where no cell is passable. `goal` is finite; that of those who flee, shared::WAY_OUT, has all passable
+// cells.
 std::optional<Stops> stopsOf(const CostGrid& grid, const Regions& regions, const glm::vec2& goal);
 
 // The cell of a place, or the nearest one.

@@ -12,7 +12,9 @@ namespace skitter::crowd {
 
 // The kind's grid, and the fields of the goals that its herds have and that events of the scene name, as far
 // as there is room. Before its pages are made, which bind them. Of a kind whose herds find no way: nothing.
-void beginWays(Crowd::Impl& crowd, uint32_t kind);
+// `isNew`: the kind has goals in series yet to come; else those of a state. Throws Error(input) where its
+// herds' goals in series have more places than there may be.
+void beginWays(Crowd::Impl& crowd, uint32_t kind, bool isNew);
 
 // Fields for goals that agents of a run are about to have. Waits for the device where one is new. Throws
 // Error(input) where all fields are of goals that agents have; `name` makes the text that says who it is

@@ -74,12 +74,14 @@ SKITTER_INLINE float tileZ(float tile) { return tile - TILES * tileX(tile); }
 // caller's (Crowd::goalBuffers). Other kinds than these are undefined, as is what is not finite.
 //   [0] target x, target z, other end x, other end z    world metres
 //       of kind velocity: desired velocity x, z (m/s), unused x 2
+//       of kind series: target, number of the place in the series' table (docs/ways.md), draw
 //   [1] speed (m/s; of kind velocity what it is cut to), arrival radius (m), kind (GOAL_), unused
 SKITTER_CONST int GOAL_STRIDE = 2;
 SKITTER_CONST float GOAL_NONE = 0.0;
 SKITTER_CONST float GOAL_POINT = 1.0;
 SKITTER_CONST float GOAL_CROSS = 2.0;
 SKITTER_CONST float GOAL_VELOCITY = 3.0;
+SKITTER_CONST float GOAL_SERIES = 4.0;  // only the host begins one
 
 // steer, per agent, written by navigate.
 //   [0] desired velocity x, z (m/s), 1 if the agent sleeps, unused

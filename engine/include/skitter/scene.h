@@ -41,12 +41,21 @@ struct Spawn {
 struct Goal {
   // cross: walk to the far side of the terrain, turn, and come back beside the own lane, for ever.
   // point: walk to `target` and stand there.   none: stand.   velocity: go by `velocity`.
-  enum class Kind { cross, point, none, velocity } kind = Kind::cross;
+  // Only in herds with ways (docs/ways.md):
+  // route: from one of `places` to the next, once or in a loop.   roam: from place to place within `radius`
+  // of `target`, for ever.   follow: an agent, or the middle of a herd.   flee: out of threats and obstacles.
+  enum class Kind { cross, point, none, velocity, route, roam, follow, flee } kind = Kind::cross;
   static constexpr float maxSpeed = 1000;  // metres per second
+  static constexpr size_t maxPlaces = 16;
 
   glm::vec2 target{0};  // x, z
   float speed = 1;      // commanded horizontal speed, metres per second, 0 to maxSpeed; not of kind velocity
-  glm::vec2 velocity{0};  // x, z, metres per second, at most maxSpeed long
+  glm::vec2 velocity{0};               // x, z, metres per second, at most maxSpeed long
+  std::vector<glm::vec2> places = {};  // of kind route: x, z, 1 to maxPlaces
+  bool loop = false;                   // of kind route: the first place follows the last one
+  float radius = 5;                    // of kind roam, metres, Disc::minRadius to Scene::maxCoordinate
+  uint32_t leader = 0;                 // of kind follow: the number of a herd
+  std::optional<uint32_t> agent = {};  // of kind follow: a place in it; none: its middle
 
   bool operator==(const Goal&) const = default;
 };

@@ -1,0 +1,137 @@
+#include "crowd/ways/look.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "assets/scenes/obstacles.h"
+#include "crowd/readback.h"
+#include "gpu/context.h"
+#include "skitter/error.h"
+#include "skitter/records.h"
+
+namespace skitter {
+namespace crowd {
+namespace {
+
+// From one look to the next. Agents re-plan a little later than that.
+constexpr double lookSeconds = 0.25;
+
+struct SeenAgent {
+  uint32_t agent, kind;
+  glm::vec2 place;
+};
+
+// Where agents of a kind will stand in the next tick, whom the host has put elsewhere.
+std::map<uint32_t, glm::vec2> toldPlaces(const Kind& kind) {
+  std::map<uint32_t, glm::vec2> told;
+  for (const AgentChange& change : kind.changes.all())
+    if (change.stands) told[change.agent] = change.stands->position;
+  return told;
+}
+
+// Who is there, as the next tick begins with them.
+std::vector<SeenAgent> agentsIn(const Crowd::Impl& crowd, uint32_t number) {
+  constexpr std::array records = {Record::body};
+  std::vector<SeenAgent> seen;
+  const Herd& herd = crowd.herds[number];
+  const HerdState state = downloadRecords(crowd, number, records);
+  for (const SizeRun& run : herd.runs) {
+    const std::map<uint32_t, glm::vec2> told = toldPlaces(crowd.kinds[run.kind]);
+    for (uint32_t agent = run.firstOfHerd; agent < run.firstOfHerd + run.agents; ++agent) {
+      if (!herd.presence.has(agent)) continue;
+      const auto moved = told.find(run.ofKind(agent));
+      seen.push_back({agent, run.kind,
+                      moved != told.end() ? moved->second
+                                          : placeOf(&state.body[size_t{agent} * 4 * shared::BODY_STRIDE])});
+    }
+  }
+  return seen;
+}
+
+bool isThere(const Crowd::Impl& crowd, uint32_t number) {
+  if (number >= crowd.herds.size() || crowd.herds[number].isGone()) return false;
+  // A crowd that is being made has no agents yet.
+  return std::ranges::none_of(crowd.herds[number].runs, [&](const SizeRun& run) {
+    return run.agents > 0 && crowd.kinds[run.kind].pages.empty();
+  });
+}
+
+std::vector<SeenThreat> lookForThreats(const Crowd::Impl& crowd) {
+  std::vector<SeenThreat> seen;
+  for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
+    const float radius = crowd.herds[h].from.threat;
+    if (!(radius > 0) || !isThere(crowd, h)) continue;
+    for (const SeenAgent& each : agentsIn(crowd, h)) seen.push_back({each.kind, {each.place, radius}});
+  }
+  return seen;
+}
+
+}  // namespace
+
+bool isTimeToLook(const Crowd::Impl& crowd) {
+  const auto ticks = std::max(1.0, std::round(lookSeconds / double{crowd.dt}));
+  return crowd.tick % static_cast<uint64_t>(ticks) == 0;
+}
+
+std::vector<Threat> threatsTo(const Crowd::Impl& crowd, const Kind& kind) {
+  std::vector<Threat> all = crowd.threats;
+  const auto own = static_cast<uint32_t>(&kind - crowd.kinds.data());
+  for (const SeenThreat& seen : crowd.seen)
+    if (seen.kind != own) all.push_back(seen.threat);
+  return all;
+}
+
+bool threatsHaveMoved(Crowd::Impl& crowd) {
+  const auto isThreat = [](const Kind& kind) { return kind.threat > 0 && kind.agents > 0; };
+  const auto finds = [](const Kind& kind) { return kind.ways != nullptr; };
+  if (std::ranges::none_of(crowd.kinds, finds)) return false;
+  bool moved = std::exchange(crowd.threatsAreNew, false);
+  if ((crowd.seen.empty() && std::ranges::none_of(crowd.kinds, isThreat)) || !isTimeToLook(crowd))
+    return moved;
+  crowd.context->waitIdle();
+  std::vector<SeenThreat> seen = lookForThreats(crowd);
+  moved = moved || seen != crowd.seen;
+  crowd.seen = std::move(seen);
+  return moved;
+}
+
+std::optional<glm::vec2> leaderOf(const Crowd::Impl& crowd, const Goal& goal) {
+  if (!isThere(crowd, goal.leader)) return {};
+  crowd.context->waitIdle();
+  glm::dvec2 sum(0);
+  size_t count = 0;
+  for (const SeenAgent& each : agentsIn(crowd, goal.leader)) {
+    if (goal.agent && *goal.agent != each.agent) continue;
+    sum += each.place;
+    ++count;
+  }
+  if (count == 0) return {};
+  return glm::vec2(sum / static_cast<double>(count));
+}
+
+glm::vec2 placeOf(const float* body) {
+  const glm::vec2 tile(shared::tileX(body[3]), shared::tileZ(body[3]));
+  return tile * shared::TILE_SIZE + glm::vec2(body[0], body[2]);
+}
+
+}  // namespace crowd
+
+void Crowd::setThreat(uint32_t number, const Threat& threat) {
+  if (number >= Scene::maxThreats)
+    throw inputError(fmt::format("threat {}: expected a number less than {}", number, Scene::maxThreats));
+  scenes::checkThreat(threat, fmt::format("threat {}", number));
+  std::vector<Threat>& all = impl_->threats;
+  if (number >= all.size()) all.resize(number + 1, Threat{.radius = 0});
+  all[number] = threat;
+  while (!all.empty() && all.back().radius == 0) all.pop_back();
+  impl_->threatsAreNew = true;
+}
+
+const std::vector<Threat>& Crowd::threats() const { return impl_->threats; }
+
+}  // namespace skitter
