@@ -82,7 +82,8 @@ class Rehearsal {
   // Goals and speeds.
   template <class Change>
   void play(const Change& change, const std::string& name) {
-    herdAt(change.herd, name);
+    const skitter::Herd& herd = herdAt(change.herd, name);
+    if constexpr (requires { change.goal; }) expectItsLeader(change.goal, herd, name);
     for (const uint32_t agent : change.agents) expectSomebody(change.herd, agent, name);
   }
   void play(const Teleport& teleport, const std::string& name) {
@@ -99,6 +100,8 @@ class Rehearsal {
             "reserve has more",
             name, i, presence.generations.size(), addition.herd));
       presence.come(*empty);
+      if (const std::optional<Goal>& goal = addition.arrivals[i].goal)
+        expectItsLeader(*goal, herdAt(addition.herd, name), name);
     }
   }
   void play(const Removal& removal, const std::string& name) {
@@ -128,6 +131,10 @@ class Rehearsal {
       throw inputError(fmt::format("{}: herd {} was removed, expected one that is there", name, number));
     throw inputError(
         fmt::format("{}: herd {}: expected one of the crowd's {} herds", name, number, herds_.numbers()));
+  }
+  void expectItsLeader(const Goal& goal, const skitter::Herd& herd, const std::string& name) const {
+    expectItsHerds([&] { return name; }, goal, herd,
+                   [&](uint32_t leader) -> const skitter::Herd& { return herdAt(leader, name); });
   }
   Presence& presenceOf(uint32_t herd, const std::string& name) {
     herdAt(herd, name);
