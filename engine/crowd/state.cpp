@@ -290,7 +290,7 @@ std::vector<float> numbersOf(const std::vector<glm::vec2>& places) {
   for (const glm::vec2& place : places) numbers.insert(numbers.end(), {place.x, place.y});
   return numbers;
 }
-std::vector<glm::vec2> placesOf(const std::vector<float>& numbers) {
+std::vector<glm::vec2> placesFrom(const std::vector<float>& numbers) {
   std::vector<glm::vec2> places;
   for (size_t i = 0; i + 1 < numbers.size(); i += 2) places.emplace_back(numbers[i], numbers[i + 1]);
   return places;
@@ -318,12 +318,12 @@ void giveSeries(const std::vector<StateSeries>& all, Impl& crowd) {
     Goal goal{.kind = static_cast<Goal::Kind>(saved.goal),
               .target = {saved.disc[0], saved.disc[1]},
               .speed = 0,
-              .places = placesOf(saved.named),
+              .places = placesFrom(saved.named),
               .loop = saved.loop,
               .radius = saved.disc[2],
               .leader = saved.leader};
     if (saved.agent >= 0) goal.agent = static_cast<uint32_t>(saved.agent);
-    crowd.kinds[saved.kind].series.push_back({goal, saved.first, placesOf(saved.places)});
+    crowd.kinds[saved.kind].series.push_back({goal, saved.first, placesFrom(saved.places)});
   }
 }
 

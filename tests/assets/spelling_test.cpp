@@ -48,7 +48,7 @@ TEST(Spelling, ScenesNameTheNearestKeyAndTheNearestName) {
       {R"({"herds": [{"agent": 5}]})",
        "herds[0].agent is no known key; did you mean agents? Expected one of agents, avoid"},
       {R"({"herds": [{"goal": {"targets": [0, 0]}}]})",
-       "herds[0].goal.targets is no known key; did you mean target? Expected one of kind, speed, target"},
+       "herds[0].goal.targets is no known key; did you mean target? Expected one of agent, herd, kind"},
       {R"({"herds": [{"controller": "adaptiv"}]})",
        R"(controller is "adaptiv"; did you mean adaptive? Expected one of "adaptive", "loop")"},
       {R"({"herds": [{"spawn": {"kind": "lane"}}]})",

@@ -177,6 +177,19 @@ def every_kind_of_event():
     ]
 
 
+def test_goals_in_series_are_as_in_scene_files(scene):
+    herd = scene.herds[0]
+    herd.ways = skitter.Ways()
+    herd.threat = 2
+    herd.goal.kind, herd.goal.places, herd.goal.loop = "route", [(1, 2), (3, 4)], True
+    herd.goal.radius, herd.goal.herd, herd.goal.agent = 7, 1, 2
+    written = json.loads(scene.to_json())["herds"][0]
+    assert written["threat"] == 2 and written["goal"]["places"] == [[1, 2], [3, 4]] and written["goal"]["loop"]
+    goal = skitter.Scene.parse(scene.to_json()).herds[0].goal
+    assert (goal.kind, goal.places, goal.loop) == ("route", ((1, 2), (3, 4)), True)
+    assert (goal.radius, goal.herd, goal.agent) == (7, 1, 2)
+
+
 def test_events_are_objects_with_the_names_of_scene_files(scene):
     assert scene.events == []
     scene.events = every_kind_of_event()

@@ -53,7 +53,7 @@ std::vector<SeenAgent> agentsIn(const Crowd::Impl& crowd, uint32_t number) {
   return seen;
 }
 
-bool isThere(const Crowd::Impl& crowd, uint32_t number) {
+bool hasAgents(const Crowd::Impl& crowd, uint32_t number) {
   if (number >= crowd.herds.size() || crowd.herds[number].isGone()) return false;
   // A crowd that is being made has no agents yet.
   return std::ranges::none_of(crowd.herds[number].runs, [&](const SizeRun& run) {
@@ -65,7 +65,7 @@ std::vector<SeenThreat> lookForThreats(const Crowd::Impl& crowd) {
   std::vector<SeenThreat> seen;
   for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
     const float radius = crowd.herds[h].from.threat;
-    if (!(radius > 0) || !isThere(crowd, h)) continue;
+    if (!(radius > 0) || !hasAgents(crowd, h)) continue;
     for (const SeenAgent& each : agentsIn(crowd, h)) seen.push_back({each.kind, {each.place, radius}});
   }
   return seen;
@@ -101,7 +101,7 @@ bool threatsHaveMoved(Crowd::Impl& crowd) {
 }
 
 std::optional<glm::vec2> leaderOf(const Crowd::Impl& crowd, const Goal& goal) {
-  if (!isThere(crowd, goal.leader)) return {};
+  if (!hasAgents(crowd, goal.leader)) return {};
   crowd.context->waitIdle();
   glm::dvec2 sum(0);
   size_t count = 0;
