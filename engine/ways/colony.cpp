@@ -21,7 +21,7 @@
 namespace skitter {
 namespace {
 
-constexpr uint32_t iterationsASubmission = 16;       // short enough for devices that end long submissions
+constexpr uint32_t iterationsASubmission = 16;  // short enough for devices that end long submissions
 // Mesa's software device ends all loops of an invocation once they have gone round 65,535 times. A pass of
 // tightening has three loops over a trip, each of at most `steps` moves.
 constexpr uint32_t loopsOfDispatch = 60000;
@@ -41,6 +41,7 @@ Colony::Options checkedOptions(Colony::Options options, const CostGrid& grid) {
   checkRange("steps", options.steps, 1, Colony::maxSteps);
   if (options.crew > options.ants) options.crew = options.ants;
   checkRange("crew", options.crew, 1, options.ants);
+  checkRange("passes", options.passes, 0, Colony::maxSteps);
   checkRange("beta", options.beta, 0, 8);
   checkRange("margin", static_cast<double>(options.margin), 1.0 / 512, 64);
   checkRange("evaporation", static_cast<double>(options.evaporation), 1.0 / 4096, 4095.0 / 4096);
@@ -242,8 +243,7 @@ void Colony::Impl::recordTightening(vk::CommandBuffer cmd) const {
   for (uint32_t done = 0; done < options.passes; done += passesOfDispatch) {
     shared::ColonyConstants own = constants;
     own.passes = std::min(passesOfDispatch, options.passes - done);
-    tighten.dispatch(cmd, tightenBindings, gpu::bytesOf(own),
-                     gpu::groupsFor(crews(), shared::COLONY_GROUP));
+    tighten.dispatch(cmd, tightenBindings, gpu::bytesOf(own), gpu::groupsFor(crews(), shared::COLONY_GROUP));
     gpu::computeToCompute(cmd);
   }
 }

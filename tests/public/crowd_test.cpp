@@ -249,6 +249,7 @@ TEST_F(PublicCrowd, RefusesHerdsThatAreNotThere) {
   expectRefused(text, [&] { crowd.agentFidelity(7); });
   expectRefused(text, [&] { crowd.footfalls(7); });
   expectRefused(text, [&] { crowd.droppedFootfalls(7); });
+  expectRefused(text, [&] { crowd.cannotReach(7); });
   expectRefused(text, [&] { crowd.places(7); });
   expectRefused(text, [&] { crowd.agentCount(7); });
   expectRefused(text, [&] { crowd.rig(7); });
@@ -290,6 +291,97 @@ TEST_F(PublicCrowd, TakesEditsOfTheGround) {
   EXPECT_NO_THROW(walk(device(), crowd, 1));
 }
 
+// Agents south of a wall across the whole ground, whose goal is north of it.
+Scene walledOff() {
+  Scene scene = standingScene(4);
+  scene.obstacles = {{Capsule{.from = {-40, 6}, .to = {40, 6}, .radius = 0.3f}}};
+  scene.herds[0].ways = Ways{};
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 10}};
+  return scene;
+}
+
+TEST_F(PublicCrowd, CountsWhoCannotReachTheirGoals) {
+  Crowd crowd(device(), flatGround(), walledOff());
+  EXPECT_EQ(crowd.cannotReach(0), 4u);
+  const AgentGoal near{crowd.agentId(0, 0), {.kind = Goal::Kind::point, .target = {0, -8}}};
+  crowd.steer({&near, 1});
+  walk(device(), crowd, 1);
+  EXPECT_EQ(crowd.cannotReach(0), 3u);
+  crowd.steer(0, goingBy(0, 1));
+  walk(device(), crowd, 1);
+  EXPECT_EQ(crowd.cannotReach(0), 0u);
+  EXPECT_EQ(Crowd(device(), flatGround(), twoKinds()).cannotReach(0), 0u);
+}
+
+TEST_F(PublicCrowd, RefusesMoreGoalsThanWaysLeadTo) {
+  Scene scene = standingScene(17);
+  scene.herds[0].ways = Ways{};
+  Crowd crowd(device(), flatGround(), scene);
+  std::vector<Goal> goals;
+  for (int i = 0; i < 17; ++i)
+    goals.push_back({.kind = Goal::Kind::point, .target = {static_cast<float>(i) - 8, 10}});
+  const uint64_t before = crowd.stateHash();
+  expectRefused("are more than 16 places that ways lead to", [&] { crowd.steer(0, goals); });
+  EXPECT_EQ(crowd.stateHash(), before);
+  goals[16] = goals[0];
+  crowd.steer(0, goals);
+  walk(device(), crowd, 1);
+  EXPECT_EQ(crowd.cannotReach(0), 0u);
+}
+
+TEST_F(PublicCrowd, LeavesThreats) {
+  Scene scene = standingScene(1);
+  scene.herds[0].ways = Ways{};
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 0}, .speed = 2};
+  Crowd crowd(device(), flatGround(), scene);
+  EXPECT_TRUE(crowd.threats().empty());
+  const Threat threat{.centre = {0.5f, 0}, .radius = 2};
+  crowd.setThreat(1, threat);
+  ASSERT_EQ(crowd.threats().size(), 2u);
+  EXPECT_EQ(crowd.threats()[0].radius, 0);
+  EXPECT_EQ(crowd.threats()[1], threat);
+  walk(device(), crowd, 300);
+  const glm::dvec3 place = bodyIn(crowd, 0, 0).position;
+  EXPECT_GT(std::hypot(place.x - 0.5, place.z), 2);
+
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Threat> before = crowd.threats();
+  expectRefused("threat 64: expected a number less than 64", [&] { crowd.setThreat(64, {}); });
+  expectRefused("threat 1.centre[1] is nan", [&] { crowd.setThreat(1, {.centre = {0, nan}}); });
+  expectRefused("threat 1.radius is -1, expected a number from 0",
+                [&] { crowd.setThreat(1, {.radius = -1}); });
+  EXPECT_EQ(crowd.threats(), before);
+  crowd.setThreat(1, {.radius = 0});
+  EXPECT_TRUE(crowd.threats().empty());
+}
+
+// Two of four in one place, the others far from anybody.
+TEST_F(PublicCrowd, MeasuresHowFarAgentsOverlap) {
+  Crowd crowd(device(), flatGround(), standingScene(4), {.crowding = true});
+  for (uint32_t i = 0; i < 4; ++i)
+    crowd.teleport(crowd.agentId(0, i), {.position = {i < 2 ? 0.0f : 5.0f * static_cast<float>(i - 1), 0}});
+  walk(device(), crowd, 10);
+  const Crowding crowding = crowd.crowding();
+  EXPECT_FALSE(crowding.droppedNeighbours);
+  // Places are whole quanta, of a millimetre.
+  EXPECT_NEAR(crowding.overlapMost.value(), 1, 4e-3);
+  EXPECT_NEAR(crowding.overlapMean.value(), 1.0 / 4, 4e-3);
+  EXPECT_NEAR(crowding.pairs.value(), 1.0 / 4, 1e-12);
+  EXPECT_FALSE(Crowd(device(), flatGround(), standingScene(4)).crowding().pairs);
+}
+
+TEST_F(PublicCrowd, CountsNeighboursThatAgentsCannotKeepClearOf) {
+  Scene scene = standingScene(12);
+  scene.herds[0].avoid = true;
+  Crowd crowd(device(), flatGround(), scene);
+  EXPECT_EQ(crowd.crowding().droppedNeighbours, 0u);
+  EXPECT_FALSE(crowd.crowding().overlapMost);
+  for (uint32_t i = 0; i < 12; ++i) crowd.teleport(crowd.agentId(0, i), {.position = {2, 2}});
+  walk(device(), crowd, 1);
+  // Each has 11 in reach, and keeps clear of 8.
+  EXPECT_EQ(crowd.crowding().droppedNeighbours, 12u * 3);
+}
+
 TEST_F(PublicCrowd, SavesItself) {
   const OwnFolder folder;
   Crowd crowd(device(), flatGround(), standingScene(4));
@@ -326,6 +418,12 @@ TEST_F(PublicCrowd, RefusesScenesThatCannotBe) {
   refuse("goal.speed is 2000", [](Scene& scene) { scene.herds[0].goal = {.speed = 2000}; });
   refuse("a herd's solver is two-bone", [](Scene& scene) { scene.herds[0].solver = Solver::twoBone; });
   refuse("herds[0].sizes[0] is 30", [](Scene& scene) { scene.herds[0].sizes = {30}; });
+  refuse("standing: herds[0]: ways.steepest is 0",
+         [](Scene& scene) { scene.herds[0].ways = Ways{.steepest = 0}; });
+  refuse("standing: obstacles[0].disc.radius is 0",
+         [](Scene& scene) { scene.obstacles = {{Disc{.radius = 0}}}; });
+  refuse("standing: threats[1].radius is -1", [](Scene& scene) { scene.threats = {{}, {.radius = -1}}; });
+  refuse("65 threats, expected at most 64", [](Scene& scene) { scene.threats.resize(65); });
   refuse("standing: events[0]", [](Scene& scene) { scene.events = {{.at = 0, .what = HerdRemoval{7}}}; });
 }
 

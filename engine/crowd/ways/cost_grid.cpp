@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "assets/scenes/obstacles.h"
+#include "skitter/error.h"
 #include "skitter/ways.h"
 
 namespace skitter {
@@ -15,6 +16,33 @@ constexpr float impassable = std::numeric_limits<float>::infinity();
 // Cells along the longer side of a large terrain: a field of them is solved in a fraction of a second on a
 // processor, and 16 of them fit the 128 MiB of a small binding.
 constexpr double mostCellsASide = 512;
+
+void checkTraveller(const Traveller& traveller) {
+  const auto expect = [](const char* key, float value) {
+    if (!(std::isfinite(value) && value >= 0))
+      throw inputError(fmt::format("traveller.{} is {}, expected a finite number from 0 on", key, value));
+  };
+  expect("legLength", traveller.legLength);
+  expect("footprint", traveller.footprint);
+  expect("margin", traveller.margin);
+  expect("ways.climb", traveller.ways.climb);
+  expect("ways.steepest", traveller.ways.steepest);
+  expect("ways.step", traveller.ways.step);
+}
+
+void checkCostGrid(const CostGrid& grid) {
+  if (grid.columns < 2 || grid.rows < 2 || grid.cost.size() != size_t{grid.columns} * grid.rows)
+    throw inputError(
+        fmt::format("a grid of {} x {} cells has {} costs, expected 2 a side or more and a cost "
+                    "for each cell",
+                    grid.columns, grid.rows, grid.cost.size()));
+  if (!(std::isfinite(grid.cell) && grid.cell > 0))
+    throw inputError(fmt::format("a cell of a grid is {} m, expected more than 0", grid.cell));
+  for (int i = 0; i < 2; ++i)
+    if (!std::isfinite(grid.origin[i]))
+      throw inputError(
+          fmt::format("origin[{}] of a grid is {}, expected a finite number", i, grid.origin[i]));
+}
 
 CostGrid emptyGrid(const Heightfield& terrain, const Traveller& traveller) {
   const double sideX = double{terrain.extentX()}, sideZ = double{terrain.extentZ()};
@@ -134,6 +162,8 @@ void blockAround(CostGrid& grid, const Shape& shape, double grown) {
 
 CostGrid costGrid(const Heightfield& terrain, std::span<const Obstacle> obstacles,
                   const Traveller& traveller) {
+  terrain.check();
+  checkTraveller(traveller);
   for (size_t i = 0; i < obstacles.size(); ++i)
     scenes::checkObstacle(obstacles[i], fmt::format("obstacles[{}]", i));
   CostGrid grid = emptyGrid(terrain, traveller);
@@ -154,6 +184,8 @@ CostGrid costGrid(const Heightfield& terrain, std::span<const Obstacle> obstacle
 
 // A way cuts corners by less than a cell.
 void keepOff(CostGrid& grid, std::span<const Threat> threats, const Traveller& traveller) {
+  checkCostGrid(grid);
+  checkTraveller(traveller);
   for (size_t i = 0; i < threats.size(); ++i) scenes::checkThreat(threats[i], fmt::format("threats[{}]", i));
   for (const auto& [centre, radius] : threats)
     if (radius > 0) blockAround(grid, Disc{centre, radius}, grownBy(grid, traveller) + double{grid.cell});

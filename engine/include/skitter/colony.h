@@ -65,7 +65,7 @@ class SKITTER_API Colony {
     uint64_t seed = 1;
     uint32_t steps = 0;  // of an ant, at most; 0: eight times columns and rows, up to maxSteps
     uint32_t crew = 4;   // ants whose first is tightened, at least 1, at most all; more: less work, less sure
-    uint32_t passes = 32;       // of tightening, at most; 0: none
+    uint32_t passes = 32;       // of tightening, at most, up to maxSteps; 0: none
     uint32_t beta = 1;          // power of the heuristic, 0 to 8; more: straighter, sooner stuck
     float margin = 1;           // straight moves of detour that halve the heuristic, 1/512 to 64
     float evaporation = 0.1f;   // rho, more than 0 and less than 1
