@@ -73,9 +73,28 @@ void add(Hash& hash, const Goal& goal) {
   }
 }
 
+void add(Hash& hash, const Forage& forage) {
+  const auto& [nest, food, branches, cell, threshold, power, layHome, layOut, life, patience, rest] = forage;
+  const auto addDisc = [&](const glm::vec2& centre, float radius) {
+    hash.add(centre);
+    hash.add(radius);
+  };
+  hash.add("forage");
+  addDisc(nest.centre, nest.radius);
+  hash.add(uint64_t{food.size()});
+  for (const auto& [centre, radius, amount] : food) {
+    addDisc(centre, radius);
+    hash.add(uint64_t{amount});
+  }
+  for (const auto& [centre, radius] : branches) addDisc(centre, radius);
+  for (const float each : {cell, threshold, layHome, layOut, life, rest}) hash.add(each);
+  hash.add(uint64_t{power});
+  hash.add(uint64_t{patience});
+}
+
 void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, threat, phase, colour, tint] = herd;
+               sizes, avoid, ways, threat, forage, phase, colour, tint] = herd;
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
@@ -108,6 +127,7 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
     hash.add("threat");
     hash.add(threat);
   }
+  if (forage) add(hash, *forage);
   if (phase) {
     hash.add("phase");
     hash.add(*phase);

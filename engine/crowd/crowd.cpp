@@ -35,6 +35,7 @@
 #include "crowd/tint.h"
 #include "crowd/tuning.h"
 #include "crowd/watch.h"
+#include "crowd/ways/trails.h"
 #include "crowd/ways/ways.h"
 #include "gpu/barrier.h"
 #include "gpu/context.h"
@@ -158,11 +159,14 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   crowd::setParameters(crowd, crowd::usualDt, kind);
   kind.reserves = from.reserve > 0;
   kind.avoids = from.avoid;
-  kind.wayNeeds = from.ways;
+  if (!from.forage) kind.wayNeeds = from.ways;
   kind.threat = from.threat;
+  kind.forageNeeds = from.forage;
+  kind.forageGround = from.ways.value_or(Ways{});
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
-  for (const Stage& stage : crowd::stagesOf(kind.controller, asked, kind.avoids, kind.wayNeeds.has_value()))
+  for (const Stage& stage : crowd::stagesOf(kind.controller, asked, kind.avoids, kind.wayNeeds.has_value(),
+                                            kind.forageNeeds.has_value()))
     kind.stages.push_back({stage});
   return kind;
 }
@@ -193,11 +197,13 @@ void fill(Impl& crowd, uint32_t k, bool spawns = true) {
   for (crowd::ReadyStage& stage : kind.stages)
     crowd::makeKernels({*crowd.context, crowd.options, kind}, stage);
   crowd::beginWays(crowd, k, spawns);
+  crowd::beginTrails(crowd, k);
   std::vector<crowd::Spawner> spawners;
   if (spawns)
     for (const crowd::HerdRun& of : crowd::runsOf(crowd, k))
       spawners.push_back(crowd::spawnerOf(crowd, *of.herd, *of.run));
   kind.pages = crowd::makePages(crowd, kind, spawners);
+  crowd::bindTrails(crowd, kind);
   if (kind.tinted) uploadTints(crowd, k);
 }
 
@@ -547,6 +553,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   crowd::setTick(crowd, dt);
   crowd::letEventsHappen(*this);
   crowd::keepWays(crowd);
+  if (!crowd.edits.empty()) crowd::renewTrails(crowd);
   const uint64_t tick = ++crowd.tick;
   crowd.agentsInTick = agentCount();
 
@@ -578,6 +585,10 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
     crowd.agentTicks += crowd.agentsInTick;
   }
   run(navigate, written);
+  if (crowd::forages(crowd)) {
+    crowd.timer.next(cmd, last = "trails");
+    crowd::recordTrails(crowd, cmd);
+  }
   run(avoid, written);
   run(wake, counted);
   run(body, written);

@@ -52,11 +52,12 @@ shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, co
     return {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0, 0};
   }
   if (over == Stage::Over::crowd) return crowd.grid->constantsOf(crowd, kind, page);
+  const bool isForaging = over == Stage::Over::everyone && kind.trails != nullptr;
   return {page.agents,
           static_cast<float>(tick),
           page.firstAgent,
           1,
-          0,
+          isForaging ? ForageNumbers::leaveOf(*kind.forageNeeds, double{crowd.dt}) : 0,
           page.footfallRoom,
           !crowd.options.sleep || watchesGround(crowd) ? std::numeric_limits<float>::infinity()
                                                        : kind.parameters.sleepTime};

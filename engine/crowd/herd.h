@@ -19,6 +19,7 @@
 #include "crowd/tuning.h"
 #include "crowd/ways/fields.h"
 #include "crowd/ways/series.h"
+#include "crowd/ways/trails.h"
 #include "gpu/buffer.h"
 #include "gpu/image.h"
 #include "gpu/kernel.h"
@@ -45,6 +46,7 @@ struct Page : ForRecords<gpu::Buffer> {
   gpu::Buffer histogram;                // of reach errors
   gpu::Buffer tint;                     // of each agent, where its kind is tinted; only pictures read it
   gpu::Bindings counted, scattered;     // of the crowd's grid, if it has one
+  gpu::Bindings laid;                   // of the kind's trails, if its herds forage
   std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
@@ -56,6 +58,8 @@ struct Kind {
   bool reserves = false;              // places may be empty
   bool avoids = false;                // stages after avoid go by its velocity
   std::optional<Ways> wayNeeds;       // where its herds find their way
+  std::optional<Forage> forageNeeds;  // where its herds forage
+  Ways forageGround;                  // what is passable to foragers
   int herdSteps = 0;                  // 2 to their power is at least the number of herds in a page
   float size = 1;                     // of its creatures, times the rig that was loaded
   Rig rig;                            // of that size
@@ -80,6 +84,7 @@ struct Kind {
   CostGrid ground;                  // where its herds find their way, without threats
   float threat = 0;                 // Herd::threat
   std::unique_ptr<WayFields> ways;  // where its herds find their way, once it has agents
+  std::unique_ptr<Trails> trails;   // where they forage, likewise
   AgentChanges changes;             // for the next tick
 
   // The place among the kind's herds of the one that an agent is of.

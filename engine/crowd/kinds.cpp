@@ -17,9 +17,9 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, threat, phase, colour, tint] = herd;
+               sizes, avoid, ways, threat, forage, phase, colour, tint] = herd;
   return std::tuple_cat(
-      std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways, threat),
+      std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways, threat, forage),
       std::tuple(reserve > 0));
 }
 
@@ -44,8 +44,8 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
   if (kinds.firstHerds.size() > mostKinds)
     throw inputError(fmt::format(
         "{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning, "
-        "avoid, ways, threat or size, expected at most {}: each of them, and each size of one, has pipelines "
-        "of its own; equal herds share them, whatever their agents, spawn and goal",
+        "avoid, ways, threat, forage or size, expected at most {}: each of them, and each size of one, has "
+        "pipelines of its own; equal herds share them, whatever their agents, spawn and goal",
         scene.name, kinds.firstHerds.size(), mostKinds));
   return kinds;
 }
@@ -74,6 +74,45 @@ void checkWays(const Ways& ways, const std::string& what) {
   expect("step", ways.step, Ways::minLimit, Ways::maxLimit);
 }
 
+// The ranges of a scene file.
+void checkForage(const skitter::Herd& herd, const std::string& what) {
+  const Forage& forage = *herd.forage;
+  const auto expect = [&](const std::string& key, auto value, double least, double most) {
+    if (!(static_cast<double>(value) >= least && static_cast<double>(value) <= most))
+      throw inputError(
+          fmt::format("{}: forage.{} is {}, expected {} to {}", what, key, value, least, most));
+  };
+  const auto expectDisc = [&](const std::string& key, const glm::vec2& centre, float radius) {
+    constexpr double most = Scene::maxCoordinate;
+    expect(key + ".centre[0]", centre.x, -most, most);
+    expect(key + ".centre[1]", centre.y, -most, most);
+    expect(key + ".radius", radius, Disc::minRadius, most);
+  };
+  if (sizesOf(herd).size() > 1)
+    throw inputError(
+        fmt::format("{}: forages in {} sizes, expected one: each would be a colony of its own", what,
+                    sizesOf(herd).size()));
+  if (forage.food.size() > Forage::maxSources || forage.branches.size() > Forage::maxBranches)
+    throw inputError(fmt::format("{}: forage has {} sources of food and {} branches, expected at most {}",
+                                 what, forage.food.size(), forage.branches.size(), Forage::maxSources));
+  expectDisc("nest", forage.nest.centre, forage.nest.radius);
+  for (size_t i = 0; i < forage.food.size(); ++i) {
+    const FoodSource& source = forage.food[i];
+    expectDisc(fmt::format("food[{}]", i), source.centre, source.radius);
+    expect(fmt::format("food[{}].amount", i), source.amount, 0, FoodSource::maxAmount);
+  }
+  for (size_t i = 0; i < forage.branches.size(); ++i)
+    expectDisc(fmt::format("branches[{}]", i), forage.branches[i].centre, forage.branches[i].radius);
+  expect("cell", forage.cell, Forage::minCell, Forage::maxCell);
+  expect("threshold", forage.threshold, 0, Forage::maxThreshold);
+  expect("power", forage.power, 1, Forage::maxPower);
+  expect("layHome", forage.layHome, 0, Forage::maxLaid);
+  expect("layOut", forage.layOut, 0, Forage::maxLaid);
+  expect("life", forage.life, Forage::minLife, Forage::maxLife);
+  expect("patience", forage.patience, 1, Forage::maxPatience);
+  expect("rest", forage.rest, 0, Forage::maxRest);
+}
+
 }  // namespace
 
 void checkHerd(const skitter::Herd& herd, const std::string& what) {
@@ -95,6 +134,7 @@ void checkHerd(const skitter::Herd& herd, const std::string& what) {
   expectGoal([&] { return what; }, herd.goal);
   if (herd.ways) checkWays(*herd.ways, what);
   expectWithin([&] { return what; }, "threat", double{herd.threat}, 0, Scene::maxCoordinate, "m");
+  if (herd.forage) checkForage(herd, what);
   if (herd.phase && !(*herd.phase >= 0 && *herd.phase <= 1))
     throw inputError(fmt::format("{}.phase is {}, expected 0 to 1", what, *herd.phase));
   if (herd.tint && !(*herd.tint >= 0 && *herd.tint <= 1))

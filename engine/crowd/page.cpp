@@ -68,6 +68,10 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Kind& kind, const Page& p
       return {binding, &crowd.grid->walkers};
     case BINDING_WAY:
       return {binding, &kind.ways->records()};
+    case BINDING_FORAGE_GROUND:
+      return {binding, &kind.trails->ground()};
+    case BINDING_TRAIL:
+      return {binding, &kind.trails->trail()};
     case BINDING_CROWDING:
       return {binding, &crowd.grid->crowding};
     default:

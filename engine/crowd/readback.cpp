@@ -137,6 +137,7 @@ HerdState stateOf(const Crowd::Impl& crowd, std::span<const Part> parts, const A
   state.watched = crowd.tick > 0 && crowd.tick <= crowd.watchUntil;
   state.footfallsKept = crowd.options.footfalls > 0 && droppedFootfallsOf(crowd, parts) == 0;
   if (state.footfallsKept) state.footfalls = footfallsOf(crowd, parts);
+  if (!parts.empty() && parts.front().kind->trails) state.trail = parts.front().kind->trails->trailWords();
   return state;
 }
 
@@ -216,6 +217,10 @@ uint64_t Crowd::stateHash() const {
   context.waitIdle();
   std::vector<float> records;
   uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, a word at a time
+  const auto add = [&](uint32_t word) {
+    hash = (hash ^ word) * 0x100000001b3ull;
+    hash ^= hash >> 32;
+  };
   for (uint32_t herd = 0; herd < herdCount(); ++herd) {
     const std::vector<Part> parts = crowd::partsOf(*impl_, herd);
     // Record by record over the herd, not page by page: how agents are paged must not show.
@@ -225,11 +230,10 @@ uint64_t Crowd::stateHash() const {
         records.clear();
         appendRecords(context, part, part.page->of(record),
                       crowd::infoOf(record).per == crowd::Per::leg ? part.kind->legs : 0, kAll, records);
-        for (const float value : records) {
-          hash = (hash ^ std::bit_cast<uint32_t>(value)) * 0x100000001b3ull;
-          hash ^= hash >> 32;
-        }
+        for (const float value : records) add(std::bit_cast<uint32_t>(value));
       }
+    if (!parts.empty() && parts.front().kind->trails)
+      for (const uint32_t word : parts.front().kind->trails->trailWords()) add(word);
   }
   return hash;
 }

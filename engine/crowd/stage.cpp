@@ -58,7 +58,8 @@ bool keepsFeet(const CrowdOptions& options) {
   return options.feet || options.measure || options.footfalls > 0;
 }
 
-std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids, bool findsWays) {
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids, bool findsWays,
+                            bool forages) {
   const ControllerStages& of = controllerStages(controller);
   std::vector<Stage> stages = of.all(options);
   std::erase_if(stages, [&](const Stage& stage) {
@@ -67,8 +68,9 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
   });
   if (options.fuse && of.fused != nullptr)
     for (const Stage& fused : of.fused())
-      if (!findsWays || !fused.makes.has(StageId::navigate)) fuse(options, fused, stages);
+      if ((!findsWays && !forages) || !fused.makes.has(StageId::navigate)) fuse(options, fused, stages);
   if (findsWays) std::ranges::replace_if(stages, isNavigate, wayNavigateStage());
+  if (forages) std::ranges::replace_if(stages, isNavigate, forageNavigateStage());
   for (Stage& stage : stages)
     if (stage.isOfTheAwake()) stage.bindings.push_back({shared::BINDING_AWAKE, gpu::BindingKind::load4});
   return stages;

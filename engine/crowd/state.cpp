@@ -358,6 +358,7 @@ StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& foot
     made.chunks.push_back({StateChunk::footfalls, footfalls[k].size() * sizeof(Event)});
     if (!isFirstGeneration(crowd, static_cast<uint32_t>(k)))
       made.chunks.push_back({StateChunk::generations, kind.agents * sizeof(uint32_t)});
+    if (kind.trails) made.chunks.push_back({StateChunk::trail, kind.trails->bytes()});
   }
   for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
     const Herd& herd = crowd.herds[h];
@@ -386,6 +387,9 @@ void save(const Impl& crowd, const std::string& note, StateSink sink) {
         writeRecords(crowd, crowd.kinds[k], *record, writer);
       } else if (chunk.name == StateChunk::footfalls) {
         writer.write(std::as_bytes(std::span(footfalls[k])));
+      } else if (chunk.name == StateChunk::trail) {
+        const std::vector<uint32_t> trail = crowd.kinds[k].trails->trailWords();
+        writer.write(std::as_bytes(std::span(trail)));
       } else {
         const std::vector<uint32_t> generations = generationsOf(crowd, static_cast<uint32_t>(k));
         writer.write(std::as_bytes(std::span(generations)));
@@ -464,7 +468,7 @@ void readChunks(Impl& crowd, State::Source& source) {
     const Kind& kind = crowd.kinds[k];
     for (const StateChunk& chunk : source.head.kinds[k].chunks) {
       std::vector<Event> footfalls;
-      std::vector<uint32_t> generations;
+      std::vector<uint32_t> generations, trail;
       const std::optional<Record> record = chunk.record();
       if (record && keeps(kind, crowd.options, *record)) {
         readRecords(crowd, kind, *record, reader);
@@ -473,6 +477,9 @@ void readChunks(Impl& crowd, State::Source& source) {
       } else if (chunk.name == StateChunk::footfalls) {
         footfalls.resize(chunk.bytes / sizeof(Event));
         reader.read(std::as_writable_bytes(std::span(footfalls)));
+      } else if (chunk.name == StateChunk::trail) {
+        trail.resize(chunk.bytes / sizeof(uint32_t));
+        reader.read(std::as_writable_bytes(std::span(trail)));
       } else {
         generations.resize(kind.agents);
         reader.read(std::as_writable_bytes(std::span(generations)));
@@ -480,6 +487,7 @@ void readChunks(Impl& crowd, State::Source& source) {
       reader.endChunk(fmt::format("record {} of herds of rig {}", chunk.name, kind.rig.name));
       if (!footfalls.empty()) giveFootfalls(crowd, kind, footfalls);
       if (!generations.empty()) giveGenerations(crowd, k, generations);
+      if (!trail.empty()) gpu::upload(*crowd.context, kind.trails->trail(), trail);
     }
   }
   for (uint32_t herd = 0; herd < crowd.herds.size(); ++herd)
@@ -489,6 +497,7 @@ void readChunks(Impl& crowd, State::Source& source) {
 uint64_t expectedBytes(const Impl& crowd, const Kind& kind, const StateChunk& chunk) {
   if (const std::optional<Record> record = chunk.record()) return bytesOfRecords(crowd, kind, *record);
   if (chunk.name == StateChunk::generations) return kind.agents * sizeof(uint32_t);
+  if (chunk.name == StateChunk::trail) return bytesOfTrail(crowd, kind);
   return chunk.bytes / sizeof(Event) * sizeof(Event);  // any number of footfalls
 }
 
@@ -571,6 +580,12 @@ void checkState(const Impl& crowd, const State& state) {
                     name, crowd.watchEvery, watchEvery));
   for (size_t k = 0; k < crowd.kinds.size(); ++k)
     for (const StateChunk& chunk : head.kinds[k].chunks) checkChunk(crowd, crowd.kinds[k], chunk, name);
+  for (size_t k = 0; k < crowd.kinds.size(); ++k)
+    if (crowd.kinds[k].forageNeeds &&
+        std::ranges::find(head.kinds[k].chunks, StateChunk::trail, &StateChunk::name) ==
+            head.kinds[k].chunks.end())
+      throw inputError(fmt::format("{}: has no trail of herds of rig {}, which forage", name,
+                                   crowd.kinds[k].rig.name));
   for (const Record record : lackingIn(crowd, head))
     if (std::ranges::none_of(allDerived(),
                              [&](const Derived& each) { return each.records.contains(record); }))
@@ -620,9 +635,11 @@ std::vector<std::byte> Crowd::saveToMemory(const std::string& note) const {
 uint64_t Crowd::stateBytes() const {
   constexpr uint64_t aHead = 64 << 10, aHerd = 4 << 10;
   uint64_t bytes = aHead + aHerd * impl_->herds.size() + impl_->terrain.heights.size() * sizeof(float);
-  for (const crowd::Kind& kind : impl_->kinds)
+  for (const crowd::Kind& kind : impl_->kinds) {
     for (const crowd::StateChunk& chunk : crowd::recordChunks(*impl_, kind))
       bytes += crowd::bytesOfChunk(chunk.bytes);
+    if (kind.trails) bytes += crowd::bytesOfChunk(kind.trails->bytes());
+  }
   return bytes;
 }
 

@@ -228,7 +228,8 @@ StateHead headOf(const Json& json, const std::string& name) try {
   checkHerds(head, name);
   for (const StateKind& kind : head.kinds)
     for (const StateChunk& chunk : kind.chunks)
-      if (!chunk.record() && chunk.name != StateChunk::footfalls && chunk.name != StateChunk::generations)
+      if (!chunk.record() && chunk.name != StateChunk::footfalls &&
+          chunk.name != StateChunk::generations && chunk.name != StateChunk::trail)
         throw inputError(fmt::format("{}: {} is no known record", name, chunk.name));
   return head;
 } catch (const Json::exception& fault) {

@@ -48,6 +48,10 @@ BINDING BINDING_CROWDING = 69;  // CROWDING_
 // The fields of herds that find their way (shared/ways.h).
 BINDING BINDING_WAY = 70;
 
+// The ground and the trail of those that forage (shared/forage.h).
+BINDING BINDING_FORAGE_GROUND = 71;
+BINDING BINDING_TRAIL = 72;
+
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
 BINDING CONSTANT_BONES = 1;
@@ -90,7 +94,8 @@ struct TickConstants {
   uint32_t every;
   uint32_t watched;
   uint32_t room;
-  // navigate: seconds of standing after which an agent may sleep in this tick.
+  // navigate: seconds of standing after which an agent may sleep in this tick; of herds that forage `watched` is
+  // 2^32 times the chance to leave the nest.
   // avoid: `first` is the number in the crowd of the page's first agent, `every` are the grid's buckets, `watched`
   // those in a row, `room` is how far agents look (quanta), `sleepTime` metres a quantum.
   float sleepTime;

@@ -11,6 +11,13 @@ LOAD4_BUFFER(BINDING_GAIT, gaits);
 #include "shared/ways.h"
 LOAD4_BUFFER(BINDING_WAY, ways);
 #endif
+#ifdef FORAGES
+LOAD4_BUFFER(BINDING_FORAGER, foragers);
+STORE4_BUFFER(BINDING_FORAGER_OUT, foragersOut);
+layout(set = 0, binding = BINDING_FORAGE_GROUND, std430) readonly buffer GroundBlock { uint grounds[]; };
+layout(set = 0, binding = BINDING_TRAIL, std430) readonly buffer TrailBlock { uint trail[]; };
+#include "stages/forage.glsl"
+#endif
 #include "stages/navigate.glsl"
 #include "stages/absent.glsl"
 layout(constant_id = CONSTANT_SLEEP) const int SLEEP = SLEEP_NEVER;
@@ -29,9 +36,16 @@ void main() {
   if (agent >= int(constants.count)) return;
   if (absent(agent)) {
     STORE4(steersOut, agent, vec4(0.0, 0.0, 1.0, 0.0));
+#ifdef FORAGES
+    STORE4_TWO(foragersOut, agent * FORAGER_STRIDE, vec4(0.0), vec4(0.0));
+#endif
     return;
   }
   vec4 body = LOAD4(bodies, agent * BODY_STRIDE);
+#ifdef FORAGES
+  vec2 velocity = forage(agent, body);
+#else
   vec2 velocity = makeVelocity(agent, worldOf(body.xyz, tileOf(body.w)));
+#endif
   STORE4(steersOut, agent, vec4(velocity, SLEEP != SLEEP_NEVER && asleep(agent, velocity) ? 1.0 : 0.0, 0.0));
 }

@@ -173,6 +173,28 @@ TEST(Scene, ObstaclesOfEveryShape) {
   EXPECT_FALSE(scene.herds[2].ways);
 }
 
+TEST(Scene, ForagersOfAHerd) {
+  const Scene scene = parseScene(R"({"herds": [{"forage": {}}, {"forage": {
+    "nest": {"centre": [1, -2], "radius": 3}, "food": [{"centre": [5, 6], "amount": 7}, {"radius": 4}],
+    "branches": [{"radius": 2}], "cell": 1, "threshold": 15, "power": 3, "layHome": 4, "layOut": 0.5, "life": 30,
+    "patience": 9, "rest": 0}}, {}]})",
+                                 "ants.json", "");
+  const Forage expected{.nest = {.centre = {1, -2}, .radius = 3},
+                        .food = {{.centre = {5, 6}, .amount = 7}, {.radius = 4}},
+                        .branches = {{.radius = 2}},
+                        .cell = 1,
+                        .threshold = 15,
+                        .power = 3,
+                        .layHome = 4,
+                        .layOut = 0.5f,
+                        .life = 30,
+                        .patience = 9,
+                        .rest = 0};
+  EXPECT_EQ(scene.herds[0].forage, Forage{});
+  EXPECT_EQ(scene.herds[1].forage, expected);
+  EXPECT_FALSE(scene.herds[2].forage);
+}
+
 TEST(Scene, LooksOfAHerd) {
   const auto herd = [](const char* keys) {
     return parseScene(fmt::format(R"({{"herds": [{{{}}}]}})", keys), "looks.json", "").herds.at(0);
@@ -315,6 +337,10 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"herds": [{"ways": {"climb": -1}}]})",
        "herds[0].ways.climb is -1, expected a number from 0 to 100"},
       {R"({"herds": [{"ways": {"steepest": 0}}]})", "herds[0].ways.steepest is 0"},
+      {R"({"herds": [{"forage": {"power": 5}}]})",
+       "herds[0].forage.power is 5, expected a whole number from 1 to 4"},
+      {R"({"herds": [{"forage": {"food": [{"amont": 1}]}}]})",
+       "herds[0].forage.food[0].amont is no known key; did you mean amount?"},
       {R"({"herds": [{"ways": {"stp": 1}}]})", "herds[0].ways.stp is no known key; did you mean step?"},
       {R"({"obstacles": {}})", "obstacles is an object, expected an array of at most 4096 obstacles"},
       {R"({"obstacles": [{}]})", "obstacles[0] has 0 of disc, capsule, polygon, expected one"},
@@ -534,7 +560,7 @@ class RandomScenes {
   Herd herd() {
     Herd made;
     auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-           avoid, ways, threat, phase, colour, tint] = made;
+           avoid, ways, threat, forage, phase, colour, tint] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -558,9 +584,29 @@ class RandomScenes {
     avoid = coin();
     if (coin()) ways = {real(0, 100), real(0.01, 100), real(0.01, 100)};
     if (coin()) threat = real(0, 4096);
+    if (coin()) forage = this->forage();
     maybe(phase, 0, 1);
     if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
     maybe(tint, 0, 1);
+    return made;
+  }
+  Forage forage() {
+    Forage made;
+    auto& [nest, food, branches, cell, threshold, power, layHome, layOut, life, patience, rest] = made;
+    nest = {place(), real(0.1, 10)};
+    food.resize(whole(0, 3));
+    for (FoodSource& source : food)
+      source = {place(), real(0.1, 10), static_cast<uint32_t>(whole(0, FoodSource::maxAmount))};
+    branches.resize(whole(0, 2));
+    for (Disc& branch : branches) branch = {place(), real(0.1, 10)};
+    cell = real(0.2, 10);
+    threshold = real(0, 100);
+    power = static_cast<uint32_t>(whole(1, Forage::maxPower));
+    layHome = real(0, 100);
+    layOut = real(0, 100);
+    life = real(1, 1000);
+    patience = static_cast<uint32_t>(whole(1, 1000));
+    rest = real(0, 100);
     return made;
   }
   Goal goal() {

@@ -1255,8 +1255,8 @@ static void testRecords(void) {
           "numbers has room for 319, expected 320");
   REFUSED(skitter_crowd_records(crowd, 0, SKITTER_RECORD_BODY, NULL, 1, &count), "numbers is NULL");
   REFUSED(skitter_crowd_records(crowd, 2, SKITTER_RECORD_BODY, NULL, 0, &count), "herd 2");
-  REFUSED(skitter_crowd_records(crowd, 0, (skitter_record)18, NULL, 0, &count),
-          "record is 18, expected a skitter_record");
+  REFUSED(skitter_crowd_records(crowd, 0, (skitter_record)1000, NULL, 0, &count),
+          "record is 1000, expected a skitter_record");
   OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_BODY, bodies, COUNT(bodies), &count));
   OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_STEP, steps, COUNT(steps), &count));
   CHECK(count == COUNT(steps));

@@ -148,6 +148,28 @@ void keysOf(Fields& fields, ConvexPolygon& polygon) {
   auto& [corners] = polygon;
   fields.places("corners", corners, ConvexPolygon::maxCorners, Scene::maxCoordinate);
 }
+template <class Fields>
+void keysOf(Fields& fields, FoodSource& source) {
+  auto& [centre, radius, amount] = source;
+  fields.key("centre", centre, Scene::maxCoordinate);
+  fields.key("radius", radius, Disc::minRadius, Scene::maxCoordinate);
+  fields.integer("amount", amount, 0, FoodSource::maxAmount);
+}
+template <class Fields>
+void keysOf(Fields& fields, Forage& forage) {
+  auto& [nest, food, branches, cell, threshold, power, layHome, layOut, life, patience, rest] = forage;
+  fields.object("nest", nest);
+  fields.objects("food", food, Forage::maxSources, "sources");
+  fields.objects("branches", branches, Forage::maxBranches, "discs");
+  fields.key("cell", cell, Forage::minCell, Forage::maxCell);
+  fields.key("threshold", threshold, 0, Forage::maxThreshold);
+  fields.integer("power", power, 1, Forage::maxPower);
+  fields.key("layHome", layHome, 0, Forage::maxLaid);
+  fields.key("layOut", layOut, 0, Forage::maxLaid);
+  fields.key("life", life, Forage::minLife, Forage::maxLife);
+  fields.integer("patience", patience, 1, Forage::maxPatience);
+  fields.key("rest", rest, 0, Forage::maxRest);
+}
 // The keys of an obstacle, of which `key` says what it is.
 template <class Fields, class Shape>
 requires std::is_same_v<Shape, Disc> || std::is_same_v<Shape, Capsule> || std::is_same_v<Shape, ConvexPolygon>
@@ -177,7 +199,7 @@ void checkKeys(const Obstacle& obstacle, const std::string& file, const std::str
 template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
   auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-         avoid, ways, threat, phase, colour, tint] = herd;
+         avoid, ways, threat, forage, phase, colour, tint] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -194,6 +216,7 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.key("avoid", avoid);
   fields.object("ways", ways);
   fields.key("threat", threat, 0, Scene::maxCoordinate);
+  fields.object("forage", forage);
   fields.phase("phase", phase);
   fields.colour("colour", colour);
   fields.key("tint", tint, 0, 1);

@@ -46,7 +46,8 @@ void checkCostGrid(const CostGrid& grid) {
 
 CostGrid emptyGrid(const Heightfield& terrain, const Traveller& traveller) {
   const double sideX = double{terrain.extentX()}, sideZ = double{terrain.extentZ()};
-  const double cell = std::max(0.5 * double{traveller.legLength}, std::max(sideX, sideZ) / mostCellsASide);
+  const double usual = traveller.cell > 0 ? double{traveller.cell} : 0.5 * double{traveller.legLength};
+  const double cell = std::max(usual, std::max(sideX, sideZ) / mostCellsASide);
   const auto count = [&](double side) {
     return std::max(2u, static_cast<uint32_t>(std::ceil(side / cell * (1 - 1e-6))));
   };

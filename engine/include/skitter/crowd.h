@@ -15,6 +15,7 @@
 #include "skitter/buffers.h"
 #include "skitter/device.h"
 #include "skitter/export.h"
+#include "skitter/forage.h"
 #include "skitter/heightfield.h"
 #include "skitter/picking.h"
 #include "skitter/records.h"
@@ -119,6 +120,7 @@ struct HerdState : ForRecords<std::vector<float>> {
   bool footfallsKept = false;       // they are all here: CrowdOptions::footfalls left room for them
   bool watched = false;  // the last tick's gait looked at the ground, because the heights were edited lately
   bool sleep = false;    // CrowdOptions::sleep; who sleeps is told by its steer record
+  std::vector<uint32_t> trail;  // of the colony, where the herd forages (shaders/shared/forage.h)
 };
 
 // The touchdowns of the last tick on the device, for shaders of the caller's: FOOTFALL_STRIDE vec4 each
@@ -239,6 +241,11 @@ class SKITTER_API Crowd {
   // next recorded tick waits for (docs/ways.md). The latter: all numbers up to the last one in use.
   void setThreat(uint32_t number, const Threat& threat);
   const std::vector<Threat>& threats() const;
+  // What the foragers of a herd have done, with those of herds that share its colony, and the pheromone as
+  // the last tick left it (docs/foraging.md). Zeros and empty where it does not forage. They wait for the
+  // device.
+  Foraging foraging(uint32_t herd) const;
+  PheromoneGrid pheromone(uint32_t herd) const;
   // The handle of the agent in that place of the herd. Throws Error(input) where nobody is.
   AgentId agentId(uint32_t herd, uint32_t agent) const;
 

@@ -113,6 +113,13 @@ SKITTER_CONST int CROWDING_MOST = 6;
 SKITTER_CONST int CROWDING_WORDS = 8;
 SKITTER_CONST float CROWDING_SHARES = 65536.0;
 
+// forager, per agent of a herd that forages, written by navigate (docs/foraging.md).
+//   [0] cell that it goes to + 1 (0: none), heading x, heading z, state + FORAGE_STATES * place of the cell that
+//       it entered last
+//   [1] cell that it entered in this tick + 1 (0: none), grains laid there, what it did there (DEED_), cells
+//       since it left nest or food
+SKITTER_CONST int FORAGER_STRIDE = 2;
+
 // The agents that may sleep: nobody, anybody, or who has breathed out.
 SKITTER_CONST int SLEEP_NEVER = 0;
 SKITTER_CONST int SLEEP_STILL = 1;
@@ -340,6 +347,7 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
   RECORD(GOAL,   goal,   10, agent,   GOAL_STRIDE,                     always,     true,  true) \
   RECORD(STEER,  steer,  12, agent,   STEER_STRIDE,                    always,     false, false) \
   RECORD(AVOID,  avoid,  46, agent,   AVOID_STRIDE,                    bound,      false, false) \
+  RECORD(FORAGER, forager, 48, agent, FORAGER_STRIDE,                  bound,      false, true) \
   RECORD(BODY,   body,   14, agent,   BODY_STRIDE,                     always,     true,  true) \
   RECORD(GAIT,   gait,   16, agent,   GAIT_STRIDE,                     always,     true,  true) \
   RECORD(STEP,   step,   18, leg,     STEP_STRIDE,                     always,     true,  true) \

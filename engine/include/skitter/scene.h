@@ -11,6 +11,7 @@
 #include "skitter/clip.h"
 #include "skitter/controller.h"
 #include "skitter/export.h"
+#include "skitter/forage.h"
 #include "skitter/heightfield.h"
 #include "skitter/solver.h"
 #include "skitter/tuning.h"
@@ -91,6 +92,9 @@ struct Herd {
   std::optional<Ways> ways = {};
   // Metres around each of its agents that other herds with ways keep off, 0 to Scene::maxCoordinate.
   float threat = 0;
+  // Where its agents forage, whatever their goals, of which only the speed counts (docs/foraging.md). The
+  // herd is of one size. Ground is passable as `ways` says, or by its defaults.
+  std::optional<Forage> forage = {};
   // Where in the cycle of its gait or clip each agent begins, 0 to 1; none: drawn by the seed.
   std::optional<float> phase = {};
   // The herd's colour: each of the model's becomes this one, lighter or darker as it was. Linear RGB, 0 to 1;

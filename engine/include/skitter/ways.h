@@ -79,6 +79,7 @@ struct Traveller {
   float footprint = 0;  // metres, radius of the disc on the ground that it takes
   float margin = 0;     // metres that it keeps from the edge of the map
   Ways ways = {};
+  float cell = 0;  // metres a side of its cells; 0: half a leg length; more where the terrain is large
 };
 
 // Throws Error(input) where an obstacle is none that a scene file may have.

@@ -1,0 +1,264 @@
+#include "crowd/ways/trails.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "base/split_mix.h"
+#include "crowd/herd.h"
+#include "crowd/radius.h"
+#include "crowd/ways/stops.h"
+#include "embedded/forage_fade_comp.h"
+#include "embedded/forage_lay_comp_storage.h"
+#include "embedded/forage_lay_comp_texel.h"
+#include "gpu/barrier.h"
+#include "gpu/context.h"
+#include "gpu/submit.h"
+#include "gpu/transfer.h"
+
+namespace skitter {
+namespace crowd {
+namespace {
+
+constexpr double whole32 = 4294967296.0;
+// Cells along the longer side, as cost grids have at most.
+constexpr double mostTrailCellsASide = 512;
+
+uint32_t grainsOf(float units) {
+  return static_cast<uint32_t>(std::lround(double{units} * shared::GRAINS_A_UNIT));
+}
+
+uint32_t as32(double share) {
+  return static_cast<uint32_t>(std::min(std::floor(whole32 * share), whole32 - 1));
+}
+
+int inQuanta(float metres) {
+  return static_cast<int>(std::lround(double{metres} * shared::FORAGE_QUANTA));
+}
+
+glm::dvec2 middleOfCell(const CostGrid& grid, size_t cell) {
+  return glm::dvec2(grid.origin) +
+         double{grid.cell} * (glm::dvec2(cell % grid.columns, cell / grid.columns) + 0.5);
+}
+
+// Whether the cell's middle is within that disc, or the disc's within the cell.
+bool isPlace(const CostGrid& grid, size_t cell, const glm::vec2& centre, float radius) {
+  return glm::distance(middleOfCell(grid, cell), glm::dvec2(centre)) <= double{radius} ||
+         cellAt(grid, centre) == cell;
+}
+
+int placeOfCell(const Forage& forage, const CostGrid& grid, size_t cell) {
+  using namespace shared;
+  if (isPlace(grid, cell, forage.nest.centre, forage.nest.radius)) return PLACE_NEST;
+  for (size_t s = 0; s < forage.food.size(); ++s)
+    if (isPlace(grid, cell, forage.food[s].centre, forage.food[s].radius))
+      return PLACE_FOOD + static_cast<int>(s);
+  for (size_t b = 0; b < forage.branches.size(); ++b)
+    if (isPlace(grid, cell, forage.branches[b].centre, forage.branches[b].radius))
+      return PLACE_BRANCH + static_cast<int>(b);
+  return PLACE_NONE;
+}
+
+constexpr std::array<int, 8> alongX = {1, 1, 0, -1, -1, -1, 0, 1}, alongZ = {0, 1, 1, 1, 0, -1, -1, -1};
+
+bool isOpen(const CostGrid& grid, int column, int row) {
+  return column >= 0 && row >= 0 && column < static_cast<int>(grid.columns) &&
+         row < static_cast<int>(grid.rows) &&
+         std::isfinite(grid.cost[static_cast<size_t>(row) * grid.columns + static_cast<size_t>(column)]);
+}
+
+// A bit for each direction in which a move is open. From an impassable cell, any that leads out.
+uint32_t movesFrom(const CostGrid& grid, size_t cell) {
+  const auto column = static_cast<int>(cell % grid.columns), row = static_cast<int>(cell / grid.columns);
+  const bool inside = !std::isfinite(grid.cost[cell]);
+  uint32_t moves = 0;
+  for (size_t d = 0; d < alongX.size(); ++d) {
+    const int x = alongX[d], z = alongZ[d];
+    const bool cuts = !isOpen(grid, column + x, row) || !isOpen(grid, column, row + z);
+    const bool isDiagonal = d % 2 == 1;
+    if (isOpen(grid, column + x, row + z) && (inside || !isDiagonal || !cuts)) moves |= 1u << d;
+  }
+  return moves;
+}
+
+CostGrid trailGridFor(const Crowd::Impl& crowd, const Kind& kind) {
+  const Heightfield& terrain = crowd.terrain;
+  return costGrid(
+      terrain, crowd.scene.obstacles,
+      {.legLength = kind.rig.legLength,
+       .footprint = footprintRadius(kind.rig),
+       .margin = kind.parameters.edgeMargin,
+       .ways = kind.forageGround,
+       .cell = Trails::cellOf(*kind.forageNeeds, std::max(terrain.extentX(), terrain.extentZ()))});
+}
+
+}  // namespace
+
+uint32_t ForageNumbers::leaveOf(const Forage& forage, double dt) {
+  return forage.rest > 0 ? as32(dt / double{forage.rest}) : std::numeric_limits<uint32_t>::max();
+}
+
+uint64_t ForageNumbers::everyOf(double dt) {
+  return dt > 0 ? static_cast<uint64_t>(std::max(1ll, std::llround(1 / dt))) : 1;
+}
+
+uint32_t ForageNumbers::evaporationOf(const Forage& forage, double dt) {
+  return as32(1 - std::exp(-static_cast<double>(everyOf(dt)) * dt / double{forage.life}));
+}
+
+ForageNumbers numbersOf(const Forage& forage) {
+  return {grainsOf(forage.threshold), grainsOf(forage.layHome), grainsOf(forage.layOut)};
+}
+
+float Trails::cellOf(const Forage& forage, float longestSide) {
+  const double least = std::max(double{forage.cell}, double{longestSide} / mostTrailCellsASide);
+  return static_cast<float>(std::ceil(least * shared::FORAGE_QUANTA) / shared::FORAGE_QUANTA);
+}
+
+Trails::Trails(const gpu::Context& context, const Forage& forage, uint64_t seed, const CostGrid& grid)
+    : context_(&context), forage_(forage), seed_(seed) {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  lay_ = gpu::Kernel(context, {"forage_lay",
+                               {embedded::forage_lay_comp_texel(), embedded::forage_lay_comp_storage()},
+                               {{BINDING_LAY_FORAGER, load4}, {BINDING_LAY_TRAIL, store}},
+                               sizeof(TrailConstants)});
+  fade_ = gpu::Kernel(
+      context,
+      {"forage_fade", embedded::forage_fade_comp(), {{BINDING_LAY_TRAIL, store}}, sizeof(TrailConstants)});
+  const size_t cells = grid.cost.size();
+  ground_ = gpu::Buffer(context, (FORAGE_CELLS + cells) * sizeof(uint32_t), "forage ground");
+  trail_ = gpu::Buffer(context, (TRAIL_CELLS + cells) * sizeof(uint32_t), "trail");
+  gpu::clear(context, trail_);
+  faded_ = fade_.bind(context, {{BINDING_LAY_TRAIL, &trail_}});
+  setGrid(grid);
+}
+
+void Trails::setGrid(const CostGrid& grid) {
+  using namespace shared;
+  grid_ = grid;
+  const ForageNumbers numbers = numbersOf(forage_);
+  const size_t nest = cellAt(grid, forage_.nest.centre);
+  std::vector<uint32_t> words(FORAGE_CELLS + grid.cost.size(), 0);
+  words[FORAGE_COLUMNS] = grid.columns;
+  words[FORAGE_ROWS] = grid.rows;
+  words[FORAGE_CELL] = static_cast<uint32_t>(inQuanta(grid.cell));
+  words[FORAGE_ORIGIN_X] = std::bit_cast<uint32_t>(inQuanta(grid.origin.x));
+  words[FORAGE_ORIGIN_Z] = std::bit_cast<uint32_t>(inQuanta(grid.origin.y));
+  words[FORAGE_NEST_COLUMN] = static_cast<uint32_t>(nest % grid.columns);
+  words[FORAGE_NEST_ROW] = static_cast<uint32_t>(nest / grid.columns);
+  words[FORAGE_SEED_LOW] = static_cast<uint32_t>(seed_);
+  words[FORAGE_SEED_HIGH] = static_cast<uint32_t>(seed_ >> 32);
+  words[FORAGE_THRESHOLD] = numbers.threshold;
+  words[FORAGE_POWER] = forage_.power;
+  words[FORAGE_LAY_HOME] = numbers.layHome;
+  words[FORAGE_LAY_OUT] = numbers.layOut;
+  words[FORAGE_PATIENCE] = forage_.patience;
+  for (size_t s = 0; s < forage_.food.size(); ++s) words[FORAGE_AMOUNTS + s] = forage_.food[s].amount;
+  for (size_t cell = 0; cell < grid.cost.size(); ++cell)
+    words[FORAGE_CELLS + cell] =
+        movesFrom(grid, cell) | static_cast<uint32_t>(placeOfCell(forage_, grid, cell))
+                                    << FORAGE_PLACE_SHIFT;
+  gpu::upload(*context_, ground_, words);
+}
+
+void Trails::bind(Page& page) const {
+  using namespace shared;
+  page.laid = lay_.bind(*context_, {{BINDING_LAY_FORAGER, &page.forager}, {BINDING_LAY_TRAIL, &trail_}});
+  const TrailConstants nothing{};
+  gpu::submitAndWait(*context_, [&](vk::CommandBuffer cmd) {
+    lay_.dispatch(cmd, page.laid, gpu::bytesOf(nothing), 1);
+    fade_.dispatch(cmd, faded_, gpu::bytesOf(nothing), 1);
+    gpu::allToAll(cmd);
+  });
+}
+
+void Trails::record(vk::CommandBuffer cmd, std::span<const Page> pages, uint64_t tick, float dt) const {
+  using shared::TrailConstants;
+  for (const Page& page : pages) {
+    const TrailConstants constants{.count = page.agents, .evaporation = 0};
+    lay_.dispatch(cmd, page.laid, gpu::bytesOf(constants), gpu::groupsFor(page.agents, shared::WORK_GROUP));
+  }
+  gpu::computeToCompute(cmd);
+  if (tick % ForageNumbers::everyOf(double{dt}) != 0) return;
+  const auto cells = static_cast<uint32_t>(grid_.cost.size());
+  const TrailConstants constants{.count = cells,
+                                 .evaporation = ForageNumbers::evaporationOf(forage_, double{dt})};
+  fade_.dispatch(cmd, faded_, gpu::bytesOf(constants), gpu::groupsFor(cells, shared::WORK_GROUP));
+  gpu::computeToCompute(cmd);
+}
+
+std::vector<uint32_t> Trails::groundWords() const { return gpu::download<uint32_t>(*context_, ground_); }
+
+std::vector<uint32_t> Trails::trailWords() const { return gpu::download<uint32_t>(*context_, trail_); }
+
+void beginTrails(Crowd::Impl& crowd, uint32_t k) {
+  Kind& kind = crowd.kinds[k];
+  if (!kind.forageNeeds) return;
+  kind.trails =
+      std::make_unique<Trails>(*crowd.context, *kind.forageNeeds,
+                               base::SplitMix64::draw(crowd.seed, uint64_t{k} + 1), trailGridFor(crowd, kind));
+}
+
+void bindTrails(const Crowd::Impl&, Kind& kind) {
+  if (!kind.trails) return;
+  for (Page& page : kind.pages) kind.trails->bind(page);
+}
+
+void recordTrails(const Crowd::Impl& crowd, vk::CommandBuffer cmd) {
+  for (const Kind& kind : crowd.kinds)
+    if (kind.trails) kind.trails->record(cmd, kind.pages, crowd.tick, crowd.dt);
+}
+
+void renewTrails(Crowd::Impl& crowd) {
+  if (!forages(crowd)) return;
+  crowd.context->waitIdle();
+  for (Kind& kind : crowd.kinds)
+    if (kind.trails) kind.trails->setGrid(trailGridFor(crowd, kind));
+}
+
+uint64_t bytesOfTrail(const Crowd::Impl& crowd, const Kind& kind) {
+  if (!kind.forageNeeds) return 0;
+  return (shared::TRAIL_CELLS + trailGridFor(crowd, kind).cost.size()) * sizeof(uint32_t);
+}
+
+bool forages(const Crowd::Impl& crowd) {
+  return std::ranges::any_of(crowd.kinds, [](const Kind& kind) { return kind.trails != nullptr; });
+}
+
+}  // namespace crowd
+
+Foraging Crowd::foraging(uint32_t herd) const {
+  using namespace shared;
+  Foraging done;
+  const crowd::Kind& kind = impl_->kindOf(herd);
+  if (!kind.trails) return done;
+  impl_->context->waitIdle();
+  const std::vector<uint32_t> words = kind.trails->trailWords();
+  const Forage& forage = kind.trails->forage();
+  done.brought = words[DEED_BROUGHT];
+  done.empty = words[DEED_EMPTY];
+  for (size_t s = 0; s < forage.food.size(); ++s) done.taken.push_back(words[PLACE_FOOD + DEED_AT + s]);
+  for (size_t b = 0; b < forage.branches.size(); ++b)
+    done.passed.push_back(words[PLACE_BRANCH + DEED_AT + b]);
+  return done;
+}
+
+PheromoneGrid Crowd::pheromone(uint32_t herd) const {
+  PheromoneGrid made;
+  const crowd::Kind& kind = impl_->kindOf(herd);
+  if (!kind.trails) return made;
+  impl_->context->waitIdle();
+  const CostGrid& grid = kind.trails->grid();
+  made = {.columns = grid.columns, .rows = grid.rows, .cell = grid.cell, .origin = grid.origin};
+  const std::vector<uint32_t> words = kind.trails->trailWords();
+  for (size_t cell = 0; cell < grid.cost.size(); ++cell)
+    made.units.push_back(static_cast<float>(words[shared::TRAIL_CELLS + cell]) / shared::GRAINS_A_UNIT);
+  return made;
+}
+
+}  // namespace skitter

@@ -1,0 +1,22 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// What each forager did in this tick goes into the trail (docs/foraging.md).
+#include "lib/load4.glsl"
+#include "lib/rarely.glsl"
+#include "shared/forage.h"
+#include "skitter/records.h"
+
+layout(local_size_x = WORK_GROUP) in;
+layout(push_constant) uniform TrailConstantsBlock { TrailConstants trails; };
+LOAD4_BUFFER(BINDING_LAY_FORAGER, foragers);
+layout(set = 0, binding = BINDING_LAY_TRAIL, std430) buffer TrailBlock { uint trail[]; };
+
+void main() {
+  uint agent = gl_GlobalInvocationID.x;
+  if (agent >= trails.count) return;
+  vec4 deed = LOAD4(foragers, agent * uint(FORAGER_STRIDE) + 1u);
+  RARELY(deed.x != 0.0) {
+    if (deed.y != 0.0) atomicAdd(trail[TRAIL_CELLS + int(deed.x) - 1], uint(deed.y));
+    if (deed.z != 0.0) atomicAdd(trail[int(deed.z)], 1u);
+  }
+}
