@@ -58,6 +58,7 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
 }  // namespace
 
 void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
+  if (setting.forage) return checkForage(setting, moment, judge);
   const reference::Tuning& tuning = setting.tuning;
   const reference::AgentBody body = bodyOf(moment.before, moment.agent);
   const reference::Goal goal = goalOf(moment.before, moment.agent);

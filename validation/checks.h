@@ -22,6 +22,12 @@ void checkKept(const Setting& setting, const Moment& moment, Record record, Judg
 // A field against fast marching over the same costs.
 Sample compareWay(const reference::WayField& field);
 
+// An agent that forages, as stage navigate has it.
+void checkForage(const Setting& setting, const Moment& moment, Judge& judge);
+// The trail of its colony, where the states hold all of that.
+void checkTrail(const Setting& setting, uint64_t n, const HerdState& before, const HerdState& after,
+                Judge& judge);
+
 // What holds a stage of some controllers against the reference: adds a sample an agent, a leg or, for clips,
 // a joint to its judge.
 struct Check {

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "crowd/grid.h"
 #include "crowd/herd.h"
 #include "crowd/readback.h"
 #include "validation/convert.h"
+#include "validation/convert_forage.h"
 #include "validation/replay.h"
 
 // Apart from replay.h, which does without a device.
@@ -42,6 +44,16 @@ inline std::vector<reference::WayPlace> wayPlacesOf(const crowd::Kind& kind) {
   return all;
 }
 
+// Of a kind whose herds forage, from the agent of that number on.
+inline std::optional<ForageFacts> forageOf(const crowd::Kind& kind, int64_t firstNumber = 0) {
+  if (!kind.trails) return {};
+  const Forage& forage = kind.trails->forage();
+  return ForageFacts{.map = forageMapOf(forage, kind.trails->grid()),
+                     .tuning = forageTuningOf(forage, kind.trails->seed(), double{kind.parameters.dt}),
+                     .firstNumber = firstNumber,
+                     .agents = kind.agents};
+}
+
 // The facts of a herd's kind. Call it once the tick length is known: the parameters are complete only then.
 // The facts refer to the kind's rig.
 inline HerdFacts herdFacts(const crowd::Kind& kind, const Heightfield& terrain) {
@@ -49,6 +61,7 @@ inline HerdFacts herdFacts(const crowd::Kind& kind, const Heightfield& terrain) 
                   kind.ik,  kind.controller, kind.clips,      kind.keyPoses};
   facts.ways = waysOf(kind);
   facts.wayPlaces = wayPlacesOf(kind);
+  facts.forage = forageOf(kind);
   return facts;
 }
 
@@ -57,6 +70,7 @@ inline HerdFacts herdFacts(const Crowd::Impl& crowd, const crowd::HerdRun& of, c
   const crowd::Kind& kind = crowd.kinds[of.run->kind];
   HerdFacts facts = herdFacts(kind, terrain);
   facts.firstAgent = of.run->firstOfHerd;
+  facts.forage = forageOf(kind, of.run->firstAgent);
   if (!kind.avoids) return facts;
   const crowd::Quanta quanta = crowd::quantaOf(crowd);
   facts.avoid = {

@@ -61,6 +61,7 @@ HerdState sampled(const HerdState& whole, const AgentSample& sample) {
   part.sample = sample;
   part.watched = whole.watched;
   part.sleep = whole.sleep;
+  part.trail = whole.trail;
   for (size_t agent = sample.first; agent < whole.agents; agent += sample.stride) ++part.agents;
   for (const Record record : allRecords) {
     if (crowd::infoOf(record).per == crowd::Per::watched) continue;
@@ -95,6 +96,7 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   setting.firstNumber = herd.firstNumber;
   setting.ways = herd.ways;
   setting.wayPlaces = herd.wayPlaces;
+  setting.forage = herd.forage;
   if (crowd::traitsOf(herd.controller).playsClips)
     setting.clips = clipTableOf(herd.clips, setting.legs, setting.bones);
   if (herd.controller == Controller::keyPoses)
@@ -127,6 +129,8 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
     if (check.stage == crowd::StageId::navigate && std::exchange(waysAreNew_, false))
       for (const reference::WayField& field : setting_.ways)
         judges_[c].add(n, before.sample.first, -1, compareWay(field));
+    if (check.stage == crowd::StageId::navigate && setting_.forage)
+      checkTrail(setting_, n, before, after, judges_[c]);
     for (size_t agent = 0; agent < before.agents; ++agent) {
       const Moment moment{n, before, after, agent, around};
       const bool asleep = asleepOf(after, agent);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "crowd/tuning.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
+#include "validation/convert_forage.h"
 #include "validation/judge.h"
 
 namespace skitter::validation {
@@ -38,6 +40,7 @@ struct HerdFacts {
   int64_t firstNumber = 0;
   std::vector<reference::WayField> ways = {};       // the fields of its kind, as they are on the device
   std::vector<reference::WayPlace> wayPlaces = {};  // those of its goals in series
+  std::optional<ForageFacts> forage = {};           // where the herd forages
 };
 
 // All agents that are there, of the whole crowd: as they were before a tick.
@@ -58,6 +61,7 @@ struct Setting {
   int64_t firstNumber = 0;
   std::vector<reference::WayField> ways;
   std::vector<reference::WayPlace> wayPlaces;
+  std::optional<ForageFacts> forage;
 };
 
 // `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit
@@ -86,7 +90,8 @@ class Replay {
 
   // `n` is the tick that led from `before` to `after`, states of the same agents: all of these are compared.
   // A state without poses, metrics or footfalls leaves pose, measure or footfall out. `around`, before the
-  // tick and by their numbers, is for a herd that avoids. Throws Error(input) when a record buffer's size
+  // tick and by their numbers, is for a herd that avoids. The trail of a colony is compared where the states
+  // hold all who forage in it. Throws Error(input) when a record buffer's size
   // does not fit the number of agents, or such a herd's agents are not among `around`.
   void tick(uint64_t n, const HerdState& before, const HerdState& after, const Surroundings& around = {});
 
@@ -99,6 +104,9 @@ class Replay {
     setting_.wayPlaces = std::move(places);
     waysAreNew_ = true;
   }
+
+  // Likewise the ground of those who forage.
+  void setForage(std::optional<ForageFacts> forage) { setting_.forage = std::move(forage); }
 
   // The stages that are compared, in order, less those that every tick left out.
   std::vector<StageResult> results() const;

@@ -152,16 +152,20 @@ void Lockstep::letEventsHappen() {
   if (crowd::changesWait(impl)) crowd::applyChanges(impl);
 }
 
-// The tick has gone by the fields as they are now.
+// The tick has gone by the fields, and by the ground of trails, as they are now.
 void Lockstep::followWays() {
   const Crowd::Impl& impl = implOf(crowd_);
   size_t r = 0;
   for (const crowd::HerdRun& of : crowd::allRuns(impl)) {
     Compared& each = compared_[r++];
     const crowd::Kind& kind = impl.kinds[of.run->kind];
-    if (!kind.ways || kind.ways->revision() == each.wayRevision) continue;
+    const uint32_t revision = kind.ways     ? kind.ways->revision()
+                              : kind.trails ? kind.trails->revision()
+                                            : 0;
+    if (revision == each.wayRevision) continue;
     each.replay->setWays(waysOf(kind), wayPlacesOf(kind));
-    each.wayRevision = kind.ways->revision();
+    each.replay->setForage(forageOf(kind, of.run->firstAgent));
+    each.wayRevision = revision;
   }
 }
 

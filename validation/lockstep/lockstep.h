@@ -53,7 +53,7 @@ class Lockstep {
     bool hasPlaces;
     bool isBrief;  // it was not there from the first tick to the last
     std::unique_ptr<Replay> replay;
-    uint32_t wayRevision = 0;  // of the fields that the replay has
+    uint32_t wayRevision = 0;  // of the fields or trails that the replay has
   };
 
   std::vector<HerdState> download() const;

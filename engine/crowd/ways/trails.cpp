@@ -141,6 +141,7 @@ Trails::Trails(const gpu::Context& context, const Forage& forage, uint64_t seed,
 void Trails::setGrid(const CostGrid& grid) {
   using namespace shared;
   grid_ = grid;
+  ++revision_;
   const ForageNumbers numbers = numbersOf(forage_);
   const size_t nest = cellAt(grid, forage_.nest.centre);
   std::vector<uint32_t> words(FORAGE_CELLS + grid.cost.size(), 0);

@@ -46,6 +46,7 @@ class Trails {
 
   const Forage& forage() const { return forage_; }
   uint64_t seed() const { return seed_; }
+  uint32_t revision() const { return revision_; }  // counts changes of the grid
   const CostGrid& grid() const { return grid_; }
   const gpu::Buffer& ground() const { return ground_; }  // BINDING_FORAGE_GROUND
   const gpu::Buffer& trail() const { return trail_; }    // BINDING_TRAIL
@@ -58,6 +59,7 @@ class Trails {
   const gpu::Context* context_;
   Forage forage_;
   uint64_t seed_;
+  uint32_t revision_ = 0;
   CostGrid grid_;
   gpu::Buffer ground_, trail_;
   gpu::Kernel lay_, fade_;
