@@ -182,6 +182,10 @@ int bench(const BenchOptions& options) {
       throw inputError(fmt::format(
           "bench: herds[{}].avoid of {} is true, expected false: the opponents do not avoid", h, scene.name));
   for (size_t h = 0; h < scene.herds.size(); ++h)
+    if (scene.herds[h].forage)
+      throw inputError(fmt::format(
+          "bench: herds[{}] of {} forages, expected none: the opponents have no trails", h, scene.name));
+  for (size_t h = 0; h < scene.herds.size(); ++h)
     if (scene.herds[h].ways)
       throw inputError(fmt::format(
           "bench: herds[{}] of {} has ways, expected none: the opponents go straight", h, scene.name));

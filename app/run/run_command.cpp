@@ -14,6 +14,7 @@
 #include "app/common/manifest.h"
 #include "app/common/scene_options.h"
 #include "app/common/signals.h"
+#include "app/run/forage_log.h"
 #include "app/run/obstacle.h"
 #include "app/run/offscreen.h"
 #include "app/run/run_note.h"
@@ -103,6 +104,7 @@ class Run {
   Summary summary_;
   // Declared before and gone after what they are written from: a deadline may find them until the end.
   RunOutputs outputs_;
+  ForageLog foraging_;
   std::atomic<uint64_t> done_ = 0;     // ticks
   std::atomic<int64_t> savedAt_ = -1;  // the tick of the state that lies in its file; -1: none does
   std::optional<State> state_;         // that the run goes on from
@@ -186,6 +188,7 @@ void Run::start() {
     raiseObstacle();
   }
   tellWhoCannotReach();
+  foraging_ = ForageLog(*crowd_);
   starting.reset();
   manifest_.terrain = &terrain_;
   manifest_.add(device_->report());
@@ -222,6 +225,7 @@ void Run::tellWhoCannotReach() const {
 
 void Run::afterTick() {
   outputs_.append(*crowd_);
+  foraging_.append(*crowd_, options_.scene.dt);
   if (obstacle_) obstacle_->move(*crowd_, static_cast<double>(crowd_->tick()) * options_.scene.dt);
   done_ = crowd_->tick();
   if (options_.saveEvery && crowd_->tick() % (*options_.saveEvery * options_.ticksPerFrame) == 0) save();
@@ -252,6 +256,7 @@ void Run::restart(std::optional<Controller> controller) {
   savedAt_ = -1;
   summary_.resumedAt.reset();
   raiseObstacle();
+  foraging_ = ForageLog(*crowd_);
 }
 
 void Run::runWindow() {
@@ -296,6 +301,7 @@ void Run::finish() {
       if (const crowd::Herd& herd = implOf(*crowd_).herds[h]; !herd.isGone())
         summary_.herds.push_back({h, crowd_->rig(h).name, herd.from.agents, crowd_->fidelity(h)});
     summary_.crowding = crowd_->crowding();
+    summary_.foraging = foraging_.figures(*crowd_, options_.scene.dt);
     if (options_.sleep) summary_.sleeping = crowd_->sleeping();
     summary_.stateHash = crowd_->stateHash();
     summary_.memory = memoryOf(*crowd_);

@@ -139,6 +139,9 @@ void Summary::print() const {
   }
   printFidelity(fidelity, watchEvery);
   printCrowding(crowding);
+  for (const ForageFigures& herd : foraging)
+    printRow("foraging", fmt::format("herd {}: {} loads carried home, {} returns without one", herd.herd,
+                                     herd.done.brought, herd.done.empty));
   for (size_t i = 0; i < herds.size() && herds.size() > 1; ++i) {
     fmt::print("herd {}: {}, {} agents\n", herds[i].number, herds[i].rig, herds[i].agents);
     printFidelity(herds[i].fidelity, watchEvery);
@@ -173,6 +176,7 @@ nlohmann::ordered_json Summary::json() const {
           {"watchEvery", watchEvery},
           {"fidelity", jsonOf(fidelity)},
           {"crowding", jsonOf(crowding)},
+          {"foraging", jsonOf(foraging)},
           {"herds", perHerd},
           {"stateHash", fmt::format("{:016x}", stateHash)}};
 }

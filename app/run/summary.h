@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/common/simulate.h"
+#include "app/run/forage_log.h"
 #include "skitter/crowd.h"
 #include "skitter/device.h"
 
@@ -40,6 +41,7 @@ struct Summary {
   Fidelity fidelity;               // of all herds
   std::vector<HerdFigures> herds;  // that are there at the end
   Crowding crowding;
+  std::vector<ForageFigures> foraging;  // of the herds that forage
   std::optional<uint64_t> sleeping;  // agents at the end; none where they may not
   uint64_t stateHash = 0;
   std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times

@@ -187,6 +187,12 @@ Scene sceneOf(SceneOptions options) {
 
 void refuseFreeRunOf(const ValidateOptions& options, const Scene& scene) {
   for (size_t h = 0; options.freeRun && h < scene.herds.size(); ++h)
+    if (scene.herds[h].forage)
+      throw inputError(
+          fmt::format("--free-run: herds[{}] of {} forages, expected none: the reference walks each agent by "
+                      "itself",
+                      h, scene.name));
+  for (size_t h = 0; options.freeRun && h < scene.herds.size(); ++h)
     if (scene.herds[h].avoid)
       throw inputError(
           fmt::format("--free-run: herds[{}].avoid of {} is true, expected false: the reference walks each "
