@@ -57,10 +57,10 @@ Sample compareForaging(const Setting& setting, const Moment& moment, const refer
 void checkForage(const Setting& setting, const Moment& moment, Judge& judge) {
   const ForageFacts& facts = *setting.forage;
   const reference::AgentBody body = bodyOf(moment.before, moment.agent);
-  const reference::ForageResult result = reference::forage(
-      facts.tuning, facts.map, trailOf(moment.before, facts.map), body, foragerOf(moment.before, moment.agent),
-      goalOf(moment.before, moment.agent).speed, facts.firstNumber + static_cast<int64_t>(moment.number()),
-      moment.n);
+  const reference::ForageResult result =
+      reference::forage(facts.tuning, facts.map, trailOf(moment.before, facts.map), body,
+                        foragerOf(moment.before, moment.agent), goalOf(moment.before, moment.agent).speed,
+                        facts.firstNumber + static_cast<int64_t>(moment.number()), moment.n);
   // Sleep follows from the velocity as in other herds; that has no say in what it is.
   reference::Goal going;
   going.kind = reference::GoalKind::velocity;

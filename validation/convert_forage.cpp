@@ -126,8 +126,7 @@ reference::ForageTrail trailOf(const HerdState& state, const reference::ForageMa
   trail.brought = state.trail[DEED_BROUGHT];
   for (size_t s = 0; s < map.amounts.size(); ++s)
     trail.taken.push_back(state.trail[PLACE_FOOD + DEED_AT + s]);
-  for (size_t b = 0; b < map.branches; ++b)
-    trail.passed.push_back(state.trail[PLACE_BRANCH + DEED_AT + b]);
+  for (size_t b = 0; b < map.branches; ++b) trail.passed.push_back(state.trail[PLACE_BRANCH + DEED_AT + b]);
   trail.grains.assign(state.trail.begin() + TRAIL_CELLS, state.trail.end());
   return trail;
 }

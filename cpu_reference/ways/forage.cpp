@@ -23,8 +23,8 @@ uint64_t drawOf(uint64_t key, uint64_t n) {
 
 int64_t alongAxis(double tile, double local, int64_t origin, int64_t cell, int64_t count) {
   const auto place = static_cast<int64_t>(tile * tileSize * quanta + std::floor(local * quanta));
-  const auto index = static_cast<int64_t>(
-      std::floor(static_cast<double>(place - origin) / static_cast<double>(cell)));
+  const auto index =
+      static_cast<int64_t>(std::floor(static_cast<double>(place - origin) / static_cast<double>(cell)));
   return std::clamp<int64_t>(index, 0, count - 1);
 }
 
@@ -190,8 +190,9 @@ ForageResult forage(const ForageTuning& tuning, const ForageMap& map, const Fora
   const uint32_t low = static_cast<uint32_t>(random);
   const int64_t here = cellUnder(map, body);
   const bool isLost = forager.cell < 0 || areApart(map, forager.cell, here);
-  if (isLost) {
-    forager.cell = here;
+  if (isLost) forager.cell = here;
+  const bool acts = forager.state == Foraging::rest || forager.cell == here;
+  if (acts && forager.headingX == 0 && forager.headingZ == 0) {
     forager.headingX = 1024 * stepX[low % 8];
     forager.headingZ = 1024 * stepZ[low % 8];
   }

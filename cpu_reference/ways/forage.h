@@ -11,26 +11,26 @@ namespace skitter::reference {
 // Cells row after row along +z, as those who forage see them. Lengths are in quanta.
 struct ForageMap {
   int64_t columns = 0, rows = 0;
-  int64_t cell = 1;                      // quanta a side
-  int64_t originX = 0, originZ = 0;      // corner of cell (0, 0)
-  std::vector<bool> passable = {};       // a cell each
-  std::vector<bool> nest = {};           // a cell each
-  std::vector<int64_t> source = {};      // of food, in that cell; -1: none
-  std::vector<int64_t> branch = {};      // in which passages are counted; -1: none
-  std::vector<uint32_t> amounts = {};    // loads of each source at first
-  int64_t nestColumn = 0, nestRow = 0;   // of the nest's middle
+  int64_t cell = 1;                     // quanta a side
+  int64_t originX = 0, originZ = 0;     // corner of cell (0, 0)
+  std::vector<bool> passable = {};      // a cell each
+  std::vector<bool> nest = {};          // a cell each
+  std::vector<int64_t> source = {};     // of food, in that cell; -1: none
+  std::vector<int64_t> branch = {};     // in which passages are counted; -1: none
+  std::vector<uint32_t> amounts = {};   // loads of each source at first
+  int64_t nestColumn = 0, nestRow = 0;  // of the nest's middle
   size_t branches = 0;
 };
 
 struct ForageTuning {
-  uint64_t seed = 1;                    // the colony's
-  uint64_t leave = 0;                   // 2^32 times the chance to leave the nest in a tick
-  uint32_t threshold = 0;               // k, grains
-  uint32_t power = 2;                   // n
-  uint32_t layHome = 0, layOut = 0;     // grains a cell, with a load and without
-  uint32_t patience = 0;                // cells after which a search is given up
-  uint64_t evaporation = 0;             // 2^32 times the share that goes each time
-  uint64_t every = 1;                   // ticks from one time to the next
+  uint64_t seed = 1;                 // the colony's
+  uint64_t leave = 0;                // 2^32 times the chance to leave the nest in a tick
+  uint32_t threshold = 0;            // k, grains
+  uint32_t power = 2;                // n
+  uint32_t layHome = 0, layOut = 0;  // grains a cell, with a load and without
+  uint32_t patience = 0;             // cells after which a search is given up
+  uint64_t evaporation = 0;          // 2^32 times the share that goes each time
+  uint64_t every = 1;                // ticks from one time to the next
 };
 
 enum class Foraging { rest, search, laden, back };
@@ -57,10 +57,10 @@ struct ForageDeed {
 };
 
 struct ForageTrail {
-  uint64_t empty = 0, brought = 0;          // returns to the nest without and with a load
-  std::vector<uint64_t> taken = {};         // from each source
-  std::vector<uint64_t> passed = {};        // entries of each branch
-  std::vector<uint32_t> grains = {};        // a cell each
+  uint64_t empty = 0, brought = 0;    // returns to the nest without and with a load
+  std::vector<uint64_t> taken = {};   // from each source
+  std::vector<uint64_t> passed = {};  // entries of each branch
+  std::vector<uint32_t> grains = {};  // a cell each
 
   bool operator==(const ForageTrail&) const = default;
 };

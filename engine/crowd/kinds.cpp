@@ -79,8 +79,7 @@ void checkForage(const skitter::Herd& herd, const std::string& what) {
   const Forage& forage = *herd.forage;
   const auto expect = [&](const std::string& key, auto value, double least, double most) {
     if (!(static_cast<double>(value) >= least && static_cast<double>(value) <= most))
-      throw inputError(
-          fmt::format("{}: forage.{} is {}, expected {} to {}", what, key, value, least, most));
+      throw inputError(fmt::format("{}: forage.{} is {}, expected {} to {}", what, key, value, least, most));
   };
   const auto expectDisc = [&](const std::string& key, const glm::vec2& centre, float radius) {
     constexpr double most = Scene::maxCoordinate;
@@ -89,9 +88,8 @@ void checkForage(const skitter::Herd& herd, const std::string& what) {
     expect(key + ".radius", radius, Disc::minRadius, most);
   };
   if (sizesOf(herd).size() > 1)
-    throw inputError(
-        fmt::format("{}: forages in {} sizes, expected one: each would be a colony of its own", what,
-                    sizesOf(herd).size()));
+    throw inputError(fmt::format("{}: forages in {} sizes, expected one: each would be a colony of its own",
+                                 what, sizesOf(herd).size()));
   if (forage.food.size() > Forage::maxSources || forage.branches.size() > Forage::maxBranches)
     throw inputError(fmt::format("{}: forage has {} sources of food and {} branches, expected at most {}",
                                  what, forage.food.size(), forage.branches.size(), Forage::maxSources));

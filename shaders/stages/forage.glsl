@@ -79,10 +79,10 @@ int chosenMove(Forager ant, int cell, uint moves, uint random) {
 }
 
 // Of an agent that rests, is lost or has come to where it went.
-void decide(int agent, int here, bool isLost, inout Forager ant, inout Deed deed) {
+void decide(int agent, int here, inout Forager ant, inout Deed deed) {
   uvec2 random = splitMixDraw(splitMixDraw(forageSeed, constants.first + uint(agent) + 1u), uint(thisTick));
   uint ground = grounds[FORAGE_CELLS + here];
-  if (isLost) ant.heading = 1024 * forageStep(int(random.x & 7u));
+  if (ant.heading == ivec2(0)) ant.heading = 1024 * forageStep(int(random.x & 7u));
   if (ant.state == FORAGE_REST) {
     ant.cell = here;
     if (random.x >= constants.watched) return;
@@ -107,7 +107,7 @@ vec2 forage(int agent, vec4 body) {
   ivec2 at = cellUnder(body), apart = abs(at - middleOf(max(ant.cell, 0)));
   int here = cellAt(at);
   bool isLost = ant.cell < 0 || max(apart.x, apart.y) > 1;
-  RARELY(isLost || ant.state == FORAGE_REST || ant.cell == here) decide(agent, here, isLost, ant, deed);
+  RARELY(isLost || ant.state == FORAGE_REST || ant.cell == here) decide(agent, here, ant, deed);
   STORE4_TWO(foragersOut, agent * FORAGER_STRIDE,
              vec4(float(ant.cell + 1), vec2(ant.heading), float(ant.state + FORAGE_STATES * ant.place)),
              vec4(float(deed.entered + 1), float(deed.grains), float(deed.kind), float(ant.steps)));

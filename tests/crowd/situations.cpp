@@ -73,6 +73,26 @@ Results roaming(Device& device, Controller controller, const CrowdOptions& optio
   return replay(device, crowd, ground, 240);
 }
 
+// To food at both ends of a wall and home again, until a source is empty and searches are given up.
+Results foraging(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(48, 3, 1, controller);
+  scene.obstacles = {{Capsule{.from = {-4, 1}, .to = {3, 1}, .radius = 0.3f}}};
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f, .centre = {0, -3}};
+  scene.herds[0].forage = Forage{.nest = {.centre = {0, -3}, .radius = 1.5f},
+                                 .food = {{.centre = {4, -2}, .radius = 1.5f, .amount = 3},
+                                          {.centre = {-5, 3}, .radius = 2}},
+                                 .branches = {{.centre = {-3, -2}, .radius = 1.5f}},
+                                 .cell = 1,
+                                 .layOut = 1,
+                                 .life = 20,
+                                 .patience = 14,
+                                 .rest = 0.5f};
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 30);
+  return replay(device, crowd, ground, 600);
+}
+
 Results walking(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = rollingGround();
   Crowd crowd(device, ground, sceneOf(64, 1, 1, controller), options);
@@ -261,6 +281,7 @@ const std::vector<Situation>& situations() {
       {"meeting", {Controller::adaptive, Controller::clip}, meeting},
       {"findingWays", {Controller::adaptive, Controller::clip}, findingWays},
       {"roaming", {Controller::adaptive, Controller::clip}, roaming},
+      {"foraging", {Controller::adaptive, Controller::clip}, foraging},
       {"fallingAsleep", {Controller::adaptive}, fallingAsleep},
       {"atTheEdge", {Controller::adaptive}, atTheEdge},
       {"goingByVelocity", {Controller::adaptive, Controller::loop}, goingByVelocity},

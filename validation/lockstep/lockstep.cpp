@@ -159,9 +159,7 @@ void Lockstep::followWays() {
   for (const crowd::HerdRun& of : crowd::allRuns(impl)) {
     Compared& each = compared_[r++];
     const crowd::Kind& kind = impl.kinds[of.run->kind];
-    const uint32_t revision = kind.ways     ? kind.ways->revision()
-                              : kind.trails ? kind.trails->revision()
-                                            : 0;
+    const uint32_t revision = kind.ways ? kind.ways->revision() : kind.trails ? kind.trails->revision() : 0;
     if (revision == each.wayRevision) continue;
     each.replay->setWays(waysOf(kind), wayPlacesOf(kind));
     each.replay->setForage(forageOf(kind, of.run->firstAgent));

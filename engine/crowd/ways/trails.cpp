@@ -36,9 +36,7 @@ uint32_t as32(double share) {
   return static_cast<uint32_t>(std::min(std::floor(whole32 * share), whole32 - 1));
 }
 
-int inQuanta(float metres) {
-  return static_cast<int>(std::lround(double{metres} * shared::FORAGE_QUANTA));
-}
+int inQuanta(float metres) { return static_cast<int>(std::lround(double{metres} * shared::FORAGE_QUANTA)); }
 
 glm::dvec2 middleOfCell(const CostGrid& grid, size_t cell) {
   return glm::dvec2(grid.origin) +
@@ -162,8 +160,7 @@ void Trails::setGrid(const CostGrid& grid) {
   for (size_t s = 0; s < forage_.food.size(); ++s) words[FORAGE_AMOUNTS + s] = forage_.food[s].amount;
   for (size_t cell = 0; cell < grid.cost.size(); ++cell)
     words[FORAGE_CELLS + cell] =
-        movesFrom(grid, cell) | static_cast<uint32_t>(placeOfCell(forage_, grid, cell))
-                                    << FORAGE_PLACE_SHIFT;
+        movesFrom(grid, cell) | static_cast<uint32_t>(placeOfCell(forage_, grid, cell)) << FORAGE_PLACE_SHIFT;
   gpu::upload(*context_, ground_, words);
 }
 
@@ -173,6 +170,7 @@ void Trails::bind(Page& page) const {
   const TrailConstants nothing{};
   gpu::submitAndWait(*context_, [&](vk::CommandBuffer cmd) {
     lay_.dispatch(cmd, page.laid, gpu::bytesOf(nothing), 1);
+    gpu::computeToCompute(cmd);
     fade_.dispatch(cmd, faded_, gpu::bytesOf(nothing), 1);
     gpu::allToAll(cmd);
   });
@@ -200,9 +198,9 @@ std::vector<uint32_t> Trails::trailWords() const { return gpu::download<uint32_t
 void beginTrails(Crowd::Impl& crowd, uint32_t k) {
   Kind& kind = crowd.kinds[k];
   if (!kind.forageNeeds) return;
-  kind.trails =
-      std::make_unique<Trails>(*crowd.context, *kind.forageNeeds,
-                               base::SplitMix64::draw(crowd.seed, uint64_t{k} + 1), trailGridFor(crowd, kind));
+  kind.trails = std::make_unique<Trails>(*crowd.context, *kind.forageNeeds,
+                                         base::SplitMix64::draw(crowd.seed, uint64_t{k} + 1),
+                                         trailGridFor(crowd, kind));
 }
 
 void bindTrails(const Crowd::Impl&, Kind& kind) {

@@ -31,23 +31,23 @@ struct Forage {
   std::vector<FoodSource> food = {};
   // Places in which Foraging::passed counts who comes in: one across each branch of a way.
   std::vector<Disc> branches = {};
-  float cell = 2;         // metres a side of the cells in which pheromone is, minCell to maxCell
-  float threshold = 20;   // k: units of pheromone as attractive as none at all, 0 to maxThreshold
-  uint32_t power = 2;     // n, 1 to maxPower
-  float layHome = 10;     // units that an agent with a load lays in each cell, 0 to maxLaid
-  float layOut = 0;       // units that one lays who searches, 0 to maxLaid
-  float life = 90;        // seconds, mean life of pheromone, minLife to maxLife
+  float cell = 2;          // metres a side of the cells in which pheromone is, minCell to maxCell
+  float threshold = 20;    // k: units of pheromone as attractive as none at all, 0 to maxThreshold
+  uint32_t power = 2;      // n, 1 to maxPower
+  float layHome = 10;      // units that an agent with a load lays in each cell, 0 to maxLaid
+  float layOut = 0;        // units that one lays who searches, 0 to maxLaid
+  float life = 90;         // seconds, mean life of pheromone, minLife to maxLife
   uint32_t patience = 60;  // cells after which a search is given up, 1 to maxPatience
-  float rest = 5;         // seconds, mean stay in the nest, 0 to maxRest
+  float rest = 5;          // seconds, mean stay in the nest, 0 to maxRest
 
   bool operator==(const Forage&) const = default;
 };
 
 // What the foragers of a herd and of those that share its colony have done since the crowd began.
 struct Foraging {
-  uint64_t brought = 0;              // loads carried home
-  uint64_t empty = 0;                // returns to the nest without one
-  std::vector<uint64_t> taken = {};  // loads taken from each source
+  uint64_t brought = 0;               // loads carried home
+  uint64_t empty = 0;                 // returns to the nest without one
+  std::vector<uint64_t> taken = {};   // loads taken from each source
   std::vector<uint64_t> passed = {};  // entries of each of Forage::branches
 };
 
