@@ -63,6 +63,35 @@ void bindHerd(py::module_& module) {
       .def_readwrite("steepest", &Ways::steepest, "Rise over run beyond which ground is impassable.")
       .def_readwrite("step", &Ways::step, "Leg lengths, height of a ledge that is just passable.");
 
+  py::class_<Disc>(module, "Disc", "A disc on the ground.")
+      .def(py::init<>())
+      .def_readwrite("centre", &Disc::centre, "x and z, metres.")
+      .def_readwrite("radius", &Disc::radius, "Metres.");
+  py::class_<FoodSource>(module, "FoodSource", "Food that a herd forages for.")
+      .def(py::init<>())
+      .def_readwrite("centre", &FoodSource::centre, "x and z, metres.")
+      .def_readwrite("radius", &FoodSource::radius, "Metres.")
+      .def_readwrite("amount", &FoodSource::amount, "Loads.");
+  py::class_<Forage>(module, "Forage", "How the agents of a herd forage (docs/foraging.md).")
+      .def(py::init<>())
+      .def_readwrite("nest", &Forage::nest, "Where they carry food.")
+      .def_property(
+          "food", [](const Forage& self) { return py::tuple(py::cast(self.food)); },
+          [](Forage& self, std::vector<FoodSource> food) { self.food = std::move(food); },
+          "The sources, at most 16.")
+      .def_property(
+          "branches", [](const Forage& self) { return py::tuple(py::cast(self.branches)); },
+          [](Forage& self, std::vector<Disc> branches) { self.branches = std::move(branches); },
+          "Places in which passages are counted, at most 16.")
+      .def_readwrite("cell", &Forage::cell, "Metres a side of the cells in which pheromone is.")
+      .def_readwrite("threshold", &Forage::threshold, "k: units as attractive as no pheromone at all.")
+      .def_readwrite("power", &Forage::power, "n, 1 to 4.")
+      .def_readwrite("layHome", &Forage::layHome, "Units laid in each cell with a load.")
+      .def_readwrite("layOut", &Forage::layOut, "Units laid in each cell on a search.")
+      .def_readwrite("life", &Forage::life, "Seconds, mean life of pheromone.")
+      .def_readwrite("patience", &Forage::patience, "Cells after which a search is given up.")
+      .def_readwrite("rest", &Forage::rest, "Seconds, mean stay in the nest.");
+
   py::class_<Herd, std::shared_ptr<Herd>> herd(module, "Herd", "Agents with one rig, controller and spawn.");
   herd.def(py::init([](uint32_t agents) {
              Herd made;
@@ -96,6 +125,7 @@ void bindHerd(py::module_& module) {
                      "Metres around each of its agents that other herds with ways keep off.")
       .def_readwrite("ways", &Herd::ways,
                      "Ways, where agents go around what is in the way; None: they go straight.")
+      .def_readwrite("forage", &Herd::forage, "Forage, where agents do; None: they have goals.")
       .def_readwrite("phase", &Herd::phase,
                      "Where in its gait or clip each agent begins, 0 to 1; None: drawn by the seed.")
       .def_readwrite("colour", &Herd::colour, "Linear red, green and blue, 0 to 1; None: the model's.")

@@ -154,6 +154,37 @@ class Ways:
     step: float
     def __init__(self) -> None: ...
 
+class Disc:
+    """A disc on the ground."""
+
+    centre: Sequence[float]
+    radius: float
+    def __init__(self) -> None: ...
+
+class FoodSource:
+    """Food that a herd forages for."""
+
+    centre: Sequence[float]
+    radius: float
+    amount: int
+    def __init__(self) -> None: ...
+
+class Forage:
+    """How the agents of a herd forage (docs/foraging.md)."""
+
+    nest: Disc
+    food: Sequence[FoodSource]
+    branches: Sequence[Disc]
+    cell: float
+    threshold: float
+    power: int
+    layHome: float
+    layOut: float
+    life: float
+    patience: int
+    rest: float
+    def __init__(self) -> None: ...
+
 class Herd:
     """Agents with one rig, controller and spawn."""
 
@@ -173,6 +204,7 @@ class Herd:
     avoid: bool
     ways: Optional[Ways]
     threat: float
+    forage: Optional[Forage]
     phase: Optional[float]
     colour: Optional[Sequence[float]]
     tint: Optional[float]
