@@ -13,8 +13,8 @@ void walkAgent(const Setting& setting, uint64_t n, size_t agent, HerdState& stat
 // differ, and with them decisions that are close: what is told is a share, and nothing passes or fails by it.
 class FreeRun {
  public:
-  // From `start`, before tick 1, of a herd that does not avoid. Refers to the herd's terrain, which may be
-  // edited between ticks. Throws Error(input) as settingOf does.
+  // From `start`, before tick 1, of a herd that does not avoid or forage. Refers to the herd's terrain, which
+  // may be edited between ticks. Throws Error(input) as settingOf does.
   FreeRun(const HerdFacts& herd, HerdState start);
   FreeRun(const FreeRun&) = delete;
   FreeRun& operator=(const FreeRun&) = delete;

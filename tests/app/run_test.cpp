@@ -42,6 +42,31 @@ TEST_F(Running, CrowdingIsMeasuredWhereItIsAskedFor) {
   EXPECT_LT(avoiding.at("overlapMean"), 0.05);
 }
 
+TEST_F(Running, ForagersAreCounted) {
+  std::ofstream(file("ants.json")) << R"({"terrain": {"columns": 65, "rows": 65, "amplitude": 0},
+    "herds": [{"agents": 30, "goal": {"speed": 3}, "spawn": {"kind": "grid", "centre": [0, -3], "spacing": 0.5},
+      "forage": {"nest": {"centre": [0, -3]}, "food": [{"centre": [0, 3], "radius": 3, "amount": 500}], "cell": 1,
+                 "branches": [{"centre": [0, 0], "radius": 9}], "rest": 0.2}}]})";
+  ASSERT_EQ(skitter({"run", file("ants.json"), "--headless", "--frames", "900", "--no-measure", "--json",
+                     file("run.json")})
+                .code,
+            0);
+  const nlohmann::json herds = json("run.json").at("foraging");
+  ASSERT_EQ(herds.size(), 1u);
+  const nlohmann::json& ants = herds.at(0);
+  EXPECT_EQ(keysOf(ants), (std::set<std::string>{"herd", "brought", "trips", "taken", "passed",
+                                                 "shareOfFirst", "windows"}));
+  EXPECT_GT(ants.at("brought"), 0);
+  EXPECT_EQ(ants.at("shareOfFirst"), 1);
+  // 15 seconds are a window and a half.
+  ASSERT_EQ(ants.at("windows").size(), 2u);
+  EXPECT_NEAR(ants.at("windows").at(0).at("until").get<double>(), 10, 0.05);
+  EXPECT_NEAR(ants.at("windows").at(1).at("until").get<double>(), 15, 0.05);
+  uint64_t brought = 0;
+  for (const nlohmann::json& window : ants.at("windows")) brought += window.at("brought").get<uint64_t>();
+  EXPECT_EQ(ants.at("brought"), brought);
+}
+
 TEST_F(Running, WhoCannotReachAGoalIsToldOnce) {
   const auto heard =
       [&](const char* obstacles) {
@@ -68,8 +93,9 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   const nlohmann::json run = json("run.json");
   EXPECT_EQ(keysOf(run), (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
                                                 "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity",
-                                                "crowding", "herds", "sleeping", "stateHash", "ticksWanted",
-                                                "interrupted", "manifest", "resumedAt"}));
+                                                "crowding", "foraging", "herds", "sleeping", "stateHash",
+                                                "ticksWanted", "interrupted", "manifest", "resumedAt"}));
+  EXPECT_TRUE(run.at("foraging").empty()) << "nobody does";
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
   EXPECT_TRUE(run.at("resumedAt").is_null()) << "it began at the start";
   EXPECT_EQ(keysOf(run.at("crowding")),

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <signal.h>
 
 #include "../support/stages_page.h"
@@ -67,6 +68,22 @@ TEST_F(Validate, AgentsThatFindTheirWayAgreeWithTheReference) {
                                    nameOf(controller), "--agents", "9", "--frames", "60"});
     EXPECT_EQ(result.code, 0) << result.out << result.err;
   }
+}
+
+TEST_F(Validate, ForagersAgreeWithTheReference) {
+  for (const Controller controller : allControllers) {
+    SCOPED_TRACE(nameOf(controller));
+    const Result result = skitter({"validate", SKITTER_ROOT "/assets/scenes/foraging.json", "--controller",
+                                   nameOf(controller), "--agents", "9", "--frames", "60"});
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+  }
+  for (const char* scene : {"double-bridge", "double-bridge-equal"})
+    EXPECT_EQ(skitter({"validate", fmt::format(SKITTER_ROOT "/assets/scenes/{}.json", scene), "--agents",
+                       "20", "--frames", "60"})
+                  .code,
+              0);
+  expectRefusal(skitter({"validate", SKITTER_ROOT "/assets/scenes/foraging.json", "--free-run"}), 2,
+                {"--free-run: herds[0]", "forages"});
 }
 
 // Neither changes a bit of what is compared.

@@ -143,7 +143,8 @@ TEST(Records, HaveBindingsOfTheirOwn) {
       shared::BINDING_LIST,       shared::BINDING_COUNTERS,  shared::BINDING_HISTOGRAM,
       shared::BINDING_AWAKE,      shared::BINDING_AWAKE_OUT, shared::BINDING_FOOTFALL_OUT,
       shared::BINDING_CELL,       shared::BINDING_PLACE,     shared::BINDING_WALKER,
-      shared::BINDING_CROWDING};
+      shared::BINDING_CROWDING,   shared::BINDING_WAY,       shared::BINDING_FORAGE_GROUND,
+      shared::BINDING_TRAIL};
   for (const Record record : allRecords)
     for (const uint32_t binding : {crowd::infoOf(record).binding, crowd::infoOf(record).binding + 1})
       EXPECT_TRUE(taken.insert(binding).second) << crowd::infoOf(record).name << ": " << binding;
