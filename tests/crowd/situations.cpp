@@ -79,15 +79,15 @@ Results foraging(Device& device, Controller controller, const CrowdOptions& opti
   Scene scene = sceneOf(48, 3, 1, controller);
   scene.obstacles = {{Capsule{.from = {-4, 1}, .to = {3, 1}, .radius = 0.3f}}};
   scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f, .centre = {0, -3}};
-  scene.herds[0].forage = Forage{.nest = {.centre = {0, -3}, .radius = 1.5f},
-                                 .food = {{.centre = {4, -2}, .radius = 1.5f, .amount = 3},
-                                          {.centre = {-5, 3}, .radius = 2}},
-                                 .branches = {{.centre = {-3, -2}, .radius = 1.5f}},
-                                 .cell = 1,
-                                 .layOut = 1,
-                                 .life = 20,
-                                 .patience = 14,
-                                 .rest = 0.5f};
+  scene.herds[0].forage =
+      Forage{.nest = {.centre = {0, -3}, .radius = 1.5f},
+             .food = {{.centre = {4, -2}, .radius = 1.5f, .amount = 2}, {.centre = {-5, 3}, .radius = 2}},
+             .branches = {{.centre = {-3, -2}, .radius = 1.5f}},
+             .cell = 1,
+             .layOut = 1,
+             .life = 20,
+             .patience = 14,
+             .rest = 0.5f};
   Crowd crowd(device, ground, scene, options);
   simulate(device, crowd, 30);
   return replay(device, crowd, ground, 600);
