@@ -10,6 +10,7 @@
 #include "render/antialias.h"
 #include "render/composition.h"
 #include "render/crowd_drawing.h"
+#include "render/obstacle_drawing.h"
 #include "render/sky.h"
 #include "render/terrain.h"
 
@@ -68,6 +69,7 @@ struct Renderer::Impl {
   render::ShadowMap shadow;
   render::Setting setting;
   render::Terrain terrain;
+  render::ObstacleDrawing obstacles;
   render::CrowdDrawing crowd;
   render::Sky sky;
   render::Antialias antialias;  // where there are no samples to resolve
@@ -97,6 +99,7 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       setting{c,      source.terrain, source.heights, picture, ground, *groundSampler,
               shadow, drawnFormat(),  kDepth,         samples},
       terrain(setting),
+      obstacles(setting, source),
       crowd(setting, source),
       sky(setting) {
   timer.measure(false);
@@ -158,6 +161,7 @@ void Renderer::Impl::drawShadows(vk::CommandBuffer cmd) {
                                    false);
     for (int cascade = 0; cascade < shared::SHADOW_CASCADES; ++cascade) {
       rendering.confine(shadow.square(cascade));
+      obstacles.drawShadows(cmd, cascade);
       crowd.drawShadows(cmd, cascade);
     }
   }
@@ -190,6 +194,7 @@ void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
   pass("crowd", true, false);
   crowd.draw(cmd);
   pass("terrain", false, false);
+  obstacles.draw(cmd);
   terrain.draw(cmd);
   pass("sky", false, true);
   sky.draw(cmd);

@@ -5,8 +5,9 @@
 
 namespace skitter::render {
 
-// The sun's shadow map: its cascades are squares beside each other. What casts are the agents; the hills' own
-// shadows lie in the ground map, so that the ground needs no bias and feet touch their shadows.
+// The sun's shadow map: its cascades are squares beside each other. What casts are the agents and the
+// obstacles; the hills' own shadows lie in the ground map, so that the ground needs no bias and feet touch
+// their shadows.
 class ShadowMap {
  public:
   ShadowMap() = default;

@@ -29,4 +29,9 @@ vec4 noise(vec3 p) {
               slope * vec3(alongX, mix(alongY.x, alongY.y, s.x), mix(rowZ.x, rowZ.y, s.x)));
 }
 
+// Detail as long as a pixel is smaller than it.
+float visible(float wavelength, float footprint) {
+  return clamp(2.0 - 5.0 * footprint / wavelength, 0.0, 1.0);
+}
+
 #endif

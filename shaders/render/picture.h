@@ -50,6 +50,11 @@ struct CrowdConstants {
   uint kind;
 };
 
+// Push constants of drawing obstacles.
+struct ObstacleConstants {
+  uint view;  // into clipFromPicture
+};
+
 // Push constants of cull.
 struct CullConstants {
   uint agents;

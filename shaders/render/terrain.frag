@@ -14,11 +14,6 @@ layout(location = 3) in vec3 farAt;
 layout(location = 0) out vec4 outColour;
 layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
 
-// Detail as long as a pixel is smaller than it.
-float visible(float wavelength, float footprint) {
-  return clamp(2.0 - 5.0 * footprint / wavelength, 0.0, 1.0);
-}
-
 void main() {
   vec3 toEye = picture.eye.xyz - position;
   float away = length(toEye);
