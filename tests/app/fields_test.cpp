@@ -1,0 +1,168 @@
+#include <png.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "app/fields/colours.h"
+#include "app/fields/field_map.h"
+#include "app/fields/stroke_font.h"
+#include "process.h"
+
+namespace skitter::test {
+namespace {
+
+using Fields = AppTest;
+using app::Drawing;
+
+constexpr const char* walledScene = R"({
+  "terrain": {"kind": "noise", "columns": 65, "rows": 65, "amplitude": 1},
+  "obstacles": [{"capsule": {"from": [-20, 0], "to": [6, 0], "radius": 0.3}}, {"disc": {"centre": [8, 8], "radius": 2}}],
+  "herds": [
+    {"agents": 9, "ways": {}, "spawn": {"kind": "grid", "centre": [0, -8], "spacing": 1},
+     "goal": {"kind": "point", "target": [0, 7], "speed": 2}},
+    {"agents": 4, "ways": {}, "spawn": {"kind": "grid", "centre": [4, -8], "spacing": 1},
+     "goal": {"kind": "point", "target": [8, 8]}},
+    {"agents": 3, "ways": {}, "sizes": [0.5, 2]},
+    {"agents": 5}
+  ]})";
+
+struct Png {
+  png_image image{};
+  std::vector<uint8_t> rgb;
+
+  explicit Png(const std::string& file) {
+    image.version = PNG_IMAGE_VERSION;
+    EXPECT_TRUE(png_image_begin_read_from_file(&image, file.c_str())) << file;
+    image.format = PNG_FORMAT_RGB;
+    rgb.resize(PNG_IMAGE_SIZE(image));
+    EXPECT_TRUE(png_image_finish_read(&image, nullptr, rgb.data(), 0, nullptr)) << file;
+  }
+  std::array<int, 3> at(size_t x, size_t y) const {
+    const uint8_t* pixel = &rgb[3 * (y * image.width + x)];
+    return {pixel[0], pixel[1], pixel[2]};
+  }
+};
+
+TEST_F(Fields, AreDrawnForEachKindAndGoal) {
+  write("walled.json", walledScene);
+  const Result result = skitter({"fields", file("walled.json"), "--out", file("out")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  // Herds 0 and 1 are of one kind, and herd 2 is of two; who crosses has no field.
+  EXPECT_EQ(files(), (std::vector<std::string>{"out/.skitter-files", "out/fields.json", "out/herd0_cost.png",
+                                               "out/herd0_goal0.png", "out/herd0_goal1.png",
+                                               "out/herd2_size0_cost.png", "out/herd2_size1_cost.png",
+                                               "out/index.html", "walled.json"}));
+  const nlohmann::json fields = json("out/fields.json");
+  EXPECT_EQ(fields.at("manifest").at("version"), "0.1.0");
+  const nlohmann::json& grid = fields.at("grids").at(0);
+  EXPECT_EQ(grid.at("herds"), (std::vector<int>{0, 1}));
+  EXPECT_EQ(fields.at("grids").size(), 3u);
+  EXPECT_GT(grid.at("passable"), 0.5);
+  EXPECT_LT(grid.at("passable"), 1);
+  const nlohmann::json &open = grid.at("goals").at(0), &walled = grid.at("goals").at(1);
+  EXPECT_EQ(open.at("target"), (std::vector<double>{0, 7}));
+  EXPECT_EQ(open.at("stop"), open.at("target"));
+  EXPECT_EQ(open.at("agents"), 9);
+  EXPECT_EQ(open.at("cannotReach"), 0);
+  EXPECT_EQ(walled.at("agents"), 4);
+  EXPECT_EQ(walled.at("cannotReach"), 4) << "the goal is in a disc";
+  EXPECT_NE(walled.at("stop"), walled.at("target"));
+  // Round the wall it is longer than straight.
+  EXPECT_GT(open.at("timeMost"), 20);
+
+  // 32 m are 1,040 pixels, and the map begins at (36, 92).
+  const std::array<int, 3> goal = Png(file("out/herd0_goal0.png")).at(36 + 520, 92 + 747);
+  EXPECT_GT(goal[0], 200);
+  EXPECT_LT(goal[1], 80);
+  const std::string page = [&] {
+    std::ifstream in(file("out/index.html"));
+    std::stringstream all;
+    all << in.rdbuf();
+    return all.str();
+  }();
+  for (const char* part : {"herd0_cost.png", "herd0_goal1.png", "herd2_size1_cost.png", "cannot reach it"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+}
+
+TEST_F(Fields, RefuseWhatHasNone) {
+  expectRefusal(skitter({"fields", "--out", file("out")}), 2, {"no herd has ways", "\"ways\": {}"});
+  write("walled.json", walledScene);
+  std::filesystem::create_directory(file("out"));
+  write("out/mine.txt", "the user's");
+  expectRefusal(skitter({"fields", file("walled.json"), "--out", file("out")}), 2, {"--out", "--force"});
+  EXPECT_EQ(files(), (std::vector<std::string>{"out/mine.txt", "walled.json"}));
+}
+
+TEST(FieldColours, GoFromLightToDark) {
+  const auto lightness = [](const glm::vec3& c) { return glm::dot(c, {0.30f, 0.59f, 0.11f}); };
+  for (const auto colourOf : {app::costColour, app::timeColour})
+    for (int i = 0; i < 100; ++i) {
+      const glm::vec3 lighter = colourOf(0.01f * static_cast<float>(i)),
+                      darker = colourOf(0.01f * static_cast<float>(i + 1));
+      EXPECT_GT(lightness(lighter), lightness(darker)) << i;
+    }
+}
+
+TEST(FieldText, HasEveryCharacter) {
+  for (char c = '!'; c <= '~'; ++c) {
+    const app::Glyph glyph = app::glyphOf(c);
+    EXPECT_FALSE(glyph.strokes.front().empty()) << c;
+    for (const auto& stroke : glyph.strokes)
+      for (const glm::vec2& point : stroke) {
+        EXPECT_GE(point.x, 0) << c;
+        EXPECT_LE(point.x, 4) << c;
+        EXPECT_GE(point.y, -2) << c;
+        EXPECT_LE(point.y, app::glyphHeight) << c;
+      }
+  }
+  EXPECT_TRUE(app::glyphOf(' ').strokes.front().empty());
+  EXPECT_GT(Drawing::textWidth(10, "wide"), Drawing::textWidth(10, "w"));
+}
+
+TEST(FieldMap, StepsAreRound) {
+  for (const auto& [value, step] :
+       {std::pair(1.0, 1.0), {1.9, 1.0}, {2.0, 2.0}, {4.99, 2.0}, {73.0, 50.0}, {0.03, 0.02}})
+    EXPECT_NEAR(app::niceBelow(value), step, 1e-12) << value;
+}
+
+// Shapes reach as far as they say, and no further than they may.
+TEST(FieldMap, ShapesAreConfined) {
+  const glm::vec3 white(1), black(0);
+  Drawing drawing(40, 30, white);
+  drawing.confine(10, 5, 20, 20);
+  drawing.disc({20, 15}, 8, black);
+  EXPECT_EQ(drawing.at(20, 15), black);
+  EXPECT_EQ(drawing.at(20, 8), black);
+  EXPECT_EQ(drawing.at(20, 6), white);
+  drawing.line({0, 10}, {40, 10}, 3, black);
+  EXPECT_EQ(drawing.at(9, 10), white);
+  EXPECT_EQ(drawing.at(10, 10), black);
+  EXPECT_EQ(drawing.at(29, 10), black);
+  EXPECT_EQ(drawing.at(30, 10), white);
+  EXPECT_EQ(drawing.rgba().size(), 40u * 30 * 4);
+}
+
+// Times that fall toward +x lead straight there.
+TEST(FieldMap, AWayGoesDownTheTimes) {
+  const Heightfield flat{
+      .name = "flat", .columns = 2, .rows = 2, .spacingX = 20, .spacingZ = 20, .heights = {0, 0, 0, 0}};
+  CostGrid grid{
+      .columns = 20, .rows = 20, .cell = 1, .origin = {-10, -10}, .cost = std::vector<float>(400, 1)};
+  std::vector<float> times(400);
+  for (size_t i = 0; i < times.size(); ++i) times[i] = 30 - static_cast<float>(i % 20);
+  const app::MapGround ground{flat, {}, grid, "", ""};
+  const app::MapGoal goal{{8, 2}, {8, 2}, times, std::vector<bool>(400, true), {}};
+  const std::vector<glm::vec2> way = app::wayFrom(ground, goal, {-5, 2});
+  EXPECT_EQ(way.back(), goal.stop);
+  for (const glm::vec2& place : way) EXPECT_NEAR(place.y, 2, 1e-4);
+  // Elsewhere it ends where times no longer fall, at the edge.
+  EXPECT_NE(app::wayFrom(ground, goal, {-5, -5}).back(), goal.stop);
+}
+
+}  // namespace
+}  // namespace skitter::test
