@@ -72,8 +72,8 @@ double sizeOf(const Avoiding& agent) {
 // How far a float32 solve may be off. It is six standard deviations of solves that err at random, which take
 // the same sides, for where rounding leads depends on how the half-planes lie to each other; and what float32
 // errs by where no half-plane is met: a normalisation, a root and ten operations.
-double bound(const Avoiding& agent, const reference::AvoidResult& result) {
-  reference::AvoidChoices same;
+double bound(const Avoiding& agent, const reference::AvoidResult& result, bool otherObstacle = false) {
+  reference::AvoidChoices same{.otherObstacle = otherObstacle};
   std::vector<reference::Walker> neighbours;
   for (const reference::HalfPlane& plane : result.planes) {
     same.right.push_back(plane.right);
@@ -118,12 +118,14 @@ void checkAvoid(const Setting& setting, const Moment& moment, Judge& judge) {
   const double near = 16 * tolerance::roundoff * sizeOf(agent);
   for (size_t k = 0; k < result.planes.size() && inDoubt.size() < mostSidesInDoubt; ++k)
     if (result.planes[k].sideMargin < near) inDoubt.push_back(k);
-  for (size_t sides = 0; sides < size_t{1} << inDoubt.size(); ++sides) {
-    reference::AvoidChoices choices;
+  // And which obstacle is the last that counts: a distance errs by 4 roundings of what it follows from.
+  const bool obstacleInDoubt = result.obstacleMargin < 4 * tolerance::roundoff;
+  for (size_t way = 0; way < size_t{obstacleInDoubt ? 2u : 1u} << inDoubt.size(); ++way) {
+    reference::AvoidChoices choices{.otherObstacle = (way >> inDoubt.size() & 1) != 0};
     choices.right.assign(result.planes.size(), -1);
-    for (size_t i = 0; i < inDoubt.size(); ++i) choices.right[inDoubt[i]] = static_cast<int>(sides >> i & 1);
+    for (size_t i = 0; i < inDoubt.size(); ++i) choices.right[inDoubt[i]] = static_cast<int>(way >> i & 1);
     const reference::AvoidResult other = agent.run(choices);
-    const double otherAllowed = bound(agent, other);
+    const double otherAllowed = bound(agent, other, choices.otherObstacle);
     for (const int stands : {-1, 0, 1}) {
       if (stands >= 0 && !(other.standMargin < otherAllowed)) continue;
       choices.stands = stands;

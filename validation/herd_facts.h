@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "crowd/grid.h"
@@ -54,6 +55,22 @@ inline std::optional<ForageFacts> forageOf(const crowd::Kind& kind, int64_t firs
                      .agents = kind.agents};
 }
 
+inline reference::AvoidObstacle obstacleOf(const Disc& disc) {
+  return {.corners = {disc.centre}, .radius = disc.radius};
+}
+inline reference::AvoidObstacle obstacleOf(const Capsule& capsule) {
+  return {.corners = {capsule.from, capsule.to}, .radius = capsule.radius};
+}
+inline reference::AvoidObstacle obstacleOf(const ConvexPolygon& polygon) {
+  return {.corners = {polygon.corners.begin(), polygon.corners.end()}};
+}
+inline std::vector<reference::AvoidObstacle> obstaclesOf(const Scene& scene) {
+  std::vector<reference::AvoidObstacle> obstacles;
+  for (const Obstacle& obstacle : scene.obstacles)
+    obstacles.push_back(std::visit([](const auto& shape) { return obstacleOf(shape); }, obstacle.shape));
+  return obstacles;
+}
+
 // The facts of a herd's kind. Call it once the tick length is known: the parameters are complete only then.
 // The facts refer to the kind's rig.
 inline HerdFacts herdFacts(const crowd::Kind& kind, const Heightfield& terrain) {
@@ -73,8 +90,10 @@ inline HerdFacts herdFacts(const Crowd::Impl& crowd, const crowd::HerdRun& of, c
   facts.forage = forageOf(kind, of.run->firstAgent);
   if (!kind.avoids) return facts;
   const crowd::Quanta quanta = crowd::quantaOf(crowd);
-  facts.avoid = {
-      .quanta = quanta.inMetre, .look = quanta.lookOf(kind), .legLength = kind.parameters.legLength};
+  facts.avoid = {.quanta = quanta.inMetre,
+                 .look = quanta.lookOf(kind),
+                 .legLength = kind.parameters.legLength,
+                 .obstacles = obstaclesOf(crowd.scene)};
   facts.firstNumber = crowd::numberOf(crowd, kind) + of.run->firstAgent;
   return facts;
 }

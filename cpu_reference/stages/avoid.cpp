@@ -14,6 +14,7 @@ constexpr double horizon = 2, pushTime = 0.5;
 constexpr double rightBias = 0.05;
 constexpr double softness = 0.05;
 constexpr int sweeps = 6;
+constexpr double obstacleTime = 0.5, obstacleSoftness = 0.01;
 constexpr double pushSpeed = 0.3, steadySpeed = 0.05;
 
 // Rounding errors of the size that a float32 computation makes; none by default.
@@ -107,20 +108,105 @@ HalfPlane planeOf(const AvoidTuning& tuning, const Walker& self, const Seen& see
   return plane;
 }
 
-// Nearest to `wanted`: soft half-planes, by projected Gauss-Seidel on their multipliers, the nearest
-// neighbour last.
-glm::dvec2 solved(const std::vector<HalfPlane>& planes, const glm::dvec2& wanted, Rounding& rounded) {
-  std::vector<double> pushes(planes.size(), 0.0);
+// An obstacle as an agent sees it.
+struct Beside {
+  size_t obstacle;
+  glm::dvec2 away;  // unit, out of the obstacle the shortest way
+  double distance;  // from it, less than 0 inside
+  double length;    // of what these are computed from
+};
+
+// The nearest point of a side, and how far it is.
+struct OnSide {
+  glm::dvec2 delta, way;  // from the point to the place; along the side
+  double distance;
+};
+OnSide nearestOnSide(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& place) {
+  const glm::dvec2 way = b - a;
+  const double squared = glm::dot(way, way);
+  const double along = squared > 0 ? std::clamp(glm::dot(place - a, way) / squared, 0.0, 1.0) : 0;
+  const glm::dvec2 delta = place - (a + along * way);
+  return {delta, way, glm::length(delta)};
+}
+
+double crossOf(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+Beside besideOf(size_t number, const AvoidObstacle& obstacle, const glm::dvec2& place) {
+  std::vector<glm::dvec2> corners = obstacle.corners;
+  const size_t n = corners.size();
+  const bool isPolygon = n > 2;
+  if (isPolygon && crossOf(corners[1] - corners[0], corners[2] - corners[1]) < 0)
+    std::ranges::reverse(corners);
+  OnSide nearest{.delta = {}, .way = {}, .distance = std::numeric_limits<double>::infinity()};
+  bool inside = isPolygon;
+  double longest = 0;
+  for (size_t i = 0; i < (isPolygon ? n : 1); ++i) {
+    const glm::dvec2 a = corners[i], b = corners[(i + 1) % n];
+    const OnSide side = nearestOnSide(a, b, place);
+    if (side.distance < nearest.distance) nearest = side;
+    inside = inside && crossOf(b - a, place - a) > 0;
+    longest = std::max(longest, glm::length(place - a) + glm::length(b - a));
+  }
+  const double sign = inside ? -1 : 1;
+  Beside beside{number, {1, 0}, sign * nearest.distance - obstacle.radius, longest};
+  if (nearest.distance > 0)
+    beside.away = sign * nearest.delta / nearest.distance;
+  else if (glm::length(nearest.way) > 0)
+    beside.away = glm::dvec2(nearest.way.y, -nearest.way.x) / glm::length(nearest.way);
+  return beside;
+}
+
+// The obstacles that count, in their order. `margin` is AvoidResult::obstacleMargin.
+std::vector<Beside> obstaclesBeside(const AvoidTuning& tuning, const Walker& self, bool other,
+                                    double& margin) {
+  const glm::dvec2 place = glm::dvec2(self.x, self.z) / tuning.quanta;
+  const double reach = static_cast<double>(self.radius + tuning.look) / tuning.quanta;
+  std::vector<Beside> all;
+  for (size_t i = 0; i < tuning.obstacles.size(); ++i) {
+    const Beside beside = besideOf(i, tuning.obstacles[i], place);
+    if (beside.distance < reach) all.push_back(beside);
+  }
+  margin = std::numeric_limits<double>::infinity();
+  if (all.size() <= mostObstacles) return all;
+  std::ranges::stable_sort(all, {}, &Beside::distance);
+  const Beside &last = all[mostObstacles - 1], &next = all[mostObstacles];
+  margin = (next.distance - last.distance) / std::max(next.length + last.length, 1e-9);
+  if (other) std::swap(all[mostObstacles], all[mostObstacles - 1]);
+  all.resize(mostObstacles);
+  std::ranges::sort(all, {}, &Beside::obstacle);
+  return all;
+}
+
+ObstaclePlane planeOf(const AvoidTuning& tuning, const Walker& self, const Beside& beside,
+                      Rounding& rounded) {
+  const double radius = static_cast<double>(self.radius) / tuning.quanta;
+  // The distance errs by roundings of what it is the difference of, and its direction by as much over it.
+  const double distance = rounded(beside.distance, 4 * (beside.length + radius));
+  const double from = std::abs(beside.distance + tuning.obstacles[beside.obstacle].radius);
+  const glm::dvec2 n = rounded(beside.away, 4 + 4 * beside.length / std::max(from, 1e-9));
+  return {beside.obstacle, n / std::max(glm::length(n), 1e-9), (radius - distance) / obstacleTime};
+}
+
+// One step of projected Gauss-Seidel on the multiplier of a soft half-plane.
+template <class Plane>
+void project(const Plane& plane, double soft, double& push, glm::dvec2& v, Rounding& rounded) {
+  const double lacking = plane.bound - glm::dot(plane.n, v) - soft * push;
+  const double pushed =
+      std::max(0.0, rounded(push + lacking / (1 + soft), 4 * (std::abs(plane.bound) + glm::length(v))));
+  v = rounded(v + (pushed - push) * plane.n, 2 * (glm::length(v) + pushed));
+  push = pushed;
+}
+
+// Nearest to `wanted`: the nearest neighbour after the others, then obstacles.
+glm::dvec2 solved(const std::vector<HalfPlane>& planes, const std::vector<ObstaclePlane>& obstacles,
+                  const glm::dvec2& wanted, Rounding& rounded) {
+  std::vector<double> pushes(planes.size(), 0.0), holds(obstacles.size(), 0.0);
   glm::dvec2 v = wanted;
-  for (int sweep = 0; sweep < sweeps; ++sweep)
-    for (size_t k = planes.size(); k-- > 0;) {
-      const HalfPlane& plane = planes[k];
-      const double lacking = plane.bound - glm::dot(plane.n, v) - softness * pushes[k];
-      const double push = std::max(
-          0.0, rounded(pushes[k] + lacking / (1 + softness), 4 * (std::abs(plane.bound) + glm::length(v))));
-      v = rounded(v + (push - pushes[k]) * plane.n, 2 * (glm::length(v) + push));
-      pushes[k] = push;
-    }
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (size_t k = planes.size(); k-- > 0;) project(planes[k], softness, pushes[k], v, rounded);
+    for (size_t k = 0; k < obstacles.size(); ++k)
+      project(obstacles[k], obstacleSoftness, holds[k], v, rounded);
+  }
   return v;
 }
 
@@ -138,7 +224,7 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
                   std::span<const Walker> all, const glm::dvec2& desired, bool asleep,
                   const AvoidChoices& choices, const AvoidErrors& errors) {
   AvoidResult result;
-  result.standMargin = std::numeric_limits<double>::infinity();
+  result.standMargin = result.obstacleMargin = std::numeric_limits<double>::infinity();
   if (body.absent) {
     result.asleep = true;
     return result;
@@ -162,10 +248,13 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
     result.planes.push_back(planeOf(tuning, self, other, right, rounded));
   }
 
+  for (const Beside& beside : obstaclesBeside(tuning, self, choices.otherObstacle, result.obstacleMargin))
+    result.obstaclePlanes.push_back(planeOf(tuning, self, beside, rounded));
+
   const double aside = rounded(press * std::max(0.0, 1 - body.speed / std::max(speed, 1e-6)), 8);
   const glm::dvec2 wanted =
       rounded((desired + aside * rightOf(desired)) / std::sqrt(1 + aside * aside), 8 * speed);
-  glm::dvec2 v = solved(result.planes, wanted, rounded);
+  glm::dvec2 v = solved(result.planes, result.obstaclePlanes, wanted, rounded);
   const double most = std::max(speed, pushSpeed * tuning.legLength);
   v *= std::min(1.0, most / std::max(glm::length(v), 1e-6));
   const double slow = steadySpeed * tuning.legLength * close, moves = glm::length(v);

@@ -16,10 +16,18 @@ struct Walker {
   bool yields = false;  // its herd avoids
 };
 
+// An obstacle: all within `radius` of the convex hull of its corners, in metres. One corner makes a disc, two
+// a capsule; of more, which are in order, none lies on a line with its neighbours.
+struct AvoidObstacle {
+  std::vector<glm::dvec2> corners;
+  double radius = 0;
+};
+
 struct AvoidTuning {
   double quanta = 1024;  // in a metre
-  int64_t look = 0;      // quanta between footprints, up to which another agent is seen
+  int64_t look = 0;      // quanta between footprints, up to which another agent, or an obstacle, is seen
   double legLength = 1;
+  std::vector<AvoidObstacle> obstacles = {};
 };
 
 // What one neighbour asks: n . v >= bound.
@@ -32,10 +40,18 @@ struct HalfPlane {
   int right = -1;  // 1 or 0: the side that was taken; -1 where there is none
 };
 
+// What an obstacle asks for, likewise.
+struct ObstaclePlane {
+  size_t obstacle = 0;  // its place in AvoidTuning
+  glm::dvec2 n{0};
+  double bound = 0;
+};
+
 // Decisions that the caller takes instead of the rule, to recompute the other side of a tie.
 struct AvoidChoices {
   std::vector<int> right = {};  // 0 or 1: forced, of the half-plane in that place
   int stands = -1;
+  bool otherObstacle = false;  // the nearest one that is left out takes the place of the farthest that is not
 };
 
 // Errors as float32 makes them, drawn uniformly: Monte Carlo arithmetic (Parker 1997).
@@ -47,12 +63,16 @@ struct AvoidErrors {
 struct AvoidResult {
   glm::dvec2 velocity{0};
   bool asleep = false;
-  int64_t seen = 0;               // agents in reach, those that the cap drops among them
-  std::vector<HalfPlane> planes;  // of the nearest, the nearest first
-  double standMargin = 0;         // of |v| from what counts as standing, m/s; infinite where not asked
+  int64_t seen = 0;                                // agents in reach, those that the cap drops among them
+  std::vector<HalfPlane> planes;                   // of the nearest, the nearest first
+  std::vector<ObstaclePlane> obstaclePlanes = {};  // of the nearest, in the order of AvoidTuning
+  // By how much the farthest of these is nearer than the next one, a share of the lengths that this follows
+  // from; infinite where there is none.
+  double obstacleMargin = 0;
+  double standMargin = 0;  // of |v| from what counts as standing, m/s; infinite where not asked
 };
 
-constexpr size_t mostNeighbours = 8;
+constexpr size_t mostNeighbours = 8, mostObstacles = 4;
 
 // A walker of that body, with a footprint of that radius in quanta.
 Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yields, double quanta);

@@ -34,6 +34,7 @@
 #include "crowd/steer.h"
 #include "crowd/tint.h"
 #include "crowd/tuning.h"
+#include "crowd/walls.h"
 #include "crowd/watch.h"
 #include "crowd/ways/trails.h"
 #include "crowd/ways/ways.h"
@@ -165,8 +166,10 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   kind.forageGround = from.ways.value_or(Ways{});
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
+  const bool amongWalls = kind.avoids && !crowd.scene.obstacles.empty();
+  if (amongWalls) kind.wallBuffer = crowd::makeWalls(crowd, kind);
   for (const Stage& stage : crowd::stagesOf(kind.controller, asked, kind.avoids, kind.wayNeeds.has_value(),
-                                            kind.forageNeeds.has_value()))
+                                            kind.forageNeeds.has_value(), amongWalls))
     kind.stages.push_back({stage});
   return kind;
 }

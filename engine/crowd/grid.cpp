@@ -32,7 +32,6 @@ namespace {
 // Squares of reaches must be ints.
 constexpr uint32_t longestReachInQuanta = 32767;
 constexpr float finestQuanta = 1024;  // in a metre
-constexpr float lookLegLengths = 2;
 // Cells are longer than any reach by this, for the float32 cell number of a place within 4 km, of cells of at
 // least `leastCell`, errs by a 250th.
 constexpr float cellMargin = 1.01f;
@@ -43,12 +42,6 @@ uint64_t agentsOf(const Crowd::Impl& crowd) {
   uint64_t agents = 0;
   for (const Kind& kind : crowd.kinds) agents += kind.agents;
   return agents;
-}
-
-uint64_t bytesABinding(const gpu::Context& context) {
-  const uint64_t storage = context.limits().maxStorageBufferRange;
-  return context.texelLoads() ? std::min(storage, uint64_t{context.limits().maxTexelBufferElements} * 16)
-                              : storage;
 }
 
 // At least twice as many as agents, where bindings reach so many.
@@ -86,6 +79,12 @@ void bindPages(Crowd::Impl& crowd) {
 }
 
 }  // namespace
+
+uint64_t bytesABinding(const gpu::Context& context) {
+  const uint64_t storage = context.limits().maxStorageBufferRange;
+  return context.texelLoads() ? std::min(storage, uint64_t{context.limits().maxTexelBufferElements} * 16)
+                              : storage;
+}
 
 uint32_t Quanta::radiusOf(const Kind& kind) const {
   return std::max(1u, static_cast<uint32_t>(std::lround(footprintRadius(kind.rig) * inMetre)));

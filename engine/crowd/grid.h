@@ -8,6 +8,12 @@
 
 namespace skitter::crowd {
 
+// How far agents that avoid see beyond footprints.
+inline constexpr float lookLegLengths = 2;
+
+// Of records, as the device loads them.
+uint64_t bytesABinding(const gpu::Context& context);
+
 // How a crowd with a herd that avoids counts places (docs/stages/avoid.md).
 struct Quanta {
   float inMetre = 0;

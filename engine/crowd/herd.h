@@ -72,6 +72,7 @@ struct Kind {
   gpu::Buffer clipHeads, clipTimes, clipRows, clipLegs, clipBones;
   KeyPoses keyPoses;  // of controller key-poses
   gpu::Buffer keyBuffer;
+  gpu::Buffer wallBuffer;       // the scene's obstacles, where its herds avoid
   bool reachTriggered = false;  // legs step when out of reach, without a rhythm
   bool tinted = false;          // some herd of it has a colour or a tint of its own
   shared::Parameters parameters{};

@@ -50,8 +50,6 @@ void addParameters(const shared::Parameters& parameters, gpu::KernelInfo& info) 
 #undef ADD_KNOWN
 }
 
-bool isNavigate(const Stage& stage) { return stage.makes == StageId::navigate; }
-
 }  // namespace
 
 bool keepsFeet(const CrowdOptions& options) {
@@ -59,7 +57,7 @@ bool keepsFeet(const CrowdOptions& options) {
 }
 
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids, bool findsWays,
-                            bool forages) {
+                            bool forages, bool amongWalls) {
   const ControllerStages& of = controllerStages(controller);
   std::vector<Stage> stages = of.all(options);
   std::erase_if(stages, [&](const Stage& stage) {
@@ -69,8 +67,10 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
   if (options.fuse && of.fused != nullptr)
     for (const Stage& fused : of.fused())
       if ((!findsWays && !forages) || !fused.makes.has(StageId::navigate)) fuse(options, fused, stages);
-  if (findsWays) std::ranges::replace_if(stages, isNavigate, wayNavigateStage());
-  if (forages) std::ranges::replace_if(stages, isNavigate, forageNavigateStage());
+  const auto isOf = [](StageId id) { return [id](const Stage& stage) { return stage.makes == id; }; };
+  if (findsWays) std::ranges::replace_if(stages, isOf(StageId::navigate), wayNavigateStage());
+  if (forages) std::ranges::replace_if(stages, isOf(StageId::navigate), forageNavigateStage());
+  if (amongWalls) std::ranges::replace_if(stages, isOf(StageId::avoid), wallAvoidStage());
   for (Stage& stage : stages)
     if (stage.isOfTheAwake()) stage.bindings.push_back({shared::BINDING_AWAKE, gpu::BindingKind::load4});
   return stages;

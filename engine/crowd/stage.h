@@ -55,9 +55,9 @@ struct ReadyStage : Stage {
 bool keepsFeet(const CrowdOptions& options);
 
 // A controller's stages, in order, less those that make what nobody asked for. `avoids`: the herd does.
-// `findsWays`: it goes by fields. `forages`: it goes by trails.
+// `findsWays`: it goes by fields. `forages`: it goes by trails. `amongWalls`: there are obstacles.
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids = false,
-                            bool findsWays = false, bool forages = false);
+                            bool findsWays = false, bool forages = false, bool amongWalls = false);
 StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs);
 // Makes the pipelines, for the kind's rig, controller and tuning.
 void makeKernels(const StageNeeds& needs, ReadyStage& stage);
@@ -76,6 +76,7 @@ SKITTER_STAGES(SKITTER_STAGE)
 // Forms for single controllers, and fused stages, in the file of their last stage.
 Stage wayNavigateStage();
 Stage forageNavigateStage();
+Stage wallAvoidStage();
 Stage blindBodyStage();
 Stage bodyAndGaitStage();
 Stage navigateBodyAndGaitStage();

@@ -73,7 +73,7 @@ HalfPlane halfPlaneOf(vec2 p, float d, float radii, float power, vec2 own, vec2 
   return HalfPlane(n, dot(n, own + share * change));
 }
 
-// 4. Nearest to `v`.
+// 5. Nearest to `v`.
 vec2 solvePlanes(HalfPlane planes[NEIGHBOURS], vec2 v) {
   float push[NEIGHBOURS];
   [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) push[k] = 0.0;

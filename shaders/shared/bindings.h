@@ -47,6 +47,8 @@ BINDING BINDING_CROWDING = 69;  // CROWDING_
 
 // The fields of herds that find their way (shared/ways.h).
 BINDING BINDING_WAY = 70;
+// Obstacles, for herds that avoid (shared/walls.h).
+BINDING BINDING_WALL = 73;
 
 // The ground and the trail of those that forage (shared/forage.h).
 BINDING BINDING_FORAGE_GROUND = 71;

@@ -15,6 +15,31 @@ LOAD4_BUFFER(BINDING_PLACE, places);
 LOAD4_BUFFER(BINDING_WALKER, walkers);
 layout(set = 0, binding = BINDING_CROWDING, std430) buffer CrowdingBlock { uint crowding[]; };
 #include "stages/absent.glsl"
+#ifdef WALLS
+#include "shared/walls.h"
+#include "lib/walls.glsl"
+
+LOAD4_BUFFER(BINDING_WALL, walls);
+
+// `place` and `radius` are the agent's, metres; beyond `sight` from its footprint no obstacle counts.
+Walls wallsAround(vec2 place, float radius, float sight) {
+  vec4 shape = LOAD4(walls, 0), corner = LOAD4(walls, 1);
+  vec2 at = clamp(floor((place - corner.xy) * shape.z), vec2(0.0), shape.xy - 1.0);
+  vec4 cell = LOAD4(walls, WALL_HEADS + int(at.y) * int(shape.x) + int(at.x));
+  Walls found = noWalls(sight);
+  NearestEdge nearest = noEdge();
+  int first = int(cell.x), edges = int(cell.y);
+  for (int i = 0; i < edges; ++i) {
+    vec4 ends = LOAD4(walls, first + i * WALL_EDGE_STRIDE), kind = LOAD4(walls, first + i * WALL_EDGE_STRIDE + 1);
+    approach(nearest, place, ends, kind.z != 0.0);
+    if (kind.y != 0.0) {
+      take(found, planeBeside(nearest, radius + kind.x));
+      nearest = noEdge();
+    }
+  }
+  return found;
+}
+#endif
 
 int buckets = int(constants.every), row = int(constants.watched), look = int(constants.room);
 float metres = constants.sleepTime;
@@ -79,7 +104,14 @@ void main() {
   bool forbidden = false;
   [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k)
     forbidden = forbidden || planes[k].bound > dot(planes[k].n, velocity);
+#ifdef WALLS
+  Walls around = wallsAround(self.xy * metres, self.z * metres, float(look) * metres);
+  [[unroll]] for (int k = 0; k < NEAREST_WALLS; ++k)
+    forbidden = forbidden || around.planes[k].bound > dot(around.planes[k].n, velocity);
+  RARELY(forbidden) velocity = solveAmongWalls(planes, around, velocity);
+#else
   RARELY(forbidden) velocity = solvePlanes(planes, velocity);
+#endif
   float most = max(speed, AVOID_PUSH_SPEED * parameters.legLength), moved = length(velocity);
   velocity *= moved > most ? most / moved : 1.0;
   moved = min(moved, most);

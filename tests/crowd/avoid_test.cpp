@@ -7,6 +7,8 @@
 #include "crowd/page.h"
 #include "crowd/radius.h"
 #include "crowd/simulation.h"
+#include "crowd/walls.h"
+#include "shared/walls.h"
 #include "skitter/state.h"
 
 namespace skitter::test {
@@ -334,6 +336,115 @@ TEST_F(AvoidTest, TheGridHasNoEdges) {
   for (const auto& each : results) expectAllPass(each);
   const HerdState state = crowd.download(0);
   for (uint32_t i = 0; i < 12; ++i) EXPECT_GE(state.avoid[4 * i + 3], 3) << i;
+}
+
+// Who walk at a wall and at a post, pushed by those behind them.
+Scene pressedScene(uint32_t agents) {
+  Scene scene = sceneOf(agents, 1, 3);
+  scene.obstacles = {{Capsule{.from = {-12, 4}, .to = {12, 4}, .radius = 0.2f}},
+                     {ConvexPolygon{.corners = {{-1, 0}, {1, 0}, {1, 1}, {-1, 1}}}},
+                     {Disc{.centre = {4, 1}, .radius = 0.5f}}};
+  scene.herds[0].avoid = true;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1.5f, .centre = {0, -6}};
+  scene.herds[0].goal = {.kind = Goal::Kind::velocity, .velocity = {0, 1}};
+  return scene;
+}
+
+// How far a place is from the nearest of these obstacles.
+double fromObstacles(const glm::dvec3& at) {
+  const double wall = std::hypot(std::max(std::abs(at.x) - 12, 0.0), at.z - 4) - 0.2;
+  const double post =
+      std::hypot(std::max(std::abs(at.x) - 1, 0.0), std::max(std::abs(at.z - 0.5) - 0.5, 0.0));
+  return std::min({wall, post, std::hypot(at.x - 4, at.z - 1) - 0.5});
+}
+
+TEST_F(AvoidTest, ObstaclesAreKeptClearOf) {
+  Crowd crowd(device(), flatGround(), pressedScene(36));
+  const double radius = crowd::footprintRadius(crowd.rig(0));
+  double nearest = 1e9;
+  for (int part = 0; part < 120; ++part) {
+    simulate(device(), crowd, 10);
+    const HerdState state = crowd.download(0);
+    for (uint32_t i = 0; i < state.agents; ++i)
+      nearest = std::min(nearest, fromObstacles(positionOf(state, i)));
+  }
+  // They come close. The one whom most others press comes to 0.80 of its radius (docs/stages/avoid.md).
+  EXPECT_LT(nearest, 1.1 * radius);
+  EXPECT_GT(nearest, 0.75 * radius);
+}
+
+TEST_P(AvoidReplayTest, AmongObstacles) {
+  const Heightfield ground = smallRollingGround();
+  Crowd crowd(device(), ground, pressedScene(25), {.pageAgents = 7});
+  simulate(device(), crowd, 200);
+  expectAllPass(replayAll(device(), crowd, ground, 120).front());
+}
+
+TEST_F(AvoidTest, AmongObstaclesWhatIsBesideDoesNotShow) {
+  const auto hashWith = [&](const CrowdOptions& options) {
+    Crowd crowd(device(), smallRollingGround(), pressedScene(30), options);
+    simulate(device(), crowd, 200);
+    return crowd.stateHash();
+  };
+  const uint64_t hash = hashWith({});
+  EXPECT_EQ(hash, hashWith({}));
+  EXPECT_EQ(hash, hashWith({.pageAgents = 7}));
+  EXPECT_EQ(hash, hashWith({.fuse = false}));
+}
+
+// Far from all of them, and where there are none.
+TEST_F(AvoidTest, ObstaclesThatAreFarDoNotShow) {
+  Scene far = meetingScene(30), none = far;
+  far.obstacles = {{Disc{.centre = {-30, -30}, .radius = 0.5f}}};
+  Crowd a(device(), flatGround(), far), b(device(), flatGround(), none);
+  for (Crowd* crowd : {&a, &b}) simulate(device(), *crowd, 60);
+  EXPECT_EQ(a.stateHash(), b.stateHash());
+  EXPECT_TRUE(implOf(a).kinds[0].wallBuffer);
+  EXPECT_FALSE(implOf(b).kinds[0].wallBuffer);
+}
+
+// The obstacles that the records have for a place, as numbers of edges.
+std::vector<glm::vec2> edgeStartsAt(const std::vector<float>& records, const glm::vec2& place) {
+  const auto vec4 = [&](float at) { return &records[4 * static_cast<size_t>(at)]; };
+  const glm::vec2 cell = glm::floor((place - glm::vec2(vec4(1)[0], vec4(1)[1])) * vec4(0)[2]);
+  const float* runs = vec4(static_cast<float>(shared::WALL_HEADS) + cell.y * vec4(0)[0] + cell.x);
+  std::vector<glm::vec2> starts;
+  for (float i = 0; i < runs[1]; ++i) {
+    const float* edge = vec4(runs[0] + i * static_cast<float>(shared::WALL_EDGE_STRIDE));
+    starts.emplace_back(edge[0], edge[1]);
+  }
+  return starts;
+}
+
+TEST(WallRecords, HaveWhatIsInReach) {
+  const Heightfield ground = flatGround();
+  std::vector<Obstacle> discs;
+  for (uint32_t i = 0; i < 200; ++i) {
+    const auto along = [&](uint32_t k) {
+      return 50 * std::fmod(static_cast<float>(i * k), 1.618f) / 1.618f - 25;
+    };
+    discs.push_back({Disc{.centre = {along(7), along(13)}, .radius = 0.1f * static_cast<float>(1 + i % 20)}});
+  }
+  for (const uint64_t most : {uint64_t{1} << 20, uint64_t{2000}}) {
+    const auto records = crowd::wallRecords(ground, discs, 2.5f, most);
+    ASSERT_TRUE(records) << most;
+    EXPECT_LE(records->size(), 4 * most);
+    size_t found = 0;
+    for (float x = -24; x < 24; x += 1.7f)
+      for (float z = -24; z < 24; z += 1.9f) {
+        const std::vector<glm::vec2> starts = edgeStartsAt(*records, {x, z});
+        found += starts.size();
+        for (const Obstacle& obstacle : discs) {
+          const Disc& disc = std::get<Disc>(obstacle.shape);
+          if (glm::distance(disc.centre, {x, z}) > disc.radius + 2.5f) continue;
+          EXPECT_NE(std::ranges::find(starts, disc.centre), starts.end()) << x << ", " << z;
+        }
+      }
+    if (most > 2000) {
+      EXPECT_LT(found, 29 * 26 * discs.size() / 2) << "far from all are in every cell";
+    }
+  }
+  EXPECT_FALSE(crowd::wallRecords(ground, discs, 2.5f, 300));
 }
 
 TEST_F(AvoidTest, FootprintsHoldTrunkAndHalfOfTheWayHome) {

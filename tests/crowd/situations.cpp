@@ -48,6 +48,29 @@ Results meeting(Device& device, Controller controller, const CrowdOptions& optio
   return replay(device, crowd, ground, 200);
 }
 
+// The same among obstacles of every shape, more than an agent looks at, and one agent begins in one.
+Results amongObstacles(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(49, 1, 1, controller);
+  scene.obstacles = {{Disc{.centre = {2.1f, 1.7f}, .radius = 0.6f}},
+                     {Capsule{.from = {-3, -2}, .to = {1, -3}, .radius = 0.2f}},
+                     {ConvexPolygon{.corners = {{-2.5f, 0.8f}, {-1.6f, 2.6f}, {-0.6f, 1}}}},
+                     {Disc{.centre = {0.4f, -1.1f}, .radius = 0.3f}},
+                     {Disc{.centre = {-1.1f, -0.7f}, .radius = 0.25f}},
+                     {Capsule{.from = {3, -3}, .to = {3.2f, 4}}},
+                     {ConvexPolygon{.corners = {{0, 2.5f}, {1, 2.6f}, {1.2f, 3.5f}, {0.2f, 3.6f}}}}};
+  // More of them around the goal than an agent keeps clear of.
+  for (const glm::vec2 post :
+       {glm::vec2(1.2f, 0.4f), glm::vec2(0.6f, 1.2f), glm::vec2(-0.3f, 0.9f), glm::vec2(1, -0.5f)})
+    scene.obstacles.push_back({Disc{.centre = post, .radius = 0.1f}});
+  scene.herds[0].avoid = true;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1.4f};
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0.3f, 0.2f}};
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 20);
+  return replay(device, crowd, ground, 200);
+}
+
 // Round the end of a wall to a goal behind it, and on to the goal.
 Results findingWays(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = smallRollingGround();
@@ -279,6 +302,7 @@ const std::vector<Situation>& situations() {
   static const std::vector<Situation> all = {
       {"walking", {Controller::adaptive}, walking},
       {"meeting", {Controller::adaptive, Controller::clip}, meeting},
+      {"amongObstacles", {Controller::adaptive, Controller::clip}, amongObstacles},
       {"findingWays", {Controller::adaptive, Controller::clip}, findingWays},
       {"roaming", {Controller::adaptive, Controller::clip}, roaming},
       {"foraging", {Controller::adaptive, Controller::clip}, foraging},

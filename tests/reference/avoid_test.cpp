@@ -60,6 +60,72 @@ TEST_F(Avoid, headOnBothPassOnTheirRight) {
   EXPECT_NEAR(other.velocity.y, -1 + 0.5 * lacking, 1e-9);
 }
 
+// The wall is 0.5 m from the footprint, which is a second's way at 1 m/s.
+TEST_F(Avoid, aWallIsApproachedSlowly) {
+  tuning.obstacles = {{.corners = {{-5, 1.2}, {5, 1.2}}, .radius = 0.2}};
+  const AvoidResult result = first({at(0, 0, 0)}, {0, 1.5});
+  ASSERT_EQ(result.obstaclePlanes.size(), 1u);
+  EXPECT_NEAR(result.obstaclePlanes[0].n.y, -1, 1e-12);
+  EXPECT_NEAR(result.obstaclePlanes[0].bound, -1, 1e-12);
+  EXPECT_NEAR(result.velocity.x, 0, 1e-12);
+  EXPECT_NEAR(result.velocity.y, 1.5 - 0.5 / 1.01, 1e-9);
+  EXPECT_EQ(first({at(0, 0, 0)}, {1.5, 0.5}).velocity, glm::dvec2(1.5, 0.5));
+}
+
+TEST_F(Avoid, whoIsInAnObstacleIsLedOut) {
+  const std::vector<glm::dvec2> square = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  tuning.obstacles = {{.corners = square}};
+  const auto expectOut = [&] {
+    const AvoidResult result = first({at(0, 0.875, 0)}, {0, 0});
+    ASSERT_EQ(result.obstaclePlanes.size(), 1u);
+    EXPECT_NEAR(result.obstaclePlanes[0].n.x, 1, 1e-12);
+    EXPECT_NEAR(result.obstaclePlanes[0].bound, (0.5 + 0.125) / 0.5, 1e-12);
+    EXPECT_NEAR(result.velocity.x, 0.3, 1e-9);
+    EXPECT_NEAR(result.velocity.y, 0, 1e-9);
+  };
+  expectOut();
+  std::ranges::reverse(tuning.obstacles[0].corners);
+  expectOut();
+}
+
+TEST_F(Avoid, discsAndCornersAreRound) {
+  tuning.obstacles = {{.corners = {{3, 4}}, .radius = 3.5}, {.corners = {{-3, -4}, {-3, -6}, {-6, -4}}}};
+  const AvoidResult result = first({at(0, 0, 0)}, {0, 0});
+  ASSERT_EQ(result.obstaclePlanes.size(), 1u) << "5 m are beyond sight";
+  EXPECT_NEAR(result.obstaclePlanes[0].n.x, -0.6, 1e-12);
+  EXPECT_NEAR(result.obstaclePlanes[0].n.y, -0.8, 1e-12);
+  EXPECT_NEAR(result.obstaclePlanes[0].bound, (0.5 - 1.5) / 0.5, 1e-12);
+  const glm::dvec2 corner = first({at(0, -2.25, -3)}, {0, 0}).obstaclePlanes.at(0).n;
+  EXPECT_NEAR(corner.x, 0.6, 1e-12);
+  EXPECT_NEAR(corner.y, 0.8, 1e-12);
+}
+
+// Of five the nearest four count, in their order.
+TEST_F(Avoid, theNearestObstaclesCount) {
+  for (const double distance : {1.9, 1.2, 1.0, 1.7, 1.4})
+    tuning.obstacles.push_back({.corners = {{0, distance}}, .radius = 0.1});
+  const AvoidResult result = first({at(0, 0, 0)}, {0, 0});
+  std::vector<size_t> counted;
+  for (const reference::ObstaclePlane& plane : result.obstaclePlanes) counted.push_back(plane.obstacle);
+  EXPECT_EQ(counted, (std::vector<size_t>{1, 2, 3, 4}));
+  EXPECT_NEAR(result.obstacleMargin, 0.2 / 3.6, 1e-9);
+  const Walker self = at(0, 0, 0);
+  reference::AvoidChoices choices;
+  choices.otherObstacle = true;
+  EXPECT_EQ(
+      reference::avoid(tuning, {}, self, {&self, 1}, {0, 0}, false, choices).obstaclePlanes.at(0).obstacle,
+      0u);
+}
+
+// Neighbours push; the obstacle has the last word but for the body's heading, which is toward it.
+TEST_F(Avoid, nobodyIsPushedIntoAWall) {
+  tuning.obstacles = {{.corners = {{-5, 0.5}, {5, 0.5}}}};
+  const AvoidResult result = first({at(0, 0, 0), at(1, 0.1, -0.3), at(2, -0.1, -0.3)}, {0, 0});
+  EXPECT_LT(result.velocity.y, 0.08);
+  tuning.obstacles.clear();
+  EXPECT_GT(first({at(0, 0, 0), at(1, 0.1, -0.3), at(2, -0.1, -0.3)}, {0, 0}).velocity.y, 0.2);
+}
+
 TEST_F(Avoid, whoDoesNotYieldIsGivenWay) {
   std::vector<Walker> all = {at(0, 0, 0, {0, 1}), at(1, 0, 2, {0, -1})};
   all[1].yields = false;

@@ -1,6 +1,8 @@
 #include "crowd/stage.h"
 #include "embedded/avoid_comp_storage.h"
 #include "embedded/avoid_comp_texel.h"
+#include "embedded/avoid_walls_comp_storage.h"
+#include "embedded/avoid_walls_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -19,6 +21,13 @@ Stage avoidStage() {
            {BINDING_WALKER, load4},
            {BINDING_CROWDING, store}},
           Stage::Over::crowd};
+}
+
+Stage wallAvoidStage() {
+  Stage stage = avoidStage();
+  stage.code = {embedded::avoid_walls_comp_texel(), embedded::avoid_walls_comp_storage()};
+  stage.bindings.push_back({shared::BINDING_WALL, gpu::BindingKind::load4});
+  return stage;
 }
 
 }  // namespace skitter::crowd

@@ -86,7 +86,7 @@ struct Herd {
   // rig is. Each agent draws one by the seed; one that is there twice is drawn twice as often. Agents are
   // numbered size after size, in the order of the first ones here.
   std::vector<float> sizes = {};
-  // Whether its agents keep clear of those near them, of all herds (docs/stages/avoid.md).
+  // Whether its agents keep clear of those near them, of all herds, and of obstacles (docs/stages/avoid.md).
   bool avoid = false;
   // Where its agents go to a goal of kind point around obstacles and impassable ground (docs/ways.md).
   std::optional<Ways> ways = {};
@@ -254,7 +254,7 @@ struct SKITTER_API Scene {
   std::vector<Herd> herds{Herd{}};
   Camera camera;
   std::vector<Event> events;        // by time; Crowd::record lets them happen
-  std::vector<Obstacle> obstacles;  // herds with ways go around them
+  std::vector<Obstacle> obstacles;  // herds with ways go around them, those that avoid keep clear of them
   std::vector<Threat> threats;      // and around these; Crowd::setThreat names them by their index
   uint64_t seed = 1;
 
