@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double pictureBytes = 1 << 20;  // of a map, at most about so much
+constexpr double mapBytes = 1 << 20;  // of a map, at most about so much
 
 struct FieldsOptions {
   SceneOptions scene;
@@ -208,7 +208,7 @@ int writeFields(const FieldsOptions& options) {
   const Scene scene = options.scene.load();
   checkWays(scene);
   options.scene.declare(files, scene);
-  files.expect("--out", pictureBytes * static_cast<double>(2 * scene.herds.size()));
+  files.expect("--out", mapBytes * static_cast<double>(2 * scene.herds.size()));
   files.check();
   std::optional<StopDeadline> deadline(std::in_place);
   const Heightfield terrain = scene.loadTerrain();

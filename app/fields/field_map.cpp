@@ -12,15 +12,16 @@
 namespace skitter::app {
 namespace {
 
-constexpr uint32_t longestSide = 1040;  // pixels of a map
-constexpr uint32_t leastSide = 420;     // of its picture, for the legend
-constexpr uint32_t left = 36, top = 92, bottom = 78, legendWidth = 250;
-constexpr glm::vec3 paper(1), ink(0.13f, 0.14f, 0.17f), quiet(0.42f, 0.44f, 0.48f);
-constexpr glm::vec3 blocked(0.44f, 0.46f, 0.50f), rock(0.19f, 0.20f, 0.23f), signal(0.90f, 0.16f, 0.22f);
+constexpr uint32_t longestMapSide = 1040;  // pixels of a map
+constexpr uint32_t leastMapSide = 420;     // of its picture, for the legend
+constexpr uint32_t mapLeft = 36, mapTop = 92, belowMap = 78, legendWidth = 250;
+constexpr glm::vec3 paperColour(1), inkColour(0.13f, 0.14f, 0.17f), quietColour(0.42f, 0.44f, 0.48f);
+constexpr glm::vec3 blockedColour(0.44f, 0.46f, 0.50f), rockColour(0.19f, 0.20f, 0.23f),
+    signalColour(0.90f, 0.16f, 0.22f);
 constexpr float arrowEvery = 34, arrowLength = 15;  // pixels
-constexpr size_t mostWays = 12, mostStarts = 4000;
+constexpr size_t mostDrawnWays = 12, mostDrawnStarts = 4000;
 
-size_t cellOf(const CostGrid& grid, const glm::vec2& place) {
+size_t mapCellOf(const CostGrid& grid, const glm::vec2& place) {
   const auto along = [&](float at, uint32_t count) {
     return static_cast<size_t>(std::clamp(at, 0.0f, static_cast<float>(count - 1)));
   };
@@ -55,9 +56,10 @@ class MapPicture {
         scale_(scaleOf(terrain_)),
         columns_(pixels(terrain_.extentX())),
         rows_(pixels(terrain_.extentZ())),
-        drawing_(left + columns_ + legendWidth, top + std::max(rows_, leastSide) + bottom, paper) {
-    drawing_.text({left, 42}, 19, ground.title, ink);
-    drawing_.text({left, 70}, 11, ground.subtitle, quiet);
+        drawing_(mapLeft + columns_ + legendWidth, mapTop + std::max(rows_, leastMapSide) + belowMap,
+                 paperColour) {
+    drawing_.text({mapLeft, 42}, 19, ground.title, inkColour);
+    drawing_.text({mapLeft, 70}, 11, ground.subtitle, quietColour);
     float lowest = 1e9f, highest = -1e9f;
     for (const float height : terrain_.heights) {
       lowest = std::min(lowest, height);
@@ -74,10 +76,10 @@ class MapPicture {
     return glm::vec2(terrain_.originX(), terrain_.originZ()) + glm::vec2(x, y) / scale_;
   }
   glm::vec2 pixelOf(const glm::vec2& place) const {
-    return glm::vec2(left, top) + (place - glm::vec2(terrain_.originX(), terrain_.originZ())) * scale_;
+    return glm::vec2(mapLeft, mapTop) + (place - glm::vec2(terrain_.originX(), terrain_.originZ())) * scale_;
   }
   bool isOn(const glm::vec2& pixel) const {
-    const glm::vec2 at = pixel - glm::vec2(left, top);
+    const glm::vec2 at = pixel - glm::vec2(mapLeft, mapTop);
     return at.x >= 0 && at.y >= 0 && at.x <= static_cast<float>(columns_) &&
            at.y <= static_cast<float>(rows_);
   }
@@ -90,12 +92,12 @@ class MapPicture {
       for (uint32_t x = 0; x < columns_; ++x) {
         const glm::vec2 place = placeOf(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
         const float lit = glm::dot(terrain_.normalAt(place.x, place.y), light) / light.y;
-        drawing_.set(left + x, top + y, colourAt(place) * std::clamp(0.45f + 0.55f * lit, 0.4f, 1.08f));
+        drawing_.set(mapLeft + x, mapTop + y, colourAt(place) * std::clamp(0.45f + 0.55f * lit, 0.4f, 1.08f));
       }
   }
 
   void drawObstacles() {
-    drawing_.confine(left, top, columns_, rows_);
+    drawing_.confine(mapLeft, mapTop, columns_, rows_);
     for (const Obstacle& obstacle : ground_.obstacles)
       std::visit([&](const auto& shape) { draw(shape); }, obstacle.shape);
     drawing_.confine();
@@ -105,9 +107,9 @@ class MapPicture {
   // A row of the legend, with a mark 26 pixels wide.
   template <class Mark>
   void explain(const std::string& text, const Mark& mark) {
-    const glm::vec2 at(static_cast<float>(left + columns_) + 34, row_);
+    const glm::vec2 at(static_cast<float>(mapLeft + columns_) + 34, row_);
     mark(at + glm::vec2(13, -5));
-    drawing_.text(at + glm::vec2(38, 0), 10.5f, text, ink);
+    drawing_.text(at + glm::vec2(38, 0), 10.5f, text, inkColour);
     row_ += 27;
   }
 
@@ -115,8 +117,8 @@ class MapPicture {
   template <class Colour>
   void explainColours(const std::string& what, double least, double most, double step,
                       const Colour& colourOf) {
-    const float x = static_cast<float>(left + columns_) + 34;
-    drawing_.text({x, row_ + 6}, 10.5f, what, ink);
+    const float x = static_cast<float>(mapLeft + columns_) + 34;
+    drawing_.text({x, row_ + 6}, 10.5f, what, inkColour);
     row_ += 22;
     constexpr uint32_t height = 190, width = 26;
     for (uint32_t y = 0; y < height; ++y)
@@ -125,15 +127,15 @@ class MapPicture {
                      colourOf(static_cast<float>(y) / (height - 1)));
     for (double value = std::ceil(least / step - 1e-9) * step; value <= most + 1e-9 * step; value += step) {
       const float y = row_ + static_cast<float>((value - least) / (most - least)) * height;
-      drawing_.line({x + width, y}, {x + width + 5, y}, 1.2f, ink);
-      drawing_.text({x + width + 11, y + 4.5f}, 9.5f, fmt::format("{:.6g}", value + 0.0), ink);
+      drawing_.line({x + width, y}, {x + width + 5, y}, 1.2f, inkColour);
+      drawing_.text({x + width + 11, y + 4.5f}, 9.5f, fmt::format("{:.6g}", value + 0.0), inkColour);
     }
     row_ += height + 36;
   }
 
   void explainGround() {
-    explain("obstacle", [&](const glm::vec2& at) { swatch(at, rock); });
-    explain("impassable", [&](const glm::vec2& at) { swatch(at, blocked); });
+    explain("obstacle", [&](const glm::vec2& at) { swatch(at, rockColour); });
+    explain("impassable", [&](const glm::vec2& at) { swatch(at, blockedColour); });
   }
   void swatch(const glm::vec2& at, const glm::vec3& colour) {
     drawing_.rectangle(at - glm::vec2(11, 7), at + glm::vec2(11, 7), colour);
@@ -150,7 +152,7 @@ class MapPicture {
 
  private:
   static float scaleOf(const Heightfield& terrain) {
-    return static_cast<float>(longestSide) / std::max(terrain.extentX(), terrain.extentZ());
+    return static_cast<float>(longestMapSide) / std::max(terrain.extentX(), terrain.extentZ());
   }
   uint32_t pixels(float metres) const {
     return std::max(1u, static_cast<uint32_t>(std::lround(metres * scale_)));
@@ -161,33 +163,33 @@ class MapPicture {
   void draw(const ConvexPolygon& polygon) {
     std::vector<glm::vec2> corners;
     for (const glm::vec2& corner : polygon.corners) corners.push_back(pixelOf(corner));
-    drawing_.polygon(corners, rock);
+    drawing_.polygon(corners, rockColour);
   }
   void post(const glm::vec2& from, const glm::vec2& to, float radius) {
-    drawing_.line(pixelOf(from), pixelOf(to), std::max(2.5f, 2 * radius * scale_), rock);
+    drawing_.line(pixelOf(from), pixelOf(to), std::max(2.5f, 2 * radius * scale_), rockColour);
   }
 
   void frame() {
-    const glm::vec2 least(left, top), most = least + glm::vec2(columns_, rows_);
+    const glm::vec2 least(mapLeft, mapTop), most = least + glm::vec2(columns_, rows_);
     const std::array corners = {least, glm::vec2(most.x, least.y), most, glm::vec2(least.x, most.y)};
-    for (size_t i = 0; i < 4; ++i) drawing_.line(corners[i], corners[(i + 1) % 4], 1.2f, ink);
+    for (size_t i = 0; i < 4; ++i) drawing_.line(corners[i], corners[(i + 1) % 4], 1.2f, inkColour);
   }
 
   // A scale bar, the axes and a remark, below the map.
   void drawScale(const std::string& remark) {
     const double metres = niceBelow(0.25 * static_cast<double>(columns_) / static_cast<double>(scale_));
-    const float y = static_cast<float>(top + rows_) + 26, wide = static_cast<float>(metres) * scale_;
+    const float y = static_cast<float>(mapTop + rows_) + 26, wide = static_cast<float>(metres) * scale_;
     for (int part = 0; part < 4; ++part)
-      drawing_.rectangle({left + 0.25f * static_cast<float>(part) * wide, y},
-                         {left + 0.25f * static_cast<float>(part + 1) * wide, y + 6},
-                         part % 2 == 0 ? ink : quiet);
-    drawing_.text({left + wide + 10, y + 8}, 11, fmt::format("{:g} m", metres), ink);
-    drawing_.text({left, y + 34}, 10, remark, quiet);
-    const glm::vec2 corner(static_cast<float>(left + columns_) - 62, y + 2);
-    arrow(corner, corner + glm::vec2(30, 0), ink, 1.6f);
-    arrow(corner, corner + glm::vec2(0, 30), ink, 1.6f);
-    drawing_.text(corner + glm::vec2(37, 5), 10, "x", ink);
-    drawing_.text(corner + glm::vec2(-14, 32), 10, "z", ink);
+      drawing_.rectangle({mapLeft + 0.25f * static_cast<float>(part) * wide, y},
+                         {mapLeft + 0.25f * static_cast<float>(part + 1) * wide, y + 6},
+                         part % 2 == 0 ? inkColour : quietColour);
+    drawing_.text({mapLeft + wide + 10, y + 8}, 11, fmt::format("{:g} m", metres), inkColour);
+    drawing_.text({mapLeft, y + 34}, 10, remark, quietColour);
+    const glm::vec2 corner(static_cast<float>(mapLeft + columns_) - 62, y + 2);
+    arrow(corner, corner + glm::vec2(30, 0), inkColour, 1.6f);
+    arrow(corner, corner + glm::vec2(0, 30), inkColour, 1.6f);
+    drawing_.text(corner + glm::vec2(37, 5), 10, "x", inkColour);
+    drawing_.text(corner + glm::vec2(-14, 32), 10, "z", inkColour);
   }
 
   const MapGround& ground_;
@@ -195,10 +197,10 @@ class MapPicture {
   float scale_;
   uint32_t columns_, rows_;
   Drawing drawing_;
-  float row_ = static_cast<float>(top) + 12;  // where the legend goes on
+  float row_ = static_cast<float>(mapTop) + 12;  // where the legend goes on
 };
 
-glm::vec2 unitOr0(const glm::vec2& v) {
+glm::vec2 unitOrZero(const glm::vec2& v) {
   const float length = glm::length(v);
   return length > 1e-6f ? v / length : glm::vec2(0);
 }
@@ -207,8 +209,8 @@ glm::vec2 unitOr0(const glm::vec2& v) {
 void fillTimes(MapPicture& picture, const MapGround& ground, const MapGoal& goal, double most, double step) {
   const CostGrid& grid = ground.grid;
   picture.fill([&](const glm::vec2& place) {
-    const size_t cell = cellOf(grid, place);
-    if (!isPassable(grid, cell)) return blocked;
+    const size_t cell = mapCellOf(grid, place);
+    if (!isPassable(grid, cell)) return blockedColour;
     const TimeHere here = timeAt(grid, goal.times, place);
     const bool reached = goal.reached[cell];
     glm::vec3 colour = timeColour(static_cast<float>(double{here.time} / most));
@@ -226,45 +228,45 @@ void drawFlow(MapPicture& picture, const MapGround& ground, const MapGoal& goal)
   for (float y = arrowEvery / 2; y < static_cast<float>(picture.rows()); y += arrowEvery)
     for (float x = arrowEvery / 2; x < static_cast<float>(picture.columns()); x += arrowEvery) {
       const glm::vec2 place = picture.placeOf(x, y);
-      const size_t cell = cellOf(ground.grid, place);
+      const size_t cell = mapCellOf(ground.grid, place);
       if (!isPassable(ground.grid, cell) || !goal.reached[cell]) continue;
-      const glm::vec2 way = -unitOr0(timeAt(ground.grid, goal.times, place).gradient);
+      const glm::vec2 way = -unitOrZero(timeAt(ground.grid, goal.times, place).gradient);
       const glm::vec2 middle = picture.pixelOf(place), half = 0.5f * arrowLength * way;
       if (way == glm::vec2(0)) continue;
-      picture.arrow(middle - half, middle + half, ink, 3.0f, 0.4f);
-      picture.arrow(middle - half, middle + half, paper, 1.3f, 0.95f);
+      picture.arrow(middle - half, middle + half, inkColour, 3.0f, 0.4f);
+      picture.arrow(middle - half, middle + half, paperColour, 1.3f, 0.95f);
     }
 }
 
 void drawWays(MapPicture& picture, const MapGround& ground, const MapGoal& goal) {
-  const size_t starts = goal.starts.size(), ways = std::min(starts, mostWays);
+  const size_t starts = goal.starts.size(), ways = std::min(starts, mostDrawnWays);
   for (size_t k = 0; k < ways; ++k) {
     const std::vector<glm::vec2> way = wayFrom(ground, goal, goal.starts[k * starts / ways]);
     for (const float thickness : {4.2f, 2.2f})
       for (size_t i = 1; i < way.size(); ++i)
         picture.drawing().line(picture.pixelOf(way[i - 1]), picture.pixelOf(way[i]), thickness,
-                               thickness > 3 ? ink : glm::vec3(1.0f, 0.72f, 0.30f));
+                               thickness > 3 ? inkColour : glm::vec3(1.0f, 0.72f, 0.30f));
   }
-  const size_t every = std::max<size_t>(1, starts / mostStarts);
+  const size_t every = std::max<size_t>(1, starts / mostDrawnStarts);
   for (size_t i = 0; i < starts; i += every)
     if (const glm::vec2 at = picture.pixelOf(goal.starts[i]); picture.isOn(at)) {
-      picture.drawing().disc(at, 2.6f, paper);
-      picture.drawing().disc(at, 1.7f, ink);
+      picture.drawing().disc(at, 2.6f, paperColour);
+      picture.drawing().disc(at, 1.7f, inkColour);
     }
 }
 
 void drawGoal(Drawing& drawing, const glm::vec2& at) {
-  drawing.ring(at, 10, 5.5f, paper);
-  drawing.ring(at, 10, 3, signal);
-  drawing.disc(at, 4.5f, paper);
-  drawing.disc(at, 3.2f, signal);
+  drawing.ring(at, 10, 5.5f, paperColour);
+  drawing.ring(at, 10, 3, signalColour);
+  drawing.disc(at, 4.5f, paperColour);
+  drawing.disc(at, 3.2f, signalColour);
 }
 
 void drawStop(Drawing& drawing, const glm::vec2& at) {
   for (const float thickness : {6.0f, 3.0f})
     for (const float side : {-1.0f, 1.0f})
       drawing.line(at - glm::vec2(6, side * 6), at + glm::vec2(6, side * 6), thickness,
-                   thickness > 4 ? paper : signal);
+                   thickness > 4 ? paperColour : signalColour);
 }
 
 }  // namespace
@@ -324,7 +326,7 @@ std::vector<glm::vec2> wayFrom(const MapGround& ground, const MapGoal& goal, glm
       best = here.time;
       since = 0;
     }
-    place -= step * unitOr0(here.gradient);
+    place -= step * unitOrZero(here.gradient);
     way.push_back(place);
   }
   way.resize(way.size() - patience);
@@ -336,8 +338,8 @@ Drawing drawCosts(const MapGround& ground) {
   const auto shareOf = [&](float cost) { return static_cast<float>((double{cost} - 1) / (most - 1)); };
   MapPicture picture(ground);
   picture.fill([&](const glm::vec2& place) {
-    const size_t cell = cellOf(ground.grid, place);
-    return isPassable(ground.grid, cell) ? costColour(shareOf(ground.grid.cost[cell])) : blocked;
+    const size_t cell = mapCellOf(ground.grid, place);
+    return isPassable(ground.grid, cell) ? costColour(shareOf(ground.grid.cost[cell])) : blockedColour;
   });
   picture.drawObstacles();
   picture.explainColours("cost of a metre, flat = 1", 1, most, niceBelow((most - 1) / 4), costColour);
@@ -359,18 +361,18 @@ Drawing drawTimes(const MapGround& ground, const MapGoal& goal) {
   picture.explainColours("seconds to the goal, 1 m/s", 0, most, 2 * niceBelow(most / 8), timeColour);
   picture.explain(fmt::format("every {:g} s, {:g} s", step, 5 * step), [&](const glm::vec2& at) {
     picture.swatch(at, timeColour(0.5f));
-    drawing.line(at - glm::vec2(10, 0), at + glm::vec2(10, 0), 1.8f, paper, 0.8f);
+    drawing.line(at - glm::vec2(10, 0), at + glm::vec2(10, 0), 1.8f, paperColour, 0.8f);
   });
   picture.explain("flow", [&](const glm::vec2& at) {
     picture.swatch(at, timeColour(0.7f));
-    picture.arrow(at - glm::vec2(7, 0), at + glm::vec2(7, 0), paper, 1.3f);
+    picture.arrow(at - glm::vec2(7, 0), at + glm::vec2(7, 0), paperColour, 1.3f);
   });
   picture.explain("goal", [&](const glm::vec2& at) { drawGoal(drawing, at); });
   if (goal.stop != goal.goal) picture.explain("stop", [&](const glm::vec2& at) { drawStop(drawing, at); });
   if (!goal.starts.empty()) {
-    picture.explain("agent", [&](const glm::vec2& at) { drawing.disc(at, 2.2f, ink); });
+    picture.explain("agent", [&](const glm::vec2& at) { drawing.disc(at, 2.2f, inkColour); });
     picture.explain("way of an agent", [&](const glm::vec2& at) {
-      drawing.line(at - glm::vec2(10, 0), at + glm::vec2(10, 0), 4.2f, ink);
+      drawing.line(at - glm::vec2(10, 0), at + glm::vec2(10, 0), 4.2f, inkColour);
       drawing.line(at - glm::vec2(10, 0), at + glm::vec2(10, 0), 2.2f, {1.0f, 0.72f, 0.30f});
     });
   }

@@ -5,7 +5,7 @@
 namespace skitter::app {
 namespace {
 
-constexpr const char* style = R"(
+constexpr const char* pageStyle = R"(
 body { font: 16px/1.5 system-ui, sans-serif; color: #222429; background: #f4f5f7; margin: 0 auto; padding: 1.5rem; max-width: 78rem; }
 h1 { font-size: 1.7rem; margin: 0; } h2 { font-size: 1.2rem; margin: 0 0 .8rem; }
 header p { margin: .2rem 0 1.5rem; color: #565a63; }
@@ -52,7 +52,7 @@ std::string fieldPage(const std::string& title, const std::string& subtitle,
       "<meta name=\"viewport\" "
       "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n"
       "<body>\n<header><h1>{0}</h1>\n<p>{2}</p></header>\n{3}</body>\n</html>\n",
-      forHtml(title), style, forHtml(subtitle), sections);
+      forHtml(title), pageStyle, forHtml(subtitle), sections);
 }
 
 }  // namespace skitter::app

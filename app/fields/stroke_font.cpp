@@ -8,7 +8,7 @@ namespace skitter::app {
 namespace {
 
 // Points are two digits, x and y + 2; strokes are apart by a space. From space to tilde.
-constexpr std::array<std::string_view, 95> table = {
+constexpr std::array<std::string_view, 95> glyphTable = {
     "",                                        // space
     "0904 02",                                 // !
     "0907 2927",                               // "
@@ -110,7 +110,7 @@ constexpr std::array<std::string_view, 95> table = {
 
 Glyph glyphOf(char character) {
   const std::string_view text = character >= ' ' && character <= '~'
-                                    ? table[static_cast<size_t>(character - ' ')]
+                                    ? glyphTable[static_cast<size_t>(character - ' ')]
                                     : std::string_view("0209494202");
   Glyph glyph{.strokes = {{}}, .width = character == ' ' ? 2.0f : 0.0f};
   for (size_t i = 0; i < text.size();) {

@@ -86,6 +86,7 @@ class Run {
   using Clock = std::chrono::steady_clock;
 
   void raiseObstacle();
+  void watchCrowding();
   void tellWhoCannotReach() const;
   void afterTick();
   void save();
@@ -116,6 +117,7 @@ class Run {
   std::optional<Crowd> crowd_;
   StopDeadline::Leave leave_;  // completes the files
   std::optional<Obstacle> obstacle_;
+  std::optional<CrowdingWatch> crowdingWatch_;
 };
 
 Run::Run(RunOptions options)
@@ -189,6 +191,7 @@ void Run::start() {
   }
   tellWhoCannotReach();
   foraging_ = ForageLog(*crowd_);
+  watchCrowding();
   starting.reset();
   manifest_.terrain = &terrain_;
   manifest_.add(device_->report());
@@ -212,6 +215,10 @@ void Run::raiseObstacle() {
   if (options_.obstacle && !scene_.herds.empty()) obstacle_.emplace(*crowd_);
 }
 
+void Run::watchCrowding() {
+  if (options_.crowding) crowdingWatch_.emplace(*crowd_, options_.scene.dt);
+}
+
 // Once, as the run begins.
 void Run::tellWhoCannotReach() const {
   for (uint32_t herd = 0; herd < crowd_->herdCount(); ++herd)
@@ -226,6 +233,7 @@ void Run::tellWhoCannotReach() const {
 void Run::afterTick() {
   outputs_.append(*crowd_);
   foraging_.append(*crowd_, options_.scene.dt);
+  if (crowdingWatch_) crowdingWatch_->look(*crowd_);
   if (obstacle_) obstacle_->move(*crowd_, static_cast<double>(crowd_->tick()) * options_.scene.dt);
   done_ = crowd_->tick();
   if (options_.saveEvery && crowd_->tick() % (*options_.saveEvery * options_.ticksPerFrame) == 0) save();
@@ -257,6 +265,7 @@ void Run::restart(std::optional<Controller> controller) {
   summary_.resumedAt.reset();
   raiseObstacle();
   foraging_ = ForageLog(*crowd_);
+  watchCrowding();
 }
 
 void Run::runWindow() {
@@ -302,6 +311,7 @@ void Run::finish() {
         summary_.herds.push_back({h, crowd_->rig(h).name, herd.from.agents, crowd_->fidelity(h)});
     summary_.crowding = crowd_->crowding();
     summary_.foraging = foraging_.figures(*crowd_, options_.scene.dt);
+    if (crowdingWatch_) summary_.jams = crowdingWatch_->jams();
     if (options_.sleep) summary_.sleeping = crowd_->sleeping();
     summary_.stateHash = crowd_->stateHash();
     summary_.memory = memoryOf(*crowd_);

@@ -165,9 +165,9 @@ CrowdOptions RunOptions::crowdOptions(const OutTarget& target, bool inWindow) co
   crowd.sleep = sleep;
   crowd.crowding = crowding;
   crowd.pageAgents = pageAgents;
-  crowd.feet = !trace.empty() || inWindow;
+  crowd.feet = !trace.empty() || inWindow || crowding;
   if (!footfalls.empty()) crowd.footfalls = UINT32_MAX;  // all that can be
-  crowd.pose = poses || inWindow || target.kind != OutTarget::Kind::none || !trace.empty();
+  crowd.pose = poses || inWindow || target.kind != OutTarget::Kind::none || !trace.empty() || crowding;
   return crowd;
 }
 
@@ -225,7 +225,9 @@ void RunOptions::addTo(CLI::App& command) {
   command.add_flag(
       "--sleep", sleep,
       "pass over agents that have stood still for seconds, until their goal or the ground moves");
-  command.add_flag("--crowding", crowding, "measure how far agents overlap each other");
+  command.add_flag("--crowding", crowding,
+                   "measure how agents share the ground: overlaps, jams, crossings of legs, flow; looks at "
+                   "all of them ten times a second");
   command.add_flag("--paused", paused, "a window waits for its first key (Space)");
   command.add_flag("--timings", timings, "time every stage on the device's clock (software devices may lie)");
   command.add_flag("--poses", poses, "pose every agent though nobody draws it, for what that costs");

@@ -55,20 +55,30 @@ void printFidelity(const Fidelity& f, uint32_t watchEvery) {
                        100 * f.margin, 100 * f.marginLeast, 100 * f.unstable));
 }
 
-void printCrowding(const Crowding& crowding) {
+void printCrowding(const Crowding& crowding, const Jams& jams) {
   if (crowding.overlapMost)
     printRow("crowding",
              fmt::format("agents overlap by at most {:.1f} %, {:.4f} % an agent; {:.4f} pairs an agent",
                          100 * *crowding.overlapMost, 100 * crowding.overlapMean.value_or(0),
                          crowding.pairs.value_or(0)));
+  if (jams.stuck)
+    printRow("jams",
+             fmt::format("{} agents were stuck, {} have arrived; legs cross another's in {:.3f} % of the "
+                         "time; at most {:.2f} agents pass a second and metre",
+                         *jams.stuck, jams.arrived.value_or(0), 100 * jams.legCrossings.value_or(0),
+                         jams.flow.value_or(0)));
   if (crowding.droppedNeighbours.value_or(0) > 0)
     printRow("neighbours", fmt::format("{} were in reach beyond the nearest {}", *crowding.droppedNeighbours,
                                        shared::NEIGHBOURS));
 }
 
-nlohmann::ordered_json jsonOf(const Crowding& crowding) {
+nlohmann::ordered_json jsonOf(const Crowding& crowding, const Jams& jams) {
   return {{"overlapMost", orNull(crowding.overlapMost)},
           {"overlapMean", orNull(crowding.overlapMean)},
+          {"stuck", orNull(jams.stuck)},
+          {"arrived", orNull(jams.arrived)},
+          {"legCrossings", orNull(jams.legCrossings)},
+          {"flow", orNull(jams.flow)},
           {"pairs", orNull(crowding.pairs)},
           {"droppedNeighbours", orNull(crowding.droppedNeighbours)}};
 }
@@ -138,7 +148,7 @@ void Summary::print() const {
     printMemory(memory, agents);
   }
   printFidelity(fidelity, watchEvery);
-  printCrowding(crowding);
+  printCrowding(crowding, jams);
   for (const ForageFigures& herd : foraging)
     printRow("foraging", fmt::format("herd {}: {} loads carried home, {} returns without one", herd.herd,
                                      herd.done.brought, herd.done.empty));
@@ -175,7 +185,7 @@ nlohmann::ordered_json Summary::json() const {
           {"cpuMicrosecondsPerAgentTick", orNull(cpuMicroseconds(*this))},
           {"watchEvery", watchEvery},
           {"fidelity", jsonOf(fidelity)},
-          {"crowding", jsonOf(crowding)},
+          {"crowding", jsonOf(crowding, jams)},
           {"foraging", jsonOf(foraging)},
           {"herds", perHerd},
           {"stateHash", fmt::format("{:016x}", stateHash)}};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/common/simulate.h"
+#include "app/run/crowding_watch.h"
 #include "app/run/forage_log.h"
 #include "skitter/crowd.h"
 #include "skitter/device.h"
@@ -42,6 +43,7 @@ struct Summary {
   std::vector<HerdFigures> herds;  // that are there at the end
   Crowding crowding;
   std::vector<ForageFigures> foraging;  // of the herds that forage
+  Jams jams;
   std::optional<uint64_t> sleeping;  // agents at the end; none where they may not
   uint64_t stateHash = 0;
   std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "crowd/controller.h"
+#include "app/run/placed_bone.h"
 #include "crowd/herd.h"
 #include "crowd/radius.h"
 #include "skitter/error.h"
@@ -43,43 +42,8 @@ struct Values {
   std::vector<uint8_t> stance;
 };
 
-// Where a bone starts, relative to the body, and its rotation.
-struct Placed {
-  float start[3], rotation[4];
-};
-
-Placed placedByPose(const float* pose) {
-  return {{pose[4], pose[5], pose[6]}, {pose[0], pose[1], pose[2], pose[3]}};
-}
-
-// The matrix's columns may be scaled.
-Placed placedByMatrix(const float* rows, const glm::vec3& start) {
-  glm::mat3 turn;
-  Placed placed{};
-  for (int r = 0; r < 3; ++r) {
-    const float* row = rows + 4 * r;
-    placed.start[r] = row[0] * start.x + row[1] * start.y + row[2] * start.z + row[3];
-    for (int c = 0; c < 3; ++c) turn[c][r] = row[c];
-  }
-  for (int c = 0; c < 3; ++c) turn[c] = glm::normalize(turn[c]);
-  const glm::quat q = glm::normalize(glm::quat_cast(turn));
-  const float xyzw[4] = {q.x, q.y, q.z, q.w};
-  std::copy(xyzw, xyzw + 4, placed.rotation);
-  return placed;
-}
-
 void appendAgent(const HerdState& state, const crowd::Kind& kind, size_t agent, Values& values) {
   const Rig& rig = kind.rig;
-  const auto placedOf = [&](size_t leg, size_t bone) {
-    if (!crowd::traitsOf(kind.controller).playsClips) {
-      const size_t entry = 1 + leg * static_cast<size_t>(kind.bones) + bone;
-      return placedByPose(
-          vec4(state.pose, (agent * static_cast<size_t>(rig.paletteSize()) + entry) * POSE_STRIDE));
-    }
-    const ClipLeg& chain = kind.clipSet.legs[leg];
-    const size_t entry = agent * static_cast<size_t>(kind.clips.joints) + chain.joints[bone];
-    return placedByMatrix(vec4(state.pose, entry * MATRIX_STRIDE), chain.starts[bone]);
-  };
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const auto legs = static_cast<size_t>(rig.legCount()), bones = static_cast<size_t>(rig.maxBones());
 
@@ -103,7 +67,7 @@ void appendAgent(const HerdState& state, const crowd::Kind& kind, size_t agent, 
   for (size_t l = 0; l < legs; ++l) {
     const size_t leg = agent * legs + l, own = rig.legs[l].bones.size();
     for (size_t b = 0; b < own; ++b) {
-      const Placed placed = placedOf(l, b);
+      const PlacedBone placed = placedBone(state, kind, agent, l, b);
       values.rotations.insert(values.rotations.end(), placed.rotation, placed.rotation + 4);
       pushJoint(placed.start);
     }

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+// How a crowd gets on (docs/json.md). Places are world x, z in metres.
+namespace skitter::app {
+
+// An agent at the ends of ten seconds.
+struct Advance {
+  glm::dvec2 before{0}, now{0};
+  glm::dvec2 wanted{0};   // desired velocity at the end, m/s
+  double radius = 0;      // of its footprint
+  bool isThere = false;   // at both ends
+  bool hasPoint = false;  // its goal is a point
+};
+
+enum class Standing {
+  moves,    // or wants nothing
+  waits,    // behind somebody who moves, or waits
+  arrived,  // or stands behind somebody who has
+  stuck,
+};
+std::vector<Standing> standingsOf(std::span<const Advance> agents);
+
+// How much goes through places: squares, of which each counts the way that agents go in it.
+class FlowMap {
+ public:
+  explicit FlowMap(double side) : side_(side) {}
+
+  // Of an agent, in the time that ends at `seconds`.
+  void add(const glm::dvec2& from, const glm::dvec2& to, double seconds);
+  // Agents per second and metre in the square with most, of those in which agents were for ten seconds or
+  // more between the first one and the last; none without such a square.
+  std::optional<double> most() const;
+
+ private:
+  struct Square {
+    double way = 0, first = 0, last = 0;  // metres, seconds
+  };
+  double side_;
+  std::map<std::pair<int64_t, int64_t>, Square> squares_;
+};
+
+// An agent's legs seen from above, each from root to foot.
+using LegLines = std::vector<std::vector<glm::dvec2>>;
+// Whether a leg of one crosses a leg of the other.
+bool legsCross(const LegLines& a, const LegLines& b);
+// How many agents cross somebody's legs, nobody's own. Legs reach `reach` from a place at most.
+uint64_t crossingAgents(std::span<const LegLines> agents, std::span<const glm::dvec2> places, double reach);
+
+}  // namespace skitter::app

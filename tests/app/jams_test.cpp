@@ -1,0 +1,78 @@
+#include "app/run/jams.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace skitter::test {
+namespace {
+
+using app::FlowMap;
+using app::LegLines;
+using app::Advance;
+using app::Standing;
+
+// Of half a metre, who wants to go toward +z and went so far in ten seconds.
+Advance agentAt(double x, double z, double moved = 0) {
+  return {.before = {x, z - moved},
+          .now = {x, z},
+          .wanted = {0, 1},
+          .radius = 0.5,
+          .isThere = true,
+          .hasPoint = true};
+}
+
+TEST(Jams, WhoStandsWithAFreeWayAheadIsStuck) {
+  // Somebody is behind, aside, and ahead more than a body length away.
+  const std::vector<Advance> agents = {agentAt(0, 0, 0.09), agentAt(0, -1.2, 3), agentAt(1.2, 0.1, 3),
+                                        agentAt(0, 2.1, 3)};
+  EXPECT_EQ(app::standingsOf(agents).front(), Standing::stuck);
+  EXPECT_EQ(app::standingsOf(std::vector{agentAt(0, 0, 0.11)}).front(), Standing::moves);
+}
+
+TEST(Jams, AQueueWaitsAsLongAsItsHeadMoves) {
+  std::vector<Advance> queue = {agentAt(0, 0), agentAt(0, 1.3), agentAt(0.3, 2.6), agentAt(0, 4, 1)};
+  using enum Standing;
+  EXPECT_EQ(app::standingsOf(queue), (std::vector{waits, waits, waits, moves}));
+  queue.back().before = queue.back().now;
+  EXPECT_EQ(app::standingsOf(queue), (std::vector{stuck, stuck, stuck, stuck}));
+  // It stands where it wants to be, and so do those behind it.
+  queue.back().wanted = {0, 0};
+  EXPECT_EQ(app::standingsOf(queue), (std::vector{arrived, arrived, arrived, arrived}));
+  queue.back().hasPoint = false;
+  EXPECT_EQ(app::standingsOf(queue), (std::vector{stuck, stuck, stuck, moves})) << "it never wanted to go";
+  queue.back().isThere = false;
+  EXPECT_EQ(app::standingsOf(queue)[2], stuck);
+  EXPECT_TRUE(app::standingsOf({}).empty());
+}
+
+TEST(Jams, FlowIsThatOfTheBusiestSquare) {
+  FlowMap flow(2);
+  EXPECT_FALSE(flow.most());
+  // One agent a second crosses a square of 2 m along z, all 2 m of it: 1 / 2 m and second.
+  for (int second = 0; second <= 20; ++second)
+    for (int step = 0; step < 4; ++step)
+      flow.add({1, 0.5 * step}, {1, 0.5 * (step + 1)}, second + 0.2 * step);
+  flow.add({9, 9}, {9, 9.9}, 3);  // too short a time to tell
+  ASSERT_TRUE(flow.most());
+  EXPECT_NEAR(*flow.most(), 21 * 2 / (4 * 20.6), 1e-9);
+}
+
+TEST(Jams, LegsCrossAsSeenFromAbove) {
+  const LegLines along = {{{0, 0}, {1, 0}, {2, 0.5}}}, across = {{{5, 5}, {6, 6}}, {{1.5, -1}, {1.5, 1}}};
+  const LegLines beside = {{{1.5, 0.3}, {1.5, 1}}};
+  EXPECT_TRUE(app::legsCross(along, across));
+  EXPECT_TRUE(app::legsCross(across, along));
+  EXPECT_FALSE(app::legsCross(along, beside));
+  EXPECT_FALSE(app::legsCross(along, {}));
+  const std::vector<LegLines> agents = {along, across, beside, along};
+  EXPECT_EQ(app::crossingAgents(agents, std::vector<glm::dvec2>{{0, 0}, {1.5, 0}, {1.5, 0.5}, {NAN, NAN}}, 2),
+            2u);
+  // Too far from each other to be looked at.
+  EXPECT_EQ(app::crossingAgents(agents, std::vector<glm::dvec2>{{0, 0}, {9, 9}, {1.5, 0.5}, {NAN, NAN}}, 2),
+            0u);
+}
+
+}  // namespace
+}  // namespace skitter::test
