@@ -72,6 +72,18 @@ TEST_F(Running, ForagersAreCounted) {
   EXPECT_EQ(ants.at("brought"), brought);
 }
 
+// The first are through the gap and at their goal, and nobody is half in another.
+TEST_F(Running, ABottleneckIsPassed) {
+  const Result result =
+      skitter({"run", SKITTER_ROOT "/assets/scenes/bottleneck.json", "--headless", "--frames", "1500",
+               "--no-measure", "--crowding", "--json", file("run.json")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const nlohmann::json crowding = json("run.json").at("crowding");
+  EXPECT_LT(crowding.at("overlapMost"), 0.5);
+  EXPECT_GT(crowding.at("arrived"), 0);
+  EXPECT_GT(crowding.at("flow"), 0.5);
+}
+
 TEST_F(Running, WhoCannotReachAGoalIsToldOnce) {
   const auto heard =
       [&](const char* obstacles) {
