@@ -15,8 +15,8 @@ namespace skitter::shared {
 //   [WALL_HEADS + cell] index of the cell's first edge, number of its edges, unused x 2
 // An edge, WALL_EDGE_STRIDE; those of an obstacle follow each other, and obstacles are in the scene's order:
 //   [0] x, z of its start, x, z of its end
-//   [1] radius; 1 if it is the last one of its obstacle; 1 if that is a polygon, round which edges go as +x turns
-//       to +z; unused
+//   [1] radius; 1 if it is the last one of its obstacle; 1 if that is a polygon, which edges go round as +x
+//       turns to +z; unused
 WALL WALL_HEADS = 2;
 WALL WALL_EDGE_STRIDE = 2;
 // Obstacles that an agent keeps clear of.
