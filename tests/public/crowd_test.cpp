@@ -406,6 +406,30 @@ TEST_F(PublicCrowd, KeepsItsTick) {
   EXPECT_EQ(crowd.tick(), 1u);
 }
 
+TEST_F(PublicCrowd, ForagesWhereAHerdDoes) {
+  Scene scene = standingScene(6);
+  scene.herds[0].goal = {.speed = 2};
+  scene.herds[0].forage = Forage{.nest = {.centre = {0, 0}, .radius = 3},
+                                 .food = {{.centre = {0, 8}, .radius = 3, .amount = 50}},
+                                 .cell = 1,
+                                 .rest = 0};
+  scene.herds.push_back(standingScene(2).herds[0]);
+  Crowd crowd(device(), flatGround(), scene);
+  EXPECT_EQ(crowd.foraging(0).taken, std::vector<uint64_t>{0});
+  const PheromoneGrid before = crowd.pheromone(0);
+  EXPECT_EQ(before.units.size(), size_t{before.columns} * before.rows);
+  EXPECT_EQ(before.cell, 1);
+  EXPECT_EQ(std::ranges::max(before.units), 0);
+  for (int second = 0; second < 60 && crowd.foraging(0).brought == 0; ++second) walk(device(), crowd, 60);
+  EXPECT_GT(crowd.foraging(0).brought, 0u);
+  EXPECT_GE(crowd.foraging(0).taken.at(0), crowd.foraging(0).brought);
+  EXPECT_GT(std::ranges::max(crowd.pheromone(0).units), 0);
+  EXPECT_TRUE(crowd.foraging(1).taken.empty());
+  EXPECT_TRUE(crowd.pheromone(1).units.empty());
+  expectRefused("herd 7", [&] { crowd.foraging(7); });
+  expectRefused("herd 7", [&] { crowd.pheromone(7); });
+}
+
 TEST_F(PublicCrowd, RefusesScenesThatCannotBe) {
   const auto refuse = [&](const std::string& text, const auto& change) {
     Scene scene = standingScene(4);

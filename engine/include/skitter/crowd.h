@@ -314,7 +314,7 @@ class SKITTER_API Crowd {
   // The footfalls of the last tick recorded, by agent and leg. Empty without CrowdOptions::footfalls.
   std::vector<Footfall> footfalls(uint32_t herd) const;
   uint64_t droppedFootfalls(uint32_t herd) const;  // for want of room, since the start
-  Crowding crowding() const;                       // zeros unless a herd avoids (Herd::avoid)
+  Crowding crowding() const;                       // waits for the device
   // Agents of all herds that slept in the last tick; 0 without CrowdOptions::sleep.
   uint64_t sleeping() const;
   uint64_t stateHash() const;                 // of every record that the next tick depends on

@@ -82,11 +82,11 @@ struct Traveller {
   float cell = 0;  // metres a side of its cells; 0: half a leg length; more where the terrain is large
 };
 
-// Throws Error(input) where an obstacle is none that a scene file may have.
+// Throws Error(input) where the terrain, the traveller or an obstacle cannot be.
 SKITTER_API CostGrid costGrid(const Heightfield& terrain, std::span<const Obstacle> obstacles,
                               const Traveller& traveller);
-// Makes the cells impassable that are too near to a threat. Throws Error(input) where one is none that a
-// scene file may have.
+// Makes the cells impassable that are too near to a threat. Throws Error(input) where the grid, the traveller
+// or a threat cannot be.
 SKITTER_API void keepOff(CostGrid& grid, std::span<const Threat> threats, const Traveller& traveller);
 
 }  // namespace skitter
