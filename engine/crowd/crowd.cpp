@@ -138,7 +138,10 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   kind.reserves = from.reserve > 0;
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
-  for (const Stage& stage : crowd::stagesOf(kind.controller, asked)) kind.stages.push_back({stage});
+  kind.hurts = from.hurt;
+  if (kind.hurts) kind.wholeRecord = crowd::hurtRecord({}, kind.regaitOf({}));
+  for (const Stage& stage : crowd::stagesOf(kind.controller, asked, kind.hurts))
+    kind.stages.push_back({stage});
   return kind;
 }
 

@@ -17,8 +17,8 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, phase, colour, tint] = herd;
-  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning),
+               sizes, phase, colour, tint, hurt] = herd;
+  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, hurt),
                         std::tuple(reserve > 0));
 }
 
@@ -52,6 +52,16 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
 // Whether legs are proposed where the model has none.
 bool proposes(const skitter::Herd& herd) { return traitsOf(herd.controller).needsClips; }
 
+void checkHurt(const skitter::Herd& herd, const std::string& what) {
+  if (!traitsOf(herd.controller).canBeHurt)
+    throw inputError(
+        fmt::format("{}.controller is {}, expected adaptive, loop or planted: its legs can be hurt", what,
+                    nameOf(herd.controller)));
+  if (herd.solver != Solver::activeSet)
+    throw inputError(fmt::format("{}.solver is {}, expected {}: its legs can be hurt", what,
+                                 nameOf(herd.solver), nameOf(Solver::activeSet)));
+}
+
 // The ranges of a scene file.
 void checkSpawn(const Spawn& spawn, const std::string& what) {
   constexpr double most = Scene::maxCoordinate;
@@ -67,6 +77,7 @@ void checkSpawn(const Spawn& spawn, const std::string& what) {
 void checkHerd(const skitter::Herd& herd, const std::string& what) {
   using skitter::Herd;
   checkTuning(herd.tuning, what + ".tuning");
+  if (herd.hurt) checkHurt(herd, what);
   if (herd.sizes.size() > Herd::maxSizes)
     throw inputError(
         fmt::format("{}.sizes are {}, expected at most {}", what, herd.sizes.size(), Herd::maxSizes));

@@ -1,6 +1,7 @@
 #include "crowd/stage.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "crowd/controller.h"
 #include "crowd/controllers/controllers.h"
@@ -42,6 +43,12 @@ void fuse(const CrowdOptions& options, const Stage& fused, std::vector<Stage>& s
   stages.erase(row.begin() + 1, row.end());
 }
 
+void takeHurtForm(Stage& stage) {
+  stage.code = *stage.hurtCode;
+  stage.bindings.push_back({shared::BINDING_HURT, gpu::BindingKind::load4});
+  stage.bindings.insert(stage.bindings.end(), stage.hurtBindings.begin(), stage.hurtBindings.end());
+}
+
 void addParameters(const shared::Parameters& parameters, gpu::KernelInfo& info) {
 #define ADD_KNOWN(i, name) info.constants.emplace_back(shared::CONSTANT_PARAMETERS + (i), parameters.name);
   KNOWN_PARAMETERS(ADD_KNOWN)
@@ -54,7 +61,7 @@ bool keepsFeet(const CrowdOptions& options) {
   return options.feet || options.measure || options.footfalls > 0;
 }
 
-std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) {
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool hurt) {
   const ControllerStages& of = controllerStages(controller);
   std::vector<Stage> stages = of.all(options);
   std::erase_if(stages, [&](const Stage& stage) {
@@ -64,8 +71,16 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options) 
   if (options.fuse && of.fused != nullptr)
     for (const Stage& fused : of.fused()) fuse(options, fused, stages);
   for (Stage& stage : stages)
+    if (hurt && stage.hurtCode) takeHurtForm(stage);
+  for (Stage& stage : stages)
     if (stage.isOfTheAwake()) stage.bindings.push_back({shared::BINDING_AWAKE, gpu::BindingKind::load4});
   return stages;
+}
+
+Stage withHurt(Stage stage, const gpu::ShaderCode& code, std::vector<gpu::BindingDecl> more) {
+  stage.hurtCode = code;
+  stage.hurtBindings = std::move(more);
+  return stage;
 }
 
 void addListed(StageKernels& kernels) {

@@ -38,8 +38,8 @@ std::vector<gpu::VertexStream> streams(bool shaded) {
            .attributes = {{0, F::eR32Uint, 0}}}};
 }
 
-gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences, bool matrices, bool tinted) {
-  gpu::GraphicsInfo info = crowdShading(influences, matrices, tinted);
+gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences, const CrowdForms& forms) {
+  gpu::GraphicsInfo info = crowdShading(influences, forms);
   info.colour = s.colour;
   info.depth = s.depth;
   info.samples = s.samples;
@@ -48,7 +48,7 @@ gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences, bool matric
 }
 
 // Both faces cast: a closed skin loses nothing by it, an open one keeps its shadow.
-gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences, bool matrices) {
+gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences, const CrowdForms& forms) {
   return {s.context,
           {.name = "crowd shadow",
            .vertex = {embedded::shadow_vert_texel(), embedded::shadow_vert_storage()},
@@ -61,12 +61,14 @@ gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences, bool matr
            .depth = s.shadow.image().format(),
            .depthUse = gpu::DepthUse::shadow,
            .cull = {},
-           .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}}};
+           .constants = {{shared::CONSTANT_INFLUENCES, influences},
+                         {shared::CONSTANT_MATRICES, forms.matrices},
+                         {shared::CONSTANT_STUMPS, forms.stumps}}}};
 }
 
 }  // namespace
 
-gpu::GraphicsInfo crowdShading(int influences, bool matrices, bool tinted) {
+gpu::GraphicsInfo crowdShading(int influences, const CrowdForms& forms) {
   return {.name = "crowd",
           .vertex = {embedded::crowd_vert_texel(), embedded::crowd_vert_storage()},
           .fragment = embedded::crowd_frag(),
@@ -79,8 +81,9 @@ gpu::GraphicsInfo crowdShading(int influences, bool matrices, bool tinted) {
           .pushBytes = sizeof(shared::CrowdConstants),
           .streams = streams(true),
           .constants = {{shared::CONSTANT_INFLUENCES, influences},
-                        {shared::CONSTANT_MATRICES, matrices},
-                        {shared::CONSTANT_TINTED, tinted}}};
+                        {shared::CONSTANT_MATRICES, forms.matrices},
+                        {shared::CONSTANT_TINTED, forms.tinted},
+                        {shared::CONSTANT_STUMPS, forms.stumps}}};
 }
 
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s.context) {
@@ -95,8 +98,9 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s
     kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
     kind.mesh =
         uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
-    kind.draw = drawPipeline(s, kind.mesh.influences, clips, source.tinted);
-    kind.shadow = shadowPipeline(s, kind.mesh.influences, clips);
+    const CrowdForms forms{.matrices = clips, .tinted = source.tinted, .stumps = source.hurts};
+    kind.draw = drawPipeline(s, kind.mesh.influences, forms);
+    kind.shadow = shadowPipeline(s, kind.mesh.influences, forms);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
       Page page;

@@ -24,6 +24,7 @@ BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter
 BINDING CONSTANT_TINTED = 3;    // agents have tints (tint.h)
+BINDING CONSTANT_STUMPS = 4;    // bones may be lost
 #undef BINDING
 
 #ifdef __cplusplus

@@ -111,7 +111,7 @@ class SkinTest : public test::GpuLoadTest {
     picture.tile = {kPictureTile, 100, 0};
     picture.ground = {0, 0, 1, 1};
 
-    gpu::GraphicsInfo info = crowdShading(influences, asMatrices, false);
+    gpu::GraphicsInfo info = crowdShading(influences, {.matrices = asMatrices});
     info.fragment = embedded::normal_frag();
     std::erase_if(info.bindings, [](const auto& b) { return int(b.binding) == shared::DRAW_SHADOW; });
     info.colour = vk::Format::eR32G32B32A32Sfloat;
