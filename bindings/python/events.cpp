@@ -140,6 +140,31 @@ void bindComing(py::module_& module) {
       .def_readwrite("herd", &HerdRemoval::herd, herdText);
 }
 
+void bindLegs(py::module_& module) {
+  py::class_<LegChange> change(module, "LegChange", "A leg of some agents, of a herd that can be hurt.");
+  change
+      .def(py::init([](std::string leg, const std::string& state, uint32_t herd, Places agents,
+                       std::optional<float> share, std::optional<uint32_t> bone) {
+             return LegChange{.herd = herd,
+                              .agents = std::move(agents),
+                              .share = share,
+                              .leg = std::move(leg),
+                              .state = bindings::namedOf(allLegStates, "state", state),
+                              .bone = bone};
+           }),
+           "leg"_a, "state"_a = "lost", "herd"_a = 0, "agents"_a = Places{}, "share"_a = py::none(),
+           "bone"_a = py::none())
+      .def_readwrite("herd", &LegChange::herd, herdText)
+      .def_readwrite("leg", &LegChange::leg, "Its name in the rig.")
+      .def_readwrite("share", &LegChange::share,
+                     "Each agent is drawn with this chance, 0 to 1; None: all of `agents`.")
+      .def_readwrite("bone", &LegChange::bone,
+                     "The first bone that is lost, from the root; None: the second one.");
+  defineNamed(change, "state", &LegChange::state, allLegStates,
+              "\"whole\", \"lame\", \"stuck\" or \"lost\".");
+  defineTuple(change, "agents", &LegChange::agents, agentsText);
+}
+
 // Takes the object for a `Kind` if it is one.
 template <typename Kind>
 bool takes(const py::object& object, What& what) {
@@ -174,8 +199,8 @@ std::vector<Event> eventsIn(const py::list& events) {
     Event one{.at = event.at, .what = {}};
     if (!isTaken(event.what, one.what))
       fail(".what", event.what,
-           "a Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition or "
-           "HerdRemoval");
+           "a Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition, "
+           "HerdRemoval or LegChange");
     made.push_back(std::move(one));
   }
   return made;
@@ -185,6 +210,7 @@ void bindEvents(py::module_& module) {
   bindGround(module);
   bindChanges(module);
   bindComing(module);
+  bindLegs(module);
   py::class_<PythonEvent, std::shared_ptr<PythonEvent>>(
       module, "Event", "What happens to a crowd while it runs, at a time (docs/scene.md).")
       .def(py::init([](float at, py::object what) {
@@ -195,7 +221,7 @@ void bindEvents(py::module_& module) {
                      "Seconds from the start: before the first tick that ends then or later.")
       .def_readwrite("what", &PythonEvent::what,
                      "A Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, "
-                     "HerdAddition or HerdRemoval.")
+                     "HerdAddition, HerdRemoval or LegChange.")
       .def("__repr__", [](const PythonEvent& self) {
         return fmt::format("<skitter.Event at {} s: {}>", self.at,
                            py::type::of(self.what).attr("__name__").cast<std::string>());
