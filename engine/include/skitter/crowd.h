@@ -172,9 +172,9 @@ class SKITTER_API Crowd {
   // to vertex, fragment, compute and transfer work recorded after it. Each recorded tick must be submitted
   // once, in order. What Scene::events has for that time happens first, as if the caller had called
   // editHeights, steer, setSpeed, teleport, add, remove, hurt, addHerd or removeHerd just before; no file is
-  // read for that. A tick before which a herd comes or goes takes the queue's lock, allocates, submits and waits
-  // for the device, and is recorded when all that was recorded before it is submitted. The buffers of a herd
-  // that goes are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
+  // read for that. A tick before which a herd comes or goes takes the queue's lock, allocates, submits and
+  // waits for the device, and is recorded when all that was recorded before it is submitted. The buffers of a
+  // herd that goes are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
   // Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an adaptive
   // herd, below 22 microseconds; and where an event cannot happen, because a herd or an agent is not there or
   // no place is left: then none of the tick's events has, and the tick can be recorded again. Throws

@@ -105,7 +105,7 @@ SKITTER_CONST float ABSENT_HEIGHT = -1e6;
 
 // gait, per agent, written by gait.
 //   [0] phase phi in [0,1), lift mask, re-aim mask, step duration (ticks)
-//   [1] half stride a (m), cycle C (s), mask of legs in the air before lifting, mask of legs that do not carry
+//   [1] half stride a (m), cycle C (s), masks of legs in the air before lifting, of legs that do not carry
 SKITTER_CONST int GAIT_STRIDE = 2;
 
 // step, per leg, written by foothold when a step begins or is aimed anew.
@@ -232,8 +232,8 @@ SKITTER_CONST int METRIC_STRIDE = 7;
 //   [0] mask of lost legs, of stuck legs, of lame legs; groups of the gait
 //   [1] of lost legs the first bone that is lost: legs 0 to 5, 6 to 11, 12 to 17 and 18 to 23 (packedBone)
 //   [2] shift of the homes x, y, z (model, m); share of the desired velocity
-//   [3 + leg] group, lag in it, mask of the legs that must stand while it is in the air; how many times as long
-//   as others its step lasts
+//   [3 + leg] group, lag in it, mask of the legs that must stand while it is in the air; how many times as
+//   long as others its step lasts
 SKITTER_CONST int HURT_LEGS = 3;  // where its vec4 of legs begin
 SKITTER_FUNCTION int hurtStride(int legs) { return HURT_LEGS + legs; }
 // Six bones, each below HURT_BONES, are one exact float.
