@@ -68,6 +68,7 @@ struct Renderer::Impl {
   render::ShadowMap shadow;
   render::Setting setting;
   render::Terrain terrain;
+  render::TextureStore textures;
   render::CrowdDrawing crowd;
   render::Sky sky;
   render::Antialias antialias;  // where there are no samples to resolve
@@ -97,7 +98,7 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       setting{c,      source.terrain, source.heights, picture, ground, *groundSampler,
               shadow, drawnFormat(),  kDepth,         samples},
       terrain(setting),
-      crowd(setting, source),
+      crowd(setting, source, textures),
       sky(setting) {
   timer.measure(false);
   drawn = gpu::Image(c,
@@ -116,7 +117,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   // Herds have come or gone. Pictures in flight may still use what goes.
   if (revision != live.revision) {
     context.waitIdle();
-    crowd = render::CrowdDrawing(setting, live);
+    crowd = render::CrowdDrawing(setting, live, textures);
     revision = live.revision;
   }
   const vk::Extent2D extent = colour.extent();
@@ -137,6 +138,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
 
   crowd.cull(cmd);
   gpu::computeToGraphics(cmd);
+  crowd.countParts(cmd);
 
   timer.next(cmd, "shadow");
   drawShadows(cmd);
@@ -219,6 +221,8 @@ void Renderer::record(VkCommandBuffer commandBuffer, const View& view,
 VkImage Renderer::image() const { return impl_->colour.handle(); }
 uint32_t Renderer::width() const { return impl_->colour.extent().width; }
 uint32_t Renderer::height() const { return impl_->colour.extent().height; }
+
+const std::vector<std::string>& Renderer::notes() const { return impl_->textures.notes(); }
 
 void Renderer::timeStages(bool on) { impl_->timer.measure(on); }
 
