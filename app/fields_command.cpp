@@ -22,6 +22,7 @@
 #include "crowd/herd.h"
 #include "crowd/radius.h"
 #include "crowd/readback.h"
+#include "crowd/ways/look.h"
 #include "skitter/crowd.h"
 #include "skitter/error.h"
 #include "skitter/image.h"
@@ -82,8 +83,7 @@ std::vector<glm::vec2> startsOf(const Crowd::Impl& crowd, const KindView& view, 
       const bool hasIt = &crowd.kindOf(herd, agent) == &view.kind && body[7] == 0 &&
                          wanted[6] == shared::GOAL_POINT && glm::vec2(wanted[0], wanted[1]) == goal;
       if (!hasIt) continue;
-      const glm::vec2 tile(shared::tileX(body[3]), shared::tileZ(body[3]));
-      starts.push_back(tile * shared::TILE_SIZE + glm::vec2(body[0], body[2]));
+      starts.push_back(crowd::placeOf(body));
     }
   }
   return starts;

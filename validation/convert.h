@@ -20,10 +20,10 @@ reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, i
 reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones);
 
 reference::Goal goalOf(const HerdState& state, size_t agent);
-// What navigate wants, and whether it lets the agent sleep.
+// Navigate's velocity, and whether it lets the agent sleep.
 glm::dvec2 desiredOf(const HerdState& state, size_t agent);
 bool mayRest(const HerdState& state, size_t agent);
-// What the later stages go by: the same, or avoid's where the herd avoids.
+// The velocity of the later stages: the same, or avoid's where the herd avoids.
 glm::dvec2 velocityOf(const HerdState& state, size_t agent);
 bool asleepOf(const HerdState& state, size_t agent);
 // Agents in reach, as avoid has them.

@@ -7,7 +7,7 @@
 // Between the engine's foragers and the reference's (docs/foraging.md).
 namespace skitter::validation {
 
-// What the reference is told of those who forage.
+// The facts of foragers that the reference needs.
 struct ForageFacts {
   reference::ForageMap map;
   reference::ForageTuning tuning;

@@ -45,7 +45,7 @@ inline std::vector<reference::WayPlace> wayPlacesOf(const crowd::Kind& kind) {
   return all;
 }
 
-// Of a kind whose herds forage, from the agent of that number on.
+// The facts of a kind whose herds forage, from the agent of that number on.
 inline std::optional<ForageFacts> forageOf(const crowd::Kind& kind, int64_t firstNumber = 0) {
   if (!kind.trails) return {};
   const Forage& forage = kind.trails->forage();

@@ -12,7 +12,7 @@
 
 namespace skitter::app {
 
-// What maps are of, seen from above: x to the right, z down.
+// Maps show this, seen from above: x to the right, z down.
 struct MapGround {
   const Heightfield& terrain;
   std::span<const Obstacle> obstacles;
@@ -24,7 +24,7 @@ struct MapGround {
 struct MapGoal {
   glm::vec2 goal, stop;
   std::span<const float> times;  // at the middles of cells
-  // Of each cell: whether a way leads to the goal.
+  // For each cell, whether a way leads to the goal.
   std::vector<bool> reached;
   std::vector<glm::vec2> starts;  // where those agents are
 };

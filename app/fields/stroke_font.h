@@ -14,7 +14,7 @@ struct Glyph {
 };
 constexpr float glyphHeight = 7, glyphSpace = 1.8f;
 
-// Of printable ASCII; any other character is a box.
+// Printable ASCII has glyphs; any other character is a box.
 Glyph glyphOf(char character);
 
 }  // namespace skitter::app

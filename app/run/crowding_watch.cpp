@@ -8,6 +8,7 @@
 #include "crowd/herd.h"
 #include "crowd/radius.h"
 #include "crowd/readback.h"
+#include "skitter/decode.h"
 #include "skitter/records.h"
 
 namespace skitter::app {
@@ -67,11 +68,9 @@ CrowdingWatch::Moment CrowdingWatch::momentOf(const Crowd& crowd) const {
   for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
     const HerdState state = crowd::downloadRecords(implOf(crowd), h, records);
     for (size_t agent = 0; agent < state.agents; ++agent) {
-      const float* body = &state.body[4 * agent * shared::BODY_STRIDE];
-      const bool isThere = body[7] == 0;
-      const glm::dvec2 tile(shared::tileX(body[3]), shared::tileZ(body[3]));
-      moment.places.push_back(isThere ? tile * double{shared::TILE_SIZE} + glm::dvec2(body[0], body[2])
-                                      : glm::dvec2(NAN));
+      const std::span<const float> bodies(state.body);
+      const BodyState body = bodyOf(bodies.subspan(4 * agent * shared::BODY_STRIDE, 4 * shared::BODY_STRIDE));
+      moment.places.push_back(body.present ? glm::dvec2(body.position.x, body.position.z) : glm::dvec2(NAN));
       const float* steer = &state.steer[4 * agent * shared::STEER_STRIDE];
       moment.wanted.emplace_back(steer[0], steer[1]);
       moment.hasPoint.push_back(state.goal[4 * agent * shared::GOAL_STRIDE + 6] == shared::GOAL_POINT);

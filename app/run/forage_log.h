@@ -8,7 +8,7 @@
 
 namespace skitter::app {
 
-// What the foragers of a herd did, all in all and in each window of time.
+// The deeds of a herd's foragers, in all and in each window of time.
 struct ForageFigures {
   // From the window before to `until`.
   struct Window {

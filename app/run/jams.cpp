@@ -58,7 +58,7 @@ bool linesCross(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>&
   return false;
 }
 
-// Who stands directly ahead of whom: less than a body length away, between footprints.
+// For each agent, those whom it stands directly ahead of: less than a body length between footprints.
 std::vector<std::vector<size_t>> behindOf(std::span<const Advance> agents) {
   std::vector<glm::dvec2> places;
   double widest = 0;

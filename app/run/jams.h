@@ -33,7 +33,7 @@ class FlowMap {
  public:
   explicit FlowMap(double side) : side_(side) {}
 
-  // Of an agent, in the time that ends at `seconds`.
+  // An agent's move, in the time that ends at `seconds`.
   void add(const glm::dvec2& from, const glm::dvec2& to, double seconds);
   // Agents per second and metre in the square with most, of those in which agents were for ten seconds or
   // more between the first one and the last; none without such a square.

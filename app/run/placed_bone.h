@@ -11,7 +11,7 @@ struct PlacedBone {
   float start[3], rotation[4];
 };
 
-// Of an agent of `kind`, whose number in `state` it is; the leg has that bone. The state has poses.
+// `agent` is a number in `state`, of an agent of `kind`; the leg has that bone. The state has poses.
 PlacedBone placedBone(const HerdState& state, const crowd::Kind& kind, size_t agent, size_t leg, size_t bone);
 
 }  // namespace skitter::app

@@ -30,7 +30,7 @@ struct AvoidTuning {
   std::vector<AvoidObstacle> obstacles = {};
 };
 
-// What one neighbour asks: n . v >= bound.
+// One neighbour asks for n . v >= bound.
 struct HalfPlane {
   int64_t neighbour = 0;  // its number
   glm::dvec2 n{0};
@@ -40,7 +40,7 @@ struct HalfPlane {
   int right = -1;  // 1 or 0: the side that was taken; -1 where there is none
 };
 
-// What an obstacle asks for, likewise.
+// An obstacle asks for the same form.
 struct ObstaclePlane {
   size_t obstacle = 0;  // its place in AvoidTuning
   glm::dvec2 n{0};

@@ -46,7 +46,7 @@ struct Forager {
   bool operator==(const Forager&) const = default;
 };
 
-// What an agent did in a tick, which the trail learns after all agents have decided.
+// An agent's deed in a tick, which the trail learns after all agents have decided.
 struct ForageDeed {
   int64_t entered = -1;  // a cell; -1: none
   uint32_t grains = 0;   // laid there

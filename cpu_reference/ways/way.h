@@ -47,7 +47,7 @@ struct WayResult {
   double straightMargin = 0, stopMargin = 0, passMargin = 0;
   glm::dvec2 lowerMargin{0}, upperMargin{0};
   double away = 0;  // metres to the stop
-  // What errors follow from: how much the direction changes with the place, for each cell; the largest
+  // Errors follow from these: how much the direction changes with the place, for each cell; the largest
   // difference of the times around, as a share of the gradient's length and in itself.
   double turning = 0, magnified = 0, rise = 0;
 };

@@ -15,7 +15,6 @@
 #include <string_view>
 #include <utility>
 
-#include "assets/scenes/obstacles.h"
 #include "crowd/controllers/controllers.h"
 #include "crowd/events.h"
 #include "crowd/frame.h"
@@ -38,6 +37,7 @@
 #include "crowd/watch.h"
 #include "crowd/ways/trails.h"
 #include "crowd/ways/ways.h"
+#include "crowd/world_checks.h"
 #include "gpu/barrier.h"
 #include "gpu/context.h"
 #include "gpu/device_memory.h"
@@ -118,28 +118,9 @@ void checkTick(const crowd::Kind& kind, float dt) {
   if (check != nullptr && !kind.stages.empty()) check(kind, dt);
 }
 
-bool isLength(float metres) { return metres > 0 && std::isfinite(metres); }
-
-// A program's own rig may be anything.
-void checkRig(const Rig& rig) {
-  const auto check = [&](bool fits, const std::string& fault) {
-    if (!fits) throw inputError(fmt::format("{}: {}", rig.name, fault));
-  };
-  check(!rig.legs.empty() && rig.legs.size() <= Rig::maxLegs,
-        fmt::format("{} legs, expected 1 to {}", rig.legs.size(), Rig::maxLegs));
-  check(isLength(rig.legLength), fmt::format("a leg length of {} m, expected above 0", rig.legLength));
-  for (const Leg& leg : rig.legs) {
-    check(!leg.bones.empty() && leg.bones.size() <= Leg::maxBones,
-          fmt::format("leg {} has {} bones, expected 1 to {}", leg.name, leg.bones.size(), Leg::maxBones));
-    check(isLength(leg.reach), fmt::format("leg {} reaches {} m, expected above 0", leg.name, leg.reach));
-    check(leg.group >= 0 && leg.group < rig.groupCount(),
-          fmt::format("leg {} is of group {}, expected one of {}", leg.name, leg.group, rig.groupCount()));
-  }
-}
-
 // All of a kind but its agents; `loaded` is its rig at size 1.
 crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, float size) {
-  checkRig(loaded);
+  crowd::checkRig(loaded);
   const gpu::Context& context = *crowd.context;
   crowd::Kind kind;
   kind.controller = from.controller;
@@ -210,16 +191,6 @@ void fill(Impl& crowd, uint32_t k, bool spawns = true) {
   if (kind.tinted) uploadTints(crowd, k);
 }
 
-void checkTerrain(const Heightfield& terrain) {
-  terrain.check();
-  if (std::max(terrain.extentX(), terrain.extentZ()) > 2 * Scene::maxCoordinate)
-    throw inputError(terrain.name + ": the terrain is " +
-                     std::to_string(static_cast<int>(terrain.extentX())) + " x " +
-                     std::to_string(static_cast<int>(terrain.extentZ())) + " m, expected at most " +
-                     std::to_string(static_cast<int>(2 * Scene::maxCoordinate)) +
-                     " m a side; --scale or the scene's scale makes it smaller");
-}
-
 // A crowd without herds, which will have so many places at most.
 std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, const Scene& scene,
                                  const CrowdOptions& options, uint64_t places) {
@@ -233,17 +204,7 @@ std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, con
   crowd.seed = scene.seed;
   crowd.scene = scene;
   crowd.scene.herds = {};  // each has its own
-  checkTerrain(terrain);
-  if (scene.obstacles.size() > Scene::maxObstacles)
-    throw inputError(fmt::format("{}: {} obstacles, expected at most {}", scene.name, scene.obstacles.size(),
-                                 Scene::maxObstacles));
-  for (size_t i = 0; i < scene.obstacles.size(); ++i)
-    scenes::checkObstacle(scene.obstacles[i], fmt::format("{}: obstacles[{}]", scene.name, i));
-  if (scene.threats.size() > Scene::maxThreats)
-    throw inputError(fmt::format("{}: {} threats, expected at most {}", scene.name, scene.threats.size(),
-                                 Scene::maxThreats));
-  for (size_t i = 0; i < scene.threats.size(); ++i)
-    scenes::checkThreat(scene.threats[i], fmt::format("{}: threats[{}]", scene.name, i));
+  crowd::checkWorld(terrain, scene);
   crowd.threats = scene.threats;
   crowd.terrain = terrain;
   crowd.heights = gpu::Image(

@@ -245,7 +245,7 @@ void shareGround(Crowd::Impl& crowd) {
     crowd.grid->record(crowd, cmd);
     gpu::allToAll(cmd);
   });
-  // What that has counted is of no tick.
+  // That dispatch counted too, and belongs to no tick.
   std::vector<uint32_t> words(shared::CROWDING_WORDS);
   if (before) words = gpu::download<uint32_t>(*crowd.context, before->crowding);
   gpu::upload(*crowd.context, crowd.grid->crowding, words);

@@ -11,7 +11,7 @@ namespace skitter::crowd {
 // How far agents that avoid see beyond footprints.
 inline constexpr float lookLegLengths = 2;
 
-// Of records, as the device loads them.
+// Records, as the device loads them, may take this many.
 uint64_t bytesABinding(const gpu::Context& context);
 
 // How a crowd with a herd that avoids counts places (docs/stages/avoid.md).
@@ -38,7 +38,7 @@ struct Grid {
   // Sorts all agents, as their bodies are, and measures overlaps if that is asked for, with a barrier after
   // it.
   void record(const Crowd::Impl& crowd, vk::CommandBuffer cmd) const;
-  // What avoid is told.
+  // The constants of stage avoid.
   shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page) const;
   shared::GridConstants gridConstantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page) const;
   float cellsAQuantum() const;

@@ -10,7 +10,8 @@ float radiusOf(const ClipSet&);  // where clips move the skin
 float radiusOf(const Kind&);
 float radiusOf(const Crowd::Impl&, const Herd&);  // of its largest size
 
-// Of the disc on the ground that holds the trunk and half of the way to the farthest home, metres.
+// Metres: the radius of the disc on the ground that holds the trunk and half of the way to the farthest
+// home.
 float footprintRadius(const Rig&);
 
 }  // namespace skitter::crowd

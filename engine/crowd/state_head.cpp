@@ -101,7 +101,7 @@ void eachKey(CrowdOptions& options, const Visit& visit) {
   visit("footfalls", footfalls);
   visit("sleep", sleep);
   visit("fuse", fuse);
-  // What crowding has counted is not saved. timestamps and pageAgents are the device's matter, and shaders
+  // The counts of crowding are not saved. timestamps and pageAgents are the device's matter, and shaders
   // are experiments. A program that made rigs has them.
 }
 template <class Visit>
@@ -228,8 +228,8 @@ StateHead headOf(const Json& json, const std::string& name) try {
   checkHerds(head, name);
   for (const StateKind& kind : head.kinds)
     for (const StateChunk& chunk : kind.chunks)
-      if (!chunk.record() && chunk.name != StateChunk::footfalls &&
-          chunk.name != StateChunk::generations && chunk.name != StateChunk::trail)
+      if (!chunk.record() && chunk.name != StateChunk::footfalls && chunk.name != StateChunk::generations &&
+          chunk.name != StateChunk::trail)
         throw inputError(fmt::format("{}: {} is no known record", name, chunk.name));
   return head;
 } catch (const Json::exception& fault) {

@@ -15,8 +15,8 @@
 namespace skitter::crowd {
 
 // Bytes of a kind's agents, whatever their pages: a record of each, agent after agent and of an agent leg
-// after leg; or without one the footfalls of the last tick, the generation of each agent's place, or the trail
-// of those who forage.
+// after leg; or without one the footfalls of the last tick, the generation of each agent's place, or the
+// trail of those who forage.
 struct StateChunk {
   std::string name;
   uint64_t bytes = 0;

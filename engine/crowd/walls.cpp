@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <variant>
 
 #include "crowd/grid.h"
 #include "crowd/radius.h"
+#include "crowd/ways/shapes.h"
 #include "gpu/context.h"
 #include "gpu/transfer.h"
 #include "shared/walls.h"
@@ -20,7 +20,7 @@ namespace {
 constexpr uint32_t mostWallCells = 128;        // a side
 constexpr uint64_t mostWallRecords = 1 << 20;  // vec4, where bindings reach so many
 
-// What an agent's middle may be nearer by than float32 says, within 4 km.
+// An agent's middle may be nearer by this than float32 says, within 4 km. Metres.
 constexpr float placeMargin = 0.01f;
 
 struct Edge {
@@ -37,27 +37,11 @@ struct Wall {
 Wall wallOf(const Disc& disc) { return {{{disc.centre, disc.centre}}, disc.radius}; }
 Wall wallOf(const Capsule& capsule) { return {{{capsule.from, capsule.to}}, capsule.radius}; }
 Wall wallOf(const ConvexPolygon& polygon) {
-  std::vector<glm::vec2> corners = polygon.corners;
-  const glm::dvec2 a = corners[0], b = corners[1], c = corners[2];
-  if ((b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x) < 0) std::ranges::reverse(corners);
+  const std::vector<glm::vec2> corners = cornersOf(polygon);
   Wall wall{.edges = {}, .radius = 0, .solid = true};
   for (size_t i = 0; i < corners.size(); ++i)
     wall.edges.push_back({corners[i], corners[(i + 1) % corners.size()]});
   return wall;
-}
-
-// 0 inside.
-double distanceTo(const Wall& wall, const glm::dvec2& place) {
-  double nearest = std::numeric_limits<double>::infinity();
-  bool inside = wall.solid;
-  for (const Edge& edge : wall.edges) {
-    const glm::dvec2 way = glm::dvec2(edge.to) - glm::dvec2(edge.from), from = place - glm::dvec2(edge.from);
-    const double squared = glm::dot(way, way);
-    const double along = squared > 0 ? std::clamp(glm::dot(from, way) / squared, 0.0, 1.0) : 0;
-    nearest = std::min(nearest, glm::length(from - along * way));
-    inside = inside && way.y * from.x < way.x * from.y;
-  }
-  return inside ? 0 : std::max(0.0, nearest - double{wall.radius});
 }
 
 // Square cells over the terrain, and which obstacles each one has.
@@ -68,14 +52,16 @@ struct WallGrid {
   std::vector<std::vector<uint32_t>> walls;
   uint64_t records = 0;  // vec4
 
-  WallGrid(const Heightfield& terrain, std::span<const Wall> all, double reach, double side)
+  WallGrid(const Heightfield& terrain, std::span<const Obstacle> obstacles, std::span<const Wall> all,
+           double reach, double side)
       : columns(count(terrain.extentX(), side)),
         rows(count(terrain.extentZ(), side)),
         cell(side),
         origin(terrain.originX(), terrain.originZ()),
         walls(size_t{columns} * rows) {
     records = shared::WALL_HEADS + walls.size();
-    for (uint32_t i = 0; i < all.size(); ++i) add(i, all[i], reach + cell * std::sqrt(0.5));
+    for (uint32_t i = 0; i < all.size(); ++i)
+      add(i, obstacles[i], all[i].edges.size(), reach + cell * std::sqrt(0.5));
   }
 
  private:
@@ -87,20 +73,15 @@ struct WallGrid {
   }
 
   // To the cells whose middles are within `reach` of it.
-  void add(uint32_t i, const Wall& wall, double reach) {
-    glm::dvec2 least(wall.edges[0].from), most = least;
-    for (const Edge& edge : wall.edges) {
-      least = glm::min(least, glm::dvec2(glm::min(edge.from, edge.to)));
-      most = glm::max(most, glm::dvec2(glm::max(edge.from, edge.to)));
-    }
-    least -= origin + reach + double{wall.radius};
-    most += reach + double{wall.radius} - origin;
+  void add(uint32_t i, const Obstacle& obstacle, size_t edges, double reach) {
+    const ShapeBounds bounds = boundsOf(obstacle);
+    const glm::dvec2 least = bounds.least - reach - origin, most = bounds.most + reach - origin;
     for (uint32_t row = along(least.y, cell, rows); row <= along(most.y, cell, rows); ++row)
       for (uint32_t column = along(least.x, cell, columns); column <= along(most.x, cell, columns);
            ++column) {
-        if (distanceTo(wall, origin + cell * (glm::dvec2(column, row) + 0.5)) > reach) continue;
+        if (distanceTo(obstacle, origin + cell * (glm::dvec2(column, row) + 0.5)) > reach) continue;
         walls[size_t{row} * columns + column].push_back(i);
-        records += shared::WALL_EDGE_STRIDE * wall.edges.size();
+        records += shared::WALL_EDGE_STRIDE * edges;
       }
   }
 };
@@ -136,7 +117,7 @@ std::optional<std::vector<float>> wallRecords(const Heightfield& terrain, std::s
     all.push_back(std::visit([](const auto& shape) { return wallOf(shape); }, obstacle.shape));
   const double longest = std::max(double{terrain.extentX()}, double{terrain.extentZ()});
   for (double cell = std::max(double{reach}, longest / mostWallCells);; cell *= 2) {
-    const WallGrid grid(terrain, all, double{reach + placeMargin}, cell);
+    const WallGrid grid(terrain, obstacles, all, double{reach + placeMargin}, cell);
     if (grid.records <= most) return flattened(grid, all, terrain);
     if (grid.walls.size() == 1) return {};
   }

@@ -12,7 +12,7 @@
 namespace skitter::render {
 namespace {
 
-// Of the longest leg: higher than any creature steps over, low enough to look across.
+// A share of the longest leg: higher than any creature steps over, low enough to look across.
 constexpr float kHeightInLegs = 0.75f;
 constexpr float kLeastStep = 0.5f;  // metres between vertices below which a wall gains nothing
 

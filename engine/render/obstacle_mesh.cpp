@@ -5,6 +5,8 @@
 #include <numbers>
 #include <variant>
 
+#include "crowd/ways/shapes.h"
+
 namespace skitter::render {
 namespace {
 
@@ -75,9 +77,7 @@ Outline outlineOf(const Capsule& capsule, float height, float step) {
 }
 
 Outline outlineOf(const ConvexPolygon& polygon, float, float step) {
-  std::vector<glm::vec2> corners = polygon.corners;
-  const glm::vec2 first = corners[1] - corners[0], second = corners[2] - corners[1];
-  if (first.x * second.y - first.y * second.x < 0) std::ranges::reverse(corners);
+  const std::vector<glm::vec2> corners = crowd::cornersOf(polygon);
   const size_t n = corners.size();
   glm::vec2 middle(0);
   for (const glm::vec2& corner : corners) middle += corner / static_cast<float>(n);

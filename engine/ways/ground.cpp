@@ -12,22 +12,11 @@
 namespace skitter::ways {
 namespace {
 
-constexpr std::array<glm::ivec2, 8> steps = {
+constexpr std::array<glm::ivec2, directionCount> steps = {
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
 size_t indexOf(const CostGrid& grid, glm::ivec2 at) {
   return static_cast<size_t>(at.y) * grid.columns + static_cast<size_t>(at.x);
-}
-
-bool isPassable(const CostGrid& grid, glm::ivec2 at) {
-  return at.x >= 0 && at.y >= 0 && at.x < static_cast<int>(grid.columns) &&
-         at.y < static_cast<int>(grid.rows) && std::isfinite(grid.cost[indexOf(grid, at)]);
-}
-
-// A diagonal move needs both cells beside it, so that nobody cuts a corner.
-bool isOpen(const CostGrid& grid, glm::ivec2 at, glm::ivec2 step) {
-  return isPassable(grid, at) && isPassable(grid, at + step) && isPassable(grid, {at.x + step.x, at.y}) &&
-         isPassable(grid, {at.x, at.y + step.y});
 }
 
 uint32_t fixedCost(float cost) {
@@ -36,8 +25,21 @@ uint32_t fixedCost(float cost) {
 
 }  // namespace
 
+glm::ivec2 stepOf(uint32_t direction) { return steps[direction]; }
+
+bool isPassable(const CostGrid& grid, glm::ivec2 at) {
+  return at.x >= 0 && at.y >= 0 && at.x < static_cast<int>(grid.columns) &&
+         at.y < static_cast<int>(grid.rows) && std::isfinite(grid.cost[indexOf(grid, at)]);
+}
+
+bool isOpen(const CostGrid& grid, glm::ivec2 at, uint32_t direction) {
+  const glm::ivec2 step = stepOf(direction);
+  return isPassable(grid, at) && isPassable(grid, at + step) && isPassable(grid, {at.x + step.x, at.y}) &&
+         isPassable(grid, {at.x, at.y + step.y});
+}
+
 glm::uvec2 beside(glm::uvec2 cell, uint32_t direction) {
-  return glm::uvec2(glm::ivec2(cell) + steps[direction]);
+  return glm::uvec2(glm::ivec2(cell) + stepOf(direction));
 }
 
 void checkCell(const CostGrid& grid, const char* what, glm::uvec2 cell) {
@@ -72,8 +74,8 @@ std::vector<uint32_t> groundOf(const CostGrid& grid) {
   for (size_t index = 0; index < ground.size(); ++index) {
     const glm::ivec2 at(index % grid.columns, index / grid.columns);
     uint32_t word = fixedCost(grid.cost[index]) << shared::GROUND_COST_SHIFT;
-    for (uint32_t direction = 0; direction < 8; ++direction)
-      if (isOpen(grid, at, steps[direction])) word |= 1u << direction;
+    for (uint32_t direction = 0; direction < directionCount; ++direction)
+      if (isOpen(grid, at, direction)) word |= 1u << direction;
     ground[index] = word;
   }
   return ground;

@@ -1,4 +1,4 @@
-// What the kernels of the grid begin with (docs/stages/avoid.md).
+// The kernels of the grid begin with this (docs/stages/avoid.md).
 #include "lib/load4.glsl"
 #include "shared/bindings.h"
 #include "shared/grid.h"

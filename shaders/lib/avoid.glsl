@@ -45,7 +45,7 @@ vec2 partingLine(int a, int b) {
   return a < b ? line : -line;
 }
 
-// What a neighbour allows: n . v >= bound.
+// A neighbour allows n . v >= bound.
 struct HalfPlane {
   vec2 n;
   float bound;

@@ -1,6 +1,6 @@
 #ifndef CELLS_GLSL
 #define CELLS_GLSL
-// Who is in the nine cells about a place: three runs of agents, one a row of cells (docs/stages/avoid.md).
+// The agents in the nine cells about a place: three runs, one per row of cells (docs/stages/avoid.md).
 
 struct Runs {
   ivec2 a, b, c;  // place of the first agent, agents

@@ -16,7 +16,9 @@ int alongHeading(ivec2 heading, int direction) {
 }
 
 // The heading after a move.
-ivec2 turnedHeading(ivec2 heading, int direction) { return ((3 * heading) >> 2) + 256 * forageStep(direction); }
+ivec2 turnedHeading(ivec2 heading, int direction) {
+  return ((3 * heading) >> 2) + 256 * forageStep(direction);
+}
 
 // The way to the nest over flat ground, 1/512 cell.
 int homeLength(ivec2 cell, ivec2 nest) {
@@ -31,7 +33,7 @@ uint attraction(uint smell, uint most, uint power) {
   return max(value, 1u);
 }
 
-// Of `moves`, those that are ahead, or where none is, those that turn least.
+// Those of `moves` that are ahead, or where none is, those that turn least.
 uint movesAhead(uint moves, ivec2 heading) {
   int most = -0x7fffffff;
   for (int d = 0; d < 8; ++d)

@@ -58,7 +58,7 @@ struct ObstacleConstants {
 // Push constants of cull.
 struct CullConstants {
   uint agents;
-  float radius;                  // about the body's position, metres
+  float radius;                      // about the body's position, metres
   float lodPixels[CAMERA_LODS - 1];  // the radius in pixels from which each level but the last serves
 };
 

@@ -96,10 +96,10 @@ struct TickConstants {
   uint32_t every;
   uint32_t watched;
   uint32_t room;
-  // navigate: seconds of standing after which an agent may sleep in this tick; of herds that forage `watched` is
-  // 2^32 times the chance to leave the nest.
-  // avoid: `first` is the number in the crowd of the page's first agent, `every` are the grid's buckets, `watched`
-  // those in a row, `room` is how far agents look (quanta), `sleepTime` metres a quantum.
+  // navigate: seconds of standing after which an agent may sleep in this tick; in herds that forage `watched`
+  // is 2^32 times the chance to leave the nest.
+  // avoid: `first` is the number in the crowd of the page's first agent, `every` are the grid's buckets,
+  // `watched` those in a row, `room` is how far agents look (quanta), `sleepTime` metres per quantum.
   float sleepTime;
 #else
   uint count;

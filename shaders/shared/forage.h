@@ -22,8 +22,8 @@ FORAGE PLACE_FOOD = 2;
 FORAGE PLACE_BRANCH = PLACE_FOOD + MOST_SOURCES;
 FORAGE PLACES = PLACE_BRANCH + MOST_BRANCHES;
 
-// What a forager has done in a tick: nothing, came home without or with a load, took one from a source, came into
-// a branch. Those of sources and branches follow from their places.
+// A forager's deed in a tick: none, it came home without or with a load, took one from a source, or came
+// into a branch. Those of sources and branches follow from their places.
 FORAGE DEED_NONE = 0;
 FORAGE DEED_EMPTY = 1;
 FORAGE DEED_BROUGHT = 2;
@@ -52,7 +52,7 @@ FORAGE FORAGE_POWER = 10;
 FORAGE FORAGE_LAY_HOME = 11;  // grains
 FORAGE FORAGE_LAY_OUT = 12;
 FORAGE FORAGE_PATIENCE = 13;
-FORAGE FORAGE_AMOUNTS = 16;  // of the sources
+FORAGE FORAGE_AMOUNTS = 16;                           // of the sources
 FORAGE FORAGE_CELLS = FORAGE_AMOUNTS + MOST_SOURCES;  // a cell: moves in bits 0 to 7, its place above
 FORAGE_UINT FORAGE_PLACE_SHIFT = 8u;
 
@@ -63,7 +63,7 @@ FORAGE_UINT GRAINS_A_UNIT = 256u;
 FORAGE_UINT MOST_GRAINS = (1u << 20) - 1u;
 FORAGE FORAGE_QUANTA = 1024;  // in a metre
 
-// Of shaders/ways/forage_lay.comp and forage_fade.comp.
+// Bindings of shaders/ways/forage_lay.comp and forage_fade.comp.
 FORAGE BINDING_LAY_FORAGER = 0;  // BINDING_FORAGER
 FORAGE BINDING_LAY_TRAIL = 1;
 struct TrailConstants {

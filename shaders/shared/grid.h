@@ -12,9 +12,9 @@ namespace skitter::shared {
 #endif
 
 // Beside BINDING_BODY.
-GRID BINDING_GRID_COUNT = 0;      // a bucket's agents, added to its empty count: uint
-GRID BINDING_GRID_COUNTED = 1;    // the same, read
-GRID BINDING_GRID_SUM_OUT = 2;    // agents of each run of buckets: float
+GRID BINDING_GRID_COUNT = 0;    // a bucket's agents, added to its empty count: uint
+GRID BINDING_GRID_COUNTED = 1;  // the same, read
+GRID BINDING_GRID_SUM_OUT = 2;  // agents of each run of buckets: float
 GRID BINDING_GRID_SUM = 3;
 GRID BINDING_GRID_CELL = 4;
 GRID BINDING_GRID_CELL_OUT = 5;
@@ -47,10 +47,10 @@ struct GridConstants {
   uint row;
   uint run;
 #endif
-  float quanta;   // in a metre
-  float cells;    // in a quantum
-  float radius;   // of the page's agents, quanta
-  float avoids;   // 1 if their herds do
+  float quanta;  // in a metre
+  float cells;   // in a quantum
+  float radius;  // of the page's agents, quanta
+  float avoids;  // 1 if their herds do
 };
 
 #undef GRID

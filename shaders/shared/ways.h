@@ -15,24 +15,26 @@ namespace skitter::shared {
 //   [0] number of fields, columns, rows, metres a cell
 //   [1] x, z of the corner of cell (0, 0), unused x 2
 //   [WAY_HEADS + k] field k: x, z of the goal, x, z of its stop
-//   [WAY_PLACES + k] place k of goals in series: x, z, the first of those that may come next, how many (0: none)
-//   [WAY_TIMES + k * cells + cell] time at the middles of cells (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1);
-//     beyond the grid's end those of its last column or row
+//   [WAY_PLACES + k] place k of goals in series: x, z, the first of those that may come next,
+//     how many (0: none)
+//   [WAY_TIMES + k * cells + cell] time at the middles of cells (i, j), (i + 1, j), (i, j + 1),
+//     (i + 1, j + 1); beyond the grid's end those of its last column or row
 WAY WAY_HEADS = 2;
 WAY MOST_WAYS = 16;
 WAY WAY_PLACES = WAY_HEADS + MOST_WAYS;
 WAY MOST_PLACES = 64;
 WAY WAY_TIMES = WAY_PLACES + MOST_PLACES;
 
-WAY BINDING_WAY_COST = 0;    // float a cell: cost * cell, less than 0 where impassable: what its time is made of then
-WAY BINDING_WAY_TIME = 1;    // float a cell, field after field: time; WAY_FAR where none is known yet
-WAY BINDING_WAY_STATE = 2;   // uint a field: 1 while a round changes something
-WAY BINDING_WAY_OUT = 3;     // BINDING_WAY
+// float per cell: cost * cell; where impassable less than 0, and its time follows from that
+WAY BINDING_WAY_COST = 0;
+WAY BINDING_WAY_TIME = 1;   // float per cell, field after field: time; WAY_FAR where none is known yet
+WAY BINDING_WAY_STATE = 2;  // uint per field: 1 while a round changes something
+WAY BINDING_WAY_OUT = 3;    // BINDING_WAY
 
 // Invocations that share a diagonal: as many as every device has in a work group.
 WAY WAY_GROUP = 128;
-// Rounds in one dispatch. On 512 x 512 cells a round is 14,300 turns of loops; Mesa's software device ends the
-// loops of an invocation after 65,535.
+// Rounds in one dispatch. On 512 x 512 cells a round is 14,300 turns of loops; Mesa's software device ends
+// the loops of an invocation after 65,535.
 WAY WAY_ROUNDS = 4;
 
 #ifdef __cplusplus

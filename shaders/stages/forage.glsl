@@ -29,7 +29,8 @@ ivec2 middleOf(int cell) { return ivec2(cell % forageShape.x, cell / forageShape
 int cellAt(ivec2 at) { return at.y * forageShape.x + at.x; }
 
 ivec2 cellUnder(vec4 body) {
-  ivec2 place = ivec2(tileOf(body.w) * (TILE_SIZE * float(FORAGE_QUANTA)) + floor(body.xz * float(FORAGE_QUANTA)));
+  ivec2 place =
+      ivec2(tileOf(body.w) * (TILE_SIZE * float(FORAGE_QUANTA)) + floor(body.xz * float(FORAGE_QUANTA)));
   return min(max(place - forageOrigin, ivec2(0)) / forageCell, forageShape - 1);
 }
 
@@ -74,11 +75,12 @@ int chosenMove(Forager ant, int cell, uint moves, uint random) {
   for (int d = 0; d < 8; ++d)
     weights[d] = (moves >> d & 1u) == 0u
                      ? 0u
-                     : attraction(smells[d], most, foragePower) * preference(ant.heading, d, goesHome, at, forageNest);
+                     : attraction(smells[d], most, foragePower) *
+                           preference(ant.heading, d, goesHome, at, forageNest);
   return drawnMove(weights, random);
 }
 
-// Of an agent that rests, is lost or has come to where it went.
+// The agent rests, is lost or has come to where it went.
 void decide(int agent, int here, inout Forager ant, inout Deed deed) {
   uvec2 random = splitMixDraw(splitMixDraw(forageSeed, constants.first + uint(agent) + 1u), uint(thisTick));
   uint ground = grounds[FORAGE_CELLS + here];
@@ -102,7 +104,8 @@ void decide(int agent, int here, inout Forager ant, inout Deed deed) {
 vec2 forage(int agent, vec4 body) {
   vec4 aim = LOAD4(foragers, agent * FORAGER_STRIDE), last = LOAD4(foragers, agent * FORAGER_STRIDE + 1);
   int state = int(aim.w);
-  Forager ant = Forager(int(aim.x) - 1, ivec2(aim.yz), state % FORAGE_STATES, state / FORAGE_STATES, int(last.w));
+  Forager ant =
+      Forager(int(aim.x) - 1, ivec2(aim.yz), state % FORAGE_STATES, state / FORAGE_STATES, int(last.w));
   Deed deed = Deed(-1, DEED_NONE, 0u);
   ivec2 at = cellUnder(body), apart = abs(at - middleOf(max(ant.cell, 0)));
   int here = cellAt(at);

@@ -1,4 +1,4 @@
-// What the kernels of the colony begin with (docs/colony.md).
+// The kernels of the colony begin with this (docs/colony.md).
 #include "lib/colony.glsl"
 
 layout(push_constant) uniform ColonyBlock { ColonyConstants colony; };

@@ -1,4 +1,4 @@
-// What ants have walked: moves of an ant, and where it ended.
+// The trips of ants: moves, and where each ended.
 layout(set = 0, binding = COLONY_MOVE, std430) buffer MoveBlock { uint moves[]; };
 layout(set = 0, binding = COLONY_TRIP, std430) buffer TripBlock { uvec2 trips[]; };  // moves, length
 

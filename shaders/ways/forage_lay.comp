@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// What each forager did in this tick goes into the trail (docs/foraging.md).
+// Each forager's deed in this tick goes into the trail (docs/foraging.md).
 #include "lib/load4.glsl"
 #include "lib/rarely.glsl"
 #include "shared/forage.h"

@@ -8,12 +8,12 @@
 namespace skitter::test {
 namespace {
 
+using app::Advance;
 using app::FlowMap;
 using app::LegLines;
-using app::Advance;
 using app::Standing;
 
-// Of half a metre, who wants to go toward +z and went so far in ten seconds.
+// An agent of half a metre that wants to go toward +z and went so far in ten seconds.
 Advance agentAt(double x, double z, double moved = 0) {
   return {.before = {x, z - moved},
           .now = {x, z},
@@ -26,7 +26,7 @@ Advance agentAt(double x, double z, double moved = 0) {
 TEST(Jams, WhoStandsWithAFreeWayAheadIsStuck) {
   // Somebody is behind, aside, and ahead more than a body length away.
   const std::vector<Advance> agents = {agentAt(0, 0, 0.09), agentAt(0, -1.2, 3), agentAt(1.2, 0.1, 3),
-                                        agentAt(0, 2.1, 3)};
+                                       agentAt(0, 2.1, 3)};
   EXPECT_EQ(app::standingsOf(agents).front(), Standing::stuck);
   EXPECT_EQ(app::standingsOf(std::vector{agentAt(0, 0, 0.11)}).front(), Standing::moves);
 }

@@ -338,7 +338,7 @@ TEST_F(AvoidTest, TheGridHasNoEdges) {
   for (uint32_t i = 0; i < 12; ++i) EXPECT_GE(state.avoid[4 * i + 3], 3) << i;
 }
 
-// Who walk at a wall and at a post, pushed by those behind them.
+// Agents walk at a wall and at a post, pushed by those behind them.
 Scene pressedScene(uint32_t agents) {
   Scene scene = sceneOf(agents, 1, 3);
   scene.obstacles = {{Capsule{.from = {-12, 4}, .to = {12, 4}, .radius = 0.2f}},

@@ -1,4 +1,4 @@
-// What herds with ways keep off (docs/ways.md).
+// Herds with ways keep off threats (docs/ways.md).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,7 +27,7 @@ Scene northward(uint32_t agents, float speed = 2) {
   return scene;
 }
 
-// Of the herd's agents from a place, less what is the threat's.
+// Metres from the threat's edge to the nearest of the herd's agents.
 double nearestTo(const Crowd& crowd, const Threat& threat, uint32_t herd = 0) {
   const HerdState state = crowd.download(herd);
   double nearest = std::numeric_limits<double>::infinity();
@@ -140,7 +140,7 @@ TEST_F(ThreatsTest, AgentsOfAHerdAre) {
     return nearest;
   };
   EXPECT_LT(closest(0), 1.5);
-  // What they and their threats go between two looks.
+  // They and their threats go so far between two looks.
   EXPECT_GT(closest(3), 3 - 0.25 * (2 + 0.3));
 }
 

@@ -125,7 +125,7 @@ TEST_F(PublicDevice, FeaturesAreAddedToAChain) {
   expectRefused("dynamicRendering", [&] { addFeatures(chain, device().physicalDevice()); });
 }
 
-// What adopting takes is tested in tests/embed, with a device of the test's own.
+// tests/embed adopts a device of the test's own.
 TEST_F(PublicDevice, AdoptsAnotherOnesHandles) {
   expectError(Error::Kind::device, "no features", [] { Device::adopt({}); });
   VkPhysicalDeviceVulkan13Features v13{};

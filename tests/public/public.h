@@ -1,4 +1,4 @@
-// What tests share that see the public headers alone.
+// Tests that see the public headers alone share this.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -152,7 +152,7 @@ class OwnBuffer {
 
   VkBuffer handle() const { return buffer_; }
   VkDeviceSize bytes() const { return bytes_; }
-  // What the device has written, once it was waited for.
+  // The numbers that the device has written, once it was waited for.
   float* floats() const { return floats_; }
   // Copies another's bytes into this one, after all that the command buffer has done, for the host to read.
   void copyFrom(VkCommandBuffer commands, VkBuffer from, VkDeviceSize offset = 0) const {

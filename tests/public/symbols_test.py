@@ -5,7 +5,7 @@ tests/scripts/public_test.py finds functions by their names, without a build, th
 import subprocess
 import sys
 
-# What no program can call: private functions of classes that are shown.
+# No program can call these: private functions of classes that are shown.
 PRIVATE = {
     "skitter::Device::Device(std::unique_ptr<skitter::gpu::Context, std::default_delete<skitter::gpu::Context> >)",
     "skitter::Spline::placeAt(double) const",

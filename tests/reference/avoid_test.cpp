@@ -26,7 +26,7 @@ class Avoid : public testing::Test {
             .velocity = velocity,
             .yields = true};
   }
-  // What the first of them does.
+  // The result of the first of them.
   AvoidResult first(const std::vector<Walker>& all, const glm::dvec2& desired, bool mayRest = false) const {
     reference::AgentBody body;
     body.speed = glm::length(all[0].velocity);
@@ -100,7 +100,7 @@ TEST_F(Avoid, discsAndCornersAreRound) {
   EXPECT_NEAR(corner.y, 0.8, 1e-12);
 }
 
-// Of five the nearest four count, in their order.
+// The nearest four of five count, in their order.
 TEST_F(Avoid, theNearestObstaclesCount) {
   for (const double distance : {1.9, 1.2, 1.0, 1.7, 1.4})
     tuning.obstacles.push_back({.corners = {{0, distance}}, .radius = 0.1});

@@ -17,7 +17,7 @@ using reference::WayGrid;
 using reference::WayObstacles;
 
 constexpr double kWall = std::numeric_limits<double>::infinity();
-// What the method itself errs by, ten cells and more from a goal: 0.073 at most and 0.021 in the mean where
+// The method itself errs by this, ten cells and more from a goal: 0.073 at most and 0.021 in the mean where
 // docs/ways.md has it, for a goal at a middle.
 constexpr double kWorstError = 0.075, kMeanError = 0.022;
 
@@ -213,12 +213,12 @@ class FollowWay : public testing::Test {
   reference::Tuning tuning = validation::tuningOf(parametersFor(flatField()));
   // Times rise by 2 in x and by 1 in z from cell to cell.
   reference::WayField way{.goal = {50, 50},
-                     .stop = {40, 41},
-                     .columns = 4,
-                     .rows = 3,
-                     .cell = 1,
-                     .origin = {0, 0},
-                     .times = {9, 11, 13, 15, 10, 12, 14, 16, 11, 13, 15, 17}};
+                          .stop = {40, 41},
+                          .columns = 4,
+                          .rows = 3,
+                          .cell = 1,
+                          .origin = {0, 0},
+                          .times = {9, 11, 13, 15, 10, 12, 14, 16, 11, 13, 15, 17}};
 };
 
 TEST_F(FollowWay, GoesDownTheTimes) {

@@ -1,4 +1,4 @@
-// What a colony promises, whatever its ants do.
+// Promises of a colony, whatever its ants do.
 #include <cmath>
 
 #include "gpu/submit.h"

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "assets/scenes/obstacles.h"
+#include "crowd/ways/shapes.h"
+#include "crowd/ways/stops.h"
 #include "skitter/error.h"
 #include "skitter/ways.h"
 
@@ -13,10 +15,6 @@ namespace skitter {
 namespace {
 
 constexpr float impassable = std::numeric_limits<float>::infinity();
-// Cells along the longer side of a large terrain: a field of them is solved in a fraction of a second on a
-// processor, and 16 of them fit the 128 MiB of a small binding.
-constexpr double mostCellsASide = 512;
-
 void checkTraveller(const Traveller& traveller) {
   const auto expect = [](const char* key, float value) {
     if (!(std::isfinite(value) && value >= 0))
@@ -47,7 +45,7 @@ void checkCostGrid(const CostGrid& grid) {
 CostGrid emptyGrid(const Heightfield& terrain, const Traveller& traveller) {
   const double sideX = double{terrain.extentX()}, sideZ = double{terrain.extentZ()};
   const double usual = traveller.cell > 0 ? double{traveller.cell} : 0.5 * double{traveller.legLength};
-  const double cell = std::max(usual, std::max(sideX, sideZ) / mostCellsASide);
+  const double cell = std::max(usual, std::max(sideX, sideZ) / crowd::mostCellsASide);
   const auto count = [&](double side) {
     return std::max(2u, static_cast<uint32_t>(std::ceil(side / cell * (1 - 1e-6))));
   };
@@ -57,10 +55,6 @@ CostGrid emptyGrid(const Heightfield& terrain, const Traveller& traveller) {
                 .origin = {terrain.originX(), terrain.originZ()}};
   grid.cost.resize(size_t{grid.columns} * grid.rows);
   return grid;
-}
-
-glm::dvec2 middleOf(const CostGrid& grid, uint32_t column, uint32_t row) {
-  return glm::dvec2(grid.origin) + double{grid.cell} * glm::dvec2(column + 0.5, row + 0.5);
 }
 
 // The nine heights around the middle of a cell, row after row.
@@ -89,50 +83,6 @@ float costOfGround(const Nine& h, double cell, const Traveller& traveller) {
   return static_cast<float>(1 + double{ways.climb} * slope);
 }
 
-double distanceToLine(const glm::dvec2& place, const glm::dvec2& from, const glm::dvec2& to) {
-  const glm::dvec2 way = to - from, delta = place - from;
-  const double along = glm::dot(way, way) > 0 ? glm::dot(delta, way) / glm::dot(way, way) : 0;
-  return glm::distance(place, from + std::clamp(along, 0.0, 1.0) * way);
-}
-
-double distanceTo(const Disc& disc, const glm::dvec2& place) {
-  return glm::distance(place, glm::dvec2(disc.centre)) - double{disc.radius};
-}
-double distanceTo(const Capsule& capsule, const glm::dvec2& place) {
-  return distanceToLine(place, capsule.from, capsule.to) - double{capsule.radius};
-}
-// 0 inside.
-double distanceTo(const ConvexPolygon& polygon, const glm::dvec2& place) {
-  double nearest = std::numeric_limits<double>::infinity();
-  size_t left = 0;
-  const size_t n = polygon.corners.size();
-  for (size_t i = 0; i < n; ++i) {
-    const glm::dvec2 from = polygon.corners[i], to = polygon.corners[(i + 1) % n];
-    nearest = std::min(nearest, distanceToLine(place, from, to));
-    const glm::dvec2 way = to - from, delta = place - from;
-    left += way.x * delta.y - way.y * delta.x > 0;
-  }
-  return left == 0 || left == n ? 0 : nearest;
-}
-
-struct ShapeBounds {
-  glm::dvec2 least, most;
-};
-ShapeBounds boundsOf(const Disc& disc) {
-  const glm::dvec2 centre(disc.centre);
-  return {centre - double{disc.radius}, centre + double{disc.radius}};
-}
-ShapeBounds boundsOf(const Capsule& capsule) {
-  const glm::dvec2 from(capsule.from), to(capsule.to);
-  return {glm::min(from, to) - double{capsule.radius}, glm::max(from, to) + double{capsule.radius}};
-}
-ShapeBounds boundsOf(const ConvexPolygon& polygon) {
-  ShapeBounds bounds{polygon.corners.front(), polygon.corners.front()};
-  for (const glm::dvec2 corner : polygon.corners)
-    bounds = {glm::min(bounds.least, corner), glm::max(bounds.most, corner)};
-  return bounds;
-}
-
 // The first of `count` cells whose middle may be at `place` or beyond.
 uint32_t cellFrom(double place, double origin, double cell, uint32_t count) {
   return static_cast<uint32_t>(
@@ -144,9 +94,8 @@ double grownBy(const CostGrid& grid, const Traveller& traveller) {
   return std::max(double{traveller.footprint}, double{grid.cell} / std::sqrt(2.0));
 }
 
-template <class Shape>
-void blockAround(CostGrid& grid, const Shape& shape, double grown) {
-  const auto [least, most] = boundsOf(shape);
+void blockAround(CostGrid& grid, const Obstacle& obstacle, double grown) {
+  const auto [least, most] = crowd::boundsOf(obstacle);
   const double cell = double{grid.cell};
   const glm::dvec2 origin(grid.origin);
   const uint32_t firstColumn = cellFrom(least.x - grown, origin.x, cell, grid.columns);
@@ -154,9 +103,10 @@ void blockAround(CostGrid& grid, const Shape& shape, double grown) {
   const uint32_t firstRow = cellFrom(least.y - grown, origin.y, cell, grid.rows);
   const uint32_t lastRow = cellFrom(most.y + grown + cell, origin.y, cell, grid.rows - 1);
   for (uint32_t row = firstRow; row <= lastRow; ++row)
-    for (uint32_t column = firstColumn; column <= lastColumn; ++column)
-      if (distanceTo(shape, middleOf(grid, column, row)) < grown)
-        grid.cost[size_t{row} * grid.columns + column] = impassable;
+    for (uint32_t column = firstColumn; column <= lastColumn; ++column) {
+      const size_t index = size_t{row} * grid.columns + column;
+      if (crowd::distanceTo(obstacle, crowd::middleOf(grid, index)) < grown) grid.cost[index] = impassable;
+    }
 }
 
 }  // namespace
@@ -170,16 +120,13 @@ CostGrid costGrid(const Heightfield& terrain, std::span<const Obstacle> obstacle
   CostGrid grid = emptyGrid(terrain, traveller);
   const double cell = double{grid.cell};
   const glm::dvec2 inner = 0.5 * glm::dvec2(terrain.extentX(), terrain.extentZ()) - double{traveller.margin};
-  for (uint32_t row = 0; row < grid.rows; ++row)
-    for (uint32_t column = 0; column < grid.columns; ++column) {
-      const glm::dvec2 middle = middleOf(grid, column, row);
-      const bool inside = std::abs(middle.x) <= inner.x && std::abs(middle.y) <= inner.y;
-      grid.cost[size_t{row} * grid.columns + column] =
-          inside ? costOfGround(heightsAround(terrain, middle, cell), cell, traveller) : impassable;
-    }
-  for (const Obstacle& obstacle : obstacles)
-    std::visit([&](const auto& shape) { blockAround(grid, shape, grownBy(grid, traveller)); },
-               obstacle.shape);
+  for (size_t index = 0; index < grid.cost.size(); ++index) {
+    const glm::dvec2 middle = crowd::middleOf(grid, index);
+    const bool inside = std::abs(middle.x) <= inner.x && std::abs(middle.y) <= inner.y;
+    grid.cost[index] =
+        inside ? costOfGround(heightsAround(terrain, middle, cell), cell, traveller) : impassable;
+  }
+  for (const Obstacle& obstacle : obstacles) blockAround(grid, obstacle, grownBy(grid, traveller));
   return grid;
 }
 
@@ -189,7 +136,7 @@ void keepOff(CostGrid& grid, std::span<const Threat> threats, const Traveller& t
   checkTraveller(traveller);
   for (size_t i = 0; i < threats.size(); ++i) scenes::checkThreat(threats[i], fmt::format("threats[{}]", i));
   for (const auto& [centre, radius] : threats)
-    if (radius > 0) blockAround(grid, Disc{centre, radius}, grownBy(grid, traveller) + double{grid.cell});
+    if (radius > 0) blockAround(grid, {Disc{centre, radius}}, grownBy(grid, traveller) + double{grid.cell});
 }
 
 }  // namespace skitter

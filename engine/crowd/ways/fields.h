@@ -16,7 +16,7 @@ namespace skitter::crowd {
 // device.
 class WayFields {
  public:
-  // Of no goals.
+  // Without goals.
   WayFields(const gpu::Context& context, CostGrid grid);
 
   // All fields are solved anew.

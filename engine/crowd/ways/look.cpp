@@ -11,6 +11,7 @@
 #include "assets/scenes/obstacles.h"
 #include "crowd/readback.h"
 #include "gpu/context.h"
+#include "skitter/decode.h"
 #include "skitter/error.h"
 #include "skitter/records.h"
 
@@ -34,7 +35,7 @@ std::map<uint32_t, glm::vec2> toldPlaces(const Kind& kind) {
   return told;
 }
 
-// Who is there, as the next tick begins with them.
+// The agents that are there, as the next tick begins with them.
 std::vector<SeenAgent> agentsIn(const Crowd::Impl& crowd, uint32_t number) {
   constexpr std::array records = {Record::body};
   std::vector<SeenAgent> seen;
@@ -115,8 +116,8 @@ std::optional<glm::vec2> leaderOf(const Crowd::Impl& crowd, const Goal& goal) {
 }
 
 glm::vec2 placeOf(const float* body) {
-  const glm::vec2 tile(shared::tileX(body[3]), shared::tileZ(body[3]));
-  return tile * shared::TILE_SIZE + glm::vec2(body[0], body[2]);
+  const glm::dvec3 position = bodyOf({body, size_t{4 * shared::BODY_STRIDE}}).position;
+  return {position.x, position.z};
 }
 
 }  // namespace crowd

@@ -5,8 +5,8 @@
 
 #include "crowd/herd.h"
 
-// What herds with ways are told of agents that are threats or are followed: where they are when the host
-// looks, a few times a second (docs/ways.md).
+// The host looks where agents are that are threats or are followed, a few times per second, for herds with
+// ways (docs/ways.md).
 namespace skitter::crowd {
 
 bool isTimeToLook(const Crowd::Impl& crowd);

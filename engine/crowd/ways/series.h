@@ -28,7 +28,7 @@ const Series* seriesAt(const SeriesTable& table, uint32_t number);
 // Whether the goal found room for its places, of which all goals together have shared::MOST_PLACES.
 bool enlist(SeriesTable& table, const Goal& goal, std::vector<glm::vec2> places);
 
-// What the device has of them (WAY_PLACES in shaders/shared/ways.h).
+// Their places as the device has them (WAY_PLACES in shaders/shared/ways.h).
 std::vector<glm::vec4> placesIn(const SeriesTable& table);
 
 // The places of kind roam, by a seed.

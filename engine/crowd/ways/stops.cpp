@@ -19,11 +19,6 @@ void eachBeside(const CostGrid& grid, size_t cell, const Each& each) {
   if (row + 1 < grid.rows) each(cell + grid.columns);
 }
 
-glm::dvec2 centreOf(const CostGrid& grid, size_t cell) {
-  return glm::dvec2(grid.origin) +
-         double{grid.cell} * (glm::dvec2(cell % grid.columns, cell / grid.columns) + 0.5);
-}
-
 uint32_t along(double place, double origin, double cell, uint32_t count) {
   return static_cast<uint32_t>(
       std::clamp(std::floor((place - origin) / cell), 0.0, static_cast<double>(count - 1)));
@@ -58,6 +53,11 @@ size_t cellAt(const CostGrid& grid, const glm::vec2& place) {
   return size_t{along(double{place.y}, double{grid.origin.y}, cell, grid.rows)} * grid.columns + column;
 }
 
+glm::dvec2 middleOf(const CostGrid& grid, size_t cell) {
+  return glm::dvec2(grid.origin) +
+         double{grid.cell} * (glm::dvec2(cell % grid.columns, cell / grid.columns) + 0.5);
+}
+
 std::optional<Stops> stopsOf(const CostGrid& grid, const Regions& regions, const glm::vec2& goal) {
   if (goal == glm::vec2(shared::WAY_OUT)) {
     Stops out{.stop = goal};
@@ -76,17 +76,17 @@ std::optional<Stops> stopsOf(const CostGrid& grid, const Regions& regions, const
   for (size_t cell = 0; cell < grid.cost.size(); ++cell) {
     const uint32_t region = regions.of[cell];
     if (region == Regions::none) continue;
-    const glm::dvec2 away = glm::abs(centreOf(grid, cell) - target);
+    const glm::dvec2 away = glm::abs(middleOf(grid, cell) - target);
     const double distance = glm::length(away);
     if (distance < nearest[region].distance) nearest[region] = {distance, cell};
-    // Of the four middles around the goal; rounding may add those beside them, whose times are as true.
+    // The four middles around the goal; rounding may add those beside them, whose times are as true.
     if (region == stops.region && std::max(away.x, away.y) < double{grid.cell})
       stops.cells.push_back({cell, static_cast<float>(double{grid.cost[cell]} * distance)});
   }
   for (uint32_t region = 0; region < regions.count; ++region)
     if (region != stops.region) stops.cells.push_back({nearest[region].cell, 0});
   if (stops.region == Regions::none)
-    stops.stop = centreOf(grid, std::ranges::min(nearest, {}, &Nearest::distance).cell);
+    stops.stop = middleOf(grid, std::ranges::min(nearest, {}, &Nearest::distance).cell);
   return stops;
 }
 

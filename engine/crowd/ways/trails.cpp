@@ -1,7 +1,6 @@
 #include "crowd/ways/trails.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -19,15 +18,13 @@
 #include "gpu/context.h"
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
+#include "ways/ground.h"
 
 namespace skitter {
 namespace crowd {
 namespace {
 
 constexpr double whole32 = 4294967296.0;
-// Cells along the longer side, as cost grids have at most.
-constexpr double mostTrailCellsASide = 512;
-
 uint32_t grainsOf(float units) {
   return static_cast<uint32_t>(std::lround(double{units} * shared::GRAINS_A_UNIT));
 }
@@ -38,14 +35,9 @@ uint32_t as32(double share) {
 
 int inQuanta(float metres) { return static_cast<int>(std::lround(double{metres} * shared::FORAGE_QUANTA)); }
 
-glm::dvec2 middleOfCell(const CostGrid& grid, size_t cell) {
-  return glm::dvec2(grid.origin) +
-         double{grid.cell} * (glm::dvec2(cell % grid.columns, cell / grid.columns) + 0.5);
-}
-
 // Whether the cell's middle is within that disc, or the disc's within the cell.
 bool isPlace(const CostGrid& grid, size_t cell, const glm::vec2& centre, float radius) {
-  return glm::distance(middleOfCell(grid, cell), glm::dvec2(centre)) <= double{radius} ||
+  return glm::distance(middleOf(grid, cell), glm::dvec2(centre)) <= double{radius} ||
          cellAt(grid, centre) == cell;
 }
 
@@ -61,24 +53,15 @@ int placeOfCell(const Forage& forage, const CostGrid& grid, size_t cell) {
   return PLACE_NONE;
 }
 
-constexpr std::array<int, 8> alongX = {1, 1, 0, -1, -1, -1, 0, 1}, alongZ = {0, 1, 1, 1, 0, -1, -1, -1};
-
-bool isOpen(const CostGrid& grid, int column, int row) {
-  return column >= 0 && row >= 0 && column < static_cast<int>(grid.columns) &&
-         row < static_cast<int>(grid.rows) &&
-         std::isfinite(grid.cost[static_cast<size_t>(row) * grid.columns + static_cast<size_t>(column)]);
-}
-
 // A bit for each direction in which a move is open. From an impassable cell, any that leads out.
 uint32_t movesFrom(const CostGrid& grid, size_t cell) {
-  const auto column = static_cast<int>(cell % grid.columns), row = static_cast<int>(cell / grid.columns);
-  const bool inside = !std::isfinite(grid.cost[cell]);
+  const glm::ivec2 at(cell % grid.columns, cell / grid.columns);
+  const bool leadsOut = !skitter::ways::isPassable(grid, at);
   uint32_t moves = 0;
-  for (size_t d = 0; d < alongX.size(); ++d) {
-    const int x = alongX[d], z = alongZ[d];
-    const bool cuts = !isOpen(grid, column + x, row) || !isOpen(grid, column, row + z);
-    const bool isDiagonal = d % 2 == 1;
-    if (isOpen(grid, column + x, row + z) && (inside || !isDiagonal || !cuts)) moves |= 1u << d;
+  for (uint32_t d = 0; d < skitter::ways::directionCount; ++d) {
+    const bool isOpen = leadsOut ? skitter::ways::isPassable(grid, at + skitter::ways::stepOf(d))
+                                 : skitter::ways::isOpen(grid, at, d);
+    if (isOpen) moves |= 1u << d;
   }
   return moves;
 }
@@ -113,7 +96,7 @@ ForageNumbers numbersOf(const Forage& forage) {
 }
 
 float Trails::cellOf(const Forage& forage, float longestSide) {
-  const double least = std::max(double{forage.cell}, double{longestSide} / mostTrailCellsASide);
+  const double least = std::max(double{forage.cell}, double{longestSide} / mostCellsASide);
   return static_cast<float>(std::ceil(least * shared::FORAGE_QUANTA) / shared::FORAGE_QUANTA);
 }
 

@@ -28,7 +28,7 @@ struct ForageNumbers {
 };
 ForageNumbers numbersOf(const Forage& forage);
 
-// What a colony of foragers goes by, on the device: the herds of a kind that forage.
+// The ground and pheromone of a colony on the device: of the herds of a kind that forage.
 class Trails {
  public:
   // Without pheromone. The grid's cells are whole quanta, as cellOf makes them.
@@ -41,7 +41,7 @@ class Trails {
   void setGrid(const CostGrid& grid);
   // Where a page's foragers lay. No tick pays for the translation to machine code after that.
   void bind(Page& page) const;
-  // What they did in tick `tick` goes into the trail, which evaporates, with barriers in front and behind.
+  // Their deeds in tick `tick` go into the trail, which evaporates, with barriers in front and behind.
   void record(vk::CommandBuffer cmd, std::span<const Page> pages, uint64_t tick, float dt) const;
 
   const Forage& forage() const { return forage_; }

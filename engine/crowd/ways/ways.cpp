@@ -91,26 +91,29 @@ void eachGoalRecord(const Crowd::Impl& crowd, const Kind& kind, const Each& each
     if (change.goal) each(std::span<const float>(change.record));
 }
 
-// What agents of the kind have or will have: targets of kind point and all places of their series, and which
-// series these are.
+// The goals that agents of the kind have, or will have in the next tick.
 struct Use {
-  Targets targets;
+  Targets points;  // of kind point
   SeriesTable series;
+
+  Targets targets() const {
+    Targets all = points;
+    for (const Series& each : series)
+      for (const glm::vec2& place : each.places) addOnce(all, place);
+    return all;
+  }
 };
 Use useOf(const Crowd::Impl& crowd, const Kind& kind) {
   Use use;
   std::vector<bool> isUsed(kind.series.size(), false);
   eachGoalRecord(crowd, kind, [&](std::span<const float> goal) {
-    if (goal[6] == shared::GOAL_POINT) addOnce(use.targets, {goal[0], goal[1]});
+    if (goal[6] == shared::GOAL_POINT) addOnce(use.points, {goal[0], goal[1]});
     if (goal[6] != shared::GOAL_SERIES) return;
     if (const Series* series = seriesAt(kind.series, static_cast<uint32_t>(goal[2])))
       isUsed[static_cast<size_t>(series - kind.series.data())] = true;
   });
-  for (size_t i = 0; i < isUsed.size(); ++i) {
-    if (!isUsed[i]) continue;
-    use.series.push_back(kind.series[i]);
-    for (const glm::vec2& place : kind.series[i].places) addOnce(use.targets, place);
-  }
+  for (size_t i = 0; i < isUsed.size(); ++i)
+    if (isUsed[i]) use.series.push_back(kind.series[i]);
   return use;
 }
 
@@ -195,7 +198,7 @@ void leadTo(Crowd::Impl& crowd, const Herd& herd, const SizeRun& run, std::span<
   Targets kept = targets;
   if (kind.ways->goals().size() + targets.size() > shared::MOST_WAYS) {
     crowd.context->waitIdle();
-    for (const glm::vec2& target : useOf(crowd, kind).targets) addOnce(kept, target);
+    for (const glm::vec2& target : useOf(crowd, kind).targets()) addOnce(kept, target);
   }
   const Targets fresh = fitting(*kind.ways, targets, kept);
   if (fresh.size() < static_cast<size_t>(std::ranges::count_if(targets, isNew)))
@@ -213,7 +216,7 @@ void leadTo(Crowd::Impl& crowd, const Herd& herd, const SizeRun& run, std::span<
 void leadEverybody(Crowd::Impl& crowd) {
   for (Kind& kind : crowd.kinds) {
     if (!kind.ways) continue;
-    const Targets targets = useOf(crowd, kind).targets;
+    const Targets targets = useOf(crowd, kind).targets();
     const Targets fresh = fitting(*kind.ways, targets, targets);
     if (!fresh.empty()) changeWays(crowd, kind, [&](WayFields& ways) { ways.add(fresh, targets); });
   }
@@ -238,12 +241,12 @@ bool isFollowing(const Series& series) { return series.goal.kind == Goal::Kind::
 // Moves the places of leaders whom somebody follows, and forgets the others.
 void followLeaders(const Crowd::Impl& crowd, Kind& kind) {
   crowd.context->waitIdle();
-  const Use use = useOf(crowd, kind);
+  Use use = useOf(crowd, kind);
   SeriesTable table;
   for (const Series& series : kind.series)
     if (!isFollowing(series) || std::ranges::find(use.series, series) != use.series.end())
       table.push_back(series);
-  Targets left, kept;
+  Targets left;
   for (Series& series : table) {
     if (!isFollowing(series)) continue;
     const std::optional<glm::vec2> place = leaderOf(crowd, series.goal);
@@ -252,7 +255,8 @@ void followLeaders(const Crowd::Impl& crowd, Kind& kind) {
   }
   if (table == kind.series) return;
   kind.series = std::move(table);
-  for (const glm::vec2& target : useOf(crowd, kind).targets) addOnce(kept, target);
+  for (Series& series : use.series) series.places = findSeries(kind.series, series.goal)->places;
+  const Targets kept = use.targets();
   changeWays(crowd, kind, [&](WayFields& ways) {
     ways.setPlaces(placesIn(kind.series));
     // A field that nobody needs any more becomes that of a new place.
@@ -293,7 +297,7 @@ uint32_t Crowd::cannotReach(uint32_t herd) const {
     if (!of.presence.has(agent) || !isLed || goal[0] == shared::WAY_OUT || !ways.has({goal[0], goal[1]}))
       continue;
     const uint32_t region = ways.regions().of[crowd::cellAt(ways.grid(), crowd::placeOf(body))];
-    // Who is in an obstacle gets out of it, nobody knows where.
+    // An agent in an obstacle gets out of it, nobody knows where.
     if (region == crowd::Regions::none) continue;
     count += region != ways.stopsAt({goal[0], goal[1]}).region;
   }

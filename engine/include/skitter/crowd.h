@@ -49,10 +49,10 @@ struct CrowdOptions {
                             // later tick needs it: else they may have no foot and tip records
   uint32_t footfalls = 0;   // keep so many touchdowns per tick and page of records, at most one per leg;
                             // 0: none
-  bool sleep = false;  // an agent that has stood still for seconds is passed over, without a breath, until
-                       // its goal or the ground moves: standing crowds cost next to nothing
+  bool sleep = false;     // an agent that has stood still for seconds is passed over, without a breath, until
+                          // its goal or the ground moves: standing crowds cost next to nothing
   bool crowding = false;  // measure how far agents overlap (Crowd::crowding)
-  bool fuse = true;    // stages that are faster when fused are fused: the same records, in fewer passes
+  bool fuse = true;       // stages that are faster when fused are fused: the same records, in fewer passes
   bool timestamps = false;                // time every stage on the device
   uint32_t pageAgents = 0;                // most agents per page; 0: as many as the device's limits allow
   std::vector<StageShader> shaders = {};  // in place of the built-in ones, for experiments
@@ -241,8 +241,8 @@ class SKITTER_API Crowd {
   // next recorded tick waits for (docs/ways.md). The latter: all numbers up to the last one in use.
   void setThreat(uint32_t number, const Threat& threat);
   const std::vector<Threat>& threats() const;
-  // What the foragers of a herd have done, with those of herds that share its colony, and the pheromone as
-  // the last tick left it (docs/foraging.md). Zeros and empty where it does not forage. They wait for the
+  // The deeds of a herd's foragers, with those of herds that share its colony, and the pheromone as the last
+  // tick left it (docs/foraging.md). Zeros and empty where it does not forage. They wait for the
   // device.
   Foraging foraging(uint32_t herd) const;
   PheromoneGrid pheromone(uint32_t herd) const;

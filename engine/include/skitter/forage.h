@@ -43,7 +43,7 @@ struct Forage {
   bool operator==(const Forage&) const = default;
 };
 
-// What the foragers of a herd and of those that share its colony have done since the crowd began.
+// The deeds of the foragers of a herd, and of herds that share its colony, since the crowd began.
 struct Foraging {
   uint64_t brought = 0;               // loads carried home
   uint64_t empty = 0;                 // returns to the nest without one

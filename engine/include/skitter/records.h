@@ -114,8 +114,8 @@ SKITTER_CONST int CROWDING_WORDS = 8;
 SKITTER_CONST float CROWDING_SHARES = 65536.0;
 
 // forager, per agent of a herd that forages, written by navigate (docs/foraging.md).
-//   [0] cell that it goes to + 1 (0: none), heading x, heading z, state + FORAGE_STATES * place of the cell that
-//       it entered last
+//   [0] cell that it goes to + 1 (0: none), heading x, heading z,
+//       state + FORAGE_STATES * place of the cell that it entered last
 //   [1] cell that it entered in this tick + 1 (0: none), grains laid there, what it did there (DEED_), cells
 //       since it left nest or food
 SKITTER_CONST int FORAGER_STRIDE = 2;

@@ -9,10 +9,11 @@
 #include "skitter/export.h"
 #include "skitter/heightfield.h"
 
-// What herds that find their way go by (docs/ways.md). Places are world x, z in metres.
+// Obstacles, threats and cost grids, by which herds find their way (docs/ways.md). Places are world x, z in
+// metres.
 namespace skitter {
 
-// What stands on the ground and does not move, seen from above.
+// An obstacle stands on the ground and does not move. Shapes are as seen from above.
 struct Disc {
   glm::vec2 centre{0};
   float radius = 1;  // minRadius to Scene::maxCoordinate
@@ -49,7 +50,7 @@ struct Threat {
   bool operator==(const Threat&) const = default;
 };
 
-// What ground is to the creatures of a herd that finds its way.
+// How hard ground is for the creatures of a herd that finds its way.
 struct Ways {
   static constexpr double maxClimb = 100, minLimit = 0.01, maxLimit = 100;
 
