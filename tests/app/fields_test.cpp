@@ -1,5 +1,6 @@
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -162,6 +163,54 @@ TEST(FieldMap, AWayGoesDownTheTimes) {
   for (const glm::vec2& place : way) EXPECT_NEAR(place.y, 2, 1e-4);
   // Elsewhere it ends where times no longer fall, at the edge.
   EXPECT_NE(app::wayFrom(ground, goal, {-5, -5}).back(), goal.stop);
+}
+
+// Times are those of the middles of cells: between two rows of them that are equal, nothing leads aside.
+TEST(FieldMap, TimesAreOfTheMiddlesOfCells) {
+  const Heightfield flat{
+      .name = "flat", .columns = 2, .rows = 2, .spacingX = 20, .spacingZ = 20, .heights = {0, 0, 0, 0}};
+  CostGrid grid{
+      .columns = 20, .rows = 20, .cell = 1, .origin = {-10, -10}, .cost = std::vector<float>(400, 1)};
+  const glm::vec2 corner(0);
+  std::vector<float> times;
+  for (int cell = 0; cell < 400; ++cell)
+    times.push_back(glm::distance(grid.origin + glm::vec2(cell % 20, cell / 20) + 0.5f, corner));
+  const app::MapGround ground{flat, {}, grid, "", ""};
+  const app::MapGoal goal{corner, corner, times, std::vector<bool>(400, true), {}};
+  const std::vector<glm::vec2> way = app::wayFrom(ground, goal, {-7.5f, 0});
+  EXPECT_EQ(way.back(), corner);
+  for (const glm::vec2& place : way) EXPECT_NEAR(place.y, 0, 1e-3);
+}
+
+// Arrows are 34 pixels apart on a map that begins at (36, 92). Their heads are where times fall.
+TEST(FieldMap, ArrowsPointDownTheTimes) {
+  const Heightfield flat{
+      .name = "flat", .columns = 2, .rows = 2, .spacingX = 20, .spacingZ = 20, .heights = {0, 0, 0, 0}};
+  CostGrid grid{
+      .columns = 20, .rows = 20, .cell = 1, .origin = {-10, -10}, .cost = std::vector<float>(400, 1)};
+  for (const float fall : {-1.0f, 1.0f}) {
+    std::vector<float> times(400);
+    for (size_t i = 0; i < times.size(); ++i) times[i] = 30 - fall * static_cast<float>(i % 20);
+    const app::MapGround ground{flat, {}, grid, "", ""};
+    const app::MapGoal goal{{9 * fall, 9}, {9 * fall, 9}, times, std::vector<bool>(400, true), {}};
+    const Drawing drawing = app::drawTimes(ground, goal);
+    const auto brightBeside = [&](uint32_t x, uint32_t y) {
+      int count = 0;
+      for (uint32_t off = 2; off <= 4; ++off)
+        for (const uint32_t row : {y - off, y + off}) {
+          const glm::vec3 colour = drawing.at(x, row);
+          count += std::min({colour.x, colour.y, colour.z}) > 0.8f;
+        }
+      return count;
+    };
+    int left = 0, right = 0;
+    for (uint32_t k = 2; k < 10; ++k)
+      for (uint32_t away = 2; away <= 6; ++away) {
+        left += brightBeside(36 + 17 + 34 * k - away, 92 + 17 + 34 * 4);
+        right += brightBeside(36 + 17 + 34 * k + away, 92 + 17 + 34 * 4);
+      }
+    EXPECT_GT((right - left) * fall, 16) << left << " and " << right;
+  }
 }
 
 }  // namespace
