@@ -47,11 +47,12 @@ TEST_F(Running, CrowdingIsMeasuredWhereItIsAskedFor) {
   EXPECT_GT(avoiding.at("flow"), 0.1);
 }
 
+// Nobody comes to the second branch, at the edge.
 TEST_F(Running, ForagersAreCounted) {
   std::ofstream(file("ants.json")) << R"({"terrain": {"columns": 65, "rows": 65, "amplitude": 0},
     "herds": [{"agents": 30, "goal": {"speed": 3}, "spawn": {"kind": "grid", "centre": [0, -3], "spacing": 0.5},
       "forage": {"nest": {"centre": [0, -3]}, "food": [{"centre": [0, 3], "radius": 3, "amount": 500}], "cell": 1,
-                 "branches": [{"centre": [0, 0], "radius": 9}], "rest": 0.2}}]})";
+                 "branches": [{"centre": [0, 0], "radius": 9}, {"centre": [15.8, 15.8], "radius": 0.1}], "rest": 0.2}}]})";
   ASSERT_EQ(skitter({"run", file("ants.json"), "--headless", "--frames", "900", "--no-measure", "--json",
                      file("run.json")})
                 .code,
