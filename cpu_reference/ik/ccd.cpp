@@ -36,6 +36,11 @@ void ccd(const std::vector<BoneRest>& bones, const glm::dvec3& target, Joints& j
 }
 
 void ccd(const glm::dvec3& target, Posture& posture) {
+  Arithmetic exact;
+  ccd(target, posture, exact);
+}
+
+void ccd(const glm::dvec3& target, Posture& posture, Arithmetic& arithmetic) {
   // Joints nearer the base have not moved yet when their turn comes, so that one pass of forward kinematics
   // at the end will do.
   std::vector<glm::dvec2> swings = posture.directions();
@@ -44,6 +49,8 @@ void ccd(const glm::dvec3& target, Posture& posture) {
     const BoneRest& bone = posture.bone(i);
     if (bone.length == 0) continue;
     const glm::dvec3 pivot = posture.joint(i);
+    // Every turn rounds where the tip is. A joint close to the tip sees that as a large angle.
+    tip += arithmetic.placeErrors();
     const auto turned = bone.kind == LimitKind::hinge ? turnedHinge : turnedBall;
     swings[i] = clampSwing(bone, stereographic(turned(posture, i, tip - pivot, target - pivot)));
     // F_i' F_i^T, of which the twist, kept, cancels out.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cpu_reference/arithmetic.h"
 #include "cpu_reference/ik/chain.h"
 
 namespace skitter::reference {
@@ -8,5 +9,6 @@ namespace skitter::reference {
 // as near to `target` as it alone can, within its limit.
 void ccd(const std::vector<BoneRest>& bones, const glm::dvec3& target, Joints& joints);
 void ccd(const glm::dvec3& target, Posture& posture);
+void ccd(const glm::dvec3& target, Posture& posture, Arithmetic& arithmetic);
 
 }  // namespace skitter::reference

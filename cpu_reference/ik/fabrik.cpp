@@ -40,9 +40,15 @@ void fabrik(const std::vector<BoneRest>& bones, const glm::dvec3& target, Joints
 }
 
 void fabrik(const glm::dvec3& target, Posture& posture) {
+  Arithmetic exact;
+  fabrik(target, posture, exact);
+}
+
+void fabrik(const glm::dvec3& target, Posture& posture, Arithmetic& arithmetic) {
   const Joints q = tipToBase(posture.rests(), target, posture.joints());
   for (size_t i = 0; i < posture.bones(); ++i) {
-    posture.place(i, aimed(posture, i, q[i + 1] - posture.joint(i)));
+    // Both ends of the aim are rounded places, and a short bone turns far for a small error.
+    posture.place(i, aimed(posture, i, q[i + 1] - posture.joint(i) + arithmetic.placeErrors()));
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cpu_reference/arithmetic.h"
 #include "cpu_reference/ik/chain.h"
 
 namespace skitter::reference {
@@ -9,6 +10,7 @@ namespace skitter::reference {
 // up further away than it was.
 void fabrik(const std::vector<BoneRest>& bones, const glm::dvec3& target, Joints& joints);
 void fabrik(const glm::dvec3& target, Posture& posture);
+void fabrik(const glm::dvec3& target, Posture& posture, Arithmetic& arithmetic);
 
 // Its halves: where the joints would be if the tip were at the target; and the joints laid toward those
 // places from joints[0], which stays.

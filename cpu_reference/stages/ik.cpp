@@ -12,8 +12,8 @@ namespace skitter::reference {
 namespace {
 
 void iterate(IkSolver solver, const glm::dvec3& target, Posture& posture, Arithmetic& arithmetic) {
-  if (solver == IkSolver::fabrik) return fabrik(target, posture);
-  if (solver == IkSolver::ccd) return ccd(target, posture);
+  if (solver == IkSolver::fabrik) return fabrik(target, posture, arithmetic);
+  if (solver == IkSolver::ccd) return ccd(target, posture, arithmetic);
   jacobian(methodOf(solver), target, posture, arithmetic);
 }
 
