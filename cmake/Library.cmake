@@ -5,6 +5,7 @@ skitter_require(Vulkan 1.3)
 skitter_require(glm)
 skitter_require(fmt)
 skitter_require(PNG)
+skitter_require(JPEG)
 skitter_require(meshoptimizer)
 
 # What is seen: names of Skitter that are marked SKITTER_API. The compiler hides all others but for instances of the
@@ -44,7 +45,7 @@ foreach(library IN LISTS libraries)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/bindings/c>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${library} PUBLIC cxx_std_20)
-  target_link_libraries(${library} PUBLIC Vulkan::Vulkan glm::glm PRIVATE fmt::fmt PNG::PNG meshoptimizer::meshoptimizer)
+  target_link_libraries(${library} PUBLIC Vulkan::Vulkan glm::glm PRIVATE fmt::fmt PNG::PNG JPEG::JPEG meshoptimizer::meshoptimizer)
 endforeach()
 list(GET libraries 0 library)
 add_library(Skitter::skitter ALIAS ${library})

@@ -17,7 +17,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libskitter-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "${PROJECT_DESCRIPTION}: headers, static library, CMake package")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libvulkan-dev, libglm-dev, libfmt-dev, libpng-dev, libmeshoptimizer-dev")
+  "libvulkan-dev, libglm-dev, libfmt-dev, libpng-dev, libjpeg-dev, libmeshoptimizer-dev")
 if(SKITTER_SHARED)
   list(APPEND CPACK_COMPONENTS_ALL library)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libskitter${PROJECT_VERSION_MAJOR})

@@ -32,7 +32,7 @@ void scale(Clip& clip, float size) {
 }  // namespace
 
 Rig scaled(Rig rig, float size) {
-  auto& [name, legs, groups, legLength, bodyHeight, bodyRadius, vertices, indices] = rig;
+  auto& [name, legs, groups, legLength, bodyHeight, bodyRadius, vertices, indices, look] = rig;
   for (Leg& leg : legs) scale(leg, size);
   legLength *= size;
   bodyHeight *= size;
@@ -42,7 +42,7 @@ Rig scaled(Rig rig, float size) {
 }
 
 ClipSet scaled(ClipSet set, float size) {
-  auto& [name, extent, joints, vertices, indices, legs, clips, notes] = set;
+  auto& [name, extent, joints, vertices, indices, look, legs, clips, notes] = set;
   extent *= static_cast<double>(size);
   scale(vertices, size);
   for (auto& [entries, starts] : legs)

@@ -214,6 +214,8 @@ TEST_F(Models, SeveralMeshesAndSkinsBecomeOne) {
 
 TEST_F(Models, MissingImagesAndBadClipsAreNotFatal) {
   Glb glb = smallestRig();
+  glb.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  glb.json["meshes"][0]["primitives"][0]["material"] = 0;
   glb.json["images"] = {{{"uri", "none.png"}}};
   glb.json["textures"] = {{{"source", 0}}};
   glb.json["animations"] = {
@@ -222,7 +224,7 @@ TEST_F(Models, MissingImagesAndBadClipsAreNotFatal) {
       {{"name", "odd"}}};
   const Model model = load(glb);
   EXPECT_TRUE(model.clips.empty());
-  EXPECT_TRUE(hasNote(model, "1 pictures are not read"));
+  EXPECT_TRUE(hasNote(model, "none.png: no such file: drawn as a flat colour"));
   EXPECT_TRUE(hasNote(model, "animations[0].samplers[0].input is 77"));
   EXPECT_TRUE(hasNote(model, "animations[1] is malformed"));
 }

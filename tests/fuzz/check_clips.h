@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "check_look.h"
 #include "fuzz.h"
 #include "skitter/clip.h"
 
@@ -21,6 +22,7 @@ inline void checkClips(const ClipSet& set) {
     }
   }
   for (const uint32_t index : set.indices) expect(index < set.vertices.size(), "an index of no vertex");
+  checkLook(set.look, set.vertices.size());
   for (const ClipLeg& leg : set.legs) {
     expect(leg.joints.size() == leg.starts.size() && leg.joints.size() >= 2, "a leg without bones");
     for (const uint16_t joint : leg.joints) expect(joint < set.joints.size(), "a leg of no joint");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "check_look.h"
 #include "fuzz.h"
 #include "skitter/rig.h"
 
@@ -33,6 +34,7 @@ inline void checkRig(const Rig& rig) {
     }
   }
   for (const uint32_t index : rig.indices) expect(index < rig.vertices.size(), "an index of no vertex");
+  checkLook(rig.look, rig.vertices.size());
 }
 
 }  // namespace skitter::fuzz

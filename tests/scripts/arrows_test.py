@@ -9,7 +9,7 @@ FOLDERS = ["engine/include", "shaders", "engine/base", "engine/gpu", "engine/ass
            "engine/crowd", "engine/render", "cpu_reference", "validation", "bench", "experiments", "bindings", "app"]
 # Within these the same holds of their own folders; "" is the folder itself.
 INNER = {
-    "engine/assets": ["files", "models", "rigs", "clips", "heights", "scenes"],
+    "engine/assets": ["files", "materials", "models", "rigs", "clips", "heights", "scenes"],
     "cpu_reference": ["", "ik", "spline", "clips", "ways", "stages"],
 }
 INCLUDE_ROOTS = ["", "engine", "engine/include", "shaders"]

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "assets/materials/tangents.h"
 #include "skitter/error.h"
 
 namespace skitter {
@@ -45,6 +46,7 @@ class SkinBinder {
     }
     if (set_.vertices.empty()) fail("has no mesh with triangles");
     set_.indices = model_.indices;
+    set_.look.materials = model_.look.materials;
     addLegs();
     sortEntries();
     describeJoints();
@@ -161,7 +163,16 @@ class SkinBinder {
     vertex.normal = length > 1e-30 && std::isfinite(length)
                         ? glm::vec3(bound / length)
                         : glm::vec3(placement_.rotation * glm::dvec3(from.normal));
+    if (model_.look) addLook(restFromBound);
     set_.vertices.push_back(vertex);
+  }
+
+  void addLook(const glm::dmat3& restFromBound) {
+    MaterialVertex vertex = model_.look.vertices[set_.vertices.size()];
+    const glm::dmat3 boundFromRest =
+        canInvert(glm::dmat4(restFromBound)) ? glm::inverse(restFromBound) : placement_.rotation;
+    vertex.tangent = glm::vec4(turnedTangent(boundFromRest, glm::dvec4(vertex.tangent)));
+    set_.look.vertices.push_back(vertex);
   }
 
   size_t legEntry(int node) {

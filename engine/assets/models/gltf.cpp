@@ -6,6 +6,7 @@
 #include <new>
 
 #include "assets/models/gltf_clips.h"
+#include "assets/models/gltf_materials.h"
 #include "assets/models/gltf_meshes.h"
 #include "assets/models/gltf_nodes.h"
 #include "assets/models/gltf_source.h"
@@ -23,22 +24,15 @@ void checkSkinning(const Source& source, const Document& document, const Node& n
   }
 }
 
-void notePictures(Source& source) {
-  const auto images = source.file.json.find("images");
-  if (images != source.file.json.end() && images->is_array() && !images->empty()) {
-    source.notes.push_back(fmt::format(
-        "{} pictures are not read: colour is COLOR_0 times the material's base colour", images->size()));
-  }
-}
-
 Document read(Source source) {
   Document document;
   readNodes(source, document);
-  for (size_t i = 0; i < source.model.meshes.size(); ++i) document.meshes.push_back(readMesh(source, i));
+  document.materials = readMaterials(source);
+  for (size_t i = 0; i < source.model.meshes.size(); ++i)
+    document.meshes.push_back(readMesh(source, document.materials, i));
   for (size_t i = 0; i < source.model.skins.size(); ++i) document.skins.push_back(readSkin(source, i));
   for (const Node& node : document.nodes) checkSkinning(source, document, node);
   readClips(source, document);
-  notePictures(source);
   document.notes = std::move(source.notes);
   return document;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -8,6 +9,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "skitter/material.h"
 
 // What a rig needs of a glTF 2.0 file, as plain data in which every index is in range and every number
 // finite.
@@ -33,8 +36,13 @@ struct Influence {
 
 struct Primitive {
   std::vector<glm::dvec3> positions;
-  std::vector<glm::dvec3> normals;    // empty where the file has none
-  std::vector<glm::dvec3> colours;    // linear, the material's base colour included
+  std::vector<glm::dvec3> normals;  // empty where the file has none
+  std::vector<glm::dvec3> colours;  // linear, the material's base colour included
+  std::vector<double> opacities;    // likewise
+  int material = -1;                // into Document::materials; -1: the default one
+  // Of a primitive whose material is looked up; else, and where the file has none, empty.
+  std::array<std::vector<glm::dvec2>, 2> uvs;  // TEXCOORD_0 and TEXCOORD_1
+  std::vector<glm::dvec4> tangents;
   std::vector<Influence> influences;  // influencesPerVertex for each vertex, not all 0
   size_t influencesPerVertex = 0;
   size_t weightless = 0;          // vertices whose weights are all 0 in the file: the first counts as 1
@@ -82,6 +90,7 @@ struct Document {
   std::vector<Mesh> meshes;
   std::vector<Skin> skins;
   std::vector<Clip> clips;
+  Materials materials;             // as many as the file's
   std::vector<std::string> notes;  // what was left out, a line each
   nlohmann::json extras;  // `skitter` of the default scene's extras or of the first node that has it, or null
 };

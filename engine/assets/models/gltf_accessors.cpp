@@ -135,6 +135,12 @@ Values readAccessor(Source& source, int index, std::initializer_list<int> types,
   return values;
 }
 
+std::span<const uint8_t> viewedBytes(const Source& source, int index, const std::string& use) {
+  source.checkIndex(index, source.model.bufferViews.size(), use + ".bufferView");
+  const size_t size = source.model.bufferViews[static_cast<size_t>(index)].byteLength;
+  return {view(source, index, 0, size, use), size};
+}
+
 std::vector<glm::dvec3> toVectors(const Values& values) {
   std::vector<glm::dvec3> vectors(values.count);
   for (size_t i = 0; i < values.count; ++i) {

@@ -2,6 +2,7 @@
 
 #include <glm/glm.hpp>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ enum class NotFinite { refused, zero };
 // well. `use` is what the file has it for.
 Values readAccessor(Source& source, int index, std::initializer_list<int> types, bool integers,
                     const std::string& use, NotFinite notFinite = NotFinite::refused);
+
+// The bytes of a buffer view, whole.
+std::span<const uint8_t> viewedBytes(const Source& source, int index, const std::string& use);
 
 // The first three components of each.
 std::vector<glm::dvec3> toVectors(const Values& values);

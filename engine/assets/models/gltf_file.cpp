@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
 
 #include "assets/files/file.h"
 #include "assets/files/json.h"
@@ -88,6 +87,46 @@ bool decodeBase64(std::string_view text, std::vector<uint8_t>& bytes) {
   return held != 6;
 }
 
+void expectThere(uint64_t wanted, uint64_t there, const std::string& what) {
+  if (wanted <= there) return;
+  throw inputError(fmt::format("{} has {} bytes, its byteLength says {}", what, there, wanted));
+}
+
+// A model must not read what its user did not hand over with it, by ".." or by a symbolic link either.
+bool leavesFolder(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  std::error_code unresolved;  // FileStream says better what is wrong with such a file
+  const auto root = std::filesystem::weakly_canonical(folder, unresolved);
+  const auto inside = std::filesystem::weakly_canonical(folder / file, unresolved).lexically_relative(root);
+  return !unresolved && (inside.empty() || *inside.begin() == "..");
+}
+
+FileStream openBeside(const std::filesystem::path& folder, const std::string& uri, const std::string& what) {
+  const std::string refersTo = fmt::format("{} refers to {}", what, describeJson(uri));
+  const std::filesystem::path file = decodeUri(uri);
+  if (folder.empty()) throw inputError(refersTo + ", expected everything in one file");
+  if (uri.find(':') != std::string::npos || file.is_absolute() ||
+      file.native().find('\0') != std::string::npos || leavesFolder(folder, file)) {
+    throw inputError(refersTo + ", expected a file in its folder");
+  }
+  try {
+    return FileStream(folder / file);
+  } catch (const Error& error) {
+    throw inputError(fmt::format("{}: {}", refersTo, error.what()));
+  }
+}
+
+bool isData(const std::string& uri) { return uri.rfind("data:", 0) == 0; }
+
+std::vector<uint8_t> readData(const std::string& uri, const std::string& what) {
+  std::vector<uint8_t> bytes;
+  const size_t comma = uri.find(',');
+  if (comma == std::string::npos || comma < 12 || uri.compare(comma - 7, 7, ";base64") != 0 ||
+      !decodeBase64(std::string_view(uri).substr(comma + 1), bytes)) {
+    throw inputError(fmt::format("{}: its data: URI is not base64", what));
+  }
+  return bytes;
+}
+
 // Where the bytes of one buffer come from.
 class BufferReader {
  public:
@@ -115,53 +154,20 @@ class BufferReader {
       throw inputError(fmt::format("{}.uri is {}, expected a string", what, describeJson(*uri)));
     }
     const std::string& address = uri->get_ref<const std::string&>();
-    if (address.rfind("data:", 0) != 0) return readBeside(address, wanted, what);
-    std::vector<uint8_t> bytes;
-    const size_t comma = address.find(',');
-    if (comma == std::string::npos || comma < 12 || address.compare(comma - 7, 7, ";base64") != 0 ||
-        !decodeBase64(std::string_view(address).substr(comma + 1), bytes)) {
-      throw inputError(fmt::format("{}: its data: URI is not base64", what));
+    if (!isData(address)) {
+      FileStream stream = openBeside(folder_, address, what);
+      expectThere(wanted, stream.size(), what);
+      std::vector<uint8_t> bytes(wanted);
+      stream.read(bytes.data(), bytes.size());
+      return bytes;
     }
+    std::vector<uint8_t> bytes = readData(address, what);
     expectThere(wanted, bytes.size(), what);
     bytes.resize(wanted);
     return bytes;
   }
 
  private:
-  static void expectThere(uint64_t wanted, uint64_t there, const std::string& what) {
-    if (wanted <= there) return;
-    throw inputError(fmt::format("{} has {} bytes, its byteLength says {}", what, there, wanted));
-  }
-
-  // A model must not read what its user did not hand over with it, by ".." or by a symbolic link either.
-  bool leavesFolder(const std::filesystem::path& file) const {
-    std::error_code unresolved;  // FileStream says better what is wrong with such a file
-    const auto folder = std::filesystem::weakly_canonical(folder_, unresolved);
-    const auto inside =
-        std::filesystem::weakly_canonical(folder_ / file, unresolved).lexically_relative(folder);
-    return !unresolved && (inside.empty() || *inside.begin() == "..");
-  }
-
-  std::vector<uint8_t> readBeside(const std::string& uri, uint64_t wanted, const std::string& what) const {
-    const std::string refersTo = fmt::format("{} refers to {}", what, describeJson(uri));
-    const std::filesystem::path file = decodeUri(uri);
-    if (folder_.empty()) throw inputError(refersTo + ", expected everything in one file");
-    if (uri.find(':') != std::string::npos || file.is_absolute() ||
-        file.native().find('\0') != std::string::npos || leavesFolder(file)) {
-      throw inputError(refersTo + ", expected a file in its folder");
-    }
-    std::optional<FileStream> stream;
-    try {
-      stream.emplace(folder_ / file);
-    } catch (const Error& error) {
-      throw inputError(fmt::format("{}: {}", refersTo, error.what()));
-    }
-    expectThere(wanted, stream->size(), what);
-    std::vector<uint8_t> bytes(wanted);
-    stream->read(bytes.data(), bytes.size());
-    return bytes;
-  }
-
   std::span<const uint8_t> binary_;
   const std::string& name_;
   const std::filesystem::path& folder_;
@@ -193,6 +199,17 @@ std::string decodeUri(const std::string& uri) {
   return text;
 }
 
+std::vector<uint8_t> readUri(const File& file, const std::string& uri, const std::string& what) {
+  if (isData(uri)) return readData(uri, what);
+  FileStream stream = openBeside(file.folder, uri, what);
+  if (stream.size() > maxBufferBytes)
+    throw inputError(
+        fmt::format("{} has {} bytes, expected at most {}", what, stream.size(), maxBufferBytes));
+  std::vector<uint8_t> bytes(stream.size());
+  stream.read(bytes.data(), bytes.size());
+  return bytes;
+}
+
 File openFile(std::span<const uint8_t> bytes, const std::string& name, const std::filesystem::path& folder) {
   Chunks chunks;
   if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
@@ -208,6 +225,7 @@ File openFile(std::span<const uint8_t> bytes, const std::string& name, const std
     }
   }
   File file;
+  file.folder = folder;
   file.json = parseJson(chunks.json, name);
   if (!file.json.is_object()) throw inputError(fmt::format("{}: its JSON is not an object", name));
   const auto buffers = file.json.find("buffers");

@@ -3,17 +3,19 @@
 #include <algorithm>
 
 #include "assets/models/gltf_accessors.h"
+#include "assets/models/gltf_materials.h"
 
 namespace skitter::gltf {
 namespace {
 
-glm::dvec3 baseColour(const Source& source, int material, const std::string& what) {
-  if (material == -1) return glm::dvec3(1);
+// Its factor, red, green, blue and opacity.
+glm::dvec4 baseColour(const Source& source, int material, const std::string& what) {
+  if (material == -1) return glm::dvec4(1);
   source.checkIndex(material, source.model.materials.size(), what + ".material");
   const auto& factor =
       source.model.materials[static_cast<size_t>(material)].pbrMetallicRoughness.baseColorFactor;
   source.checkFinite(factor, 4, fmt::format("materials[{}].baseColorFactor", material));
-  return factor.empty() ? glm::dvec3(1) : glm::dvec3(factor[0], factor[1], factor[2]);
+  return factor.empty() ? glm::dvec4(1) : glm::dvec4(factor[0], factor[1], factor[2], factor[3]);
 }
 
 std::vector<uint32_t> triangles(Source& source, const tinygltf::Primitive& from, size_t vertexCount,
@@ -47,7 +49,8 @@ std::vector<uint32_t> triangles(Source& source, const tinygltf::Primitive& from,
   return list;
 }
 
-Primitive primitive(Source& source, const tinygltf::Primitive& from, const std::string& what) {
+Primitive primitive(Source& source, const tinygltf::Primitive& from, const Materials& materials,
+                    const std::string& what) {
   Primitive primitive;
   const auto attribute = [&](const std::string& key, std::initializer_list<int> types, bool integers,
                              NotFinite notFinite = NotFinite::refused) {
@@ -65,11 +68,30 @@ Primitive primitive(Source& source, const tinygltf::Primitive& from, const std::
   const size_t count = primitive.positions.size();
   if (count == 0) source.fail("{} has no POSITION", what);
   primitive.normals = toVectors(attribute("NORMAL", {TINYGLTF_TYPE_VEC3}, false));
-  primitive.colours = toVectors(attribute("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, false));
+  const Values colours = attribute("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, false);
+  const glm::dvec4 base = baseColour(source, from.material, what);
+  primitive.material = from.material;
+  primitive.colours = toVectors(colours);
   primitive.colours.resize(count, glm::dvec3(1));
-  const glm::dvec3 base = baseColour(source, from.material, what);
+  primitive.opacities.assign(count, base.w);
   // Both are within 0 to 1 (glTF 2.0 specification, sections 3.7.2.1 and 3.9.2).
-  for (glm::dvec3& colour : primitive.colours) colour = glm::clamp(colour * base, 0.0, 1.0);
+  for (glm::dvec3& colour : primitive.colours) colour = glm::clamp(colour * glm::dvec3(base), 0.0, 1.0);
+  for (size_t v = 0; v < count; ++v) {
+    if (colours.components == 4 && colours.count > 0) primitive.opacities[v] *= colours.numbers[4 * v + 3];
+    primitive.opacities[v] = std::clamp(primitive.opacities[v], 0.0, 1.0);
+  }
+  if (from.material != -1 && isTextured(materials.list[static_cast<size_t>(from.material)])) {
+    for (size_t set = 0; set < primitive.uvs.size(); ++set) {
+      const Values uvs = attribute(fmt::format("TEXCOORD_{}", set), {TINYGLTF_TYPE_VEC2}, false);
+      for (size_t v = 0; v < uvs.count; ++v)
+        primitive.uvs[set].emplace_back(uvs.numbers[2 * v], uvs.numbers[2 * v + 1]);
+    }
+    const Values tangents = attribute("TANGENT", {TINYGLTF_TYPE_VEC4}, false);
+    for (size_t v = 0; v < tangents.count; ++v) {
+      const double* at = &tangents.numbers[4 * v];
+      primitive.tangents.emplace_back(at[0], at[1], at[2], at[3]);
+    }
+  }
 
   std::vector<Values> joints, weights;
   for (int set = 0;; ++set) {
@@ -105,7 +127,7 @@ Primitive primitive(Source& source, const tinygltf::Primitive& from, const std::
 
 }  // namespace
 
-Mesh readMesh(Source& source, size_t index) {
+Mesh readMesh(Source& source, const Materials& materials, size_t index) {
   Mesh mesh;
   for (size_t k = 0; k < source.model.meshes[index].primitives.size(); ++k) {
     const tinygltf::Primitive& from = source.model.meshes[index].primitives[k];
@@ -119,7 +141,7 @@ Mesh readMesh(Source& source, size_t index) {
       continue;
     }
     if (!from.targets.empty()) source.notes.push_back(what + " has morph targets: not applied");
-    mesh.primitives.push_back(primitive(source, from, what));
+    mesh.primitives.push_back(primitive(source, from, materials, what));
     for (const Influence& influence : mesh.primitives.back().influences) {
       mesh.highestJoint = std::max(mesh.highestJoint, influence.joint);
     }

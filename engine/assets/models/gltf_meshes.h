@@ -6,7 +6,7 @@
 namespace skitter::gltf {
 
 // Points and lines are left out, with a note.
-Mesh readMesh(Source& source, size_t index);
+Mesh readMesh(Source& source, const Materials& materials, size_t index);
 // Its joints are nodes of the file.
 Skin readSkin(Source& source, size_t index);
 

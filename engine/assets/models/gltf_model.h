@@ -16,7 +16,7 @@ namespace skitter::gltf {
 inline constexpr size_t maxObjects = size_t{1} << 16;  // nodes, meshes, skins, clips and the like, of each
 
 // What tinygltf reads of a file: nodes, meshes, skins, materials and accessors. Buffers are the caller's,
-// clips are read apart, and pictures are not read at all, so that there is nothing to decode and to miss.
+// clips and textures are read apart, and no image is decoded.
 // Throws Error(input) that begins with `name` where the JSON is no glTF 2.0, requires an extension that is
 // not supported, or tinygltf refuses it; what it refers to is not checked.
 tinygltf::Model loadModel(const nlohmann::json& json, const std::string& name);

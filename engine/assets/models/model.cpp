@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <new>
+#include <set>
 
 #include "assets/files/file.h"
+#include "assets/materials/tangents.h"
+#include "assets/models/gltf_materials.h"
 #include "skitter/error.h"
 
 namespace skitter {
@@ -14,6 +18,7 @@ namespace {
 
 constexpr size_t maxVertices = size_t{1} << 22, maxIndices = size_t{1} << 24;  // of all meshes as placed
 constexpr size_t maxInfluences = size_t{1} << 24;
+constexpr size_t maxMaterials = 64;    // each has a draw for each page and level
 constexpr double maxCoordinate = 1e9;  // units of the file, of nodes and vertices at rest
 
 class ModelBuilder {
@@ -21,6 +26,7 @@ class ModelBuilder {
   ModelBuilder(const gltf::Document& document, Model& model) : document_(document), model_(model) {}
 
   void build() {
+    chooseLook();
     for (const gltf::Node& node : document_.nodes) {
       model_.nodes.push_back({node.name, node.parent, false, node.modelFromNode});
       checkCoordinates(model_.nodes.back().position(),
@@ -40,6 +46,7 @@ class ModelBuilder {
       for (const gltf::Primitive& part : document_.meshes[static_cast<size_t>(node.mesh)].primitives)
         add(i, part);
     }
+    if (look_) model_.look.materials = std::move(look_);
     noteOddities();
   }
 
@@ -73,6 +80,7 @@ class ModelBuilder {
     const size_t first = model_.vertices.size();
     std::vector<bool> mirrored(part.positions.size());
     std::vector<glm::dvec3> normals(part.positions.size(), glm::dvec3(0));
+    std::vector<glm::dvec4> tangents;
     for (size_t v = 0; v < part.positions.size(); ++v) {
       Model::Vertex vertex;
       vertex.firstInfluence = static_cast<uint32_t>(model_.influences.size());
@@ -92,11 +100,56 @@ class ModelBuilder {
       if (!part.normals.empty() && determinant != 0) {
         normals[v] = glm::transpose(glm::inverse(linear)) * part.normals[v];
       }
+      if (look_ && !part.tangents.empty()) tangents.push_back(turnedTangent(linear, part.tangents[v]));
       model_.vertices.push_back(vertex);
     }
     if (skin) weightless_ += part.weightless;
     addTriangles(part, first, mirrored, normals);
+    if (look_) addLook(part, first, tangents);
     ++model_.primitives;
+  }
+
+  // The materials of what is placed in the scene, where one of them takes more than colours at vertices.
+  void chooseLook() {
+    std::set<int> worn;
+    for (const gltf::Node& node : document_.nodes) {
+      if (!node.inScene || node.mesh == -1) continue;
+      for (const gltf::Primitive& part : document_.meshes[static_cast<size_t>(node.mesh)].primitives)
+        worn.insert(part.material);
+    }
+    const auto isPlain = [&](int material) {
+      return material == -1 || gltf::isPlain(document_.materials.list[static_cast<size_t>(material)]);
+    };
+    if (std::all_of(worn.begin(), worn.end(), isPlain)) return;
+    if (worn.size() > maxMaterials) {
+      model_.notes.push_back(
+          fmt::format("{} materials are drawn, expected at most {}: colour is COLOR_0 "
+                      "times the material's base colour",
+                      worn.size(), maxMaterials));
+      return;
+    }
+    look_ = std::make_shared<Materials>();
+    look_->images = document_.materials.images;
+    for (const int material : worn) {
+      places_[material] = static_cast<uint16_t>(look_->list.size());
+      look_->list.push_back(material == -1 ? Material()
+                                           : document_.materials.list[static_cast<size_t>(material)]);
+    }
+  }
+
+  void addLook(const gltf::Primitive& part, size_t first, const std::vector<glm::dvec4>& tangents) {
+    const uint16_t place = places_.at(part.material);
+    std::vector<MaterialVertex>& vertices = model_.look.vertices;
+    for (size_t v = 0; v < part.positions.size(); ++v) {
+      MaterialVertex& vertex = vertices.emplace_back();
+      for (size_t set = 0; set < part.uvs.size(); ++set)
+        if (!part.uvs[set].empty()) vertex.uv[set] = glm::vec2(part.uvs[set][v]);
+      vertex.opacity = static_cast<float>(part.opacities[v]);
+      vertex.material = place;
+      if (!tangents.empty()) vertex.tangent = glm::vec4(tangents[v]);
+    }
+    const Texture& normal = look_->list[place].texture(TextureRole::normal);
+    if (tangents.empty() && normal.image != -1) makeTangents(model_, first, part.indices.size(), normal);
   }
 
   void addTriangles(const gltf::Primitive& part, size_t first, const std::vector<bool>& mirrored,
@@ -181,6 +234,8 @@ class ModelBuilder {
   const gltf::Document& document_;
   Model& model_;
   std::vector<std::vector<glm::dmat4>> modelFromBind_;  // of each skin's joints
+  std::shared_ptr<Materials> look_;  // null where no material is drawn by more than colours
+  std::map<int, uint16_t> places_;   // of the document's materials in it
   size_t unscaled_ = 0, crowded_ = 0, weightless_ = 0;
 };
 

@@ -4,6 +4,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
 
+#include "assets/materials/tangents.h"
+
 namespace skitter {
 namespace {
 
@@ -48,19 +50,27 @@ void bendLeg(Rig& rig, size_t leg, const glm::dvec3& direction, double degrees) 
   }
 
   const int first = 1 + static_cast<int>(leg) * rig.maxBones();
-  for (SkinVertex& vertex : rig.vertices) {
+  for (size_t v = 0; v < rig.vertices.size(); ++v) {
+    SkinVertex& vertex = rig.vertices[v];
     glm::dvec3 position(0), normal(0);
+    glm::dmat3 turned(0);
     for (int k = 0; k < 4; ++k) {
       const double weight = double{vertex.weights[k]};
       const int bone = vertex.bones[k] - first;
       if (bone < 0 || bone >= static_cast<int>(turns.size())) {
         position += weight * glm::dvec3(vertex.position);
         normal += weight * glm::dvec3(vertex.normal);
+        turned += weight * glm::dmat3(1);
         continue;
       }
       const auto b = static_cast<size_t>(bone);
       position += weight * (starts[b] + turns[b] * (glm::dvec3(vertex.position) - points[b]));
       normal += weight * (turns[b] * glm::dvec3(vertex.normal));
+      turned += weight * glm::mat3_cast(turns[b]);
+    }
+    if (rig.look) {
+      glm::vec4& tangent = rig.look.vertices[v].tangent;
+      tangent = glm::vec4(turnedTangent(turned, glm::dvec4(tangent)));
     }
     vertex.position = glm::vec3(position);
     if (glm::length(normal) > 1e-9) vertex.normal = glm::vec3(glm::normalize(normal));

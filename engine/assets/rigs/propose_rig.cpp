@@ -111,14 +111,23 @@ void describeLegs(BodyPlan& plan, const std::vector<LimbName>& names, RigSetup& 
   limitJoints(plan, setup);
 }
 
-// A model whose colours are in its pictures is white here, which no light suits.
+bool hasBaseColours(const Look& look) {
+  return look &&
+         std::any_of(look.materials->list.begin(), look.materials->list.end(), [&](const Material& m) {
+           const int image = m.texture(TextureRole::baseColour).image;
+           return image != -1 && !look.materials->images[static_cast<size_t>(image)].bytes.empty();
+         });
+}
+
+// White all over suits no light.
 void chooseColour(BodyPlan& plan, RigSetup& setup) {
+  if (hasBaseColours(plan.model.look)) return;
   for (const Model::Vertex& vertex : plan.model.vertices) {
     if (glm::length(vertex.colour - glm::vec3(1)) > 0.1f) return;
   }
   if (plan.model.vertices.empty()) return;
   setup.colour = {0.1, 0.085, 0.07};
-  plan.note("the model has no colours of its own (pictures are not read): colour makes it grey");
+  plan.note("the model has no colours of its own: colour makes it grey");
 }
 
 // Fills what it can; the notes say where it stops.

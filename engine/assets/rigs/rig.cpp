@@ -6,6 +6,7 @@
 #include <cmath>
 #include <new>
 
+#include "assets/materials/tangents.h"
 #include "assets/rigs/bend.h"
 #include "assets/rigs/placement.h"
 #include "assets/rigs/rig_setup.h"
@@ -159,6 +160,9 @@ class RigBuilder {
       weigh(from, palette, vertex);
       rig.vertices.push_back(vertex);
     }
+    rig.look = model_.look;
+    for (MaterialVertex& vertex : rig.look.vertices)
+      vertex.tangent = glm::vec4(turnedTangent(placement_.rotation, glm::dvec4(vertex.tangent)));
     rig.indices = model_.indices;
     if (rig.indices.empty()) fail("has no mesh with triangles");
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skitter/export.h"
+#include "skitter/material.h"
 #include "skitter/rig.h"
 
 namespace skitter {
@@ -58,6 +59,7 @@ struct SKITTER_API ClipSet {
   std::vector<ClipJoint> joints;     // the palette, parents first; at most maxJoints
   std::vector<SkinVertex> vertices;  // where they were bound, mostly the rest pose; `bones` into `joints`
   std::vector<uint32_t> indices;     // as the rig's: triangles, counter-clockwise from outside
+  Look look;                         // as the rig's, tangents as they were bound
   std::vector<ClipLeg> legs;         // as the rig's
   std::vector<Clip> clips;           // in the order of the file
   std::vector<std::string> notes;    // what was left out, a line each

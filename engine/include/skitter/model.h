@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skitter/export.h"
+#include "skitter/material.h"
 
 namespace skitter {
 
@@ -45,6 +46,7 @@ struct SKITTER_API Model {
   std::vector<Vertex> vertices;
   std::vector<Influence> influences;
   std::vector<uint32_t> indices;  // triangles, counter-clockwise from outside
+  Look look;                      // tangents at rest; none where colours at the vertices are all there is
   std::vector<Clip> clips;
   std::vector<std::string> notes;  // what is odd or was left out, a line each
 

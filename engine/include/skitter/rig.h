@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skitter/export.h"
+#include "skitter/material.h"
 
 namespace skitter {
 
@@ -61,6 +62,7 @@ struct SKITTER_API Rig {
   float bodyRadius = 0;             // metres, half the body's length: what must clear the ground
   std::vector<SkinVertex> vertices;
   std::vector<uint32_t> indices;  // triangles, counter-clockwise from outside
+  Look look;                      // of a model with textures and the like
 
   int legCount() const { return static_cast<int>(legs.size()); }
   int groupCount() const { return static_cast<int>(groups.size()); }
