@@ -4,6 +4,7 @@
 
 #include "app/common/progress.h"
 #include "app/common/simulate.h"
+#include "app/common/warnings.h"
 
 namespace skitter::app {
 namespace {
@@ -28,6 +29,7 @@ Offscreen::Offscreen(const RunOptions& options, const OutTarget& target, const S
   const StopDeadline deadline(std::ref(leave_));
   if (!pictures) return;
   renderer_.emplace(device, crowd, options.size.width, options.size.height);
+  warnOfImages(*renderer_);
   renderer_->timeStages(options.timings);
 }
 

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "app/common/signals.h"
+#include "app/common/warnings.h"
 #include "app/viewer/camera_control.h"
 #include "app/viewer/followed.h"
 #include "app/viewer/gui.h"
@@ -63,6 +64,7 @@ class Canvas {
   void make(Size size) {
     renderer_.reset();
     renderer_.emplace(run_.device, run_.crowd, size.width, size.height);
+    warnOfImages(*renderer_);
   }
 
   const WindowRun& run_;

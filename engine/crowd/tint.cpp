@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "assets/materials/worn_colours.h"
 #include "base/split_mix.h"
 #include "render/tint.h"
 
@@ -33,12 +34,14 @@ float meanLightness(const Kind& kind) {
   const bool clips = !kind.clipSet.vertices.empty();
   const std::vector<SkinVertex>& vertices = clips ? kind.clipSet.vertices : kind.rig.vertices;
   const std::vector<uint32_t>& indices = clips ? kind.clipSet.indices : kind.rig.indices;
+  const std::vector<glm::vec3> colours = wornColours(vertices, clips ? kind.clipSet.look : kind.rig.look);
   double area = 0, sum = 0;
   for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const SkinVertex &a = vertices[indices[i]], &b = vertices[indices[i + 1]], &c = vertices[indices[i + 2]];
-    const double part = glm::length(glm::cross(b.position - a.position, c.position - a.position));
+    const uint32_t a = indices[i], b = indices[i + 1], c = indices[i + 2];
+    const glm::vec3 from = vertices[a].position;
+    const double part = glm::length(glm::cross(vertices[b].position - from, vertices[c].position - from));
     area += part;
-    sum += part * lightnessOf((a.colour + b.colour + c.colour) / 3.0f);
+    sum += part * lightnessOf((colours[a] + colours[b] + colours[c]) / 3.0f);
   }
   return area > 0 ? static_cast<float>(sum / area) : 0;
 }

@@ -12,7 +12,7 @@ namespace skitter::crowd {
 // Whether a herd's agents need tints of their own.
 inline bool isTinted(const skitter::Herd& herd) { return herd.colour || herd.tint; }
 
-// The mean lightness of a kind's creatures at rest, area by area.
+// The mean lightness of a kind's creatures at rest, area by area, in the colours that textures give them.
 float meanLightness(const Kind& kind);
 
 // Those of a part of a herd. `lightness` is its kind's mean.

@@ -171,13 +171,14 @@ void Rendering::confine(vk::Rect2D area) const {
 
 vk::raii::Sampler makeSampler(const Context& context, const SamplerInfo& info) {
   const vk::SamplerCreateInfo create{.magFilter = info.filter,
-                                     .minFilter = info.filter,
-                                     .mipmapMode = vk::SamplerMipmapMode::eNearest,
-                                     .addressModeU = vk::SamplerAddressMode::eClampToEdge,
-                                     .addressModeV = vk::SamplerAddressMode::eClampToEdge,
+                                     .minFilter = info.minFilter.value_or(info.filter),
+                                     .mipmapMode = info.mips,
+                                     .addressModeU = info.wrapU,
+                                     .addressModeV = info.wrapV,
                                      .addressModeW = vk::SamplerAddressMode::eClampToEdge,
                                      .compareEnable = info.compare.has_value(),
-                                     .compareOp = info.compare.value_or(vk::CompareOp::eNever)};
+                                     .compareOp = info.compare.value_or(vk::CompareOp::eNever),
+                                     .maxLod = info.maxLevel};
   vk::raii::Sampler sampler = guarded("creating the sampler " + info.name,
                                       [&] { return vk::raii::Sampler(context.device(), create); });
   context.name(*sampler, info.name);

@@ -98,8 +98,12 @@ struct SamplerInfo {
   std::string name;
   vk::Filter filter = vk::Filter::eLinear;
   std::optional<vk::CompareOp> compare = {};
+  std::optional<vk::Filter> minFilter = {};  // where texels are smaller than pixels; else `filter`
+  vk::SamplerAddressMode wrapU = vk::SamplerAddressMode::eClampToEdge,
+                         wrapV = vk::SamplerAddressMode::eClampToEdge;
+  vk::SamplerMipmapMode mips = vk::SamplerMipmapMode::eNearest;
+  float maxLevel = 0;  // 0: one level
 };
-// Clamped to the edge, one mip level.
 vk::raii::Sampler makeSampler(const Context&, const SamplerInfo&);
 
 // The picture has been drawn from memory that a copy, fill or update overwrites next (write after read).

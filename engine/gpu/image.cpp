@@ -63,7 +63,7 @@ Image::Image(const Context& context, const ImageInfo& info, std::string name)
                              vk::ImageCreateInfo{.imageType = vk::ImageType::e2D,
                                                  .format = info_.format,
                                                  .extent = {info_.extent.width, info_.extent.height, 1},
-                                                 .mipLevels = 1,
+                                                 .mipLevels = info_.levels,
                                                  .arrayLayers = info_.layers,
                                                  .samples = info_.samples,
                                                  .tiling = vk::ImageTiling::eOptimal,
@@ -83,7 +83,7 @@ Image::Image(const Context& context, const ImageInfo& info, std::string name)
                                                   .viewType = info_.layers > 1 ? vk::ImageViewType::e2DArray
                                                                                : vk::ImageViewType::e2D,
                                                   .format = info_.format,
-                                                  .subresourceRange = {aspect_, 0, 1, 0, info_.layers}});
+                                                  .subresourceRange = {aspect_, 0, info_.levels, 0, info_.layers}});
     context.name(*view_, name_);
   });
 }

@@ -13,9 +13,10 @@ struct ImageInfo {
       {};               // TRANSFER_SRC and TRANSFER_DST are added where the format allows, but for MSAA
   uint32_t layers = 1;  // more than one makes the view an array
   vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
+  uint32_t levels = 1;  // each half as wide and high as the one before, rounded down, at least 1
 };
 
-// A device-local 2D image with one mip level and a view of all of it: heights, colour, depth, shadow. It does
+// A device-local 2D image and a view of all of it: heights, colour, depth, shadow, textures. It does
 // not track its layout; barrier.h moves it from state to state.
 class Image {
  public:

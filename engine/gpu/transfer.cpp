@@ -15,21 +15,29 @@ void inChunks(uint64_t total, uint64_t chunk, Step&& step) {
   for (uint64_t done = 0; done < total; done += chunk) step(done, std::min(chunk, total - done));
 }
 
-// An image goes by whole rows, at least one a chunk.
+// A level of an image goes by whole rows, at least one a chunk.
 struct Rows {
+  uint32_t level, width, height;
   uint64_t bytes;     // of a row
   uint64_t perChunk;  // rows
 };
 
-Rows rowsOf(const Image& image, uint64_t chunk) {
-  const uint64_t bytes = uint64_t(image.extent().width) * vk::blockSize(image.format());
-  return {bytes, std::clamp<uint64_t>(chunk / bytes, 1, image.extent().height)};
+Rows rowsOf(const Image& image, uint32_t level, uint64_t chunk) {
+  const vk::Extent2D whole = image.extent();
+  Rows rows{.level = level,
+            .width = std::max(1u, whole.width >> level),
+            .height = std::max(1u, whole.height >> level),
+            .bytes = 0,
+            .perChunk = 0};
+  rows.bytes = uint64_t(rows.width) * vk::blockSize(image.format());
+  rows.perChunk = std::clamp<uint64_t>(chunk / rows.bytes, 1, rows.height);
+  return rows;
 }
 
-vk::BufferImageCopy regionOf(const Image& image, uint64_t firstRow, uint64_t rows) {
-  return {.imageSubresource = {image.aspect(), 0, 0, 1},
+vk::BufferImageCopy regionOf(const Image& image, const Rows& rows, uint64_t firstRow, uint64_t count) {
+  return {.imageSubresource = {image.aspect(), rows.level, 0, 1},
           .imageOffset = {0, int32_t(firstRow), 0},
-          .imageExtent = {image.extent().width, uint32_t(rows), 1}};
+          .imageExtent = {rows.width, uint32_t(count), 1}};
 }
 
 }  // namespace
@@ -96,34 +104,45 @@ void clear(const Context& context, const Buffer& buffer) {
   });
 }
 
+void uploadLevels(const Context& context, const Image& image,
+                  std::span<const std::span<const std::byte>> levels, ImageState after, uint64_t chunk) {
+  assert(levels.size() == image.info().levels);
+  const Rows first = rowsOf(image, 0, chunk);
+  const HostBuffer staging(context, first.bytes * first.perChunk, HostUse::upload, "image upload staging");
+  for (uint32_t level = 0; level < levels.size(); ++level) {
+    const Rows rows = rowsOf(image, level, first.bytes * first.perChunk);
+    assert(levels[level].size() == rows.bytes * rows.height);
+    inChunks(rows.height, rows.perChunk, [&](uint64_t row, uint64_t count) {
+      std::memcpy(staging.bytes().data(), levels[level].data() + row * rows.bytes, count * rows.bytes);
+      submitAndWait(context, [&](vk::CommandBuffer cmd) {
+        const bool begins = level == 0 && row == 0;
+        const bool ends = level + 1 == levels.size() && row + count == rows.height;
+        transition(cmd, image, begins ? ImageState::discard : ImageState::transferDst,
+                   ImageState::transferDst);
+        cmd.copyBufferToImage(staging.handle(), image.handle(), layoutOf(ImageState::transferDst),
+                              regionOf(image, rows, row, count));
+        if (ends) transition(cmd, image, ImageState::transferDst, after);
+      });
+    });
+  }
+}
+
 void uploadImageBytes(const Context& context, const Image& image, std::span<const std::byte> data,
                       ImageState after, uint64_t chunk) {
-  const Rows rows = rowsOf(image, chunk);
-  assert(data.size() == rows.bytes * image.extent().height);
-  const HostBuffer staging(context, rows.bytes * rows.perChunk, HostUse::upload, "image upload staging");
-  inChunks(image.extent().height, rows.perChunk, [&](uint64_t row, uint64_t count) {
-    std::memcpy(staging.bytes().data(), data.data() + row * rows.bytes, count * rows.bytes);
-    submitAndWait(context, [&](vk::CommandBuffer cmd) {
-      transition(cmd, image, row == 0 ? ImageState::discard : ImageState::transferDst,
-                 ImageState::transferDst);
-      cmd.copyBufferToImage(staging.handle(), image.handle(), layoutOf(ImageState::transferDst),
-                            regionOf(image, row, count));
-      if (row + count == image.extent().height) transition(cmd, image, ImageState::transferDst, after);
-    });
-  });
+  uploadLevels(context, image, {&data, 1}, after, chunk);
 }
 
 void downloadImageBytes(const Context& context, const Image& image, ImageState now, std::span<std::byte> data,
                         uint64_t chunk) {
-  const Rows rows = rowsOf(image, chunk);
-  assert(data.size() == rows.bytes * image.extent().height);
+  const Rows rows = rowsOf(image, 0, chunk);
+  assert(data.size() == rows.bytes * rows.height);
   const HostBuffer staging(context, rows.bytes * rows.perChunk, HostUse::readback, "image download staging");
-  inChunks(image.extent().height, rows.perChunk, [&](uint64_t row, uint64_t count) {
+  inChunks(rows.height, rows.perChunk, [&](uint64_t row, uint64_t count) {
     submitAndWait(context, [&](vk::CommandBuffer cmd) {
       allToAll(cmd);
       transition(cmd, image, now, ImageState::transferSrc);
       cmd.copyImageToBuffer(image.handle(), layoutOf(ImageState::transferSrc), staging.handle(),
-                            regionOf(image, row, count));
+                            regionOf(image, rows, row, count));
       transition(cmd, image, ImageState::transferSrc, now);
       transferToHost(cmd);
     });

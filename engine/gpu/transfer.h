@@ -47,7 +47,11 @@ std::vector<T> download(const Context& context, const Buffer& buffer, uint64_t c
   return data;
 }
 
-// Tightly packed rows of the first layer. What the image held before is lost; it ends in state `after`.
+// Tightly packed rows of the first layer, level by level. What the image held before is lost; it ends in
+// state `after`.
+void uploadLevels(const Context&, const Image&, std::span<const std::span<const std::byte>> levels,
+                  ImageState after = ImageState::sampled, uint64_t chunk = kStagingChunk);
+// The same of an image of one level.
 void uploadImageBytes(const Context&, const Image&, std::span<const std::byte>,
                       ImageState after = ImageState::sampled, uint64_t chunk = kStagingChunk);
 // The image is in state `now`, and is so afterwards.

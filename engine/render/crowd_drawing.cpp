@@ -1,14 +1,24 @@
 #include "render/crowd_drawing.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "crowd/controller.h"
 #include "embedded/crowd_frag.h"
 #include "embedded/crowd_vert_storage.h"
 #include "embedded/crowd_vert_texel.h"
+#include "embedded/cutout_frag.h"
+#include "embedded/cutout_vert_storage.h"
+#include "embedded/cutout_vert_texel.h"
 #include "embedded/shadow_vert_storage.h"
 #include "embedded/shadow_vert_texel.h"
+#include "embedded/worn_frag.h"
+#include "embedded/worn_vert_storage.h"
+#include "embedded/worn_vert_texel.h"
+#include "gpu/transfer.h"
 #include "render/bindings.h"
+#include "render/material.h"
 #include "skitter/error.h"
 
 namespace skitter::render {
@@ -38,8 +48,26 @@ std::vector<gpu::VertexStream> streams(bool shaded) {
            .attributes = {{0, F::eR32Uint, 0}}}};
 }
 
-gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences, bool matrices, bool tinted) {
-  gpu::GraphicsInfo info = crowdShading(influences, matrices, tinted);
+// What a material sees of a vertex, after the other streams.
+gpu::VertexStream wornStream(bool shaded) {
+  using F = vk::Format;
+  gpu::VertexStream stream{.stride = sizeof(MaterialVertex),
+                           .rate = vk::VertexInputRate::eVertex,
+                           .attributes = {{9, F::eR32G32B32A32Sfloat, offsetof(MaterialVertex, uv)},
+                                          {11, F::eR32Sfloat, offsetof(MaterialVertex, opacity)}}};
+  if (shaded) stream.attributes.push_back({10, F::eR32G32B32A32Sfloat, offsetof(MaterialVertex, tangent)});
+  return stream;
+}
+
+void addTextures(gpu::GraphicsInfo& info, const Material& material, int has) {
+  info.bindings.push_back({shared::DRAW_MATERIAL, BindingKind::uniform});
+  for (int role = 0; role < shared::TEXTURES; ++role)
+    info.bindings.push_back({uint32_t(shared::DRAW_TEXTURES + role), BindingKind::texture});
+  info.constants.push_back({shared::CONSTANT_TEXTURES, has});
+  info.constants.push_back({shared::CONSTANT_CUTOUT, material.alphaCutoff > 0});
+}
+
+gpu::GraphicsPipeline drawPipeline(const Setting& s, gpu::GraphicsInfo info) {
   info.colour = s.colour;
   info.depth = s.depth;
   info.samples = s.samples;
@@ -48,20 +76,42 @@ gpu::GraphicsPipeline drawPipeline(const Setting& s, int influences, bool matric
 }
 
 // Both faces cast: a closed skin loses nothing by it, an open one keeps its shadow.
-gpu::GraphicsPipeline shadowPipeline(const Setting& s, int influences, bool matrices) {
-  return {s.context,
-          {.name = "crowd shadow",
-           .vertex = {embedded::shadow_vert_texel(), embedded::shadow_vert_storage()},
-           .fragment = {},
-           .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
-                        {shared::DRAW_BODY, BindingKind::load4},
-                        {shared::DRAW_POSE, BindingKind::load4}},
-           .pushBytes = sizeof(shared::CrowdConstants),
-           .streams = streams(false),
-           .depth = s.shadow.image().format(),
-           .depthUse = gpu::DepthUse::shadow,
-           .cull = {},
-           .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}}};
+gpu::GraphicsInfo shadowInfo(const Setting& s, int influences, bool matrices) {
+  return {.name = "crowd shadow",
+          .vertex = {embedded::shadow_vert_texel(), embedded::shadow_vert_storage()},
+          .fragment = {},
+          .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
+                       {shared::DRAW_BODY, BindingKind::load4},
+                       {shared::DRAW_POSE, BindingKind::load4}},
+          .pushBytes = sizeof(shared::CrowdConstants),
+          .streams = streams(false),
+          .depth = s.shadow.image().format(),
+          .depthUse = gpu::DepthUse::shadow,
+          .cull = {},
+          .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}};
+}
+
+// Of a material that lets light through.
+gpu::GraphicsInfo cutoutInfo(const Setting& s, int influences, bool matrices, const Material& material,
+                             int has) {
+  gpu::GraphicsInfo info = shadowInfo(s, influences, matrices);
+  info.name = "cutout shadow";
+  info.vertex = {embedded::cutout_vert_texel(), embedded::cutout_vert_storage()};
+  info.fragment = embedded::cutout_frag();
+  info.streams.push_back(wornStream(false));
+  addTextures(info, material, has);
+  return info;
+}
+
+// The level that a list draws: of the camera's each its own.
+int levelOf(int list) { return list < shared::CAMERA_LODS ? list : kShadowLod[list - shared::CAMERA_LODS]; }
+
+VkDrawIndexedIndirectCommand drawOf(const MeshLod& lod) {
+  return {.indexCount = lod.indexCount,
+          .instanceCount = 0,
+          .firstIndex = lod.firstIndex,
+          .vertexOffset = lod.firstVertex,
+          .firstInstance = 0};
 }
 
 }  // namespace
@@ -83,7 +133,19 @@ gpu::GraphicsInfo crowdShading(int influences, bool matrices, bool tinted) {
                         {shared::CONSTANT_TINTED, tinted}}};
 }
 
-CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s.context) {
+gpu::GraphicsInfo wornShading(int influences, bool matrices, bool tinted, const Material& material, int has) {
+  gpu::GraphicsInfo info = crowdShading(influences, matrices, tinted);
+  info.name = "worn crowd";
+  info.vertex = {embedded::worn_vert_texel(), embedded::worn_vert_storage()};
+  info.fragment = embedded::worn_frag();
+  info.streams.push_back(wornStream(true));
+  addTextures(info, material, has);
+  if (material.doubleSided) info.cull = {};
+  return info;
+}
+
+CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureStore& store)
+    : cull_(s.context) {
   if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
   for (const crowd::Kind& source : crowd.kinds) {
     Kind kind;
@@ -92,43 +154,78 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd) : cull_(s
       continue;
     }
     const bool clips = crowd::traitsOf(source.controller).playsClips;
+    const Look& look = clips ? source.clipSet.look : source.rig.look;
+    const Textures* textures = look ? &store.of(s.context, look.materials) : nullptr;
     kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
     kind.mesh =
         uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
-    kind.draw = drawPipeline(s, kind.mesh.influences, clips, source.tinted);
-    kind.shadow = shadowPipeline(s, kind.mesh.influences, clips);
+    kind.draw = drawPipeline(s, crowdShading(kind.mesh.influences, clips, source.tinted));
+    kind.shadow = {s.context, shadowInfo(s, kind.mesh.influences, clips)};
+    if (textures) makeParts(s, source, *textures, kind);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
       Page page;
       page.firstAgent = records.firstAgent;
       page.culled = cull_.makePage(s.context, s.picture, records.body, records.agents);
-      std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &s.picture},
-                                     {shared::DRAW_BODY, &records.body},
-                                     {shared::DRAW_POSE, &records.pose}};
-      page.shadow = kind.shadow.bind(s.context, list);
-      list.push_back({shared::DRAW_TINT, source.tinted ? &records.tint : &records.body});
-      list.push_back({shared::DRAW_GROUND, &s.ground, s.groundSampler});
-      list.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
-      page.draw = kind.draw.bind(s.context, list);
+      const std::vector<gpu::Binding> shadow{{shared::DRAW_PICTURE, &s.picture},
+                                             {shared::DRAW_BODY, &records.body},
+                                             {shared::DRAW_POSE, &records.pose}};
+      std::vector<gpu::Binding> draw = shadow;
+      draw.push_back({shared::DRAW_TINT, source.tinted ? &records.tint : &records.body});
+      draw.push_back({shared::DRAW_GROUND, &s.ground, s.groundSampler});
+      draw.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
+      page.shadow = kind.shadow.bind(s.context, shadow);
+      page.draw = kind.draw.bind(s.context, draw);
+      if (textures) bindParts(s, *textures, shadow, draw, kind, page);
       kind.pages.push_back(std::move(page));
     }
     kinds_.push_back(std::move(kind));
   }
 }
 
+void CrowdDrawing::makeParts(const Setting& s, const crowd::Kind& source, const Textures& textures,
+                             Kind& kind) const {
+  const bool clips = crowd::traitsOf(source.controller).playsClips;
+  for (const MeshPart& from : kind.mesh.parts) {
+    Part& part = kind.parts.emplace_back();
+    if (from.material == -1) continue;
+    const Material& material = textures.materials()->list[size_t(from.material)];
+    const int has = textures.has(size_t(from.material));
+    part.draw = drawPipeline(s, wornShading(kind.mesh.influences, clips, source.tinted, material, has));
+    if (material.alphaCutoff > 0)
+      part.shadow = {s.context, cutoutInfo(s, kind.mesh.influences, clips, material, has)};
+  }
+}
+
+// Part draws never change but for their counts of agents, which countParts() copies.
+void CrowdDrawing::bindParts(const Setting& s, const Textures& textures,
+                             const std::vector<gpu::Binding>& shadow, const std::vector<gpu::Binding>& draw,
+                             const Kind& kind, Page& page) const {
+  for (size_t p = 0; p < kind.parts.size(); ++p) {
+    const Part& part = kind.parts[p];
+    const int material = kind.mesh.parts[p].material;
+    const auto bound = [&](const gpu::GraphicsPipeline& pipeline, std::vector<gpu::Binding> list) {
+      if (!pipeline) return gpu::Bindings();
+      textures.bind(size_t(material), list);
+      return pipeline.bind(s.context, list);
+    };
+    page.drawPart.push_back(bound(part.draw, draw));
+    page.shadowPart.push_back(bound(part.shadow, shadow));
+  }
+  std::vector<VkDrawIndexedIndirectCommand> draws;
+  for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
+    for (const MeshPart& part : kind.mesh.parts) draws.push_back(drawOf(part.lods[size_t(levelOf(list))]));
+  page.partDraws =
+      gpu::Buffer(s.context, draws.size() * sizeof draws[0], "part draws", gpu::BufferUse::indirect);
+  gpu::upload(s.context, page.partDraws, draws);
+}
+
 void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
   for (const Kind& kind : kinds_)
     for (const Page& page : kind.pages) {
       VkDrawIndexedIndirectCommand draws[shared::INSTANCE_LISTS];
-      for (int list = 0; list < shared::INSTANCE_LISTS; ++list) {
-        const bool camera = list < shared::CAMERA_LODS;
-        const MeshLod& lod = kind.mesh.lods[size_t(camera ? list : kShadowLod[list - shared::CAMERA_LODS])];
-        draws[list] = {.indexCount = lod.indexCount,
-                       .instanceCount = 0,
-                       .firstIndex = lod.firstIndex,
-                       .vertexOffset = lod.firstVertex,
-                       .firstInstance = 0};
-      }
+      for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
+        draws[list] = drawOf(kind.mesh.lods[size_t(levelOf(list))]);
       cmd.updateBuffer(page.culled.commands.handle(), 0, sizeof draws, draws);
     }
 }
@@ -138,6 +235,26 @@ void CrowdDrawing::cull(vk::CommandBuffer cmd) const {
     for (const Page& page : kind.pages) cull_.record(cmd, page.culled, kind.mesh.radius);
 }
 
+void CrowdDrawing::countParts(vk::CommandBuffer cmd) const {
+  const auto hasParts = [](const Kind& kind) { return !kind.parts.empty(); };
+  if (std::none_of(kinds_.begin(), kinds_.end(), hasParts)) return;
+  constexpr vk::DeviceSize stride = sizeof(VkDrawIndexedIndirectCommand);
+  constexpr vk::DeviceSize count = offsetof(VkDrawIndexedIndirectCommand, instanceCount);
+  gpu::computeToTransfer(cmd);
+  for (const Kind& kind : kinds_) {
+    std::vector<vk::BufferCopy> copies;
+    for (vk::DeviceSize list = 0; list < vk::DeviceSize(shared::INSTANCE_LISTS); ++list)
+      for (vk::DeviceSize part = 0; part < kind.parts.size(); ++part)
+        copies.push_back({.srcOffset = list * stride + count,
+                          .dstOffset = (list * kind.parts.size() + part) * stride + count,
+                          .size = sizeof(uint32_t)});
+    if (copies.empty()) continue;
+    for (const Page& page : kind.pages)
+      cmd.copyBuffer(page.culled.commands.handle(), page.partDraws.handle(), copies);
+  }
+  gpu::transferToGraphics(cmd);
+}
+
 void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
   for (uint32_t k = 0; k < kinds_.size(); ++k)
     for (const Page& page : kinds_[k].pages) {
@@ -145,8 +262,21 @@ void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
                                              .palette = kinds_[k].palette,
                                              .firstAgent = page.firstAgent,
                                              .kind = k};
-      kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
-      drawList(cmd, kinds_[k], page, shared::CAMERA_LODS + cascade);
+      const int list = shared::CAMERA_LODS + cascade;
+      const auto lets = [](const Part& part) { return !!part.shadow; };  // light through
+      if (std::none_of(kinds_[k].parts.begin(), kinds_[k].parts.end(), lets)) {
+        kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
+        drawList(cmd, kinds_[k], page, list);
+        continue;
+      }
+      for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
+        const gpu::GraphicsPipeline& own = kinds_[k].parts[p].shadow;
+        if (own)
+          own.use(cmd, page.shadowPart[p], gpu::bytesOf(constants));
+        else
+          kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
+        drawListPart(cmd, kinds_[k], page, list, p);
+      }
     }
 }
 
@@ -157,22 +287,47 @@ void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
                                              .palette = kinds_[k].palette,
                                              .firstAgent = page.firstAgent,
                                              .kind = k};
-      kinds_[k].draw.use(cmd, page.draw, gpu::bytesOf(constants));
-      for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawList(cmd, kinds_[k], page, lod);
+      if (kinds_[k].parts.empty()) {
+        kinds_[k].draw.use(cmd, page.draw, gpu::bytesOf(constants));
+        for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawList(cmd, kinds_[k], page, lod);
+      }
+      for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
+        const gpu::GraphicsPipeline& own = kinds_[k].parts[p].draw;
+        if (own)
+          own.use(cmd, page.drawPart[p], gpu::bytesOf(constants));
+        else
+          kinds_[k].draw.use(cmd, page.draw, gpu::bytesOf(constants));
+        for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawListPart(cmd, kinds_[k], page, lod, p);
+      }
     }
 }
 
-void CrowdDrawing::drawList(vk::CommandBuffer cmd, const Kind& kind, const Page& page, int list) const {
+void CrowdDrawing::bindBuffers(vk::CommandBuffer cmd, const Kind& kind, const Page& page, int list) const {
   // The list's place comes by the vertex buffer's offset: firstInstance in an indirect draw is optional in
   // Vulkan.
   const vk::DeviceSize place = vk::DeviceSize(list) * page.culled.agents * sizeof(uint32_t);
-  const std::array buffers{kind.mesh.vertices.handle(), page.culled.instances.handle()};
-  const std::array<vk::DeviceSize, 2> offsets{0, place};
-  cmd.bindVertexBuffers(0, buffers, offsets);
+  const std::array buffers{kind.mesh.vertices.handle(), page.culled.instances.handle(),
+                           kind.mesh.worn ? kind.mesh.worn.handle() : vk::Buffer()};
+  const std::array<vk::DeviceSize, 3> offsets{0, place, 0};
+  cmd.bindVertexBuffers(0, kind.mesh.worn ? 3 : 2, buffers.data(), offsets.data());
   cmd.bindIndexBuffer(kind.mesh.indices.handle(), 0, vk::IndexType::eUint32);
+}
+
+void CrowdDrawing::drawList(vk::CommandBuffer cmd, const Kind& kind, const Page& page, int list) const {
+  bindBuffers(cmd, kind, page, list);
   cmd.drawIndexedIndirect(page.culled.commands.handle(),
                           vk::DeviceSize(list) * sizeof(VkDrawIndexedIndirectCommand), 1,
                           sizeof(VkDrawIndexedIndirectCommand));
+}
+
+void CrowdDrawing::drawListPart(vk::CommandBuffer cmd, const Kind& kind, const Page& page, int list,
+                                size_t part) const {
+  if (kind.mesh.parts[part].lods[size_t(levelOf(list))].indexCount == 0) return;
+  bindBuffers(cmd, kind, page, list);
+  cmd.drawIndexedIndirect(
+      page.partDraws.handle(),
+      (vk::DeviceSize(list) * kind.parts.size() + part) * sizeof(VkDrawIndexedIndirectCommand), 1,
+      sizeof(VkDrawIndexedIndirectCommand));
 }
 
 }  // namespace skitter::render

@@ -4,22 +4,28 @@
 #include "render/cull.h"
 #include "render/mesh.h"
 #include "render/setting.h"
+#include "render/textures.h"
 
 namespace skitter::render {
 
 // The pipeline that shades a kind, without its targets. `influences` is the most bones that carry a vertex;
 // `matrices` says that poses are matrices instead of rotations, `tinted` that agents have tints.
 gpu::GraphicsInfo crowdShading(int influences, bool matrices, bool tinted);
+// The same of what a kind wears of a material that has the textures `has` (Textures::has).
+gpu::GraphicsInfo wornShading(int influences, bool matrices, bool tinted, const Material&, int has);
 
 // The crowd, skinned where its poses lie: one indirect draw a page and level of detail.
 class CrowdDrawing {
  public:
-  CrowdDrawing(const Setting&, const Crowd::Impl&);
+  // The store outlives the drawing.
+  CrowdDrawing(const Setting&, const Crowd::Impl&, TextureStore&);
 
   // Outside rendering, before a transferToCompute(): empties the lists.
   void prepare(vk::CommandBuffer) const;
   // Fills them; before a computeToGraphics().
   void cull(vk::CommandBuffer) const;
+  // Gives each part of a kind with materials its count of agents; after the computeToGraphics().
+  void countParts(vk::CommandBuffer) const;
   void drawShadows(vk::CommandBuffer, int cascade) const;
   void draw(vk::CommandBuffer) const;
 
@@ -28,14 +34,27 @@ class CrowdDrawing {
     uint32_t firstAgent = 0;
     CulledPage culled;
     gpu::Bindings draw, shadow;
+    // Of a kind with materials: the indirect draws of each list, part by part, and each part's bindings.
+    gpu::Buffer partDraws;
+    std::vector<gpu::Bindings> drawPart, shadowPart;
+  };
+  // How a part of a mesh is drawn; pipelines that are none are the kind's.
+  struct Part {
+    gpu::GraphicsPipeline draw, shadow;
   };
   struct Kind {
     uint32_t palette = 0;
     Mesh mesh;
     gpu::GraphicsPipeline draw, shadow;
+    std::vector<Part> parts;  // as the mesh's
     std::vector<Page> pages;
   };
+  void makeParts(const Setting&, const crowd::Kind&, const Textures&, Kind&) const;
+  void bindParts(const Setting&, const Textures&, const std::vector<gpu::Binding>& shadow,
+                 const std::vector<gpu::Binding>& draw, const Kind&, Page&) const;
   void drawList(vk::CommandBuffer, const Kind&, const Page&, int list) const;
+  void drawListPart(vk::CommandBuffer, const Kind&, const Page&, int list, size_t part) const;
+  void bindBuffers(vk::CommandBuffer, const Kind&, const Page&, int list) const;
 
   Cull cull_;
   std::vector<Kind> kinds_;

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <tuple>
 
+#include "assets/materials/worn_colours.h"
 #include "crowd/radius.h"
 #include "gpu/transfer.h"
 #include "render/ribbons.h"
@@ -27,7 +29,8 @@ struct Skin {
   const std::vector<SkinVertex>& vertices;
   const std::vector<uint32_t>& indices;
   std::vector<glm::vec3> starts;
-  const Rig* rig = nullptr;  // where legs are known
+  const Look& look;
+  const Rig* rig = nullptr;  // where legs are known; ribbons have its vertices' colours
 };
 
 MeshVertex meshVertex(const Skin& from, const SkinVertex& skin, int& influences) {
@@ -49,18 +52,45 @@ MeshVertex meshVertex(const Skin& from, const SkinVertex& skin, int& influences)
 }
 
 // Vertices that share a position are one, with the mean of their normals and colours: seams would keep the
-// simplifier from collapsing edges along them.
+// simplifier from collapsing edges along them. Where textures are cut, seams stay, for each side has texture
+// coordinates of its own; the simplifier then moves both sides alike. Their normals are one.
 struct Welded {
   std::vector<SkinVertex> vertices;
   std::vector<uint32_t> remap;  // of the skin's vertices; those of no triangle lead nowhere
+  std::vector<MaterialVertex> worn;
 };
-Welded weld(const std::vector<SkinVertex>& vertices, const std::vector<uint32_t>& indices) {
+
+// The number of vertices that differ in position and in all that textures need.
+size_t remapVertices(std::vector<uint32_t>& remap, const std::vector<uint32_t>& indices,
+                     const std::vector<glm::vec3>& positions, const std::vector<MaterialVertex>& worn) {
+  std::vector<meshopt_Stream> streams{{positions.data(), sizeof(glm::vec3), sizeof(glm::vec3)}};
+  if (!worn.empty()) {
+    const MaterialVertex& first = worn.front();
+    streams.push_back({first.uv, sizeof first.uv, sizeof first});
+    streams.push_back({&first.tangent.w, sizeof first.tangent.w, sizeof first});
+    streams.push_back({&first.material, sizeof first.material, sizeof first});
+  }
+  return meshopt_generateVertexRemapMulti(remap.data(), indices.data(), indices.size(), positions.size(),
+                                          streams.data(), streams.size());
+}
+
+// Gives vertices of one position the sum of their normals.
+void joinNormals(std::vector<SkinVertex>& vertices) {
+  std::map<std::array<float, 3>, glm::vec3> sums;
+  const auto key = [](const SkinVertex& v) { return std::array{v.position.x, v.position.y, v.position.z}; };
+  for (const SkinVertex& vertex : vertices)
+    sums.try_emplace(key(vertex), 0.0f).first->second += vertex.normal;
+  for (SkinVertex& vertex : vertices) vertex.normal = sums.at(key(vertex));
+}
+
+Welded weld(const std::vector<SkinVertex>& vertices, const std::vector<uint32_t>& indices,
+            const std::vector<MaterialVertex>& worn) {
   std::vector<glm::vec3> positions;
   for (const SkinVertex& vertex : vertices) positions.push_back(vertex.position);
-  Welded welded{{}, std::vector<uint32_t>(positions.size())};
-  const size_t count = meshopt_generateVertexRemap(welded.remap.data(), indices.data(), indices.size(),
-                                                   positions.data(), positions.size(), sizeof(glm::vec3));
+  Welded welded{{}, std::vector<uint32_t>(positions.size()), {}};
+  const size_t count = remapVertices(welded.remap, indices, positions, worn);
   welded.vertices.resize(count);
+  welded.worn.resize(worn.empty() ? 0 : count);
   std::vector<float> shared(count, 0.0f);
   for (size_t i = 0; i < welded.remap.size(); ++i) {
     const uint32_t place = welded.remap[i];
@@ -69,12 +99,22 @@ Welded weld(const std::vector<SkinVertex>& vertices, const std::vector<uint32_t>
     const float before = shared[place]++;
     if (before == 0) {
       vertex = vertices[i];
-    } else {
-      vertex.normal += vertices[i].normal;
-      vertex.colour = (vertex.colour * before + vertices[i].colour) / (before + 1);
+      if (!worn.empty()) welded.worn[place] = worn[i];
+      continue;
     }
+    vertex.normal += vertices[i].normal;
+    vertex.colour = (vertex.colour * before + vertices[i].colour) / (before + 1);
+    if (worn.empty()) continue;
+    MaterialVertex& to = welded.worn[place];
+    to.tangent += glm::vec4(glm::vec3(worn[i].tangent), 0);
+    to.opacity = (to.opacity * before + worn[i].opacity) / (before + 1);
   }
+  if (!worn.empty()) joinNormals(welded.vertices);
   for (SkinVertex& vertex : welded.vertices) vertex.normal /= std::max(glm::length(vertex.normal), 1e-6f);
+  for (MaterialVertex& vertex : welded.worn) {
+    const glm::vec3 tangent(vertex.tangent);
+    vertex.tangent = glm::vec4(tangent / std::max(glm::length(tangent), 1e-6f), vertex.tangent.w);
+  }
   return welded;
 }
 
@@ -90,10 +130,33 @@ std::vector<uint32_t> simplified(const Welded& welded, std::vector<uint32_t> tri
   return indices;
 }
 
+// Triangles of one material come in a row.
+void sortByMaterial(std::vector<uint32_t>& indices, const std::vector<MaterialVertex>& worn) {
+  using Triangle = std::array<uint32_t, 3>;
+  std::vector<Triangle> triangles;
+  for (size_t i = 0; i < indices.size(); i += 3)
+    triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  std::stable_sort(triangles.begin(), triangles.end(), [&](const Triangle& a, const Triangle& b) {
+    return worn[a[0]].material < worn[b[0]].material;
+  });
+  indices.clear();
+  for (const Triangle& triangle : triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
+}
+
 // As a device fetches them best, without vertices of no triangle.
-Surface optimised(const std::vector<SkinVertex>& vertices, std::vector<uint32_t> indices) {
+Surface optimised(const std::vector<SkinVertex>& vertices, const std::vector<MaterialVertex>& worn,
+                  std::vector<uint32_t> indices) {
   meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), vertices.size());
   Surface surface{std::vector<SkinVertex>(vertices.size()), std::move(indices)};
+  if (!worn.empty()) {
+    sortByMaterial(surface.indices, worn);
+    std::vector<uint32_t> remap(vertices.size());
+    const size_t count = meshopt_optimizeVertexFetchRemap(remap.data(), surface.indices.data(),
+                                                          surface.indices.size(), vertices.size());
+    surface.worn.resize(count);
+    for (size_t i = 0; i < remap.size(); ++i)
+      if (remap[i] < count) surface.worn[remap[i]] = worn[i];
+  }
   surface.vertices.resize(meshopt_optimizeVertexFetch(surface.vertices.data(), surface.indices.data(),
                                                       surface.indices.size(), vertices.data(),
                                                       vertices.size(), sizeof(SkinVertex)));
@@ -106,6 +169,7 @@ void append(MeshData& data, MeshLod& lod, const Skin& skin, const Surface& surfa
          .firstVertex = int32_t(data.vertices.size())};
   for (const SkinVertex& vertex : surface.vertices)
     data.vertices.push_back(meshVertex(skin, vertex, data.influences));
+  data.worn.insert(data.worn.end(), surface.worn.begin(), surface.worn.end());
   data.indices.insert(data.indices.end(), surface.indices.begin(), surface.indices.end());
 }
 
@@ -122,21 +186,51 @@ void append(MeshData& data, MeshLod& lod, const Ribbon& ribbon) {
     vertex.colour = end.colour;
     vertex.halfWidth = float(side) * std::max(end.radius, kLeastHalfWidth);
     data.vertices.push_back(vertex);
+    if (!data.worn.empty()) data.worn.emplace_back();
   }
   for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) data.indices.push_back(first + corner);
   lod.indexCount += 6;
 }
 
+MeshPart& partOf(MeshData& data, int material) {
+  for (MeshPart& part : data.parts)
+    if (part.material == material) return part;
+  return data.parts.emplace_back(MeshPart{material, {}});
+}
+
+// The runs of a level whose last `ribbons` indices are ribbons'.
+void splitByMaterial(MeshData& data, size_t level, uint32_t ribbons) {
+  const MeshLod& lod = data.lods[level];
+  for (uint32_t i = 0; i < lod.indexCount; i += 3) {
+    const uint32_t vertex = uint32_t(lod.firstVertex) + data.indices[lod.firstIndex + i];
+    const int material = i < lod.indexCount - ribbons ? data.worn[vertex].material : -1;
+    MeshLod& run = partOf(data, material).lods[level];
+    if (run.indexCount == 0) run = {lod.firstIndex + i, 0, lod.firstVertex};
+    run.indexCount += 3;
+  }
+}
+
 void appendLods(MeshData& data, const Skin& skin) {
   if (skin.indices.empty()) return;
-  append(data, data.lods[0], skin, optimised(skin.vertices, skin.indices));
-  const Welded welded = weld(skin.vertices, skin.indices);
+  const std::vector<MaterialVertex>& worn = skin.look.vertices;
+  append(data, data.lods[0], skin, optimised(skin.vertices, worn, skin.indices));
+  if (skin.look) splitByMaterial(data, 0, 0);
+  const Welded welded = weld(skin.vertices, skin.indices, worn);
   for (size_t i = 1; i < data.lods.size(); ++i) {
     const float radius = kRibbonPixels * data.radius / kLodPixels[i - 1];
     const Ribbons thin = skin.rig ? ribbonsOf(*skin.rig, radius) : Ribbons{{}, skin.indices};
-    append(data, data.lods[i], skin, optimised(welded.vertices, simplified(welded, thin.others, kShare[i])));
+    append(data, data.lods[i], skin,
+           optimised(welded.vertices, welded.worn, simplified(welded, thin.others, kShare[i])));
     for (const Ribbon& ribbon : thin.ribbons) append(data, data.lods[i], ribbon);
+    if (skin.look) splitByMaterial(data, i, 6 * uint32_t(thin.ribbons.size()));
   }
+}
+
+// The rig with the colours that its textures give it: ribbons are drawn without textures.
+Rig coloured(Rig rig) {
+  const std::vector<glm::vec3> colours = wornColours(rig.vertices, rig.look);
+  for (size_t v = 0; v < colours.size(); ++v) rig.vertices[v].colour = colours[v];
+  return rig;
 }
 
 }  // namespace
@@ -145,24 +239,25 @@ std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
                                 const std::vector<uint32_t>& indices) {
   std::vector<Surface> surfaces;
   if (indices.empty()) return surfaces;
-  surfaces.push_back(optimised(vertices, indices));
-  const Welded welded = weld(vertices, indices);
+  surfaces.push_back(optimised(vertices, {}, indices));
+  const Welded welded = weld(vertices, indices, {});
   for (size_t i = 1; i < kShare.size(); ++i)
-    surfaces.push_back(optimised(welded.vertices, simplified(welded, indices, kShare[i])));
+    surfaces.push_back(optimised(welded.vertices, {}, simplified(welded, indices, kShare[i])));
   return surfaces;
 }
 
 MeshData makeMesh(const Rig& rig) {
   MeshData data;
   data.radius = crowd::radiusOf(rig);
-  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), &rig});
+  const Rig worn = rig.look ? coloured(rig) : Rig();
+  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), rig.look, rig.look ? &worn : &rig});
   return data;
 }
 
 MeshData makeMesh(const ClipSet& set) {
   MeshData data;
   data.radius = crowd::radiusOf(set);
-  appendLods(data, {set.vertices, set.indices, std::vector<glm::vec3>(set.joints.size())});
+  appendLods(data, {set.vertices, set.indices, std::vector<glm::vec3>(set.joints.size()), set.look});
   return data;
 }
 
@@ -174,7 +269,13 @@ Mesh uploadMesh(const gpu::Context& context, const MeshData& data, const std::st
       gpu::Buffer(context, data.indices.size() * sizeof(uint32_t), name + " indices", gpu::BufferUse::index);
   gpu::upload(context, mesh.vertices, data.vertices);
   gpu::upload(context, mesh.indices, data.indices);
+  if (!data.worn.empty()) {
+    mesh.worn = gpu::Buffer(context, data.worn.size() * sizeof(MaterialVertex), name + " materials' vertices",
+                            gpu::BufferUse::vertex);
+    gpu::upload(context, mesh.worn, data.worn);
+  }
   mesh.lods = data.lods;
+  mesh.parts = data.parts;
   mesh.influences = data.influences;
   mesh.radius = data.radius;
   return mesh;

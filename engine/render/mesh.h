@@ -27,18 +27,27 @@ struct MeshLod {
   int32_t firstVertex = 0;
 };
 
+// The triangles of each level that are drawn alike; runs of the levels' own.
+struct MeshPart {
+  int material = -1;  // into the look's materials; -1: ribbons, which have colours alone
+  std::array<MeshLod, shared::CAMERA_LODS> lods;
+};
+
 // A rig's skin at its levels of detail, on the host.
 struct MeshData {
   std::vector<MeshVertex> vertices;
   std::vector<uint32_t> indices;
   std::array<MeshLod, shared::CAMERA_LODS> lods;
-  int influences = 1;  // most bones that carry one vertex, 1 to 4
-  float radius = 0;    // of a sphere about the body's position that holds every pose, metres
+  std::vector<MaterialVertex> worn;  // of each vertex; empty without materials, as are
+  std::vector<MeshPart> parts;       // whose runs make up each level
+  int influences = 1;                // most bones that carry one vertex, 1 to 4
+  float radius = 0;                  // of a sphere about the body's position that holds every pose, metres
 };
 // Triangles of a skin.
 struct Surface {
   std::vector<SkinVertex> vertices;
   std::vector<uint32_t> indices;
+  std::vector<MaterialVertex> worn = {};  // of each vertex; empty without materials
 };
 // A skin at its levels of detail as surfaces alone, finest first; none of a skin without triangles.
 std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
@@ -49,7 +58,9 @@ MeshData makeMesh(const ClipSet&);  // its palette holds matrices
 
 struct Mesh {
   gpu::Buffer vertices, indices;
+  gpu::Buffer worn;  // none without materials
   std::array<MeshLod, shared::CAMERA_LODS> lods;
+  std::vector<MeshPart> parts;
   int influences = 1;
   float radius = 0;
 };

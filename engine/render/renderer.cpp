@@ -70,6 +70,7 @@ struct Renderer::Impl {
   render::Setting setting;
   render::Terrain terrain;
   render::ObstacleDrawing obstacles;
+  render::TextureStore textures;
   render::CrowdDrawing crowd;
   render::Sky sky;
   render::Antialias antialias;  // where there are no samples to resolve
@@ -100,7 +101,7 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
               shadow, drawnFormat(),  kDepth,         samples},
       terrain(setting),
       obstacles(setting, source),
-      crowd(setting, source),
+      crowd(setting, source, textures),
       sky(setting) {
   timer.measure(false);
   drawn = gpu::Image(c,
@@ -119,7 +120,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   // Herds have come or gone. Pictures in flight may still use what goes.
   if (revision != live.revision) {
     context.waitIdle();
-    crowd = render::CrowdDrawing(setting, live);
+    crowd = render::CrowdDrawing(setting, live, textures);
     revision = live.revision;
   }
   const vk::Extent2D extent = colour.extent();
@@ -140,6 +141,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
 
   crowd.cull(cmd);
   gpu::computeToGraphics(cmd);
+  crowd.countParts(cmd);
 
   timer.next(cmd, "shadow");
   drawShadows(cmd);
@@ -224,6 +226,8 @@ void Renderer::record(VkCommandBuffer commandBuffer, const View& view,
 VkImage Renderer::image() const { return impl_->colour.handle(); }
 uint32_t Renderer::width() const { return impl_->colour.extent().width; }
 uint32_t Renderer::height() const { return impl_->colour.extent().height; }
+
+const std::vector<std::string>& Renderer::notes() const { return impl_->textures.notes(); }
 
 void Renderer::timeStages(bool on) { impl_->timer.measure(on); }
 

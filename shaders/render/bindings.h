@@ -20,10 +20,15 @@ BINDING DRAW_COMMANDS = 7;   // indirect draws, counted by cull
 BINDING DRAW_DRAWN = 8;      // the picture before its edges are smoothed
 BINDING DRAW_TINT = 9;       // LOAD4, one an agent; read where CONSTANT_TINTED says so
 
+BINDING DRAW_MATERIAL = 10;  // uniform block MaterialBlock (material.h)
+BINDING DRAW_TEXTURES = 11;  // the material's, in the order of TextureRole: five bindings
+
 BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter
 BINDING CONSTANT_TINTED = 3;    // agents have tints (tint.h)
+BINDING CONSTANT_TEXTURES = 4;  // which textures the material has, bit by bit
+BINDING CONSTANT_CUTOUT = 5;    // what is less opaque than the material's cutoff is not drawn
 #undef BINDING
 
 #ifdef __cplusplus

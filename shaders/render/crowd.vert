@@ -12,8 +12,18 @@ LOAD4_BUFFER(DRAW_TINT, tints)
 
 layout(location = 0) out vec3 outPosition;
 layout(location = 1) out vec3 outNormal;
+#ifdef WORN
+layout(location = 9) in vec4 uv;
+layout(location = 11) in float opacity;
+layout(location = 2) out vec4 outColour;   // linear RGB, opacity
+layout(location = 3) out vec2 outLight;    // openness to the sky, sunlight that hills leave
+layout(location = 4) out vec4 outTint;     // times the colour; of which only the lightness counts where w is 1
+layout(location = 5) out vec4 outUv;
+layout(location = 6) out vec4 outTangent;
+#else
 layout(location = 2) out vec4 outColour;  // linear RGB; openness to the sky
 layout(location = 3) out float outSun;    // sunlight that hills leave
+#endif
 
 void main() {
   Skinned s = skinned();
@@ -32,14 +42,23 @@ void main() {
   // No two alike: a little lighter or darker, redder or greyer.
   uint h = hashed(uvec2(agent + constants.firstAgent, constants.kind));
   float value = LEAST_VALUE + VALUE_RANGE * unitOf(h), warmth = unitOf(h * 0x9E3779B1u) - 0.5;
+  vec4 tint = vec4(1.0, 1.0, 1.0, 0.0);
+  if (TINTED) tint = LOAD4(tints, int(agent));
+  int flags = int(tint.w);
+  if ((flags & TINT_VARIED) != 0) value = 1.0, warmth = 0.0;
+  vec3 warm = vec3(1.0 + WARMTH_RANGE * warmth, 1.0, 1.0 - WARMTH_RANGE * warmth);
+#ifdef WORN
+  // The textures' colours come before all that.
+  outColour = vec4(colour, opacity);
+  outTint = vec4(tint.xyz * value * warm, float(flags & TINT_LIGHTNESS));
+  outLight = vec2(openness, ground.w);
+  outUv = uv;
+  outTangent = vec4(s.tangent, tangent.w);
+#else
   vec3 own = colour;
-  if (TINTED) {
-    vec4 tint = LOAD4(tints, int(agent));
-    int flags = int(tint.w);
-    if ((flags & TINT_LIGHTNESS) != 0) own = vec3(dot(own, vec3(RED_LIGHTNESS, GREEN_LIGHTNESS, BLUE_LIGHTNESS)));
-    if ((flags & TINT_VARIED) != 0) value = 1.0, warmth = 0.0;
-    own *= tint.xyz;
-  }
-  outColour = vec4(own * value * vec3(1.0 + WARMTH_RANGE * warmth, 1.0, 1.0 - WARMTH_RANGE * warmth), openness);
+  if ((flags & TINT_LIGHTNESS) != 0) own = vec3(dot(own, vec3(RED_LIGHTNESS, GREEN_LIGHTNESS, BLUE_LIGHTNESS)));
+  if (TINTED) own *= tint.xyz;
+  outColour = vec4(own * value * warm, openness);
   outSun = ground.w;
+#endif
 }

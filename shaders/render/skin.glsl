@@ -18,9 +18,16 @@ layout(location = 5) in vec4 influence3;
 layout(location = 6) in vec3 normal;      // of a ribbon the way along it, out of the end
 layout(location = 7) in float halfWidth;  // of a ribbon, metres, of either sign; 0 on surfaces
 
+#ifdef WORN
+layout(location = 10) in vec4 tangent;  // to the image's right; w: the side of its top
+#endif
+
 struct Skinned {
   vec3 position, normal;  // picture space
   vec3 body;              // the agent's position
+#ifdef WORN
+  vec3 tangent;
+#endif
 };
 
 void influence(uint bone, vec4 part, vec3 normal, inout Skinned s) {
@@ -31,11 +38,17 @@ void influence(uint bone, vec4 part, vec3 normal, inout Skinned s) {
     // Cofactors: the inverse transpose but for its scale.
     s.normal += part.w * vec3(dot(cross(b.xyz, c.xyz), normal), dot(cross(c.xyz, a.xyz), normal),
                               dot(cross(a.xyz, b.xyz), normal));
+#ifdef WORN
+    s.tangent += part.w * vec3(dot(a.xyz, tangent.xyz), dot(b.xyz, tangent.xyz), dot(c.xyz, tangent.xyz));
+#endif
     return;
   }
   vec4 rotation = LOAD4(poses, entry);
   s.position += part.w * (LOAD4(poses, entry + 1).xyz + rotate(rotation, part.xyz));
   s.normal += part.w * rotate(rotation, normal);
+#ifdef WORN
+  s.tangent += part.w * rotate(rotation, tangent.xyz);
+#endif
 }
 
 Skinned skinned() {
@@ -44,6 +57,9 @@ Skinned skinned() {
   s.body = a.xyz + TILE_SIZE * vec3(tileX(a.w) - picture.tile.x, 0.0, tileZ(a.w) - picture.tile.y);
   s.position = s.body;
   s.normal = vec3(0.0);
+#ifdef WORN
+  s.tangent = vec3(0.0);
+#endif
   influence(bones.x, influence0, normal, s);
   if (INFLUENCES > 1) influence(bones.y, influence1, normal, s);
   if (INFLUENCES > 2) influence(bones.z, influence2, normal, s);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <memory>
+#include <tuple>
 
 #include "render/mesh.h"
 #include "render/ribbons.h"
@@ -276,6 +279,105 @@ TEST(Mesh, itsSphereHoldsEveryPose) {
   }
   EXPECT_GE(double(makeMesh(rig).radius), furthestPosed(rig) - 1e-5);
   EXPECT_LE(double(makeMesh(rig).radius), furthestPosed(rig) * 1.01);
+}
+
+// The spider in two materials, one to each side, each cut in two: beyond the cut coordinates are one further.
+Rig wornSpider() {
+  Rig rig = spiderRig();
+  const Rig plain = rig;
+  auto materials = std::make_shared<Materials>();
+  materials->list.resize(2);
+  rig.look.materials = materials;
+  rig.vertices.clear();
+  rig.indices.clear();
+  std::map<std::tuple<uint32_t, bool, bool>, uint32_t> known;
+  for (size_t i = 0; i < plain.indices.size(); ++i) {
+    glm::vec3 middle(0);
+    for (size_t k = i - i % 3; k < i - i % 3 + 3; ++k) middle += plain.vertices[plain.indices[k]].position;
+    const auto [place, isNew] =
+        known.try_emplace({plain.indices[i], middle.x > 0, middle.z > 0}, uint32_t(rig.vertices.size()));
+    rig.indices.push_back(place->second);
+    if (!isNew) continue;
+    rig.vertices.push_back(plain.vertices[plain.indices[i]]);
+    const glm::vec3 at = rig.vertices.back().position;
+    MaterialVertex vertex;
+    vertex.uv[0] = glm::vec2(at.x, at.y) + (middle.z > 0 ? 1.0f : 0.0f);
+    vertex.uv[1] = {at.z, at.y};
+    vertex.tangent = {glm::normalize(glm::vec3(at.z, 0.1f, at.x)), 1};
+    vertex.opacity = 0.5f;
+    vertex.material = middle.x > 0;
+    rig.look.vertices.push_back(vertex);
+  }
+  return rig;
+}
+
+TEST(Mesh, everyLevelKeepsTextureCoordinatesAndMaterials) {
+  const Rig rig = wornSpider();
+  const MeshData mesh = makeMesh(rig);
+  ASSERT_EQ(mesh.worn.size(), mesh.vertices.size());
+  ASSERT_EQ(mesh.parts.size(), 3u);
+  for (size_t level = 0; level < mesh.lods.size(); ++level) {
+    uint32_t indices = 0;
+    for (const MeshPart& part : mesh.parts) {
+      const MeshLod& run = part.lods[level];
+      indices += run.indexCount;
+      EXPECT_EQ(run.indexCount % 3, 0u);
+      for (uint32_t k = 0; k < run.indexCount; ++k) {
+        const uint32_t index = uint32_t(run.firstVertex) + mesh.indices[run.firstIndex + k];
+        const MeshVertex& vertex = mesh.vertices[index];
+        ASSERT_EQ(vertex.halfWidth != 0, part.material == -1) << "level " << level;
+        if (part.material == -1) continue;
+        const MaterialVertex& worn = mesh.worn[index];
+        ASSERT_EQ(worn.material, part.material) << "level " << level;
+        EXPECT_NEAR(glm::length(glm::vec3(worn.tangent)), 1, 1e-5f);
+        EXPECT_EQ(worn.tangent.w, 1);
+        EXPECT_EQ(worn.opacity, 0.5f);
+        // As the skin has them at this place, on one side of the cut or the other.
+        const glm::vec3 at = positionAtRest(rig, vertex);
+        EXPECT_LT(glm::distance(worn.uv[1], {at.z, at.y}), 1e-5f);
+        const glm::vec2 beyond = worn.uv[0] - glm::vec2(at.x, at.y);
+        EXPECT_LT(std::min(glm::length(beyond), glm::distance(beyond, glm::vec2(1))), 1e-5f);
+      }
+      // No triangle spans the cut.
+      for (uint32_t t = 0; part.material != -1 && t < run.indexCount; t += 3) {
+        float sides = 0;
+        for (uint32_t k = t; k < t + 3; ++k) {
+          const uint32_t index = uint32_t(run.firstVertex) + mesh.indices[run.firstIndex + k];
+          sides += std::round(mesh.worn[index].uv[0].x - positionAtRest(rig, mesh.vertices[index]).x);
+        }
+        EXPECT_TRUE(sides == 0 || sides == 3) << "level " << level << ", triangle " << t / 3;
+      }
+    }
+    EXPECT_EQ(indices, mesh.lods[level].indexCount) << "level " << level;
+  }
+  // Cuts keep some edges, but levels are coarser still.
+  EXPECT_LT(2 * mesh.lods[1].indexCount, mesh.lods[0].indexCount);
+  EXPECT_LT(2 * mesh.lods[3].indexCount, mesh.lods[1].indexCount);
+}
+
+// Shading does not show where a texture is cut.
+TEST(Mesh, coarseLevelsHaveOneNormalOnBothSidesOfACut) {
+  const MeshData mesh = makeMesh(wornSpider());
+  int shared = 0;
+  for (size_t level = 1; level < mesh.lods.size(); ++level) {
+    std::map<std::tuple<uint32_t, float, float, float>, glm::vec3> normals;
+    const MeshLod& lod = mesh.lods[level];
+    for (uint32_t k = 0; k < lod.indexCount; ++k) {
+      const MeshVertex& vertex = mesh.vertices[uint32_t(lod.firstVertex) + mesh.indices[lod.firstIndex + k]];
+      if (vertex.halfWidth != 0) continue;
+      const glm::vec4 at = vertex.influences[0];
+      const auto [known, isNew] = normals.try_emplace({vertex.bones[0], at.x, at.y, at.z}, vertex.normal);
+      shared += !isNew;
+      EXPECT_EQ(known->second, vertex.normal);
+    }
+  }
+  EXPECT_GT(shared, 100);
+}
+
+TEST(Mesh, aSkinWithoutMaterialsHasNoParts) {
+  const MeshData mesh = makeMesh(spiderRig());
+  EXPECT_TRUE(mesh.worn.empty());
+  EXPECT_TRUE(mesh.parts.empty());
 }
 
 TEST(Mesh, aRigWithoutSkinIsLegal) {

@@ -10,6 +10,7 @@
 #include "render/mesh.h"
 #include "skitter/records.h"
 #include "support/gpu_fixture.h"
+#include "support/image_bytes.h"
 
 namespace skitter::test {
 namespace {
@@ -230,6 +231,62 @@ TEST_P(RendererTest, aHerdHasTheColourThatItsSceneSays) {
     EXPECT_GT(varied, pixels / 4);
     EXPECT_GT(sum.b / sum.r, 1.3 * was.b / was.r);
   }
+}
+
+// The spider in white with a blue texture, its material changed.
+Rig blueSpider(const std::function<void(Material&)>& change, float opacity) {
+  Rig rig = spiderRig();
+  auto materials = std::make_shared<Materials>();
+  Material& material = materials->list.emplace_back();
+  materials->images = {
+      pngFile(texelsOf(4, 4, [](uint32_t, uint32_t) { return glm::ivec4(20, 60, 250, 255); }))};
+  material.texture(TextureRole::baseColour).image = 0;
+  material.metallic = 0;
+  change(material);
+  rig.look.materials = materials;
+  rig.look.vertices.resize(rig.vertices.size());
+  for (size_t v = 0; v < rig.vertices.size(); ++v) {
+    rig.vertices[v].colour = glm::vec3(0.8f);
+    rig.look.vertices[v].opacity = opacity;
+  }
+  return rig;
+}
+
+// A texture colours the creatures that wear it, and what a mask leaves out is not there at all, nor is its
+// shadow.
+TEST_P(RendererTest, texturesAndMasksShow) {
+  Scene scene = smallScene(3);
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 3, .centre = {0, 0}};
+  scene.herds[0].goal.kind = Goal::Kind::none;
+  const Heightfield ground = scene.loadTerrain();
+  const View view{.eye = {0, 6, -11}, .target = {0, 1, 0}};
+  const auto drawn = [&](const std::function<void(Material&)>& change, float opacity) {
+    Crowd crowd(device(), ground, scene, {.rigs = {blueSpider(change, opacity)}});
+    Renderer renderer(device(), crowd, 320, 180);
+    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
+    for (int frame = 0; frame < 2; ++frame)  // the counts of agents are copied anew for each
+      gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) { renderer.record(cmd, view); });
+    EXPECT_TRUE(renderer.notes().empty());
+    return Picture{320, 180, renderer.download()};
+  };
+  Stage none(device(), smallScene(0), 320, 180), plain(device(), scene, 320, 180);
+  plain.tick(1);
+  const Picture bare = none.draw(view), usual = plain.draw(view), blue = drawn([](Material&) {}, 1);
+  int pixels = 0, bluer = 0, odd = 0;
+  for (int y = 0; y < 180; ++y)
+    for (int x = 0; x < 320; ++x) {
+      const bool here = usual.at(x, y) != bare.at(x, y), there = blue.at(x, y) != bare.at(x, y);
+      pixels += here;
+      odd += here != there;
+      bluer += there && blue.at(x, y).b > blue.at(x, y).r + 40;
+    }
+  EXPECT_GT(pixels, 500);
+  EXPECT_LT(odd, pixels / 20) << "the same shape";
+  EXPECT_GT(bluer, pixels / 10);
+  const auto cut = [](Material& m) { m.alphaCutoff = 0.5f; };
+  EXPECT_EQ(differing(drawn(cut, 0.75f), blue), 0u) << "all is more opaque than the cutoff";
+  // Bodies are gone. Legs are ribbons from here, which have no texture and no holes.
+  EXPECT_LT(double(differing(drawn(cut, 0.25f), bare)), 0.9 * double(differing(blue, bare)));
 }
 
 // A creature of size 2 is drawn twice as large.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "skitter/crowd.h"
@@ -49,6 +50,8 @@ class SKITTER_API Renderer {
   VkImage image() const;
   uint32_t width() const;
   uint32_t height() const;
+  // Images of the models that cannot be decoded, a line each: their materials are drawn in flat colours.
+  const std::vector<std::string>& notes() const;
 
   // Whether pictures recorded from now on are timed pass by pass, where the device has timestamps: at first
   // they are not. Not free on software devices: each timestamp waits for what was drawn before it.
