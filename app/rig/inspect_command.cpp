@@ -11,6 +11,7 @@
 #include "app/common/manifest.h"
 #include "app/common/signals.h"
 #include "app/common/values.h"
+#include "app/rig/look_report.h"
 #include "app/rig/rig_picture.h"
 #include "app/run/state_report.h"
 #include "skitter/clip.h"
@@ -111,6 +112,7 @@ void print(const std::string& file, const Inspection& inspection) {
       "  mesh    {} vertices, {} triangles, {} meshes, {} primitives; {:.3g} x {:.3g} x {:.3g} units\n",
       model.vertices.size(), model.indices.size() / 3, model.meshes, model.primitives, size.x, size.y,
       size.z);
+  printLook(model);
   fmt::print("  skin    {} skins, {} joints, {} nodes\n", model.skins, model.jointCount(),
              model.nodes.size());
   fmt::print("  clips   {}\n", model.clips.size());
@@ -158,23 +160,25 @@ nlohmann::ordered_json describe(const std::string& file, const Inspection& inspe
                     {"root", model.reference(leg.root)},
                     {"footJoint", leg.footJoint}});
   }
-  return {{"file", file},
-          {"skins", model.skins},
-          {"joints", model.jointCount()},
-          {"nodes", model.nodes.size()},
-          {"meshes", model.meshes},
-          {"primitives", model.primitives},
-          {"vertices", model.vertices.size()},
-          {"triangles", model.indices.size() / 3},
-          {"clips", clips},
-          {"bakedClips", baked},
-          {"clipsLeftOut", inspection.clips.notes},
-          {"clipFault", inspection.clipFault},
-          {"legs", legs},
-          {"odd", model.notes},
-          {"found", inspection.proposal.notes},
-          {"isRig", inspection.rig.has_value()},
-          {"rigFault", inspection.rigFault}};
+  nlohmann::ordered_json all = {{"file", file},
+                                {"skins", model.skins},
+                                {"joints", model.jointCount()},
+                                {"nodes", model.nodes.size()},
+                                {"meshes", model.meshes},
+                                {"primitives", model.primitives},
+                                {"vertices", model.vertices.size()},
+                                {"triangles", model.indices.size() / 3},
+                                {"clips", clips},
+                                {"bakedClips", baked},
+                                {"clipsLeftOut", inspection.clips.notes},
+                                {"clipFault", inspection.clipFault},
+                                {"legs", legs},
+                                {"odd", model.notes},
+                                {"found", inspection.proposal.notes},
+                                {"isRig", inspection.rig.has_value()},
+                                {"rigFault", inspection.rigFault}};
+  describeLook(model, all);
+  return all;
 }
 
 int inspectState(const InspectOptions& options) {

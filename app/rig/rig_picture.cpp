@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/rig/canvas.h"
+#include "assets/materials/worn_colours.h"
 #include "skitter/image.h"
 
 namespace skitter::app {
@@ -20,8 +21,9 @@ constexpr float pi = 3.14159265f;
 // A view from far away: `turn` about +Y from the creature's front, `lift` above its horizon.
 class RigView {
  public:
-  RigView(Canvas& canvas, const Rig& rig, glm::vec2 size, float turn, float lift)
-      : canvas_(canvas), rig_(rig), size_(size) {
+  RigView(Canvas& canvas, const Rig& rig, const std::vector<glm::vec3>& colours, glm::vec2 size, float turn,
+          float lift)
+      : canvas_(canvas), rig_(rig), colours_(colours), size_(size) {
     const glm::vec3 toViewer(std::cos(lift) * std::sin(turn), std::sin(lift),
                              std::cos(lift) * std::cos(turn));
     // From straight above, forward is up in the picture.
@@ -85,10 +87,11 @@ class RigView {
     for (size_t t = 0; t + 2 < rig_.indices.size(); t += 3) {
       glm::vec3 corners[3], colours[3];
       for (size_t k = 0; k < 3; ++k) {
-        const SkinVertex& vertex = rig_.vertices[rig_.indices[t + k]];
+        const uint32_t index = rig_.indices[t + k];
+        const SkinVertex& vertex = rig_.vertices[index];
         corners[k] = project(vertex.position);
         // Half way to white, so that chains show on dark creatures too.
-        const glm::vec3 pale = glm::mix(vertex.colour, glm::vec3(0.6f), 0.55f);
+        const glm::vec3 pale = glm::mix(colours_[index], glm::vec3(0.6f), 0.55f);
         colours[k] = pale * (0.45f + 0.55f * std::max(0.0f, glm::dot(vertex.normal, light)));
       }
       canvas_.triangle(corners, colours);
@@ -132,6 +135,7 @@ class RigView {
 
   Canvas& canvas_;
   const Rig& rig_;
+  const std::vector<glm::vec3>& colours_;  // of its vertices
   glm::vec2 size_, centre_{0};
   glm::vec3 right_{1, 0, 0}, up_{0, 1, 0}, toViewer_{0, 0, 1};
   float scale_ = 1;
@@ -141,12 +145,13 @@ class RigView {
 
 void drawRig(const Rig& rig, Size size, const std::filesystem::path& file) {
   Canvas canvas(size.width, size.height, background);
+  const std::vector<glm::vec3> colours = wornColours(rig.vertices, rig.look);
   const uint32_t width = size.width / 2, height = size.height / 2;
   // From ahead and aside, from the left, from the front, from above.
   constexpr std::array<std::array<float, 2>, 4> views = {{{0.7f, 0.45f}, {pi / 2, 0}, {0, 0}, {0, pi / 2}}};
   for (uint32_t i = 0; i < views.size() && width > 0 && height > 0; ++i) {
     canvas.confine(i % 2 * width, i / 2 * height, width, height);
-    RigView(canvas, rig, {width, height}, views[i][0], views[i][1]).draw();
+    RigView(canvas, rig, colours, {width, height}, views[i][0], views[i][1]).draw();
   }
   writePng(file, size.width, size.height, canvas.rgba());
 }

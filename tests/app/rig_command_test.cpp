@@ -1,4 +1,6 @@
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "../assets/made_models.h"
 #include "process.h"
@@ -26,6 +28,48 @@ TEST_F(RigCommand, InspectSaysWhatThereIs) {
   EXPECT_EQ(report.at("legs").size(), 4u);
   EXPECT_EQ(report.at("legs")[0].at("joints").size(), 4u);
   EXPECT_EQ(report.at("isRig"), false);
+}
+
+TEST_F(RigCommand, InspectShowsMaterialsAndImages) {
+  const Result result =
+      skitter({"inspect", SKITTER_ROOT "/assets/piebald.glb", "--json", file("piebald.json")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  for (const char* words :
+       {"look    2 materials, 4 images",
+        "\"coat\": metallic 1, roughness 1, base colour of images[0], metallic-roughness of images[2], "
+        "normal "
+        "of images[1], occlusion of images[2]\n",
+        "\"mane\": metallic 0, roughness 0.9, base colour of images[3], cut out below 0.5, on both sides\n",
+        "images[3]: 64 x 32 texels"}) {
+    EXPECT_NE(result.out.find(words), std::string::npos) << words << "\n" << result.out;
+  }
+  const nlohmann::json report = json("piebald.json");
+  EXPECT_EQ(report.at("materials").at(1).at("name"), "mane");
+  EXPECT_EQ(report.at("materials").at(0).at("textures").at("normal").at("image"), 1);
+  EXPECT_EQ(report.at("images").size(), 4u);
+  EXPECT_EQ(report.at("images").at(0).at("width"), 128);
+  EXPECT_NE(skitter({"inspect", file("beast.glb")}).out.find("look    colours at the vertices alone"),
+            std::string::npos);
+}
+
+// A byte of the first image's rows is another, so that its checksum is wrong.
+TEST_F(RigCommand, ABrokenImageIsAWarningAndAFlatColour) {
+  std::ifstream from(SKITTER_ROOT "/assets/piebald.glb", std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(from), {}};
+  bytes.at(bytes.find("IDAT") + 40) ^= 1;
+  std::ofstream(file("piebald.glb"), std::ios::binary) << bytes;
+  fs::copy_file(SKITTER_ROOT "/assets/piebald.rig.json", file("piebald.rig.json"));
+  const std::string fault = "images[0]: corrupt PNG: ";
+  const Result seen = skitter({"inspect", file("piebald.glb"), "--json", file("piebald.json")});
+  ASSERT_EQ(seen.code, 0) << seen.err;
+  EXPECT_NE(seen.out.find(fault), std::string::npos) << seen.out;
+  EXPECT_EQ(json("piebald.json").at("images").at(0).at("fault").get<std::string>().rfind(fault, 0), 0u);
+  const Result drawn = skitter({"run", "--rig", file("piebald.glb"), "--agents", "3", "--frames", "2",
+                                "--size", "64x36", "--quiet", "--out", file("herd.png")});
+  EXPECT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_EQ(drawn.err.rfind("warning: ", 0), 0u) << drawn.err;
+  EXPECT_NE(drawn.err.find(fault), std::string::npos) << drawn.err;
+  EXPECT_NE(drawn.err.find(": drawn as a flat colour\n"), std::string::npos) << drawn.err;
 }
 
 TEST_F(RigCommand, InspectSaysHowClipsAreBaked) {
