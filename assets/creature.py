@@ -1,11 +1,13 @@
 """Low-poly creatures from rings and lofts, and the glTF binary that they are written to.
 
 Standard library only; the same bytes on every run and every machine, for which everything is rounded well above the
-differences between mathematics libraries before it is written.
+differences between mathematics libraries before it is written. Only images, which zlib packs, may be other bytes of the
+same texels.
 """
 import json
 import math
 import struct
+import zlib
 
 
 def add(a, b): return tuple(x + y for x, y in zip(a, b))
@@ -19,35 +21,56 @@ def smooth(t): t = min(1.0, max(0.0, t)); return t * t * (3 - 2 * t)
 
 
 class Mesh:
-    def __init__(self):
-        self.positions, self.colours, self.skins, self.triangles = [], [], [], []
+    """With `textured`, vertices have a place in an image instead of a colour: around a part in u and along it in v, both
+    0 to 1, which `chart` (left, top, right, bottom) takes to the part's share of the image. A ring then ends with its
+    first vertex once more, at u = 1."""
 
-    def vertex(self, position, colour, skin):
+    def __init__(self, textured=False):
+        self.positions, self.colours, self.skins, self.triangles = [], [], [], []
+        self.textured, self.uvs, self.chart = textured, [], (0.0, 0.0, 1.0, 1.0)
+
+    def vertex(self, position, colour, skin, uv=(0.0, 0.0)):
         """skin: {joint index: weight}, at most four."""
         self.positions.append(position)
         self.colours.append(colour)
         self.skins.append(sorted(skin.items()))
+        left, top, right, bottom = self.chart
+        self.uvs.append((left + uv[0] * (right - left), top + uv[1] * (bottom - top)))
         return len(self.positions) - 1
+
+    def corners(self, sides):
+        return sides + 1 if self.textured else sides
+
+    def pairs(self, ring):
+        """Neighbours in a ring."""
+        if self.textured: return [(i, i + 1) for i in range(len(ring) - 1)]
+        return [(i, (i + 1) % len(ring)) for i in range(len(ring))]
+
+    def apex(self, position, colour, skin, sides, along):
+        """The end of a part: one vertex, or one for each side, each above the middle of its own."""
+        if not self.textured: return [self.vertex(position, colour, skin)] * sides
+        return [self.vertex(position, colour, skin, ((i + 0.5) / sides, along)) for i in range(sides)]
 
     def tube(self, rings):
         """Joins rings of equally many vertices, each counter-clockwise seen from the tube's end. The diagonals of
         the half that faces away from the first vertex are mirrored, so a symmetric body is split symmetrically."""
         for a, b in zip(rings, rings[1:]):
-            n = len(a)
-            for i in range(n):
-                j = (i + 1) % n
+            n = len(self.pairs(a))
+            for i, j in self.pairs(a):
                 if n <= 4 * i + 2 < 3 * n:
                     self.triangles += [(a[i], a[j], b[i]), (a[j], b[j], b[i])]
                 else:
                     self.triangles += [(a[i], a[j], b[j]), (a[i], b[j], b[i])]
 
     def cap(self, ring, apex, at_end):
-        for i in range(len(ring)):
-            j = (i + 1) % len(ring)
-            self.triangles.append((ring[i], ring[j], apex) if at_end else (ring[j], ring[i], apex))
+        for i, j in self.pairs(ring):
+            self.triangles.append((ring[i], ring[j], apex[i]) if at_end else (ring[j], ring[i], apex[i]))
 
     def normals(self):
-        """Angle-weighted face normals (Thuermer and Wuethrich, 1998)."""
+        """Angle-weighted face normals (Thuermer and Wuethrich, 1998). Vertices that differ in their place in the image
+        alone have one."""
+        places = {}
+        same = [places.setdefault(tuple(rounded(p)), v) if self.textured else v for v, p in enumerate(self.positions)]
         sums = [(0.0, 0.0, 0.0)] * len(self.positions)
         for triangle in self.triangles:
             p = [self.positions[v] for v in triangle]
@@ -55,8 +78,8 @@ class Mesh:
             for k in range(3):
                 u, v = unit(sub(p[(k + 1) % 3], p[k])), unit(sub(p[(k + 2) % 3], p[k]))
                 angle = math.acos(max(-1.0, min(1.0, dot(u, v))))
-                sums[triangle[k]] = add(sums[triangle[k]], scale(face, angle))
-        return [unit(s) for s in sums]
+                sums[same[triangle[k]]] = add(sums[same[triangle[k]]], scale(face, angle))
+        return [unit(sums[v]) for v in same]
 
 
 class Joint:
@@ -64,13 +87,14 @@ class Joint:
         self.name, self.parent, self.position = name, parent, position
 
 
-def ring(mesh, centre, side, up, radii, colour, skin, count):
+def ring(mesh, centre, side, up, radii, colour, skin, count, along=0.0):
     """A ring about side x up, its first vertex at `side`; colour may be a function of the angle."""
     vertices = []
-    for i in range(count):
+    for i in range(mesh.corners(count)):
         angle = 2 * math.pi * i / count
         offset = add(scale(side, radii[0] * math.cos(angle)), scale(up, radii[1] * math.sin(angle)))
-        vertices.append(mesh.vertex(add(centre, offset), colour(angle) if callable(colour) else colour, skin))
+        vertices.append(mesh.vertex(add(centre, offset), colour(angle) if callable(colour) else colour, skin,
+                                    (i / count, along)))
     return vertices
 
 
@@ -90,9 +114,9 @@ def build_leg(mesh, points, outward, joints, body, leg_rings, sides, tip):
         skin = {joints[bone]: 1.0 - before - after}
         if before: skin[joints[bone - 1] if bone else body] = before
         if after: skin[joints[bone + 1]] = after
-        rings.append(ring(mesh, centre, side, up, (radius, radius), colour, skin, sides))
+        rings.append(ring(mesh, centre, side, up, (radius, radius), colour, skin, sides, len(rings) / len(leg_rings)))
     mesh.tube(rings)
-    mesh.cap(rings[-1], mesh.vertex(points[-1], tip, {joints[-1]: 1.0}), True)
+    mesh.cap(rings[-1], mesh.apex(points[-1], tip, {joints[-1]: 1.0}, sides, 1.0), True)
 
 
 def build_loft(mesh, profile, sides, colour, skin):
@@ -102,16 +126,17 @@ def build_loft(mesh, profile, sides, colour, skin):
     for k, (z, y, width, top, bottom) in enumerate(profile[1:-1]):
         along = (k + 1) / (len(profile) - 1)
         vertices = []
-        for i in range(sides):
+        for i in range(mesh.corners(sides)):
             # From the left over the bottom: counter-clockwise seen from -Z needs x, -y.
             angle = 2 * math.pi * i / sides
             height = math.sin(angle)
             position = (width * math.cos(angle), y - height * (bottom if height > 0 else top), z)
-            vertices.append(mesh.vertex(position, colour(along, math.cos(angle), -height), skin))
+            vertices.append(mesh.vertex(position, colour(along, math.cos(angle), -height), skin,
+                                        (i / sides, along)))
         rings.append(vertices)
-    mesh.cap(rings[0], mesh.vertex((0.0, first[1], first[0]), colour(0.0, 0.0, 0.0), skin), False)
+    mesh.cap(rings[0], mesh.apex((0.0, first[1], first[0]), colour(0.0, 0.0, 0.0), skin, sides, 0.0), False)
     mesh.tube(rings)
-    mesh.cap(rings[-1], mesh.vertex((0.0, last[1], last[0]), colour(1.0, 0.0, 0.0), skin), True)
+    mesh.cap(rings[-1], mesh.apex((0.0, last[1], last[0]), colour(1.0, 0.0, 0.0), skin, sides, 1.0), True)
 
 
 def build_limb(mesh, points, radii, colours, skins, sides):
@@ -120,9 +145,10 @@ def build_limb(mesh, points, radii, colours, skins, sides):
     for k, (point, radius) in enumerate(zip(points[:-1], radii)):
         axis = unit(sub(points[k + 1], points[max(0, k - 1)]))
         side = unit(cross((0.0, 1.0, 0.0) if abs(axis[1]) < 0.9 else (0.0, 0.0, 1.0), axis))
-        rings.append(ring(mesh, point, side, cross(axis, side), (radius, radius), colours[k], skins[k], sides))
+        rings.append(ring(mesh, point, side, cross(axis, side), (radius, radius), colours[k], skins[k], sides,
+                          k / len(radii)))
     mesh.tube(rings)
-    mesh.cap(rings[-1], mesh.vertex(points[-1], colours[-1], skins[-1]), True)
+    mesh.cap(rings[-1], mesh.apex(points[-1], colours[-1], skins[-1], sides, 1.0), True)
 
 
 def build_eye(mesh, centre, radius, colour, skin):
@@ -133,6 +159,22 @@ def build_eye(mesh, centre, radius, colour, skin):
         mesh.triangles.append((v[x], v[y], v[z]))
 
 
+def png(width, height, channels, texel_at):
+    """Three or four numbers a texel, 0 to 255."""
+    rows = b"".join(b"\1" + delta(bytes(v for x in range(width) for v in texel_at(x, y)), channels) for y in range(height))
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[channels], 0, 0, 0)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
+
+
+def delta(row, channels):
+    """PNG's filter 1: each byte less the one a texel before."""
+    return bytes((row[i] - (row[i - channels] if i >= channels else 0)) & 255 for i in range(len(row)))
+
+
 def rounded(values, digits=9):
     return [round(v, digits) + 0.0 for v in values]
 
@@ -140,6 +182,12 @@ def rounded(values, digits=9):
 def write(path, name, mesh, joints, material, extras=None, clips=()):
     """The joints' first is the root; `material` is a name and a roughness; a clip has a name, times, and channels: a joint, a
     path and a row a time, linear between."""
+    return write_textured(path, name, [(mesh, {"name": material[0], "doubleSided": False, "pbrMetallicRoughness": {
+        "baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": material[1]}})], [], joints, extras, clips)
+
+
+def write_textured(path, name, parts, images, joints, extras=None, clips=()):
+    """Each part is a mesh and its material, as glTF has it; texture N is image N, the bytes of a PNG file."""
     binary, views, accessors = bytearray(), [], []
 
     def accessor(data, component, kind, count, target=None, normalized=False, bounds=None):
@@ -157,22 +205,35 @@ def write(path, name, mesh, joints, material, extras=None, clips=()):
     def floats(rows):
         return b"".join(struct.pack(f"<{len(r)}f", *rounded(r, 6)) for r in rows)
 
-    count = len(mesh.positions)
-    # Bounds are of what is stored, in single precision.
-    stored = [struct.unpack("<3f", struct.pack("<3f", *rounded(p, 6))) for p in mesh.positions]
-    bounds = ([min(p[i] for p in stored) for i in range(3)], [max(p[i] for p in stored) for i in range(3)])
-    attributes = {
-        "POSITION": accessor(floats(mesh.positions), 5126, "VEC3", count, 34962, bounds=bounds),
-        "NORMAL": accessor(floats(mesh.normals()), 5126, "VEC3", count, 34962),
-        "COLOR_0": accessor(b"".join(struct.pack("<4H", *(round(c * 65535) for c in colour), 65535)
-                                     for colour in mesh.colours), 5123, "VEC4", count, 34962, normalized=True),
-        "JOINTS_0": accessor(b"".join(bytes([j for j, _ in skin] + [0] * (4 - len(skin))) for skin in mesh.skins),
-                             5121, "VEC4", count, 34962),
-        "WEIGHTS_0": accessor(floats([w for _, w in skin] + [0.0] * (4 - len(skin)) for skin in mesh.skins),
-                              5126, "VEC4", count, 34962),
-    }
-    indices = accessor(b"".join(struct.pack("<3H", *t) for t in mesh.triangles), 5123, "SCALAR",
-                       3 * len(mesh.triangles), 34963)
+    def primitive(mesh, material):
+        count = len(mesh.positions)
+        # Bounds are of what is stored, in single precision.
+        stored = [struct.unpack("<3f", struct.pack("<3f", *rounded(p, 6))) for p in mesh.positions]
+        bounds = ([min(p[i] for p in stored) for i in range(3)], [max(p[i] for p in stored) for i in range(3)])
+        attributes = {
+            "POSITION": accessor(floats(mesh.positions), 5126, "VEC3", count, 34962, bounds=bounds),
+            "NORMAL": accessor(floats(mesh.normals()), 5126, "VEC3", count, 34962)}
+        if mesh.textured:
+            attributes["TEXCOORD_0"] = accessor(floats(mesh.uvs), 5126, "VEC2", count, 34962)
+        else:
+            attributes["COLOR_0"] = accessor(
+                b"".join(struct.pack("<4H", *(round(c * 65535) for c in colour), 65535) for colour in mesh.colours),
+                5123, "VEC4", count, 34962, normalized=True)
+        attributes["JOINTS_0"] = accessor(
+            b"".join(bytes([j for j, _ in skin] + [0] * (4 - len(skin))) for skin in mesh.skins), 5121, "VEC4", count, 34962)
+        attributes["WEIGHTS_0"] = accessor(
+            floats([w for _, w in skin] + [0.0] * (4 - len(skin)) for skin in mesh.skins), 5126, "VEC4", count, 34962)
+        indices = accessor(b"".join(struct.pack("<3H", *t) for t in mesh.triangles), 5123, "SCALAR",
+                           3 * len(mesh.triangles), 34963)
+        return {"attributes": attributes, "indices": indices, "material": material}
+
+    def image(data):
+        while len(binary) % 4: binary.append(0)
+        views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(data)})
+        binary.extend(data)
+        return {"bufferView": len(views) - 1, "mimeType": "image/png"}
+
+    primitives = [primitive(mesh, material) for material, (mesh, _) in enumerate(parts)]
     nodes = [{"name": name, "mesh": 0, "skin": 0}]
     for joint in joints:
         offset = sub(joint.position, joints[joint.parent].position) if joint.parent is not None else joint.position
@@ -200,16 +261,21 @@ def write(path, name, mesh, joints, material, extras=None, clips=()):
         "scene": 0,
         "scenes": [scene],
         "nodes": nodes,
-        "meshes": [{"name": name, "primitives": [{"attributes": attributes, "indices": indices, "material": 0}]}],
+        "meshes": [{"name": name, "primitives": primitives}],
         "skins": [{"name": name, "skeleton": 1, "joints": list(range(1, len(joints) + 1)),
                    "inverseBindMatrices": inverse_bind}],
-        "materials": [{"name": material[0], "doubleSided": False, "pbrMetallicRoughness": {
-            "baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": material[1]}}],
+        "materials": [material for _, material in parts],
         "accessors": accessors,
         "bufferViews": views,
         "buffers": [{"byteLength": len(binary)}],
     }
     if animations: document["animations"] = animations
+    if images:
+        document["images"] = [image(data) for data in images]
+        # Around a part images repeat, along it they end.
+        document["samplers"] = [{"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 33071}]
+        document["textures"] = [{"source": i, "sampler": 0} for i in range(len(images))]
+        document["buffers"] = [{"byteLength": len(binary)}]
     text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     binary += bytes(-len(binary) % 4)
@@ -217,4 +283,4 @@ def write(path, name, mesh, joints, material, extras=None, clips=()):
         file.write(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(binary)))
         file.write(struct.pack("<I4s", len(text), b"JSON") + text)
         file.write(struct.pack("<I4s", len(binary), b"BIN\0") + binary)
-    return len(mesh.triangles), count
+    return sum(len(mesh.triangles) for mesh, _ in parts), sum(len(mesh.positions) for mesh, _ in parts)
