@@ -13,7 +13,7 @@ namespace skitter {
 // A herd's model for hosts that draw by themselves: the mesh at rest, in model space, at the first of
 // the herd's sizes, which the transforms of skitter/palettes.h move and bring to each agent's size. `bones`
 // of a vertex are entries of an agent's palette. Colours are the model's vertex colours times its materials'
-// base colours.
+// base colours; textures are left out.
 struct SkinMesh {
   struct Level {
     uint32_t firstIndex = 0, indexCount = 0;
