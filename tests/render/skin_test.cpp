@@ -3,6 +3,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "embedded/normal_frag.h"
+#include "embedded/tangent_frag.h"
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
 #include "render/bindings.h"
@@ -56,6 +57,8 @@ struct Influence {
 struct Posed {
   glm::dvec3 normal, position;
 };
+// To the right of an image that the surface wears, at rest.
+const glm::dvec3 kTangent = glm::normalize(glm::dvec3(0.8, -0.3, 0));
 
 class SkinTest : public test::GpuLoadTest {
  protected:
@@ -91,17 +94,26 @@ class SkinTest : public test::GpuLoadTest {
     const glm::dvec3 body =
         kBody + double(shared::TILE_SIZE) * glm::dvec3(kTile.x - kPictureTile.x, 0, kTile.y - kPictureTile.y);
     const Posed found =
-        draw(vertices, palette, asMatrices, int(influences.size()), face, body + expected.position);
+        draw(vertices, palette, asMatrices, int(influences.size()), face, body + expected.position, false);
     // A few tens of float32 operations on numbers of at most 4. A device places corners to 1/16 pixel at
     // least, so within 1/32 of 0.02 m along both axes.
     EXPECT_LT(glm::distance(glm::normalize(found.normal), expected.normal), 1e-5);
     EXPECT_LT(glm::distance(found.position, body + expected.position), 1e-3);
+
+    // With materials, tangents go with the surface: they are turned and stretched as it is.
+    glm::dvec3 tangent(0);
+    for (const Influence& i : influences) tangent += i.weight * (palette.at(i.bone).linear * kTangent);
+    const Posed worn =
+        draw(vertices, palette, asMatrices, int(influences.size()), face, body + expected.position, true);
+    EXPECT_LT(glm::distance(glm::normalize(worn.normal), expected.normal), 1e-5);
+    EXPECT_LT(glm::distance(worn.position, tangent), 1e-5);
   }
 
  private:
-  // Seen from outside along the face's normal, in a picture of one pixel, 0.02 m wide, about `middle`.
+  // Seen from outside along the face's normal, in a picture of one pixel, 0.02 m wide, about `middle`. With
+  // `worn` the model has materials, and the tangent takes the place of the position.
   Posed draw(const std::vector<MeshVertex>& vertices, const Palette& palette, bool asMatrices, int influences,
-             const glm::dvec3& face, const glm::dvec3& middle) {
+             const glm::dvec3& face, const glm::dvec3& middle, bool worn) {
     shared::Picture picture{};
     const glm::dvec3 right = glm::normalize(glm::cross(face, glm::dvec3(0.3, 0.1, 1)));
     const glm::dvec3 up = glm::cross(face, right);
@@ -111,9 +123,12 @@ class SkinTest : public test::GpuLoadTest {
     picture.tile = {kPictureTile, 100, 0};
     picture.ground = {0, 0, 1, 1};
 
-    gpu::GraphicsInfo info = crowdShading(influences, asMatrices, false);
-    info.fragment = embedded::normal_frag();
-    std::erase_if(info.bindings, [](const auto& b) { return int(b.binding) == shared::DRAW_SHADOW; });
+    gpu::GraphicsInfo info = worn ? wornShading(influences, asMatrices, false, Material(), 0)
+                                  : crowdShading(influences, asMatrices, false);
+    info.fragment = worn ? embedded::tangent_frag() : embedded::normal_frag();
+    std::erase_if(info.bindings, [](const auto& b) {
+      return int(b.binding) == shared::DRAW_SHADOW || int(b.binding) >= shared::DRAW_MATERIAL;
+    });
     info.colour = vk::Format::eR32G32B32A32Sfloat;
     info.depthUse = gpu::DepthUse::none;
     const gpu::GraphicsPipeline pipeline(context(), info);
@@ -122,6 +137,9 @@ class SkinTest : public test::GpuLoadTest {
     const gpu::Buffer bodies = uploaded(bodyRecords());
     const gpu::Buffer poses = uploaded(poseRecords(palette, asMatrices));
     const gpu::Buffer mesh = uploaded(vertices, gpu::BufferUse::vertex);
+    MaterialVertex surface;
+    surface.tangent = glm::vec4(glm::vec3(kTangent), 1);
+    const gpu::Buffer surfaces = uploaded(std::vector(3, surface), gpu::BufferUse::vertex);
     const gpu::Buffer instances = uploaded(std::vector{kAgent}, gpu::BufferUse::vertex);
     const gpu::Image ground = makeGroundMap(
         context(),
@@ -145,8 +163,8 @@ class SkinTest : public test::GpuLoadTest {
         const shared::CrowdConstants constants{
             .view = shared::VIEW_CAMERA, .palette = kPalette, .firstAgent = 0, .kind = 0};
         pipeline.use(cmd, bindings, gpu::bytesOf(constants));
-        const std::array buffers{mesh.handle(), instances.handle()};
-        const std::array<vk::DeviceSize, 2> offsets{0, 0};
+        const std::array buffers{mesh.handle(), instances.handle(), surfaces.handle()};
+        const std::array<vk::DeviceSize, 3> offsets{0, 0, 0};
         cmd.bindVertexBuffers(0, buffers, offsets);
         for (int32_t row = 0; row < 2; ++row) {
           rendering.confine({.offset = {0, row}, .extent = {1, 1}});
