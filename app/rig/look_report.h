@@ -6,8 +6,8 @@
 
 namespace skitter::app {
 
-// What a model's materials are and which images they look up, decoded, for people and as members of `to`:
-// "materials" and "images". A model whose colours are all at its vertices has none.
+// Lists a model's materials and the images that they look up, decoded: for people, and as the members
+// "materials" and "images" of `to`. A model whose colours are all at its vertices has none.
 void printLook(const Model& model);
 void describeLook(const Model& model, nlohmann::ordered_json& to);
 

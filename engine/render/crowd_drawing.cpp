@@ -48,7 +48,7 @@ std::vector<gpu::VertexStream> streams(bool shaded) {
            .attributes = {{0, F::eR32Uint, 0}}}};
 }
 
-// What a material sees of a vertex, after the other streams.
+// The vertices as materials see them, after the other streams.
 gpu::VertexStream wornStream(bool shaded) {
   using F = vk::Format;
   gpu::VertexStream stream{.stride = sizeof(MaterialVertex),
@@ -91,7 +91,7 @@ gpu::GraphicsInfo shadowInfo(const Setting& s, int influences, bool matrices) {
           .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}};
 }
 
-// Of a material that lets light through.
+// The same for a material that lets light through.
 gpu::GraphicsInfo cutoutInfo(const Setting& s, int influences, bool matrices, const Material& material,
                              int has) {
   gpu::GraphicsInfo info = shadowInfo(s, influences, matrices);

@@ -34,7 +34,7 @@ class CrowdDrawing {
     uint32_t firstAgent = 0;
     CulledPage culled;
     gpu::Bindings draw, shadow;
-    // Of a kind with materials: the indirect draws of each list, part by part, and each part's bindings.
+    // For a kind with materials: the indirect draws of each list, part by part, and each part's bindings.
     gpu::Buffer partDraws;
     std::vector<gpu::Bindings> drawPart, shadowPart;
   };

@@ -39,7 +39,7 @@ void main() {
   float away = length(toEye);
   toEye /= away;
   vec3 sun = picture.sun.xyz;
-  // Of the side that is seen.
+  // All is shaded from the side that is seen.
   float side = gl_FrontFacing ? 1.0 : -1.0;
   vec3 outward = normalize(wornNormal), normal = side * bentNormal(outward);
 

@@ -74,7 +74,7 @@ TEST_F(MaterialsTest, AModelWithoutTexturesHasNone) {
   EXPECT_FALSE(spiderRig().look);
   EXPECT_FALSE(spiderClips().look);
   EXPECT_FALSE(loadRig(SKITTER_ROOT "/assets/quadruped.glb").look);
-  // Nor has one whose textured material nothing wears.
+  // A textured material that nothing wears does not count.
   glb = wornRig();
   glb.json["materials"].push_back(glb.json["materials"][0]);
   glb.json["materials"][0] = nlohmann::json::object();

@@ -8,7 +8,7 @@
 
 namespace skitter::fuzz {
 
-// What drawing takes for granted of a skin's materials, and that its images are decoded or refused.
+// Checks all that drawing takes for granted of a skin's materials, and that images are decoded or refused.
 inline void checkLook(const Look& look, size_t vertices) {
   expect(look.vertices.size() == (look ? vertices : 0), "a look that is not the skin's");
   if (!look) return;

@@ -38,7 +38,7 @@ Texels randomTexels(uint32_t seed) {
     return glm::ivec4(draw(0), draw(1), draw(2), draw(3));
   });
 }
-// Of normals that lean by up to 40 degrees.
+// Texels of normals that lean by up to 40 degrees.
 Texels normalTexels() {
   Texels texels = randomTexels(9);
   for (size_t i = 0; i < texels.rgba.size(); i += 4) {

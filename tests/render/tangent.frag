@@ -1,6 +1,5 @@
 #version 460
-// What the variant of crowd.vert for materials hands on: the normal in the first row of the picture, the tangent in the
-// second.
+// The outputs of crowd.vert for materials: the normal in the first row of the picture, the tangent in the second.
 layout(location = 1) in vec3 normal;
 layout(location = 6) in vec4 tangent;
 layout(location = 0) out vec4 outColour;

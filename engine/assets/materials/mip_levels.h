@@ -7,7 +7,7 @@
 
 namespace skitter {
 
-// What an image's red, green and blue are. Alpha is a number at all times.
+// Whether an image's red, green and blue are colours. Alpha is a number at all times.
 enum class TexelKind { numbers, srgb };
 
 // An image's levels, from itself to a single texel, each half as wide and high as the one before, rounded

@@ -42,7 +42,7 @@ class TangentSums {
     const glm::dvec2 s = uv[1] - uv[0], t = uv[2] - uv[0];
     const double area = s.x * t.y - t.x * s.y;
     if (area == 0 || !std::isfinite(area)) return;
-    // What increases u and v; the image's top is where v decreases.
+    // The ways along which u increases and v decreases: to the image's right and to its top.
     const glm::dvec3 right = (a * t.y - b * s.y) / area, top = (a * t.x - b * s.x) / area;
     for (int k = 0; k < 3; ++k) {
       const glm::dvec3 u = p[(k + 1) % 3] - p[k], v = p[(k + 2) % 3] - p[k];

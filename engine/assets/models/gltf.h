@@ -40,7 +40,7 @@ struct Primitive {
   std::vector<glm::dvec3> colours;  // linear, the material's base colour included
   std::vector<double> opacities;    // likewise
   int material = -1;                // into Document::materials; -1: the default one
-  // Of a primitive whose material is looked up; else, and where the file has none, empty.
+  // Read where the material looks textures up; else, and where the file has none, empty.
   std::array<std::vector<glm::dvec2>, 2> uvs;  // TEXCOORD_0 and TEXCOORD_1
   std::vector<glm::dvec4> tangents;
   std::vector<Influence> influences;  // influencesPerVertex for each vertex, not all 0

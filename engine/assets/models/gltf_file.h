@@ -22,8 +22,8 @@ struct File {
 // with `name`.
 File openFile(std::span<const uint8_t> bytes, const std::string& name, const std::filesystem::path& folder);
 
-// What an URI of the file refers to: a base64 data: URI, or a file in the folder. Throws Error(input) that
-// begins with `what`.
+// The bytes that an URI of the file refers to: a base64 data: URI, or a file in the folder. Throws
+// Error(input) that begins with `what`.
 std::vector<uint8_t> readUri(const File& file, const std::string& uri, const std::string& what);
 
 // An URI with its %XX escapes undone.
