@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.h"
+
 namespace skitter::app {
 namespace {
-
-float encoded(float linear) {
-  const float v = std::clamp(linear, 0.0f, 1.0f);
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
-}
 
 // Lightness from 0 to 1, chroma, and hue in degrees.
 glm::vec3 ofOklch(float lightness, float chroma, float hue) {
@@ -18,9 +15,9 @@ glm::vec3 ofOklch(float lightness, float chroma, float hue) {
               m = lightness - 0.1055613458f * a - 0.0638541728f * b,
               s = lightness - 0.0894841775f * a - 1.2914855480f * b;
   const glm::vec3 cubes(l * l * l, m * m * m, s * s * s);
-  return {encoded(glm::dot(cubes, {4.0767416621f, -3.3077115913f, 0.2309699292f})),
-          encoded(glm::dot(cubes, {-1.2684380046f, 2.6097574011f, -0.3413193965f})),
-          encoded(glm::dot(cubes, {-0.0041960863f, -0.7034186147f, 1.7076147010f}))};
+  return {base::srgbOfLinear(glm::dot(cubes, {4.0767416621f, -3.3077115913f, 0.2309699292f})),
+          base::srgbOfLinear(glm::dot(cubes, {-1.2684380046f, 2.6097574011f, -0.3413193965f})),
+          base::srgbOfLinear(glm::dot(cubes, {-0.0041960863f, -0.7034186147f, 1.7076147010f}))};
 }
 
 }  // namespace

@@ -4,14 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/srgb.h"
+
 namespace skitter::app {
 namespace {
 
-uint8_t encode(float linear) {
-  const float v = std::clamp(linear, 0.0f, 1.0f);
-  const float s = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
-  return static_cast<uint8_t>(std::lround(255 * s));
-}
+uint8_t encode(float linear) { return static_cast<uint8_t>(std::lround(255 * base::srgbOfLinear(linear))); }
 
 }  // namespace
 
@@ -40,7 +38,7 @@ void Canvas::blend(int x, int y, const glm::vec3& colour, float opacity) {
   at = glm::mix(at, colour, opacity);
 }
 
-void Canvas::triangle(const glm::vec3 corners[3], const glm::vec3 colours[3]) {
+void Canvas::triangle(const glm::vec3 corners[3], const Paint& paint) {
   constexpr auto scale = static_cast<float>(samples_);
   const glm::vec2 a = glm::vec2(corners[0]) * scale, b = glm::vec2(corners[1]) * scale,
                   c = glm::vec2(corners[2]) * scale;
@@ -63,8 +61,10 @@ void Canvas::triangle(const glm::vec3 corners[3], const glm::vec3 colours[3]) {
       const float depth = u * corners[0].z + v * corners[1].z + w * corners[2].z;
       const size_t at = index(x, y);
       if (depth <= depth_[at]) continue;
+      const std::optional<glm::vec3> colour = paint({u, v, w});
+      if (!colour) continue;
       depth_[at] = depth;
-      colour_[at] = u * colours[0] + v * colours[1] + w * colours[2];
+      colour_[at] = *colour;
     }
   }
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 namespace skitter::app {
@@ -12,7 +14,10 @@ class Canvas {
   Canvas(uint32_t width, uint32_t height, const glm::vec3& colour);
 
   // Positions in pixels, z toward the viewer. Triangles hide one another, lines and discs lie over all.
-  void triangle(const glm::vec3 corners[3], const glm::vec3 colours[3]);
+  // `paint` gives the colour of a point from how near it is to each corner: shares that sum to 1, and are as
+  // the picture shows them. None is a hole.
+  using Paint = std::function<std::optional<glm::vec3>(const glm::vec3& shares)>;
+  void triangle(const glm::vec3 corners[3], const Paint& paint);
   void line(const glm::vec3& from, const glm::vec3& to, const glm::vec3& colour, float width, float opacity);
   void disc(const glm::vec3& centre, float radius, const glm::vec3& colour);
   // Confines what follows to a rectangle, with positions relative to its corner.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "app/rig/canvas.h"
 #include "assets/materials/worn_colours.h"
@@ -21,9 +22,8 @@ constexpr float pi = 3.14159265f;
 // A view from far away: `turn` about +Y from the creature's front, `lift` above its horizon.
 class RigView {
  public:
-  RigView(Canvas& canvas, const Rig& rig, const std::vector<glm::vec3>& colours, glm::vec2 size, float turn,
-          float lift)
-      : canvas_(canvas), rig_(rig), colours_(colours), size_(size) {
+  RigView(Canvas& canvas, const Rig& rig, const BaseColours& textures, glm::vec2 size, float turn, float lift)
+      : canvas_(canvas), rig_(rig), textures_(textures), size_(size) {
     const glm::vec3 toViewer(std::cos(lift) * std::sin(turn), std::sin(lift),
                              std::cos(lift) * std::cos(turn));
     // From straight above, forward is up in the picture.
@@ -86,16 +86,42 @@ class RigView {
     const glm::vec3 light = glm::normalize(0.5f * toViewer_ + glm::vec3(0, 1, 0) + 0.3f * right_);
     for (size_t t = 0; t + 2 < rig_.indices.size(); t += 3) {
       glm::vec3 corners[3], colours[3];
-      for (size_t k = 0; k < 3; ++k) {
-        const uint32_t index = rig_.indices[t + k];
-        const SkinVertex& vertex = rig_.vertices[index];
+      glm::vec3 lit;  // of each corner
+      for (int k = 0; k < 3; ++k) {
+        const SkinVertex& vertex = rig_.vertices[rig_.indices[t + static_cast<size_t>(k)]];
         corners[k] = project(vertex.position);
-        // Half way to white, so that chains show on dark creatures too.
-        const glm::vec3 pale = glm::mix(colours_[index], glm::vec3(0.6f), 0.55f);
-        colours[k] = pale * (0.45f + 0.55f * std::max(0.0f, glm::dot(vertex.normal, light)));
+        colours[k] = vertex.colour;
+        lit[k] = 0.45f + 0.55f * std::max(0.0f, glm::dot(vertex.normal, light));
       }
-      canvas_.triangle(corners, colours);
+      const auto paint = [&](const glm::vec3& shares, const glm::vec3& texture) {
+        const glm::vec3 own = shares.x * colours[0] + shares.y * colours[1] + shares.z * colours[2];
+        // Half way to white, so that chains show on dark creatures too.
+        return glm::mix(own * texture, glm::vec3(0.6f), 0.55f) * glm::dot(shares, lit);
+      };
+      if (rig_.look)
+        drawTextured(&rig_.indices[t], corners, paint);
+      else
+        canvas_.triangle(corners, [&](const glm::vec3& shares) { return paint(shares, glm::vec3(1)); });
     }
+  }
+
+  // Texel by texel, with the holes of masks.
+  template <class PaintTexel>
+  void drawTextured(const uint32_t* triangle, const glm::vec3 corners[3], const PaintTexel& paint) {
+    std::array<MaterialVertex, 3> worn;
+    for (size_t k = 0; k < 3; ++k) worn[k] = rig_.look.vertices[triangle[k]];
+    const glm::vec2 a(corners[1] - corners[0]), b(corners[2] - corners[0]);
+    const size_t level = textures_.levelOf(worn, 0.5f * std::fabs(a.x * b.y - a.y * b.x));
+    const float cutoff = rig_.look.materials->list[worn[0].material].alphaCutoff;
+    canvas_.triangle(corners, [&](const glm::vec3& shares) -> std::optional<glm::vec3> {
+      MaterialVertex here = worn[0];
+      for (int set = 0; set < 2; ++set)
+        here.uv[set] = shares.x * worn[0].uv[set] + shares.y * worn[1].uv[set] + shares.z * worn[2].uv[set];
+      const glm::vec4 texture = textures_.at(here, level);
+      const float opacity = glm::dot(shares, {worn[0].opacity, worn[1].opacity, worn[2].opacity});
+      if (opacity * texture.a < cutoff) return {};
+      return paint(shares, glm::vec3(texture));
+    });
   }
 
   void drawLeg(const Leg& leg) {
@@ -135,7 +161,7 @@ class RigView {
 
   Canvas& canvas_;
   const Rig& rig_;
-  const std::vector<glm::vec3>& colours_;  // of its vertices
+  const BaseColours& textures_;  // of its look
   glm::vec2 size_, centre_{0};
   glm::vec3 right_{1, 0, 0}, up_{0, 1, 0}, toViewer_{0, 0, 1};
   float scale_ = 1;
@@ -145,13 +171,13 @@ class RigView {
 
 void drawRig(const Rig& rig, Size size, const std::filesystem::path& file) {
   Canvas canvas(size.width, size.height, background);
-  const std::vector<glm::vec3> colours = wornColours(rig.vertices, rig.look);
+  const BaseColours textures(rig.look);
   const uint32_t width = size.width / 2, height = size.height / 2;
   // From ahead and aside, from the left, from the front, from above.
   constexpr std::array<std::array<float, 2>, 4> views = {{{0.7f, 0.45f}, {pi / 2, 0}, {0, 0}, {0, pi / 2}}};
   for (uint32_t i = 0; i < views.size() && width > 0 && height > 0; ++i) {
     canvas.confine(i % 2 * width, i / 2 * height, width, height);
-    RigView(canvas, rig, colours, {width, height}, views[i][0], views[i][1]).draw();
+    RigView(canvas, rig, textures, {width, height}, views[i][0], views[i][1]).draw();
   }
   writePng(file, size.width, size.height, canvas.rgba());
 }

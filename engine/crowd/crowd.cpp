@@ -165,8 +165,12 @@ void expectMemory(const gpu::Context& context, uint64_t agents, uint64_t needed)
 
 // Of the agents of a kind that some herd has coloured.
 void uploadTints(const Impl& crowd, uint32_t kind) {
-  const float lightness = crowd::meanLightness(crowd.kinds[kind]);
-  for (const crowd::HerdRun& of : crowd::runsOf(crowd, kind))
+  const std::vector<crowd::HerdRun> runs = crowd::runsOf(crowd, kind);
+  // Only a colour takes the mean, for which images are decoded.
+  const bool takesMean =
+      std::ranges::any_of(runs, [](const crowd::HerdRun& of) { return of.herd->from.colour.has_value(); });
+  const float lightness = takesMean ? crowd::meanLightness(crowd.kinds[kind]) : 1;
+  for (const crowd::HerdRun& of : runs)
     for (const crowd::Part& part : crowd::partsOf(crowd, of.number)) {
       if (part.kind != &crowd.kinds[kind]) continue;
       const std::vector<glm::vec4> tints = crowd::tintsOf(of.herd->from, part, of.herd->seed, lightness);

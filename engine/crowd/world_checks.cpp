@@ -32,6 +32,45 @@ void checkList(const Scene& scene, const char* name, const List& list, size_t mo
   for (size_t i = 0; i < list.size(); ++i) check(list[i], fmt::format("{}: {}[{}]", scene.name, name, i));
 }
 
+// What drawing takes for granted of a skin's materials.
+void checkLook(const Rig& rig) {
+  const Look& look = rig.look;
+  const auto fail = [&](const std::string& fault) {
+    throw inputError(fmt::format("{}: {}", rig.name, fault));
+  };
+  if (look.vertices.size() != (look ? rig.vertices.size() : 0))
+    fail(fmt::format("its look has {} vertices, expected {}", look.vertices.size(),
+                     look ? fmt::format("the skin's {}", rig.vertices.size()) : "none without materials"));
+  if (!look) return;
+  const Materials& materials = *look.materials;
+  for (size_t m = 0; m < materials.list.size(); ++m)
+    for (const TextureRole role : allTextureRoles) {
+      const Texture& texture = materials.list[m].texture(role);
+      const auto images = static_cast<int64_t>(materials.images.size());
+      if (texture.image < -1 || texture.image >= images)
+        fail(fmt::format("the {} texture of material {} is of image {}, but there are {}", nameOf(role), m,
+                         texture.image, images));
+      if (texture.set != 0 && texture.set != 1)
+        fail(fmt::format("the {} texture of material {} uses texture coordinates {}, expected 0 or 1",
+                         nameOf(role), m, texture.set));
+    }
+  for (const MaterialVertex& vertex : look.vertices)
+    if (vertex.material >= materials.list.size())
+      fail(fmt::format("a vertex is of material {}, but there are {}", vertex.material,
+                       materials.list.size()));
+  for (size_t i = 0; i + 2 < rig.indices.size(); i += 3) {
+    const auto materialOf = [&](size_t corner) {
+      const uint32_t vertex = rig.indices[i + corner];
+      if (vertex >= look.vertices.size())
+        fail(fmt::format("triangle {} has vertex {}, but there are {}", i / 3, vertex, look.vertices.size()));
+      return look.vertices[vertex].material;
+    };
+    const uint16_t first = materialOf(0);
+    if (materialOf(1) != first || materialOf(2) != first)
+      fail(fmt::format("triangle {} is of several materials, expected one", i / 3));
+  }
+}
+
 }  // namespace
 
 void checkRig(const Rig& rig) {
@@ -48,6 +87,7 @@ void checkRig(const Rig& rig) {
     check(leg.group >= 0 && leg.group < rig.groupCount(),
           fmt::format("leg {} is of group {}, expected one of {}", leg.name, leg.group, rig.groupCount()));
   }
+  checkLook(rig);
 }
 
 void checkWorld(const Heightfield& terrain, const Scene& scene) {

@@ -79,11 +79,12 @@ Image::Image(const Context& context, const ImageInfo& info, std::string name)
           (Usage::eSampled | Usage::eStorage | Usage::eColorAttachment | Usage::eDepthStencilAttachment)))
       return;
     view_ = vk::raii::ImageView(
-        context.device(), vk::ImageViewCreateInfo{.image = *image_,
-                                                  .viewType = info_.layers > 1 ? vk::ImageViewType::e2DArray
-                                                                               : vk::ImageViewType::e2D,
-                                                  .format = info_.format,
-                                                  .subresourceRange = {aspect_, 0, info_.levels, 0, info_.layers}});
+        context.device(),
+        vk::ImageViewCreateInfo{
+            .image = *image_,
+            .viewType = info_.layers > 1 ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
+            .format = info_.format,
+            .subresourceRange = {aspect_, 0, info_.levels, 0, info_.layers}});
     context.name(*view_, name_);
   });
 }

@@ -106,7 +106,7 @@ gpu::GraphicsInfo cutoutInfo(const Setting& s, int influences, bool matrices, co
 // The level that a list draws: of the camera's each its own.
 int levelOf(int list) { return list < shared::CAMERA_LODS ? list : kShadowLod[list - shared::CAMERA_LODS]; }
 
-VkDrawIndexedIndirectCommand drawOf(const MeshLod& lod) {
+VkDrawIndexedIndirectCommand commandOf(const MeshLod& lod) {
   return {.indexCount = lod.indexCount,
           .instanceCount = 0,
           .firstIndex = lod.firstIndex,
@@ -176,7 +176,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       draw.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
       page.shadow = kind.shadow.bind(s.context, shadow);
       page.draw = kind.draw.bind(s.context, draw);
-      if (textures) bindParts(s, *textures, shadow, draw, kind, page);
+      if (!kind.parts.empty()) bindParts(s, *textures, shadow, draw, kind, page);
       kind.pages.push_back(std::move(page));
     }
     kinds_.push_back(std::move(kind));
@@ -191,10 +191,29 @@ void CrowdDrawing::makeParts(const Setting& s, const crowd::Kind& source, const 
     if (from.material == -1) continue;
     const Material& material = textures.materials()->list[size_t(from.material)];
     const int has = textures.has(size_t(from.material));
-    part.draw = drawPipeline(s, wornShading(kind.mesh.influences, clips, source.tinted, material, has));
-    if (material.alphaCutoff > 0)
-      part.shadow = {s.context, cutoutInfo(s, kind.mesh.influences, clips, material, has)};
+    const bool cutout = material.alphaCutoff > 0;
+    const auto same = std::ranges::find_if(kind.worn, [&](const Worn& known) {
+      return known.textures == has && known.cutout == cutout && known.doubleSided == material.doubleSided;
+    });
+    part.worn = int(same - kind.worn.begin());
+    if (same != kind.worn.end()) continue;
+    Worn& worn = kind.worn.emplace_back();
+    worn.textures = has;
+    worn.cutout = cutout;
+    worn.doubleSided = material.doubleSided;
+    worn.draw = drawPipeline(s, wornShading(kind.mesh.influences, clips, source.tinted, material, has));
+    if (cutout) worn.shadow = {s.context, cutoutInfo(s, kind.mesh.influences, clips, material, has)};
   }
+}
+
+const gpu::GraphicsPipeline& CrowdDrawing::drawOf(const Kind& kind, size_t part) {
+  const int worn = kind.parts[part].worn;
+  return worn == -1 ? kind.draw : kind.worn[size_t(worn)].draw;
+}
+
+const gpu::GraphicsPipeline& CrowdDrawing::shadowOf(const Kind& kind, size_t part) {
+  const int worn = kind.parts[part].worn;
+  return worn == -1 || !kind.worn[size_t(worn)].cutout ? kind.shadow : kind.worn[size_t(worn)].shadow;
 }
 
 // Part draws never change but for their counts of agents, which countParts() copies.
@@ -202,19 +221,18 @@ void CrowdDrawing::bindParts(const Setting& s, const Textures& textures,
                              const std::vector<gpu::Binding>& shadow, const std::vector<gpu::Binding>& draw,
                              const Kind& kind, Page& page) const {
   for (size_t p = 0; p < kind.parts.size(); ++p) {
-    const Part& part = kind.parts[p];
-    const int material = kind.mesh.parts[p].material;
-    const auto bound = [&](const gpu::GraphicsPipeline& pipeline, std::vector<gpu::Binding> list) {
-      if (!pipeline) return gpu::Bindings();
-      textures.bind(size_t(material), list);
+    const auto bound = [&](const gpu::GraphicsPipeline& pipeline, const gpu::GraphicsPipeline& kinds,
+                           std::vector<gpu::Binding> list) {
+      if (&pipeline == &kinds) return gpu::Bindings();
+      textures.bind(size_t(kind.mesh.parts[p].material), list);
       return pipeline.bind(s.context, list);
     };
-    page.drawPart.push_back(bound(part.draw, draw));
-    page.shadowPart.push_back(bound(part.shadow, shadow));
+    page.drawPart.push_back(bound(drawOf(kind, p), kind.draw, draw));
+    page.shadowPart.push_back(bound(shadowOf(kind, p), kind.shadow, shadow));
   }
   std::vector<VkDrawIndexedIndirectCommand> draws;
   for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
-    for (const MeshPart& part : kind.mesh.parts) draws.push_back(drawOf(part.lods[size_t(levelOf(list))]));
+    for (const MeshPart& part : kind.mesh.parts) draws.push_back(commandOf(part.lods[size_t(levelOf(list))]));
   page.partDraws =
       gpu::Buffer(s.context, draws.size() * sizeof draws[0], "part draws", gpu::BufferUse::indirect);
   gpu::upload(s.context, page.partDraws, draws);
@@ -225,7 +243,7 @@ void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
     for (const Page& page : kind.pages) {
       VkDrawIndexedIndirectCommand draws[shared::INSTANCE_LISTS];
       for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
-        draws[list] = drawOf(kind.mesh.lods[size_t(levelOf(list))]);
+        draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
       cmd.updateBuffer(page.culled.commands.handle(), 0, sizeof draws, draws);
     }
 }
@@ -263,18 +281,16 @@ void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
                                              .firstAgent = page.firstAgent,
                                              .kind = k};
       const int list = shared::CAMERA_LODS + cascade;
-      const auto lets = [](const Part& part) { return !!part.shadow; };  // light through
-      if (std::none_of(kinds_[k].parts.begin(), kinds_[k].parts.end(), lets)) {
+      const auto cutout = [](const Worn& worn) { return worn.cutout; };
+      if (std::ranges::none_of(kinds_[k].worn, cutout)) {
         kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
         drawList(cmd, kinds_[k], page, list);
         continue;
       }
       for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
-        const gpu::GraphicsPipeline& own = kinds_[k].parts[p].shadow;
-        if (own)
-          own.use(cmd, page.shadowPart[p], gpu::bytesOf(constants));
-        else
-          kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
+        const gpu::GraphicsPipeline& pipeline = shadowOf(kinds_[k], p);
+        const bool own = &pipeline != &kinds_[k].shadow;
+        pipeline.use(cmd, own ? page.shadowPart[p] : page.shadow, gpu::bytesOf(constants));
         drawListPart(cmd, kinds_[k], page, list, p);
       }
     }
@@ -292,11 +308,9 @@ void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
         for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawList(cmd, kinds_[k], page, lod);
       }
       for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
-        const gpu::GraphicsPipeline& own = kinds_[k].parts[p].draw;
-        if (own)
-          own.use(cmd, page.drawPart[p], gpu::bytesOf(constants));
-        else
-          kinds_[k].draw.use(cmd, page.draw, gpu::bytesOf(constants));
+        const gpu::GraphicsPipeline& pipeline = drawOf(kinds_[k], p);
+        const bool own = &pipeline != &kinds_[k].draw;
+        pipeline.use(cmd, own ? page.drawPart[p] : page.draw, gpu::bytesOf(constants));
         for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawListPart(cmd, kinds_[k], page, lod, p);
       }
     }

@@ -38,18 +38,27 @@ class CrowdDrawing {
     gpu::Buffer partDraws;
     std::vector<gpu::Bindings> drawPart, shadowPart;
   };
-  // How a part of a mesh is drawn; pipelines that are none are the kind's.
+  // Pipelines of materials that differ in numbers and images alone.
+  struct Worn {
+    int textures = 0;  // Textures::has
+    bool cutout = false, doubleSided = false;
+    gpu::GraphicsPipeline draw, shadow;  // the shadow's is none where no light falls through
+  };
+  // How a part of a mesh is drawn: by one of `Kind::worn`, or, where it is none (-1), by the kind's own.
   struct Part {
-    gpu::GraphicsPipeline draw, shadow;
+    int worn = -1;
   };
   struct Kind {
     uint32_t palette = 0;
     Mesh mesh;
     gpu::GraphicsPipeline draw, shadow;
     std::vector<Part> parts;  // as the mesh's
+    std::vector<Worn> worn;
     std::vector<Page> pages;
   };
   void makeParts(const Setting&, const crowd::Kind&, const Textures&, Kind&) const;
+  static const gpu::GraphicsPipeline& drawOf(const Kind&, size_t part);
+  static const gpu::GraphicsPipeline& shadowOf(const Kind&, size_t part);
   void bindParts(const Setting&, const Textures&, const std::vector<gpu::Binding>& shadow,
                  const std::vector<gpu::Binding>& draw, const Kind&, Page&) const;
   void drawList(vk::CommandBuffer, const Kind&, const Page&, int list) const;

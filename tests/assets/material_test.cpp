@@ -185,7 +185,7 @@ TEST_F(MaterialsTest, ImagesThatCannotBeHadAreNotedAndTheModelLoads) {
       {{{"uri", "data:image/png,no"}}, "its data: URI is not base64: drawn as a flat colour"},
       {{{"uri", 3}}, "images[0].uri is 3, expected a string: drawn as a flat colour"},
       {{{"bufferView", 99}}, "images[0].bufferView is 99, but there are "},
-      {{{"name", "skin"}}, "images[0].bufferView is missing, but there are "},
+      {{{"name", "skin"}}, "images[0] (\"skin\").bufferView is missing, but there are "},
   };
   for (const auto& [image, expected] : cases) {
     Glb glb = wornRig();

@@ -65,7 +65,7 @@ bool isImage(std::span<const uint8_t> bytes) {
 }
 
 Texels decodeImage(const ImageFile& image) {
-  if (image.bytes.empty()) throw inputError(image.fault);
+  if (!image.fault.empty()) throw inputError(image.fault);
   try {
     if (PngReader::hasSignature(image.bytes)) return decodePng(image);
     if (JpegReader::hasSignature(image.bytes)) return decodeJpeg(image);

@@ -81,10 +81,19 @@ Primitive primitive(Source& source, const tinygltf::Primitive& from, const Mater
     primitive.opacities[v] = std::clamp(primitive.opacities[v], 0.0, 1.0);
   }
   if (from.material != -1 && isTextured(materials.list[static_cast<size_t>(from.material)])) {
+    const Material& material = materials.list[static_cast<size_t>(from.material)];
     for (size_t set = 0; set < primitive.uvs.size(); ++set) {
       const Values uvs = attribute(fmt::format("TEXCOORD_{}", set), {TINYGLTF_TYPE_VEC2}, false);
       for (size_t v = 0; v < uvs.count; ++v)
         primitive.uvs[set].emplace_back(uvs.numbers[2 * v], uvs.numbers[2 * v + 1]);
+      const auto looksThere = [&](const Texture& t) {
+        return t.image != -1 && t.set == static_cast<int>(set);
+      };
+      if (uvs.count == 0 && std::any_of(material.textures.begin(), material.textures.end(), looksThere))
+        source.notes.push_back(
+            fmt::format("{} has no TEXCOORD_{}, where materials[{}] looks textures up: "
+                        "(0, 0) counts",
+                        what, set, from.material));
     }
     const Values tangents = attribute("TANGENT", {TINYGLTF_TYPE_VEC4}, false);
     for (size_t v = 0; v < tangents.count; ++v) {

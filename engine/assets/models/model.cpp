@@ -100,7 +100,9 @@ class ModelBuilder {
       if (!part.normals.empty() && determinant != 0) {
         normals[v] = glm::transpose(glm::inverse(linear)) * part.normals[v];
       }
-      if (look_ && !part.tangents.empty()) tangents.push_back(turnedTangent(linear, part.tangents[v]));
+      // Without the normals that they were made for, tangents count for nothing (glTF 2.0, section 3.7.2.1).
+      if (look_ && !part.tangents.empty() && !part.normals.empty())
+        tangents.push_back(turnedTangent(linear, part.tangents[v]));
       model_.vertices.push_back(vertex);
     }
     if (skin) weightless_ += part.weightless;

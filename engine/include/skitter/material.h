@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "skitter/enum_names.h"
 #include "skitter/export.h"
 
 namespace skitter {
@@ -75,7 +74,7 @@ struct Material {
 struct ImageFile {
   std::string name;            // for messages: the model's, and which image of it
   std::vector<uint8_t> bytes;  // a PNG or a JPEG file; empty where there is none
-  std::string fault;           // why there is none
+  std::string fault;           // where there is none: why, for messages, with the name
 
   bool operator==(const ImageFile&) const = default;
 };
@@ -116,8 +115,8 @@ struct Texels {
   bool operator==(const Texels&) const = default;
 };
 
-// Throws Error(input) that begins with the image's name: there is none, it is no PNG or JPEG, it is corrupt,
-// over 16,384 texels wide or high, or over 2^26 in all.
+// Throws Error(input) that names the image: there is none, it is no PNG or JPEG, it is corrupt, over 16,384
+// texels wide or high, or over 2^26 in all.
 SKITTER_API Texels decodeImage(const ImageFile& image);
 
 }  // namespace skitter
