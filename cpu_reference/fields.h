@@ -82,6 +82,7 @@ inline constexpr int own = -1;
   FIELD(double,     depth,             0,                      12, own) \
   FIELD(double,     deepest,           0,                      13, own) \
   FIELD(double,     violations,        0,                      14, own) \
+  FIELD(double,     lost,              0,                      15, own)  /* leg-ticks of lost legs */ \
   FIELD(double,     pairs,             0,                      16, own) \
   FIELD(double,     crossings,         0,                      17, own) \
   FIELD(double,     supported,         0,                      18, own) \

@@ -67,11 +67,26 @@ struct Limb {
   double lag = 0;           // in its group: 0 lifts first, 1 last
   uint32_t neighbours = 0;  // bit m: leg m must stand while this one is in the air
   std::vector<BoneRest> bones;
+  // Of a leg that is hurt (cpu_reference/stages/hurt.h).
+  bool carries = true, lost = false;
+  size_t left = SIZE_MAX;  // bones from the root on that it has left
+  double slowness = 1;     // how many times as long as others its step lasts
+
+  double stepTicks(double duration) const { return std::floor(slowness * duration + 0.5); }
 };
 
 struct Creature {
   std::vector<Limb> limbs;
   int groups = 0;
+  // Where legs are hurt: how far its homes are from the rig's, model space, and its share of the speed.
+  glm::dvec3 shift{0};
+  double speed = 1;
+
+  double slowest() const {
+    double most = 1;
+    for (const Limb& limb : limbs) most = limb.carries ? std::max(most, limb.slowness) : most;
+    return most;
+  }
 };
 
 enum class GoalKind { none, point, cross, velocity, series };
@@ -94,6 +109,7 @@ struct AgentBody {
 
 struct Gait {
   SKITTER_GAIT_FIELDS(REFERENCE_MEMBER)
+  uint32_t idle = 0;  // legs that do not carry, where they can be hurt
 };
 
 // Positions are local to the tile in x and z, world in y.
@@ -124,6 +140,7 @@ struct Chain {
 
 struct BonePose {
   SKITTER_POSE_FIELDS(REFERENCE_MEMBER)
+  bool lost = false;  // all of its skin is at its position
 };
 
 // Sums over the ticks in which an agent was watched; metres and radians.

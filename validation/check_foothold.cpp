@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "cpu_reference/heightfield.h"
 #include "cpu_reference/stages/foothold.h"
+#include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/tolerances.h"
 #include "skitter/records.h"
 #include "validation/checks.h"
@@ -24,10 +26,11 @@ struct Case {
   reference::Gait gait;
   reference::Step before, got;
   bool lifts;
+  std::optional<glm::dvec3> hanging;  // where its foot is, of a leg that lifts without having carried
 
   reference::FootholdResult run(const reference::FootholdChoices& choices) const {
     return reference::foothold(setting.tuning, setting.heights, limb, body, gait, before, lifts,
-                               static_cast<double>(moment.n), choices);
+                               static_cast<double>(moment.n), choices, hanging);
   }
 };
 
@@ -141,8 +144,11 @@ StepBounds stepBounds(const Case& c, const reference::FootholdResult& result) {
     bound.landing += 2 * b.distance;
     bound.landingHeight += 2 * b.distance;
   }
-  bound.liftOff = tolerance::relative + (c.lifts ? 0 : tolerance::spline);
-  bound.liftOffHeight = (c.lifts ? 6 : 20) * tolerance::roundoff * world;
+  // A hanging foot is where forward kinematics has it.
+  const double hangs =
+      c.hanging ? tolerance::bonePosition(c.setting.bones) * (c.limb.reach + glm::length(c.limb.root)) : 0;
+  bound.liftOff = tolerance::relative + (c.lifts ? hangs : tolerance::spline);
+  bound.liftOffHeight = (c.lifts ? 6 : 20) * tolerance::roundoff * world + hangs;
   // A present tangent shifts the way by at most 4/27 of its error.
   const double tangent = c.lifts ? 0 : 6 * tolerance::local + 24 * tolerance::roundoff * world;
   const double horizontal = std::max(bound.landing, bound.liftOff) + tangent / 6;
@@ -225,9 +231,12 @@ void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge) {
     const size_t leg = moment.agent * legs + l;
     const bool lifts = (gait.lift >> l & 1u) != 0, reaims = (gait.reaim >> l & 1u) != 0;
     if (lifts || reaims) {
-      checkLeg({setting, moment, setting.creature.limbs[l], leg, body, gait, stepOf(moment.before, leg),
-                stepOf(moment.after, leg), lifts},
-               l, judge);
+      const reference::Limb& limb = setting.creature.limbs[l];
+      Case c{setting, moment, limb, leg, body, gait, stepOf(moment.before, leg), stepOf(moment.after, leg),
+             lifts,   {}};
+      if (lifts && reaims)
+        c.hanging = reference::heldLeg(limb, body, chainOf(moment.before, leg, setting.bones)).tip;
+      checkLeg(c, l, judge);
       continue;
     }
     Sample sample;

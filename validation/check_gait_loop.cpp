@@ -28,6 +28,7 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ga
                  {got.cycle, 0, 0, 0});
   sample.same("lift mask", 0, got.lift);
   sample.same("re-aim mask", 0, got.reaim);
+  sample.same("legs that do not carry", 0, got.idle);
   return sample;
 }
 
@@ -37,7 +38,8 @@ void checkLoopGait(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
   const double phase = gaitOf(moment.before, moment.agent).phase;
   const auto run = [&](const std::optional<double>& duration) {
-    return reference::loopGait(setting.tuning, setting.creature.groups, body, phase, duration);
+    return reference::loopGait(setting.tuning, setting.creature.groups, body, phase, duration,
+                               setting.creature.slowest());
   };
   const reference::LoopGaitResult result = run({});
   const Sample sample = compare(setting, moment, result.gait);

@@ -1,4 +1,5 @@
 #include "cpu_reference/ik/kinematics.h"
+#include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/ik.h"
 #include "cpu_reference/stages/swing.h"
 #include "cpu_reference/stages/tolerances.h"
@@ -183,11 +184,39 @@ SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l
   return verdict;
 }
 
+Sample compareHeld(const Setting& setting, const Moment& moment, size_t l, const reference::Limb& limb) {
+  const size_t leg = moment.agent * static_cast<size_t>(setting.legs) + l;
+  const reference::Chain before = chainOf(moment.before, leg, setting.bones);
+  const reference::Chain got = chainOf(moment.after, leg, setting.bones);
+  const reference::Chain held = reference::heldLeg(limb, bodyOf(moment.after, moment.agent), before);
+  Sample sample;
+  for (size_t i = 0; i < limb.bones.size(); ++i)
+    sample.compare("pose held", glm::length(before.directions[i] - got.directions[i]), 0,
+                   {before.directions[i], 0, 0}, {got.directions[i], 0, 0});
+  if (!moment.after.miss.empty())
+    sample.same("miss of a leg that does not carry", 0,
+                missOf(moment.after, moment.agent, l, setting.legs, moment.n));
+  if (moment.after.tip.empty()) return sample;
+  sample.finite("tip", records(moment.after.tip, leg, shared::TIP_STRIDE));
+  const double bound =
+      kinematicsError(setting, limb) * limb.reach + tolerance::rotated(glm::length(limb.root) + limb.reach);
+  sample.compare("tip of a held pose / leg length",
+                 glm::length(held.tip - got.tip) / setting.tuning.legLength, bound / setting.tuning.legLength,
+                 {held.tip, 0}, {got.tip, 0});
+  sample.same("reach error of a leg that does not carry", 0, got.reachError);
+  return sample;
+}
+
 void checkIk(const Setting& setting, const Moment& moment, Judge& judge) {
   for (size_t l = 0; l < static_cast<size_t>(setting.legs); ++l) {
     const size_t leg = moment.agent * static_cast<size_t>(setting.legs) + l;
+    const reference::Limb& limb = setting.creature.limbs[l];
+    if (!limb.carries) {
+      judge.add(moment.n, moment.number(), static_cast<int>(l), compareHeld(setting, moment, l, limb));
+      continue;
+    }
     const reference::Chain previous = chainOf(moment.before, leg, setting.bones);
-    const auto verdict = compareSolve(setting, moment, l, setting.creature.limbs[l], previous);
+    const auto verdict = compareSolve(setting, moment, l, limb, previous);
     judge.add(moment.n, moment.number(), static_cast<int>(l), verdict.sample, verdict.tie);
   }
 }

@@ -48,7 +48,11 @@ void checkPlantedIk(const Setting& setting, const Moment& moment, Judge& judge) 
     const reference::Limb limb = reference::plantedLimb(setting.creature.limbs[l], start);
     reference::Chain clips;
     clips.directions = start.directions;
-    auto verdict = compareSolve(setting, moment, l, limb, clips);
+    SolveVerdict verdict;
+    if (limb.carries)
+      verdict = compareSolve(setting, moment, l, limb, clips);
+    else
+      verdict.sample = compareHeld(setting, moment, l, limb);
     verdict.sample.finite("fix", records(moment.after.fix, leg * bones, shared::FIX_STRIDE, bones));
     compareFixes(setting, moment, leg, limb, start, verdict.sample);
     judge.add(moment.n, moment.number(), static_cast<int>(l), verdict.sample, verdict.tie);

@@ -184,6 +184,7 @@ void addLeg(const Setting& setting, const Legs& legs, const reference::Measured&
                  (2 * tolerance::relative + 4 * tolerance::roundoff * std::abs(trail.slip)) / unit,
                  {trail.slip, 0, 0, 0}, {got.tips[l].slip, 0, 0, 0});
 
+  if (limb.lost) return;
   const glm::dvec2 world = body.world();
   const auto relief = reference::reliefNear(setting.heights, world.x + chain.tip.x, world.y + chain.tip.z);
   bounds.vertical += tolerance::height(relief, setting.extent, 2 * tolerance::roundoff * limb.reach) + height;
@@ -250,6 +251,7 @@ bool compareSums(const Setting& setting, const Legs& legs, const reference::Meas
   metric.length("float beyond the dead zone / leg length", &Metric::floatingBeyond, bounds.vertical);
   metric.length("segment penetration / leg length", &Metric::depth, bounds.lengths);
   metric.length("largest segment penetration / leg length", &Metric::deepest, bounds.deepest);
+  metric.count("leg-ticks of lost legs", &Metric::lost);
   metric.count("pair-ticks", &Metric::pairs);
   metric.count("crossings", &Metric::crossings, bounds.crossings);
 

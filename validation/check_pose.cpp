@@ -13,6 +13,7 @@ namespace tolerance = reference::tolerance;
 void compareBone(const reference::BonePose& expected, const reference::BonePose& got, int bones, double reach,
                  double unit, Sample& sample) {
   compareFields(expected, got, sample);
+  sample.same("lost bone", expected.lost, got.lost);
   const glm::dquat &e = expected.rotation, &g = got.rotation;
   const glm::dvec4 u{e.x, e.y, e.z, e.w}, v{g.x, g.y, g.z, g.w};
   sample.compare("rotation", std::min(glm::length(u - v), glm::length(u + v)), tolerance::boneRotation(bones),

@@ -1,3 +1,4 @@
+#include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/swing.h"
 #include "cpu_reference/stages/tolerances.h"
 #include "skitter/records.h"
@@ -15,7 +16,9 @@ void checkSwing(const Setting& setting, const Moment& moment, Judge& judge) {
   for (size_t l = 0; l < legs; ++l) {
     const size_t leg = moment.agent * legs + l;
     const reference::Step step = stepOf(moment.after, leg);
-    const reference::Foot expected = reference::swing(step, body, static_cast<double>(moment.n));
+    const reference::Foot expected = setting.creature.limbs[l].carries
+                                         ? reference::swing(step, body, static_cast<double>(moment.n))
+                                         : reference::idleFoot();
     const reference::Foot got = footOf(moment.after, leg);
     Sample sample;
     sample.finite("foot", records(moment.after.foot, leg, shared::FOOT_STRIDE));

@@ -23,11 +23,17 @@ void checkLoopSwing(const Setting& setting, const Moment& moment, Judge& judge) 
 
     Sample sample;
     sample.finite("foot", records(moment.after.foot, leg, shared::FOOT_STRIDE));
+    if (!limb.carries) {
+      sample.compare("target of a leg that does not carry", glm::length(got.target), 0, {}, {got.target, 0});
+      sample.same("progress of a leg that does not carry", 0, got.progress);
+      judge.add(moment.n, moment.number(), static_cast<int>(l), sample);
+      continue;
+    }
     compareFields(expected.foot, got, sample);
     // A loop is closed and has no corner where a foot lifts or lands: only which it is may be in doubt there.
     const bool stands = expected.foot.progress >= 1, tie = stands != (got.progress >= 1);
     if (tie) {
-      const double swingTime = gait.duration * setting.tuning.dt;
+      const double swingTime = limb.stepTicks(gait.duration) * setting.tuning.dt;
       const double toLanding = std::min(expected.theta, 1 - expected.theta) * gait.cycle / swingTime;
       sample.compare("stance, shares of a swing from its edge / bound",
                      std::min(std::abs(expected.flown), toLanding) / bound.flown, 1,

@@ -86,6 +86,7 @@ void checkPlantedSwing(const Setting& setting, const Moment& moment, Judge& judg
         legBounds.joints.front() / setting.tuning.legLength, {clipLeg.joints.front(), 0}, {start.root, 0});
 
     const auto run = [&](const std::optional<bool>& locked) {
+      if (!limb.carries) return reference::idlePlantedFoot(plantOf(moment.before, leg));
       return reference::plantedSwing(setting.tuning, setting.heights, body, clipLeg.joints.back(),
                                      clipLeg.stands, plantOf(moment.before, leg), locked);
     };

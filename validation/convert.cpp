@@ -118,6 +118,29 @@ reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, i
   return creature;
 }
 
+reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs) {
+  const size_t first = at(agent, shared::hurtStride(legs));
+  const glm::dvec4 masks = load(state.hurt, first), bones = load(state.hurt, first + 1);
+  const glm::dvec4 body = load(state.hurt, first + 2);
+  reference::Hurt hurt;
+  hurt.lost = mask(masks.x);
+  hurt.stuck = mask(masks.y);
+  hurt.lame = mask(masks.z);
+  hurt.groups = static_cast<int>(masks.w);
+  hurt.shift = body;
+  hurt.speed = body.w;
+  for (int l = 0; l < legs; ++l) {
+    const glm::dvec4 turn = load(state.hurt, first + shared::HURT_LEGS + static_cast<size_t>(l));
+    const auto packed = static_cast<float>(bones[l / shared::HURT_BONES_LEGS]);
+    hurt.legs.push_back({.group = static_cast<int>(turn.x),
+                         .lag = turn.y,
+                         .neighbours = mask(turn.z),
+                         .slowness = turn.w,
+                         .lostFrom = static_cast<size_t>(shared::packedBone(packed, l))});
+  }
+  return hurt;
+}
+
 reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones) {
   reference::KeyPoses result;
   result.stride = poses.stride;
@@ -209,12 +232,14 @@ reference::Gait gaitOf(const HerdState& state, size_t agent) {
   const float* record = recordAt(state.gait, agent, shared::GAIT_STRIDE);
   reference::Gait to;
   SKITTER_GAIT_FIELDS(READ)
+  to.idle = mask(record[7]);
   return to;
 }
 
 void putGait(HerdState& state, size_t agent, const reference::Gait& from) {
   float* record = clearedAt(state.gait, agent, shared::GAIT_STRIDE);
   SKITTER_GAIT_FIELDS(WRITE)
+  write(record + 7, from.idle);
 }
 
 reference::Step stepOf(const HerdState& state, size_t leg) {
@@ -304,12 +329,14 @@ reference::BonePose boneOf(const HerdState& state, size_t entry) {
   const float* record = recordAt(state.pose, entry, shared::POSE_STRIDE);
   reference::BonePose to;
   SKITTER_POSE_FIELDS(READ)
+  to.lost = record[7] != 0;
   return to;
 }
 
 void putBone(HerdState& state, size_t entry, const reference::BonePose& from) {
   float* record = clearedAt(state.pose, entry, shared::POSE_STRIDE);
   SKITTER_POSE_FIELDS(WRITE)
+  record[7] = from.lost ? 1 : 0;
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/measure.h"
 #include "cpu_reference/stages/swing_key_poses.h"
 #include "cpu_reference/types.h"
@@ -18,6 +19,9 @@ reference::Tuning tuningOf(const shared::Parameters& parameters);
 reference::Heights heightsOf(const Heightfield& field, const shared::Parameters& parameters);
 reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, int bones, int groups);
 reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones);
+
+// Of a herd that can be hurt.
+reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs);
 
 reference::Goal goalOf(const HerdState& state, size_t agent);
 // Navigate's velocity, and whether it lets the agent sleep.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "cpu_reference/stages/gait.h"
 #include "cpu_reference/stages/gait_key_poses.h"
 #include "cpu_reference/stages/gait_loop.h"
+#include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/ik.h"
 #include "cpu_reference/stages/navigate.h"
 #include "cpu_reference/stages/pose.h"
@@ -57,6 +59,7 @@ class Walk {
 
  private:
   void adaptive() {
+    const uint32_t idleBefore = gait().idle;
     const std::vector<reference::Step> before = stepsBefore();
     const std::vector<double> misses = missesBefore();
     putBody(state_, agent_,
@@ -64,15 +67,14 @@ class Walk {
                             misses, n_, gait().phase)
                 .body);
     const reference::WatchedGround ground = state_.watched ? &setting_.heights : nullptr;
-    putGait(state_, agent_,
-            reference::gait(tuning_, creature_, body(), gait().phase, before, misses, n_, {}, ground).gait);
+    putGait(
+        state_, agent_,
+        reference::gait(tuning_, creature_, body(), gait().phase, before, misses, n_, {}, ground, idleBefore)
+            .gait);
     for (size_t l = 0; l < legs_; ++l) {
-      const bool lifts = (gait().lift >> l & 1u) != 0;
-      if (lifts || (gait().reaim >> l & 1u) != 0)
-        putStep(state_, leg(l),
-                reference::foothold(tuning_, setting_.heights, limb(l), body(), gait(), before[l], lifts, n_)
-                    .step);
-      putFoot(state_, leg(l), reference::swing(stepOf(state_, leg(l)), body(), n_));
+      step(l, before[l]);
+      putFoot(state_, leg(l),
+              limb(l).carries ? reference::swing(stepOf(state_, leg(l)), body(), n_) : reference::idleFoot());
       solve(l);
     }
     pose();
@@ -80,9 +82,13 @@ class Walk {
 
   void loop() {
     blindBody();
-    putGait(state_, agent_, reference::loopGait(tuning_, creature_.groups, body(), gait().phase).gait);
+    putGait(
+        state_, agent_,
+        reference::loopGait(tuning_, creature_.groups, body(), gait().phase, {}, creature_.slowest()).gait);
     for (size_t l = 0; l < legs_; ++l) {
-      putFoot(state_, leg(l), reference::loopSwing(tuning_, creature_.groups, limb(l), body(), gait()).foot);
+      putFoot(state_, leg(l),
+              limb(l).carries ? reference::loopSwing(tuning_, creature_.groups, limb(l), body(), gait()).foot
+                              : reference::idleFoot());
       solve(l);
     }
     pose();
@@ -106,16 +112,19 @@ class Walk {
     play();
     for (size_t l = 0; l < legs_; ++l) plantLeg(l);
     for (size_t joint = 0; joint < joints(); ++joint) {
-      const reference::ClipTable::BoneOf& owner = setting_.clips.bones[joint];
-      reference::BoneFix fix;
-      if (owner.leg >= 0) {
-        const FixRecord record =
-            fixOf(state_, leg(static_cast<size_t>(owner.leg)), setting_.bones, owner.bone);
-        fix = {glm::mat3_cast(record.turn), record.move};
-      }
-      putMatrix(state_, agent_ * joints() + joint,
-                reference::plantedPose(setting_.clips, body(), played(), joint, fix));
+      putMatrix(state_, agent_ * joints() + joint, plantedJoint(joint));
     }
+  }
+
+  reference::Affine plantedJoint(size_t joint) const {
+    const reference::ClipTable::BoneOf& owner = setting_.clips.bones[joint];
+    if (owner.leg < 0) return reference::plantedPose(setting_.clips, body(), played(), joint, {});
+    const auto l = static_cast<size_t>(owner.leg), bone = static_cast<size_t>(owner.bone);
+    const size_t left = limb(l).left;
+    const FixRecord record = fixOf(state_, leg(l), setting_.bones, static_cast<int>(std::min(bone, left)));
+    const reference::BoneFix fix{glm::mat3_cast(record.turn), record.move};
+    return bone >= left ? reference::stumpPose(setting_.clips, body(), played(), l, left, fix)
+                        : reference::plantedPose(setting_.clips, body(), played(), joint, fix);
   }
 
   void keyPoses() {
@@ -153,7 +162,22 @@ class Walk {
         reference::blindBody(tuning_, setting_.heights, creature_, body(), desiredOf(state_, agent_)).body);
   }
   void play() { putPlay(state_, agent_, reference::clip(tuning_, setting_.clips, body(), played()).play); }
+  // foothold, of a leg that gait has listed.
+  void step(size_t l, const reference::Step& before) {
+    const bool lifts = (gait().lift >> l & 1u) != 0, reaims = (gait().reaim >> l & 1u) != 0;
+    if (!lifts && !reaims) return;
+    std::optional<glm::dvec3> hanging;
+    if (lifts && reaims) hanging = held(l).tip;
+    putStep(state_, leg(l),
+            reference::foothold(tuning_, setting_.heights, limb(l), body(), gait(), before, lifts, n_, {},
+                                hanging)
+                .step);
+  }
+  reference::Chain held(size_t l) const {
+    return reference::heldLeg(limb(l), body(), chainOf(state_, leg(l), setting_.bones));
+  }
   void solve(size_t l) {
+    if (!limb(l).carries) return putChain(state_, leg(l), setting_.bones, held(l));
     const reference::Chain chain = reference::ik(tuning_, limb(l), body(), footOf(state_, leg(l)),
                                                  chainOf(state_, leg(l), setting_.bones), setting_.ik);
     putChain(state_, leg(l), setting_.bones, chain);
@@ -162,14 +186,19 @@ class Walk {
   // swing and ik of planted.
   void plantLeg(size_t l) {
     const reference::ClipLeg clipLeg = reference::clipLeg(setting_.clips, limb(l), l, played());
-    const reference::PlantedFoot swung = reference::plantedSwing(
-        tuning_, setting_.heights, body(), clipLeg.joints.back(), clipLeg.stands, plantOf(state_, leg(l)));
+    const reference::PlantedFoot swung =
+        limb(l).carries ? reference::plantedSwing(tuning_, setting_.heights, body(), clipLeg.joints.back(),
+                                                  clipLeg.stands, plantOf(state_, leg(l)))
+                        : reference::idlePlantedFoot(plantOf(state_, leg(l)));
     putFoot(state_, leg(l), swung.foot);
     putPlant(state_, leg(l), swung.plant);
     putStart(state_, leg(l), setting_.bones, {clipLeg.directions, clipLeg.joints.front()});
     const reference::PlantedStart start = startOf(state_, leg(l), setting_.bones);
     const reference::Chain chain =
-        reference::plantedIk(tuning_, limb(l), body(), footOf(state_, leg(l)), start, setting_.ik);
+        limb(l).carries
+            ? reference::plantedIk(tuning_, limb(l), body(), footOf(state_, leg(l)), start, setting_.ik)
+            : reference::heldLeg(reference::plantedLimb(limb(l), start), body(),
+                                 chainOf(state_, leg(l), setting_.bones));
     putChain(state_, leg(l), setting_.bones, chain);
     const auto fixes = reference::boneFixes(reference::plantedLimb(limb(l), start), start,
                                             chainOf(state_, leg(l), setting_.bones).directions);
@@ -223,7 +252,10 @@ FreeRun::FreeRun(const HerdFacts& herd, HerdState start)
 void FreeRun::tick(bool watched) {
   ++state_.tick;
   state_.watched = watched;
-  for (size_t agent = 0; agent < state_.agents; ++agent) walkAgent(setting_, state_.tick, agent, state_);
+  for (size_t agent = 0; agent < state_.agents; ++agent) {
+    if (!state_.hurt.empty()) setCreature(setting_, state_, agent, ofAgent_);
+    walkAgent(state_.hurt.empty() ? setting_ : *ofAgent_, state_.tick, agent, state_);
+  }
 }
 
 void FreeRun::follow(const HerdState& before, const HerdState& after) {

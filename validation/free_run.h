@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "validation/replay.h"
 
 namespace skitter::validation {
@@ -30,6 +32,7 @@ class FreeRun {
 
  private:
   Setting setting_;
+  std::optional<Setting> ofAgent_;
   HerdState state_;
 };
 

@@ -104,6 +104,17 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   return setting;
 }
 
+void setCreature(const Setting& herd, const HerdState& state, size_t agent, std::optional<Setting>& ofAgent) {
+  if (!ofAgent) ofAgent = herd;
+  ofAgent->creature = reference::hurtCreature(herd.creature, hurtOf(state, agent, herd.legs));
+}
+
+const Setting& Replay::settingFor(const HerdState& after, size_t agent) {
+  if (after.hurt.empty()) return setting_;
+  setCreature(setting_, after, agent, ofAgent_);
+  return *ofAgent_;
+}
+
 Replay::Replay(const HerdFacts& herd, std::vector<crowd::StageId> only)
     : terrain_(herd.terrain), setting_(settingOf(herd, terrain_)), only_(std::move(only)) {
   for (const Check* check : checksOf(herd.controller, only_))
@@ -139,7 +150,7 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
         checkKept(setting_, moment, Record::metric, judges_[c]);
         continue;
       }
-      if (!asleep || check.writes.empty()) check.check(setting_, moment, judges_[c]);
+      if (!asleep || check.writes.empty()) check.check(settingFor(after, agent), moment, judges_[c]);
       for (const Record record : check.writes)
         if (asleep) checkKept(setting_, moment, record, judges_[c]);
     }

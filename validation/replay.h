@@ -64,6 +64,10 @@ struct Setting {
   std::optional<ForageFacts> forage;
 };
 
+// Gives `ofAgent`, which is made of `herd` where there is none, the creature that an agent of a herd is that
+// can be hurt.
+void setCreature(const Setting& herd, const HerdState& state, size_t agent, std::optional<Setting>& ofAgent);
+
 // `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit
 // the rig.
 Setting settingOf(const HerdFacts& herd, const Heightfield& terrain);
@@ -113,8 +117,12 @@ class Replay {
   bool pass() const;
 
  private:
+  // With the creature that the agent is, where its legs can be hurt.
+  const Setting& settingFor(const HerdState& after, size_t agent);
+
   Heightfield terrain_;
   Setting setting_;
+  std::optional<Setting> ofAgent_;
   std::vector<crowd::StageId> only_;
   std::vector<Judge> judges_;
   bool waysAreNew_ = true;     // no tick has compared them

@@ -13,6 +13,9 @@ struct SolveVerdict {
 SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l, const reference::Limb& limb,
                           const reference::Chain& previous);
 
+// Of a leg that does not carry: it must be as it was. `root` is where it starts, model space.
+Sample compareHeld(const Setting& setting, const Moment& moment, size_t l, const reference::Limb& limb);
+
 // The error of forward kinematics along the limb, a share of the reach.
 double kinematicsError(const Setting& setting, const reference::Limb& limb);
 

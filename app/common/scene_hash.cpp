@@ -94,7 +94,7 @@ void add(Hash& hash, const Forage& forage) {
 
 void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, threat, forage, phase, colour, tint] = herd;
+               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt] = herd;
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
@@ -132,6 +132,7 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
     hash.add("phase");
     hash.add(*phase);
   }
+  if (hurt) hash.add("hurt");
   for (const TuningInfo& info : allTunings)
     if (tuning.*info.member != info.usual) {
       hash.add(info.name);
@@ -261,6 +262,15 @@ void add(Hash& hash, const ThreatChange& change) {
   const auto& [number, threat] = change;
   hash.add(uint64_t{number});
   add(hash, threat);
+}
+
+void add(Hash& hash, const LegChange& change) {
+  const auto& [herd, agents, share, leg, state, bone] = change;
+  add(hash, "leg", herd, agents);
+  hash.add(share.value_or(-1));
+  hash.add(leg);
+  hash.add(nameOf(state));
+  hash.add(uint64_t{bone.value_or(UINT32_MAX)});
 }
 
 // Most events name no file.

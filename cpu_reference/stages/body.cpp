@@ -75,9 +75,12 @@ void walk(const Tuning& tuning, const glm::dvec2& desired, BodyResult& result) {
 }
 
 // Where the ground points are, relative to the previous body.
-std::vector<glm::dvec3> groundPoints(const AgentBody& previous, std::span<const Step> steps, double tick) {
+std::vector<glm::dvec3> groundPoints(const Creature& creature, const AgentBody& previous,
+                                     std::span<const Step> steps, double tick) {
   std::vector<glm::dvec3> points;
-  for (const Step& step : steps) {
+  for (size_t l = 0; l < steps.size(); ++l) {
+    if (!creature.limbs[l].carries) continue;
+    const Step& step = steps[l];
     const double u = step.progress(tick - 1);
     const glm::dvec3 point = u >= 1 ? step.landing : glm::mix(step.liftOff, step.landing, u);
     points.push_back(step.relative(point, previous));
@@ -90,6 +93,7 @@ std::vector<glm::dvec3> groundBelowHomes(const Heights& heights, const Creature&
   std::vector<glm::dvec3> points;
   const glm::dvec2 position = previous.world();
   for (const Limb& limb : creature.limbs) {
+    if (!limb.carries) continue;
     const glm::dvec3 home = previous.orientation * limb.home;
     const double ground = heightAt(heights, position.x + home.x, position.y + home.z);
     points.emplace_back(home.x, ground - previous.y, home.z);
@@ -102,7 +106,7 @@ std::vector<glm::dvec3> groundBelowHomes(const Heights& heights, const Creature&
 SupportPlane supportPlane(const Tuning& tuning, const std::vector<glm::dvec3>& points) {
   glm::dvec3 mean{0};
   for (const glm::dvec3& point : points) mean += point;
-  const double k = static_cast<double>(points.size());
+  const double k = std::max(1.0, static_cast<double>(points.size()));  // without points it is level
   mean /= k;
   double sxx = tuning.ridge * k, szz = tuning.ridge * k, sxz = 0, sxy = 0, szy = 0;
   SupportPlane plane;
@@ -145,7 +149,8 @@ glm::dvec3 leaningNormal(const Tuning& tuning, const SupportPlane& plane, const 
 
 // From the follow factor on. `points` are relative to the previous body.
 void move(const Tuning& tuning, const Heights& heights, const AgentBody& previous, const glm::dvec2& desired,
-          std::vector<glm::dvec3> points, double phase, const BodyChoices& choices, BodyResult& result) {
+          std::vector<glm::dvec3> points, double phase, double drop, const BodyChoices& choices,
+          BodyResult& result) {
   AgentBody& next = result.body;
   turn(tuning, desired, choices, result);
   walk(tuning, desired, result);
@@ -165,7 +170,7 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
   const double predicted = previous.y + (plane.b * h.x + plane.c * h.y) * next.speed * tuning.dt;
   const double breath =
       std::pow(4 * phase * (1 - phase), 2) * std::min(1.0, previous.still / tuning.settleTime);
-  double wanted = previous.y + plane.height + tuning.breathHeight * breath;
+  double wanted = previous.y + plane.height - drop + tuning.breathHeight * breath;
   const glm::dvec2 position = next.world();
   for (int k = -1; k <= 1; ++k) {
     const glm::dvec3 q = tuning.bodyHeight * up + k * tuning.bodyRadius * forward;
@@ -192,19 +197,23 @@ double stoppingSpeed(const Tuning& tuning, double way) {
 }
 
 BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
-                const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
+                const AgentBody& previous, const glm::dvec2& wish, std::span<const Step> steps,
                 std::span<const double> misses, double tick, double phase, const BodyChoices& choices) {
+  const glm::dvec2 desired = creature.speed * wish;
   BodyResult result;
   result.body = previous;
   double follow = 1;
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
-    const LegFollow leg = followOf(tuning, creature.limbs[l], previous, steps[l], desired, misses[l], tick);
+    LegFollow leg;
+    if (creature.limbs[l].carries)
+      leg = followOf(tuning, creature.limbs[l], previous, steps[l], desired, misses[l], tick);
     if (leg.planted && leg.behind > 0) follow = std::min(follow, leg.factor);
     follow = std::min(follow, leg.errorFactor);
     result.follow.push_back(leg);
   }
   result.body.follow = std::max(choices.follow.value_or(follow), tuning.followLeast);
-  move(tuning, heights, previous, desired, groundPoints(previous, steps, tick), phase, choices, result);
+  move(tuning, heights, previous, desired, groundPoints(creature, previous, steps, tick), phase,
+       creature.shift.y, choices, result);
   return result;
 }
 
@@ -215,8 +224,8 @@ BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creatur
   result.body.follow = 1;
   Tuning upright = tuning;
   upright.leanGain = upright.leanLevel = upright.breathHeight = 0;
-  move(upright, heights, previous, desired, groundBelowHomes(heights, creature, previous), 0, choices,
-       result);
+  move(upright, heights, previous, creature.speed * desired, groundBelowHomes(heights, creature, previous), 0,
+       creature.shift.y, choices, result);
   return result;
 }
 

@@ -70,12 +70,13 @@ void choose(FootholdResult& plan) {
 
 FootholdResult foothold(const Tuning& tuning, const Heights& heights, const Limb& limb, const AgentBody& body,
                         const Gait& gait, const Step& step, bool lifts, double tick,
-                        const FootholdChoices& choices) {
+                        const FootholdChoices& choices, const std::optional<glm::dvec3>& hanging) {
   FootholdResult result;
   const double flown = tick - 1 - step.firstTick, lasted = std::abs(step.duration);
-  const double duration = lifts ? gait.duration : std::max(lasted - flown, 2.0);
+  const double fresh = limb.stepTicks(gait.duration);
+  const double duration = lifts ? fresh : std::max(lasted - flown, 2.0);
   const double seconds = duration * tuning.dt;
-  const double stanceTime = gait.cycle - gait.duration * tuning.dt;
+  const double stanceTime = gait.cycle - fresh * tuning.dt;
   result.target = predictedLanding(limb, body, seconds, stanceTime);
   result.root = predictedRoot(limb, body, seconds);
   layLadder(tuning, heights, limb, body, result);
@@ -98,7 +99,7 @@ FootholdResult foothold(const Tuning& tuning, const Heights& heights, const Limb
   const double u = step.progress(tick - 1);
   const Eased time = eased(step, u);
   const SplinePoint present = splineAt(step, time.progress);
-  const glm::dvec3 liftOff = step.relative(lifts ? step.landing : present.position, body);
+  const glm::dvec3 liftOff = hanging.value_or(step.relative(lifts ? step.landing : present.position, body));
   const double chi = lifts ? 1 : 1 - u;
   std::optional<glm::dvec3> startTangent;
   if (!lifts) startTangent = present.tangent * (time.rate * duration / lasted);

@@ -37,9 +37,10 @@ struct FootholdChoices {
 };
 
 // `body` is the new one, `step` the leg's last, `gait` this tick's with its durations, `tick` is n.
-// `lifts`: the leg lifts now; otherwise it is aimed anew.
+// `lifts`: the leg lifts now; otherwise it is aimed anew. `hanging`: where its foot is, relative, of a leg
+// that lifts without having carried.
 FootholdResult foothold(const Tuning& tuning, const Heights& heights, const Limb& limb, const AgentBody& body,
                         const Gait& gait, const Step& step, bool lifts, double tick,
-                        const FootholdChoices& choices = {});
+                        const FootholdChoices& choices = {}, const std::optional<glm::dvec3>& hanging = {});
 
 }  // namespace skitter::reference

@@ -110,6 +110,14 @@ void findWindow(const Tuning& tuning, const Creature& creature, const Limb& limb
   if (tuning.reachTriggered) leg.windowMargin = never;
 }
 
+// A leg that decides nothing.
+LegDecision idleDecision() {
+  LegDecision leg;
+  leg.windowMargin = leg.mustMargin = leg.wantsMargin = leg.movedMargin = never;
+  leg.reaimMargin = leg.reaimProgressMargin = never;
+  return leg;
+}
+
 }  // namespace
 
 glm::dvec3 predictedLanding(const Limb& limb, const AgentBody& body, double seconds, double stanceTime) {
@@ -122,7 +130,7 @@ glm::dvec3 predictedRoot(const Limb& limb, const AgentBody& body, double seconds
 }
 
 Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
-                const std::optional<double>& duration) {
+                const std::optional<double>& duration, double slowest) {
   Stride stride;
   const double pace = body.pace(tuning);
   const double unrounded = tuning.swingStill / (1 + pace / tuning.swingSpeed) / tuning.dt + 0.5;
@@ -131,7 +139,8 @@ Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
   stride.swingTime = stride.duration * tuning.dt;
   const double duty = std::max(tuning.dutyLeast, tuning.dutyStill - tuning.dutyGain * pace);
   stride.cycle = std::min(tuning.cycleMax, stride.swingTime / (1 - duty));
-  stride.cycle = std::max(stride.cycle, groups * stride.swingTime * tuning.windowSlack);
+  const double longest = std::floor(slowest * stride.duration + 0.5) * tuning.dt;
+  stride.cycle = std::max(stride.cycle, groups * longest * tuning.windowSlack);
   const double stanceTime = stride.cycle - stride.swingTime;
   stride.half = std::clamp(pace * stanceTime / 2, tuning.halfStrideStill, tuning.halfStrideMax);
   return stride;
@@ -139,11 +148,11 @@ Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
 
 GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody& body, double phase,
                 std::span<const Step> steps, std::span<const double> misses, double tick,
-                const GaitChoices& choices, WatchedGround watched) {
+                const GaitChoices& choices, WatchedGround watched, uint32_t idleBefore) {
   GaitResult result;
   Gait& next = result.gait;
 
-  const Stride stride = strideOf(tuning, creature.groups, body, choices.duration);
+  const Stride stride = strideOf(tuning, creature.groups, body, choices.duration, creature.slowest());
   next.halfStride = stride.half;
   next.duration = stride.duration;
   next.cycle = stride.cycle;
@@ -152,10 +161,20 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
   next.phase = phase - std::floor(phase);
 
   result.mustMargin = never;
+  uint32_t rising = 0;
   for (size_t l = 0; l < creature.limbs.size(); ++l) {
     const Limb& limb = creature.limbs[l];
+    const bool wasIdle = (idleBefore >> l & 1u) != 0;
+    if (!limb.carries || wasIdle) {
+      // Who carries again is in the air, and comes down by a step.
+      uint32_t& mask = limb.carries ? rising : next.idle;
+      mask |= 1u << l;
+      result.legs.push_back(idleDecision());
+      continue;
+    }
     LegDecision leg =
-        judge(tuning, limb, body, steps[l], next, stride.cycle - stride.swingTime, misses[l], tick, watched);
+        judge(tuning, limb, body, steps[l], next, stride.cycle - limb.stepTicks(stride.duration) * tuning.dt,
+              misses[l], tick, watched);
     findWindow(tuning, creature, limb, next, stride.swingTime, leg);
     if (!leg.planted) next.air |= 1u << l;
     if (!leg.planted && leg.wants) next.reaim |= 1u << l;
@@ -167,6 +186,7 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
   }
 
   result.settleMargin = std::abs(body.still - tuning.settleTime);
+  next.air |= rising;
   uint32_t yielding = 0;
   if (result.first >= 0) {
     yielding = creature.limbs[static_cast<size_t>(result.first)].neighbours;
@@ -178,6 +198,8 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
     const bool neighboursStand = (creature.limbs[l].neighbours & (next.air | next.lift)) == 0;
     if (leg.planted && leg.wants && leg.open && !yields && neighboursStand) next.lift |= 1u << l;
   }
+  next.lift |= rising;
+  next.reaim |= rising;
   return result;
 }
 

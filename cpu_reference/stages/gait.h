@@ -29,9 +29,9 @@ struct Stride {
   double half = 0, duration = 0, swingTime = 0, cycle = 0;
   double durationMargin = 0;  // ticks, of the rounding of D
 };
-// `duration`, if any, is D instead of the rule's.
+// `duration`, if any, is D instead of the rule's; `slowest` is Creature::slowest.
 Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
-                const std::optional<double>& duration = {});
+                const std::optional<double>& duration = {}, double slowest = 1);
 
 struct GaitResult {
   Gait gait;
@@ -51,10 +51,10 @@ struct GaitChoices {
 using WatchedGround = const Heights*;
 
 // `phase` is the last tick's, `body` the new one, `misses` Chain::miss of each leg after the last tick,
-// `tick` is n.
+// `tick` is n, `idleBefore` the last tick's Gait::idle.
 GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody& body, double phase,
                 std::span<const Step> steps, std::span<const double> misses, double tick,
-                const GaitChoices& choices = {}, WatchedGround watched = nullptr);
+                const GaitChoices& choices = {}, WatchedGround watched = nullptr, uint32_t idleBefore = 0);
 
 // Where leg `limb` would land, and where its root would then be, `seconds` before touchdown (model space).
 glm::dvec3 predictedLanding(const Limb& limb, const AgentBody& body, double seconds, double stanceTime);

@@ -5,8 +5,8 @@
 namespace skitter::reference {
 
 LoopGaitResult loopGait(const Tuning& tuning, int groups, const AgentBody& body, double phase,
-                        const std::optional<double>& duration) {
-  const Stride stride = strideOf(tuning, groups, body, duration);
+                        const std::optional<double>& duration, double slowest) {
+  const Stride stride = strideOf(tuning, groups, body, duration, slowest);
   if (!(body.still > 0)) {
     phase += tuning.dt / stride.cycle;
     phase -= std::floor(phase);

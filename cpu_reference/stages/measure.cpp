@@ -175,12 +175,13 @@ std::vector<glm::dvec3> jointsOf(const Limb& limb, const std::vector<glm::dvec2>
 
 size_t neighbourOf(const Creature& creature, size_t limb) {
   const size_t none = creature.limbs.size();
-  const glm::dvec3 home = creature.limbs[limb].home;
+  const auto homeOf = [&](size_t l) { return creature.limbs[l].home - creature.shift; };
+  const glm::dvec3 home = homeOf(limb);
   size_t found = none;
   for (size_t other = 0; other < none; ++other) {
-    const glm::dvec3 at = creature.limbs[other].home;
+    const glm::dvec3 at = homeOf(other);
     if ((at.x < 0) != (home.x < 0) || at.z >= home.z) continue;
-    if (found == none || at.z > creature.limbs[found].home.z) found = other;
+    if (found == none || at.z > homeOf(found).z) found = other;
   }
   return found;
 }
@@ -246,6 +247,12 @@ Measured measure(const Tuning& tuning, const Heights& heights, const Creature& c
     advance(trail, tip + local, place);
     addStance(tuning, place, planted, trail, decisions, metric);
     decisions.closes = result.closes;
+    if (creature.limbs[l].lost) {
+      metric.lost += 1;
+      decisions.closes = false;
+      result.legs.push_back(decisions);
+      continue;
+    }
     if (result.closes) decisions.path = addWindow(tuning, trail, metric.footJerk, metric.footPath);
 
     const double above = body.y + tip.y - heightAt(heights, world.x + tip.x, world.y + tip.z);
@@ -261,7 +268,7 @@ Measured measure(const Tuning& tuning, const Heights& heights, const Creature& c
     if (decisions.violation > 0) metric.violations += 1;
 
     const size_t neighbour = neighbourOf(creature, l);
-    decisions.paired = neighbour < legs;
+    decisions.paired = neighbour < legs && !creature.limbs[neighbour].lost;
     if (decisions.paired) {
       decisions.crossing = crossingOf(joints[l], joints[neighbour]);
       metric.pairs += 1;

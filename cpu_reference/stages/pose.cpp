@@ -10,6 +10,11 @@ std::vector<BonePose> pose(const Limb& limb, const AgentBody& body,
   glm::dquat rotation = body.orientation;
   glm::dvec3 position = body.orientation * limb.root;
   for (size_t i = 0; i < limb.bones.size(); ++i) {
+    // Lost bones have neither turn nor length.
+    if (i >= limb.left) {
+      entries.push_back({rotation, position, true});
+      continue;
+    }
     const BoneRest& bone = limb.bones[i];
     const glm::dvec3 axis = bone.frame * glm::dvec3(-directions[i].y, directions[i].x, 0);
     rotation = rotation * glm::normalize(glm::dquat(1, axis.x, axis.y, axis.z));

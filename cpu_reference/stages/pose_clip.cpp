@@ -15,4 +15,12 @@ Affine plantedPose(const ClipTable& table, const AgentBody& body, const Play& pl
   return glm::mat3_cast(body.orientation) * matrix;
 }
 
+Affine stumpPose(const ClipTable& table, const AgentBody& body, const Play& play, size_t leg, size_t bone,
+                 const BoneFix& fix) {
+  const glm::dvec3 start = blendedJoints(table, play, leg)[bone];
+  Affine matrix(0);
+  matrix[3] = body.orientation * (fix.turn * start + fix.move);
+  return matrix;
+}
+
 }  // namespace skitter::reference

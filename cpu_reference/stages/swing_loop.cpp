@@ -7,7 +7,7 @@ namespace skitter::reference {
 LoopFoot loopSwing(const Tuning& tuning, int groups, const Limb& limb, const AgentBody& body,
                    const Gait& gait) {
   LoopFoot result;
-  const double swingTime = gait.duration * tuning.dt, stanceTime = gait.cycle - swingTime;
+  const double swingTime = limb.stepTicks(gait.duration) * tuning.dt, stanceTime = gait.cycle - swingTime;
   result.theta = gait.phase + static_cast<double>(limb.group) / groups;
   result.theta -= std::floor(result.theta);
   const double time = result.theta * gait.cycle;

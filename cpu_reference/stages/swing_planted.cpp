@@ -11,6 +11,16 @@ double level(const glm::dvec3& v) { return std::hypot(v.x, v.z); }
 
 }  // namespace
 
+PlantedFoot idlePlantedFoot(const Plant& previous) {
+  PlantedFoot result;
+  result.foot = {glm::dvec3(0), 0};
+  result.plant = previous;
+  result.plant.offset = glm::dvec3(0);
+  result.plant.locked = false;
+  result.strayMargin = std::numeric_limits<double>::infinity();
+  return result;
+}
+
 PlantedFoot plantedSwing(const Tuning& tuning, const Heights& heights, const AgentBody& body,
                          const glm::dvec3& inModel, bool stands, const Plant& previous,
                          const std::optional<bool>& locked) {

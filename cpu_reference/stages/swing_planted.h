@@ -26,6 +26,9 @@ struct PlantedFoot {
   double strayMargin = 0;  // metres between |o.xz| and the bound that it was held against; infinite: none
 };
 
+// Of a leg that does not carry: it has no target, and no lock.
+PlantedFoot idlePlantedFoot(const Plant& previous);
+
 // `inModel` is the clip's foot, p_bones, and `stands` whether it stands there; `locked`, if any, is the
 // decision instead of the rule's.
 PlantedFoot plantedSwing(const Tuning& tuning, const Heights& heights, const AgentBody& body,

@@ -217,7 +217,7 @@ struct LoopBounds {
 };
 inline LoopBounds loopSwing(const Tuning& t, const Limb& limb, const AgentBody& body, const Gait& gait) {
   LoopBounds bound{};
-  const double swingTime = gait.duration * t.dt;
+  const double swingTime = limb.stepTicks(gait.duration) * t.dt;
   const double time = 12 * roundoff * gait.cycle;
   bound.flown = time / swingTime + 6 * roundoff;
   const double speed = body.surfaceSpeed + std::abs(body.turnRate) * glm::length(limb.home);

@@ -96,7 +96,9 @@ class Standing {
  public:
   explicit Standing(const Crowd::Impl& crowd, const Kind& kind) : crowd_(crowd), kind_(kind) {
     for (const PageBuffer& each : pageBuffers(crowd, kind)) {
-      if (!each.record || !keeps(kind, crowd.options, *each.record) || *each.record == Record::goal) continue;
+      if (!each.record || !keeps(kind, crowd.options, *each.record)) continue;
+      // The host says these by themselves.
+      if (*each.record == Record::goal || *each.record == Record::hurt) continue;
       const RecordInfo info = infoOf(*each.record);
       // What every tick makes anew can stay, and what measure has summed up shall.
       if (!info.spawned && !isHashed(*each.record, kind.controller) && *each.record != Record::flight)
@@ -184,6 +186,16 @@ void list(const Kind& kind, const Page& page, std::span<const uint32_t> agents, 
   writes.add(page.counters, sizeof(uint32_t) * shared::COUNTER_IK_LISTED, std::span(&listed, 1));
 }
 
+// The agent's legs; who does not begin anew stirs, for a sleeper would not see it.
+void writeLegs(const AgentChange& change, const Page& page, uint32_t agent, Kind& kind, Writes& writes) {
+  const std::vector<float> record = kind.hurtRecordOf(change.agent);
+  writes.add(page.hurt, uint64_t{agent} * record.size() * sizeof(float), record);
+  constexpr uint64_t still = 13;  // the float of a body record
+  constexpr float stirs = 0;
+  if (!change.stands)
+    writes.add(page.body, uint64_t{agent} * sizeof(BodyRecord) + still * sizeof(float), std::span(&stirs, 1));
+}
+
 struct Stood {
   const Kind* kind;
   const Page* page;
@@ -229,6 +241,7 @@ void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
       else if (change.speed)
         writes.add(page->goal, goal + 4 * sizeof(float), std::span(change.record).subspan(4, 1));
       if (change.leaves) writes.add(page->body, uint64_t{agent} * sizeof(BodyRecord), absentBody());
+      if (change.hurt) writeLegs(change, *page, agent, kind, writes);
       if (!change.stands) continue;
       while (change.agent >= of->run->firstAgent + of->run->agents) ++of;
       standing.write(spawnerOf(crowd, *of->herd, *of->run), change.agent - of->run->firstAgent,

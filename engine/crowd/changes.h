@@ -18,6 +18,7 @@ struct AgentChange {
   uint32_t agent = 0;                                   // of the kind
   bool goal = false, speed = false;                     // all of the goal, or its speed
   bool leaves = false;                                  // its place is empty then
+  bool hurt = false;                                    // its legs are as Kind::damages has them
   std::array<float, 4 * shared::GOAL_STRIDE> record{};  // the goal's
   std::optional<Place> stands{};                        // anew, there
 };

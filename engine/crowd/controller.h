@@ -15,17 +15,20 @@ struct ControllerTraits {
   bool aimsSteps = false;    // feet go by steps that foothold aims
   bool tellsMisses = false;  // ik tells which planted feet miss their targets
   bool keepsLimits = false;  // legs are solved within the rig's limits; clips know none
+  bool canBeHurt = false;    // its stages have forms for legs that do not carry (Stage::hurt)
   bool breathes = false;     // a body at rest does, and sleeps once it has breathed out
 };
 constexpr ControllerTraits traitsOf(Controller controller) {
   switch (controller) {
     case Controller::adaptive:
-      return {.aimsSteps = true, .tellsMisses = true, .keepsLimits = true, .breathes = true};
+      return {
+          .aimsSteps = true, .tellsMisses = true, .keepsLimits = true, .canBeHurt = true, .breathes = true};
     case Controller::loop:
-      return {.tellsMisses = true, .keepsLimits = true};
+      return {.tellsMisses = true, .keepsLimits = true, .canBeHurt = true};
     case Controller::clip:
-    case Controller::planted:
       return {.playsClips = true, .needsClips = true};
+    case Controller::planted:
+      return {.playsClips = true, .needsClips = true, .canBeHurt = true};
     case Controller::keyPoses:
       return {.needsClips = true};
   }

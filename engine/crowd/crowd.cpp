@@ -147,10 +147,16 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   kind.forageGround = from.ways.value_or(Ways{});
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
+  kind.hurts = from.hurt;
+  if (kind.hurts) kind.wholeRecord = crowd::hurtRecord({}, kind.regaitOf({}));
   const bool amongWalls = kind.avoids && !crowd.scene.obstacles.empty();
   if (amongWalls) kind.wallBuffer = crowd::makeWalls(crowd, kind);
-  for (const Stage& stage : crowd::stagesOf(kind.controller, asked, kind.avoids, kind.wayNeeds.has_value(),
-                                            kind.forageNeeds.has_value(), amongWalls))
+  for (const Stage& stage : crowd::stagesOf(kind.controller, asked,
+                                            {.avoids = kind.avoids,
+                                            .findsWays = kind.wayNeeds.has_value(),
+                                            .forages = kind.forageNeeds.has_value(),
+                                            .amongWalls = amongWalls,
+                                            .hurts = kind.hurts}))
     kind.stages.push_back({stage});
   return kind;
 }

@@ -15,6 +15,8 @@ namespace {
 
 // What messages call the event that is looked at, and the herds that there are then.
 struct Where {
+  const Scene& scene;
+  const Kinds& kinds;  // of the scene's herds
   const Heightfield& terrain;
   Roster& herds;
   std::string event;
@@ -128,6 +130,24 @@ void check(const Removal& removal, const Where& at) {
     throw inputError(fmt::format("{}.remove has agent {} twice, expected once", at.event, *twice));
 }
 
+// Of a herd that the crowd begins with; nullptr for one that comes, whose file is read later.
+const Rig* knownRig(const skitter::Herd& herd, const Where& at) {
+  for (const SizedHerd& sized : at.kinds.herds)
+    if (&at.scene.herds[sized.herd] == &herd) return &at.kinds.rigs[sized.kind];
+  return nullptr;
+}
+
+void check(const LegChange& change, const Where& at) {
+  const skitter::Herd& herd = herdOf("herd", change.herd, at);
+  const auto name = [&] { return at.event; };
+  expectHurts([&] { return fmt::format("{}: herd {}", at.event, change.herd); }, herd.hurt);
+  checkAgents("agents", change.agents, 0, herd, at);
+  if (change.share && !change.agents.empty())
+    throw inputError(fmt::format("{} has agents and a share, expected one of them", at.event));
+  if (change.share) expectWithin(name, "the share", double{*change.share}, 0, 1, "of the agents");
+  if (const Rig* rig = knownRig(herd, at)) legOf(name, *rig, change);
+}
+
 void check(const HerdAddition& addition, const Where& at) {
   const std::string name = at.event + ".addHerd";
   checkHerd(addition.herd, name);
@@ -154,7 +174,7 @@ uint64_t checkEvents(const Scene& scene, const Heightfield& terrain, const Kinds
   uint64_t most = herds.places();
   for (size_t e = 0; e < scene.events.size(); ++e) {
     const Event& event = scene.events[e];
-    const Where where{terrain, herds, fmt::format("{}: events[{}]", scene.name, e)};
+    const Where where{scene, kinds, terrain, herds, fmt::format("{}: events[{}]", scene.name, e)};
     if (!(event.at >= 0 && event.at <= Event::maxTime))
       throw inputError(fmt::format("{}.at is {}, expected 0 to {} s", where.event, event.at, Event::maxTime));
     if (e > 0 && event.at < scene.events[e - 1].at)

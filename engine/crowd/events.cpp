@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "base/split_mix.h"
 #include "crowd/herd.h"
 #include "crowd/roster.h"
 #include "crowd/setup.h"
@@ -71,7 +72,8 @@ class Rehearsal {
   explicit Rehearsal(const Crowd::Impl& crowd) : crowd_(crowd), herds_(crowd) {}
 
   void play(const Event& event) {
-    const std::string name = fmt::format("{}: events[{}]", crowd_.scene.name, numberOf(event, crowd_));
+    number_ = numberOf(event, crowd_);
+    const std::string name = fmt::format("{}: events[{}]", crowd_.scene.name, number_);
     std::visit([&](const auto& what) { play(what, name); }, event.what);
   }
 
@@ -84,6 +86,14 @@ class Rehearsal {
   void play(const Change& change, const std::string& name) {
     const skitter::Herd& herd = herdAt(change.herd, name);
     if constexpr (requires { change.goal; }) expectItsLeader(change.goal, herd, name);
+    for (const uint32_t agent : change.agents) expectSomebody(change.herd, agent, name);
+  }
+  void play(const LegChange& change, const std::string& name) {
+    const skitter::Herd& herd = herdAt(change.herd, name);
+    expectHurts([&] { return fmt::format("{}: herd {}", name, change.herd); }, herd.hurt);
+    const auto coming = rigs_.find(change.herd);
+    legOf([&] { return name; }, coming != rigs_.end() ? *coming->second : crowd_.kindOf(change.herd).rig,
+          change);
     for (const uint32_t agent : change.agents) expectSomebody(change.herd, agent, name);
   }
   void play(const Teleport& teleport, const std::string& name) {
@@ -117,11 +127,13 @@ class Rehearsal {
     const uint32_t number = herds_.add(herd, name + ".addHerd");
     const Numbering numbering = numberingOf(herd, seedOf(crowd_.seed, number));
     presences_[number] = Presence::beginning(herd, numbering.starts, 0);
+    rigs_[number] = &crowd_.coming.at(number_).front().rig;
   }
   void play(const HerdRemoval& removal, const std::string& name) {
     herdAt(removal.herd, name);
     herds_.remove(removal.herd, fmt::format("{}.removeHerd: herd {}", name, removal.herd));
     presences_.erase(removal.herd);
+    rigs_.erase(removal.herd);
   }
 
   // The host may have removed the herd, and may have made another one of that number.
@@ -155,6 +167,8 @@ class Rehearsal {
   const Crowd::Impl& crowd_;
   Roster herds_;
   std::map<uint32_t, Presence> presences_;  // of the herds that events name
+  std::map<uint32_t, const Rig*> rigs_;     // of the herds that come in the same tick
+  size_t number_ = 0;                       // of the event
 };
 
 // What the host would call. The rehearsal has found nothing in the way.
@@ -195,11 +209,36 @@ class Happening {
   void operator()(const Removal& removal) const {
     for (const uint32_t agent : removal.agents) crowd_.remove(crowd_.agentId(removal.herd, agent));
   }
+  void operator()(const LegChange& change) const {
+    const Crowd::Impl& crowd = implOf(crowd_);
+    const uint32_t leg = legOf([&] { return std::string(); }, crowd.kindOf(change.herd).rig, change);
+    std::vector<AgentLeg> legs;
+    for (const uint32_t agent : meantBy(change))
+      legs.push_back({crowd_.agentId(change.herd, agent), leg, change.state, change.bone});
+    crowd_.hurt(legs);
+  }
   void operator()(const HerdAddition&) const { addComing(implOf(crowd_), number_); }
   void operator()(const HerdRemoval& removal) const { crowd_.removeHerd(crowd_.herdId(removal.herd)); }
   void operator()(const ThreatChange& change) const { crowd_.setThreat(change.number, change.threat); }
 
  private:
+  // Those of whom it speaks: named, drawn by the seed, or all who are there.
+  std::vector<uint32_t> meantBy(const LegChange& change) const {
+    if (!change.agents.empty()) return change.agents;
+    const Herd& herd = implOf(crowd_).herds[change.herd];
+    std::vector<uint32_t> meant;
+    for (uint32_t agent = 0; agent < herd.agents; ++agent)
+      if (herd.presence.has(agent) && isDrawn(herd.seed, agent, change.share)) meant.push_back(agent);
+    return meant;
+  }
+  // Each event draws by itself.
+  bool isDrawn(uint64_t seed, uint32_t agent, std::optional<float> share) const {
+    constexpr uint64_t stream = 0x6c656773;  // apart from what spawner and tints draw by the same seed
+    const uint64_t drawn =
+        base::SplitMix64::draw(base::SplitMix64::draw(seed + stream, number_ + 1), agent + 1);
+    return !share || static_cast<double>(drawn >> 11) * 0x1p-53 < double{*share};
+  }
+
   template <class Ground>
   void edit(const Ground& ground) const {
     const Rectangle at = rectangleOf(ground, crowd_.terrain());
@@ -232,6 +271,7 @@ Rectangle groundOf(const Event& event, const Heightfield& terrain) {
 bool namesAgents(const Event& event) {
   if (const auto* change = std::get_if<GoalChange>(&event.what)) return !change->agents.empty();
   if (const auto* change = std::get_if<SpeedChange>(&event.what)) return !change->agents.empty();
+  if (const auto* change = std::get_if<LegChange>(&event.what)) return !change->agents.empty();
   return std::holds_alternative<Teleport>(event.what) || std::holds_alternative<Removal>(event.what);
 }
 

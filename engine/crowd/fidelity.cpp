@@ -31,7 +31,8 @@ struct Sums {
   void add(std::span<const float, kFloats> m, const crowd::Kind& kind) {
     const double length = kind.rig.legLength;
     ticks += m[0];
-    legTicks += double{m[0]} * kind.legs;
+    const double ownLegTicks = double{m[0]} * kind.legs - m[15];  // less those of lost legs
+    legTicks += ownLegTicks;
     planted += m[1];
     stays += m[2];
     skates += m[3];
@@ -45,7 +46,7 @@ struct Sums {
     depth += m[12] / length;
     deepest = std::max(deepest, m[13] / length);
     if (crowd::traitsOf(kind.controller).keepsLimits) {
-      limitedLegTicks += double{m[0]} * kind.legs;
+      limitedLegTicks += ownLegTicks;
       violations += m[14];
       violation = std::max(violation, 2 * std::atan(double{m[7]}));
     }

@@ -111,9 +111,11 @@ void clearAwake(const Crowd::Impl& crowd, std::span<const Kind> kinds, vk::Comma
 std::optional<size_t> solverOf(const Kind& kind) {
   for (size_t i = 0; i < kind.stages.size(); ++i) {
     const ReadyStage& stage = kind.stages[i];
-    const bool goesOn = std::ranges::any_of(stage.bindings, [](const gpu::BindingDecl& declared) {
-      return declared.binding == shared::BINDING_CHAIN;
-    });
+    const auto binds = [&](uint32_t binding) {
+      return std::ranges::find(stage.bindings, binding, &gpu::BindingDecl::binding) != stage.bindings.end();
+    };
+    // planted goes on from clips, and only legs that it does not solve keep their chains.
+    const bool goesOn = binds(shared::BINDING_CHAIN) && !binds(shared::BINDING_START);
     if (stage.makes.has(StageId::ik) && stage.listed && goesOn) return i;
   }
   return {};

@@ -9,6 +9,17 @@
 namespace skitter {
 namespace crowd {
 
+const Regait& Kind::regaitOf(const LegPattern& pattern) {
+  const auto known = regaits.find(pattern);
+  if (known != regaits.end()) return known->second;
+  return regaits.emplace(pattern, regaitByRule(rig, tuning, pattern)).first->second;
+}
+
+std::vector<float> Kind::hurtRecordOf(uint32_t agent) {
+  const auto hurt = damages.find(agent);
+  return hurt == damages.end() ? wholeRecord : hurtRecord(hurt->second, regaitOf(hurt->second.pattern()));
+}
+
 const SizeRun& Herd::runOf(uint32_t agent) const {
   return *(std::ranges::upper_bound(runs, agent, {}, &SizeRun::firstOfHerd) - 1);
 }

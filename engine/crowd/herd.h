@@ -12,8 +12,10 @@
 
 #include "crowd/changes.h"
 #include "crowd/clip_records.h"
+#include "crowd/damage.h"
 #include "crowd/edit.h"
 #include "crowd/key_poses.h"
+#include "crowd/regait.h"
 #include "crowd/size_run.h"
 #include "crowd/stage.h"
 #include "crowd/tuning.h"
@@ -72,9 +74,13 @@ struct Kind {
   gpu::Buffer clipHeads, clipTimes, clipRows, clipLegs, clipBones;
   KeyPoses keyPoses;  // of controller key-poses
   gpu::Buffer keyBuffer;
-  gpu::Buffer wallBuffer;       // the scene's obstacles, where its herds avoid
-  bool reachTriggered = false;  // legs step when out of reach, without a rhythm
-  bool tinted = false;          // some herd of it has a colour or a tint of its own
+  gpu::Buffer wallBuffer;                // the scene's obstacles, where its herds avoid
+  bool reachTriggered = false;           // legs step when out of reach, without a rhythm
+  bool tinted = false;                   // some herd of it has a colour or a tint of its own
+  bool hurts = false;                    // legs of its agents can be hurt
+  std::vector<float> wholeRecord;        // where it hurts: the `hurt` record of an agent whose legs are whole
+  std::map<uint32_t, Damage> damages;    // of its agents, those that are hurt, as the host has said
+  std::map<LegPattern, Regait> regaits;  // those that were asked for
   shared::Parameters parameters{};
   gpu::HostBuffer parameterBlock;  // Parameters; written once, before the first tick
   std::vector<float> rigRecords;   // as uploaded to rigBuffer
@@ -90,6 +96,10 @@ struct Kind {
 
   // The place among the kind's herds of the one that an agent is of.
   uint32_t herdOf(uint64_t agent) const;
+  // The gait of a pattern, made when it is first asked for.
+  const Regait& regaitOf(const LegPattern& pattern);
+  // The `hurt` record of an agent, as the host has said.
+  std::vector<float> hurtRecordOf(uint32_t agent);
   // Whether stages from body to pose pass over some: sleepers, or empty places.
   bool rests(const CrowdOptions& options) const { return options.sleep || reserves; }
 };

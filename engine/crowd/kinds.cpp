@@ -17,10 +17,10 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, threat, forage, phase, colour, tint] = herd;
-  return std::tuple_cat(
-      std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways, threat, forage),
-      std::tuple(reserve > 0));
+               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt] = herd;
+  return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways,
+                                 threat, forage, hurt),
+                        std::tuple(reserve > 0));
 }
 
 // `areEqual` compares what the rigs of two herds, by number, are.
@@ -44,14 +44,24 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
   if (kinds.firstHerds.size() > mostKinds)
     throw inputError(fmt::format(
         "{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning, "
-        "avoid, ways, threat, forage or size, expected at most {}: each of them, and each size of one, has "
-        "pipelines of its own; equal herds share them, whatever their agents, spawn and goal",
+        "avoid, ways, threat, forage, hurt or size, expected at most {}: each of them, and each size of one, "
+        "has pipelines of its own; equal herds share them, whatever their agents, spawn and goal",
         scene.name, kinds.firstHerds.size(), mostKinds));
   return kinds;
 }
 
 // Whether legs are proposed where the model has none.
 bool proposes(const skitter::Herd& herd) { return traitsOf(herd.controller).needsClips; }
+
+void checkHurt(const skitter::Herd& herd, const std::string& what) {
+  if (!traitsOf(herd.controller).canBeHurt)
+    throw inputError(
+        fmt::format("{}.controller is {}, expected adaptive, loop or planted: its legs can be hurt", what,
+                    nameOf(herd.controller)));
+  if (herd.solver != Solver::activeSet)
+    throw inputError(fmt::format("{}.solver is {}, expected {}: its legs can be hurt", what,
+                                 nameOf(herd.solver), nameOf(Solver::activeSet)));
+}
 
 // The ranges of a scene file.
 void checkSpawn(const Spawn& spawn, const std::string& what) {
@@ -116,6 +126,7 @@ void checkForage(const skitter::Herd& herd, const std::string& what) {
 void checkHerd(const skitter::Herd& herd, const std::string& what) {
   using skitter::Herd;
   checkTuning(herd.tuning, what + ".tuning");
+  if (herd.hurt) checkHurt(herd, what);
   if (herd.sizes.size() > Herd::maxSizes)
     throw inputError(
         fmt::format("{}.sizes are {}, expected at most {}", what, herd.sizes.size(), Herd::maxSizes));

@@ -13,8 +13,9 @@ constexpr size_t kFewLegs = 8;
 // Neighbours further apart in lag would have to wait for each other (docs/stages/gait.md).
 constexpr float kMostBetweenNeighbours = 0.75f;
 
-// Leg indices by their homes' direction from the middle of all homes.
-std::vector<size_t> around(const Rig& rig) {
+}  // namespace
+
+std::vector<size_t> legsAround(const Rig& rig) {
   glm::vec3 middle(0);
   for (const Leg& leg : rig.legs) middle += leg.home / static_cast<float>(rig.legs.size());
   const auto direction = [&](size_t l) {
@@ -27,15 +28,13 @@ std::vector<size_t> around(const Rig& rig) {
   return ring;
 }
 
-}  // namespace
-
 std::vector<LegOrder> legOrder(const Rig& rig) {
   std::vector<LegOrder> order(rig.legs.size());
   const auto meet = [&](size_t a, size_t b) {
     if (rig.legs[a].group != rig.legs[b].group)
       order[a].neighbours |= 1u << b, order[b].neighbours |= 1u << a;
   };
-  const std::vector<size_t> ring = around(rig);
+  const std::vector<size_t> ring = legsAround(rig);
   for (size_t i = 0; i < ring.size(); ++i) meet(ring[i], ring[(i + 1) % ring.size()]);
   for (size_t a = 0; rig.legs.size() < kFewLegs && a < rig.legs.size(); ++a)
     for (size_t b = 0; b < a; ++b) meet(a, b);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,5 +19,8 @@ struct LegOrder {
 };
 
 std::vector<LegOrder> legOrder(const Rig& rig);
+
+// Legs in the order in which their homes lie around the mean of all homes.
+std::vector<size_t> legsAround(const Rig& rig);
 
 }  // namespace skitter::crowd

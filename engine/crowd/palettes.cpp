@@ -103,6 +103,7 @@ gpu::KernelInfo Palettes::Impl::infoOf(TransformFormat format, bool ofPalettes) 
   info.constants.push_back({CONSTANT_ENTRIES, entries});
   info.constants.push_back({CONSTANT_JOINTS_STRETCH, crowd::traitsOf(controller).playsClips});
   info.constants.push_back({CONSTANT_RELATIVE, options.relative});
+  info.constants.push_back({CONSTANT_LOSES_BONES, crowd->kindOf(herd).hurts});
   return info;
 }
 

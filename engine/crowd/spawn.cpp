@@ -114,6 +114,7 @@ Spawner::Spawner(const skitter::Herd& from, const Kind& kind, const Heightfield&
       rig_(kind.rig),
       clips_(kind.clips),
       keyPoses_(kind.keyPoses),
+      whole_(kind.wholeRecord),
       terrain_(terrain),
       tuning_(kind.parameters),
       series_(kind.series),
@@ -236,6 +237,8 @@ void Spawner::stand(uint32_t agent, const Place& place, uint32_t at, const Spawn
       foot(records.foot, FOOT_STRIDE), chain(records.chain, chainStride(rig_.maxBones())),
       tip(records.tip, TIP_STRIDE), play(records.play, PLAY_STRIDE);
   for (Writer* each : {&body, &gait, &play}) each->seek(record);
+  if (!records.hurt.empty())
+    std::ranges::copy(whole_, records.hurt.begin() + static_cast<ptrdiff_t>(whole_.size()) * record);
   const float phase =
       herd_.phase ? *herd_.phase - std::floor(*herd_.phase) : uniform(seed_, spotOf(agent), 2);
 

@@ -78,6 +78,7 @@ class Spawner {
   const Rig& rig_;
   const ClipRecords& clips_;
   const KeyPoses& keyPoses_;
+  const std::vector<float>& whole_;  // the `hurt` record of whole legs; empty: there is none
   const Heightfield& terrain_;
   const shared::Parameters& tuning_;
   const SeriesTable& series_;

@@ -1,6 +1,7 @@
 #include "crowd/stage.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "crowd/controller.h"
 #include "crowd/controllers/controllers.h"
@@ -44,6 +45,12 @@ void fuse(const CrowdOptions& options, const Stage& fused, std::vector<Stage>& s
   stages.erase(row.begin() + 1, row.end());
 }
 
+void takeHurtForm(Stage& stage) {
+  stage.code = *stage.hurtCode;
+  stage.bindings.push_back({shared::BINDING_HURT, gpu::BindingKind::load4});
+  stage.bindings.insert(stage.bindings.end(), stage.hurtBindings.begin(), stage.hurtBindings.end());
+}
+
 void addParameters(const shared::Parameters& parameters, gpu::KernelInfo& info) {
 #define ADD_KNOWN(i, name) info.constants.emplace_back(shared::CONSTANT_PARAMETERS + (i), parameters.name);
   KNOWN_PARAMETERS(ADD_KNOWN)
@@ -56,24 +63,32 @@ bool keepsFeet(const CrowdOptions& options) {
   return options.feet || options.measure || options.footfalls > 0;
 }
 
-std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids, bool findsWays,
-                            bool forages, bool amongWalls) {
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, const StageForms& forms) {
   const ControllerStages& of = controllerStages(controller);
   std::vector<Stage> stages = of.all(options);
   std::erase_if(stages, [&](const Stage& stage) {
     return std::ranges::any_of(
-        allStages, [&](StageId id) { return stage.makes.has(id) && !isAskedFor(id, options, avoids); });
+        allStages, [&](StageId id) { return stage.makes.has(id) && !isAskedFor(id, options, forms.avoids); });
   });
   if (options.fuse && of.fused != nullptr)
     for (const Stage& fused : of.fused())
-      if ((!findsWays && !forages) || !fused.makes.has(StageId::navigate)) fuse(options, fused, stages);
+      if ((!forms.findsWays && !forms.forages) || !fused.makes.has(StageId::navigate))
+        fuse(options, fused, stages);
   const auto isOf = [](StageId id) { return [id](const Stage& stage) { return stage.makes == id; }; };
-  if (findsWays) std::ranges::replace_if(stages, isOf(StageId::navigate), wayNavigateStage());
-  if (forages) std::ranges::replace_if(stages, isOf(StageId::navigate), forageNavigateStage());
-  if (amongWalls) std::ranges::replace_if(stages, isOf(StageId::avoid), wallAvoidStage());
+  if (forms.findsWays) std::ranges::replace_if(stages, isOf(StageId::navigate), wayNavigateStage());
+  if (forms.forages) std::ranges::replace_if(stages, isOf(StageId::navigate), forageNavigateStage());
+  if (forms.amongWalls) std::ranges::replace_if(stages, isOf(StageId::avoid), wallAvoidStage());
+  for (Stage& stage : stages)
+    if (forms.hurts && stage.hurtCode) takeHurtForm(stage);
   for (Stage& stage : stages)
     if (stage.isOfTheAwake()) stage.bindings.push_back({shared::BINDING_AWAKE, gpu::BindingKind::load4});
   return stages;
+}
+
+Stage withHurt(Stage stage, const gpu::ShaderCode& code, std::vector<gpu::BindingDecl> more) {
+  stage.hurtCode = code;
+  stage.hurtBindings = std::move(more);
+  return stage;
 }
 
 void addListed(StageKernels& kernels) {

@@ -40,6 +40,9 @@ struct Stage {
   // Where the counters have the indirect dispatch over what few agents or legs need and the first dispatch
   // leaves out; -1: it leaves out nothing.
   int listedArguments = -1;
+  // In herds that can be hurt: its form, and what that binds beside BINDING_HURT.
+  std::optional<gpu::ShaderCode> hurtCode = {};
+  std::vector<gpu::BindingDecl> hurtBindings = {};
 
   // Whether it passes over those who sleep.
   bool isOfTheAwake() const { return over == Over::agents || over == Over::legs || over == Over::joints; }
@@ -54,16 +57,24 @@ struct ReadyStage : Stage {
 // once feet.
 bool keepsFeet(const CrowdOptions& options);
 
-// A controller's stages, in order, less those that make what nobody asked for. `avoids`: the herd does.
-// `findsWays`: it goes by fields. `forages`: it goes by trails. `amongWalls`: there are obstacles.
-std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, bool avoids = false,
-                            bool findsWays = false, bool forages = false, bool amongWalls = false);
+// What a herd is, where its stages have forms for it.
+struct StageForms {
+  bool avoids = false;      // keeps clear of others
+  bool findsWays = false;   // goes by fields
+  bool forages = false;     // goes by trails
+  bool amongWalls = false;  // avoids, and there are obstacles
+  bool hurts = false;       // can be hurt
+};
+// A controller's stages, in order, less those that make what nobody asked for.
+std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, const StageForms& forms = {});
 StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs);
 // Makes the pipelines, for the kind's rig, controller and tuning.
 void makeKernels(const StageNeeds& needs, ReadyStage& stage);
 
 // For what stages have in common.
 //
+// The stage, with its form for herds that can be hurt.
+Stage withHurt(Stage stage, const gpu::ShaderCode& code, std::vector<gpu::BindingDecl> more = {});
 // A second kernel, for what the first dispatch lists and leaves out.
 void addListed(StageKernels& kernels);
 // The numbers with which the rig's records of legs begin.

@@ -248,18 +248,22 @@ void giveGenerations(Impl& crowd, uint32_t kind, std::span<const uint32_t> all) 
 
 std::vector<StateChange> changesOf(const Kind& kind) {
   std::vector<StateChange> all;
-  for (const auto& [agent, goal, speed, leaves, record, stands] : kind.changes.all()) {
-    all.push_back({agent, goal, speed, leaves, record, {}});
+  for (const auto& [agent, goal, speed, leaves, hurt, record, stands] : kind.changes.all()) {
+    all.push_back({agent, goal, speed, leaves, record, {}, {}});
     if (stands) all.back().stands = {stands->position.x, stands->position.y, stands->heading};
+    if (!hurt) continue;
+    const auto damage = kind.damages.find(agent);
+    const auto values = (damage == kind.damages.end() ? Damage{} : damage->second).values();
+    all.back().hurt.assign(values.begin(), values.end());
   }
   return all;
 }
 
 void giveChanges(const std::vector<StateChange>& all, Kind& kind) {
-  for (const auto& [agent, goal, speed, leaves, record, stands] : all) {
+  for (const auto& [agent, goal, speed, leaves, record, stands, hurt] : all) {
     if (agent >= kind.agents) continue;
     AgentChange& change = kind.changes.of(agent, kind.agents);
-    change = {agent, goal, speed, leaves, record, {}};
+    change = {agent, goal, speed, leaves, kind.hurts && hurt.size() == Damage::floats, record, {}};
     if (stands.size() == 3) change.stands = Place{{stands[0], stands[1]}, stands[2]};
   }
 }
@@ -325,6 +329,28 @@ void giveSeries(const std::vector<StateSeries>& all, Impl& crowd) {
     if (saved.agent >= 0) goal.agent = static_cast<uint32_t>(saved.agent);
     crowd.kinds[saved.kind].series.push_back({goal, saved.first, placesFrom(saved.places)});
   }
+}
+
+void setDamage(Kind& kind, uint32_t agent, const Damage& damage) {
+  if (damage.isNone())
+    kind.damages.erase(agent);
+  else
+    kind.damages[agent] = damage;
+}
+
+// As the records have it, or what waits to be written.
+void giveDamages(const Impl& crowd, const std::vector<StateChange>& waiting, Kind& kind) {
+  if (!kind.hurts) return;
+  const auto floats = 4 * static_cast<size_t>(shared::hurtStride(kind.legs));
+  for (const Page& page : kind.pages) {
+    const std::vector<float> records = gpu::download<float>(*crowd.context, page.hurt);
+    for (uint32_t agent = 0; agent < page.agents; ++agent)
+      setDamage(kind, page.firstAgent + agent,
+                Damage::ofValues(std::span(records).subspan(agent * floats, Damage::floats)));
+  }
+  for (const StateChange& change : waiting)
+    if (change.agent < kind.agents && change.hurt.size() == Damage::floats)
+      setDamage(kind, change.agent, Damage::ofValues(change.hurt));
 }
 
 StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& footfalls,
@@ -608,6 +634,8 @@ void restore(Impl& crowd, const State& state) {
     clearCounters(crowd);
     readChunks(crowd, source);
   }
+  for (size_t k = 0; k < crowd.kinds.size(); ++k)
+    giveDamages(crowd, source.head.kinds[k].changes, crowd.kinds[k]);
   for (Kind& kind : crowd.kinds)
     if (!kind.stages.empty()) setParameters(crowd, crowd.dt > 0 ? crowd.dt : usualDt, kind);
   listAwake(crowd);

@@ -15,6 +15,12 @@ namespace {
 
 using Json = nlohmann::json;
 
+// A key that is missing where the list is empty, as in states of earlier versions.
+template <class Value>
+struct IfAny {
+  std::vector<Value>& list;
+};
+
 // eachKey(object, visit) calls visit(key, member) for both directions. Bindings name all members, so that a
 // new one does not compile until it is looked at here.
 template <class Visit>
@@ -25,13 +31,15 @@ void eachKey(StateChunk& chunk, const Visit& visit) {
 }
 template <class Visit>
 void eachKey(StateChange& change, const Visit& visit) {
-  auto& [agent, goal, speed, leaves, record, stands] = change;
+  auto& [agent, goal, speed, leaves, record, stands, hurt] = change;
   visit("agent", agent);
   visit("goal", goal);
   visit("speed", speed);
   visit("leaves", leaves);
   visit("record", record);
   visit("stands", stands);
+  IfAny legs{hurt};
+  visit("hurt", legs);
 }
 template <class Visit>
 void eachKey(StateKind& kind, const Visit& visit) {
@@ -131,13 +139,30 @@ void read(const Json& json, std::vector<Value>& values) {
   for (const Json& each : json) read(each, values.emplace_back());
 }
 
+template <class Value>
+void putKey(Json& json, const char* key, Value& value) {
+  json[key] = written(value);
+}
+template <class Value>
+void putKey(Json& json, const char* key, IfAny<Value>& value) {
+  if (!value.list.empty()) json[key] = written(value.list);
+}
+template <class Value>
+void takeKey(const Json& json, const char* key, Value& value) {
+  read(json.at(key), value);
+}
+template <class Value>
+void takeKey(const Json& json, const char* key, IfAny<Value>& value) {
+  if (json.contains(key)) read(json.at(key), value.list);
+}
+
 constexpr auto noVisit = [](const char*, const auto&) {};
 
 template <class Value>
 Json written(Value& value) {
   if constexpr (requires { eachKey(value, noVisit); }) {
     Json json = Json::object();
-    eachKey(value, [&](const char* key, auto& member) { json[key] = written(member); });
+    eachKey(value, [&](const char* key, auto& member) { putKey(json, key, member); });
     return json;
   } else {
     return value;
@@ -146,7 +171,7 @@ Json written(Value& value) {
 template <class Value>
 void read(const Json& json, Value& value) {
   if constexpr (requires { eachKey(value, noVisit); })
-    eachKey(value, [&](const char* key, auto& member) { read(json.at(key), member); });
+    eachKey(value, [&](const char* key, auto& member) { takeKey(json, key, member); });
   else
     json.get_to(value);
 }

@@ -31,6 +31,7 @@ struct StateChange {
   bool goal = false, speed = false, leaves = false;
   std::array<float, 4 * shared::GOAL_STRIDE> record{};
   std::vector<float> stands;  // x, z, heading; empty: where it is
+  std::vector<float> hurt;    // Damage::values; empty: its legs are as before
 };
 
 struct StateKind {

@@ -15,7 +15,8 @@
 namespace skitter {
 namespace {
 
-using crowd::AgentChange, crowd::SizeRun, crowd::expectGoal, crowd::expectPlace, crowd::expectSpeed;
+using crowd::AgentChange, crowd::SizeRun, crowd::expectGoal, crowd::expectHurts, crowd::expectLeg,
+    crowd::expectPlace, crowd::expectSpeed;
 
 std::string nameOf(uint32_t herd) { return fmt::format("herd {}", herd); }
 std::string nameOf(uint32_t herd, uint32_t agent) { return fmt::format("herd {}, agent {}", herd, agent); }
@@ -180,6 +181,47 @@ void Crowd::teleport(AgentId agent, const Place& place) {
   teleport(std::span(&one, 1));
 }
 
+void Crowd::hurt(std::span<const AgentLeg> legs) {
+  for (const auto& [id, leg, state, bone] : legs) {
+    expectSomebody(*impl_, id);
+    const auto name = [&] { return nameOf(id.herd(), id.agent()); };
+    const crowd::Kind& kind = impl_->kindOf(id.herd(), id.agent());
+    expectHurts(name, kind.hurts);
+    expectLeg(name, kind.rig, leg, bone);
+  }
+  for (const auto& [id, leg, state, bone] : legs) {
+    const SizeRun& run = impl_->herds[id.herd()].runOf(id.agent());
+    crowd::Kind& kind = impl_->kinds[run.kind];
+    const uint32_t ofKind = run.ofKind(id.agent());
+    const uint32_t stump = kind.rig.legs[leg].bones.size() > 1 ? 1 : 0;
+    crowd::Damage& damage = kind.damages[ofKind];
+    damage.set(leg, state, bone.value_or(stump));
+    if (damage.isNone()) kind.damages.erase(ofKind);
+    changeOf(*impl_, run, id.agent()).hurt = true;
+  }
+}
+
+void Crowd::hurt(AgentId agent, uint32_t leg, LegState state, std::optional<uint32_t> bone) {
+  const AgentLeg one{agent, leg, state, bone};
+  hurt(std::span(&one, 1));
+}
+
+void Crowd::heal(AgentId agent) {
+  expectSomebody(*impl_, agent);
+  std::vector<AgentLeg> legs;
+  for (uint32_t leg = 0; leg < impl_->kindOf(agent.herd(), agent.agent()).rig.legs.size(); ++leg)
+    legs.push_back({agent, leg, LegState::whole, {}});
+  hurt(legs);
+}
+
+LegState Crowd::legState(AgentId id, uint32_t leg) const {
+  expectSomebody(*impl_, id);
+  const crowd::Kind& kind = impl_->kindOf(id.herd(), id.agent());
+  expectLeg([&] { return nameOf(id.herd(), id.agent()); }, kind.rig, leg, {});
+  const auto hurt = kind.damages.find(impl_->herds[id.herd()].runOf(id.agent()).ofKind(id.agent()));
+  return hurt == kind.damages.end() ? LegState::whole : hurt->second.of(leg);
+}
+
 std::vector<GoalBuffer> Crowd::goalBuffers(uint32_t herd) const {
   std::vector<GoalBuffer> buffers;
   for (const crowd::Part& part : crowd::partsOf(*impl_, herd))
@@ -226,6 +268,9 @@ AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
       crowd::spawnerOf(*impl_, herd, run).goalRecord(*empty - run.firstOfHerd, place.position.x, goal);
   change.stands = place;
   change.leaves = false;
+  crowd::Kind& kind = impl_->kinds[run.kind];
+  kind.damages.erase(run.ofKind(*empty));
+  change.hurt = kind.hurts;
   return agentId(number, *empty);
 }
 

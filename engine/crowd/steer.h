@@ -2,8 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/spelling.h"
 #include "skitter/error.h"
 #include "skitter/heightfield.h"
+#include "skitter/rig.h"
 #include "skitter/scene.h"
 
 // What may be said to agents while a crowd runs, by the host and by a scene's events. Each throws
@@ -85,6 +93,43 @@ void expectPlace(const Name& name, const Heightfield& terrain, const Place& plac
   expectWithin(name, "x", double{place.position.x}, -x, x, "m");
   expectWithin(name, "z", double{place.position.y}, -z, z, "m");
   expectWithin(name, "the heading", double{place.heading}, -1000, 1000, "radians");
+}
+
+template <class Name>
+void expectHurts(const Name& name, bool hurts) {
+  if (!hurts)
+    throw inputError(fmt::format("{}: hurt is false, expected a herd whose legs can be hurt", name()));
+}
+
+// And the bone, if any, from which it is lost.
+template <class Name>
+void expectLeg(const Name& name, const Rig& rig, uint32_t leg, std::optional<uint32_t> bone) {
+  if (leg >= rig.legs.size())
+    throw inputError(fmt::format("{}: leg is {}, expected less than {}, the legs of {}", name(), leg,
+                                 rig.legs.size(), rig.name));
+  const size_t bones = rig.legs[leg].bones.size();
+  if (bone && *bone >= bones)
+    throw inputError(fmt::format("{}: bone is {}, expected less than {}, the bones of leg {}", name(), *bone,
+                                 bones, rig.legs[leg].name));
+}
+
+// The number of the leg of that name.
+template <class Name>
+uint32_t legNamed(const Name& name, const Rig& rig, const std::string& leg) {
+  const auto found = std::ranges::find(rig.legs, leg, &Leg::name);
+  if (found != rig.legs.end()) return static_cast<uint32_t>(found - rig.legs.begin());
+  std::vector<std::string> names;
+  for (const Leg& each : rig.legs) names.push_back(each.name);
+  throw inputError(fmt::format("{}: {} has no leg \"{}\"{}", name(), rig.name, leg,
+                               base::expectedOneOf(leg, names, "\"")));
+}
+
+// The number of the leg that an event is about, and of which it may say so.
+template <class Name>
+uint32_t legOf(const Name& name, const Rig& rig, const LegChange& change) {
+  const uint32_t leg = legNamed(name, rig, change.leg);
+  expectLeg(name, rig, leg, change.bone);
+  return leg;
 }
 
 template <class Name>

@@ -76,7 +76,7 @@ gpu::GraphicsPipeline drawPipeline(const Setting& s, gpu::GraphicsInfo info) {
 }
 
 // Both faces cast: a closed skin loses nothing by it, an open one keeps its shadow.
-gpu::GraphicsInfo shadowInfo(const Setting& s, int influences, bool matrices) {
+gpu::GraphicsInfo shadowInfo(const Setting& s, int influences, const CrowdForms& forms) {
   return {.name = "crowd shadow",
           .vertex = {embedded::shadow_vert_texel(), embedded::shadow_vert_storage()},
           .fragment = {},
@@ -88,19 +88,25 @@ gpu::GraphicsInfo shadowInfo(const Setting& s, int influences, bool matrices) {
           .depth = s.shadow.image().format(),
           .depthUse = gpu::DepthUse::shadow,
           .cull = {},
-          .constants = {{shared::CONSTANT_INFLUENCES, influences}, {shared::CONSTANT_MATRICES, matrices}}};
+          .constants = {{shared::CONSTANT_INFLUENCES, influences},
+                        {shared::CONSTANT_MATRICES, forms.matrices},
+                        {shared::CONSTANT_STUMPS, forms.stumps}}};
 }
 
 // The same for a material that lets light through.
-gpu::GraphicsInfo cutoutInfo(const Setting& s, int influences, bool matrices, const Material& material,
-                             int has) {
-  gpu::GraphicsInfo info = shadowInfo(s, influences, matrices);
+gpu::GraphicsInfo cutoutInfo(const Setting& s, int influences, const CrowdForms& forms,
+                             const Material& material, int has) {
+  gpu::GraphicsInfo info = shadowInfo(s, influences, forms);
   info.name = "cutout shadow";
   info.vertex = {embedded::cutout_vert_texel(), embedded::cutout_vert_storage()};
   info.fragment = embedded::cutout_frag();
   info.streams.push_back(wornStream(false));
   addTextures(info, material, has);
   return info;
+}
+
+CrowdForms formsOf(const crowd::Kind& kind) {
+  return {.matrices = crowd::traitsOf(kind.controller).playsClips, .tinted = kind.tinted, .stumps = kind.hurts};
 }
 
 // The level that a list draws: of the camera's each its own.
@@ -116,7 +122,7 @@ VkDrawIndexedIndirectCommand commandOf(const MeshLod& lod) {
 
 }  // namespace
 
-gpu::GraphicsInfo crowdShading(int influences, bool matrices, bool tinted) {
+gpu::GraphicsInfo crowdShading(int influences, const CrowdForms& forms) {
   return {.name = "crowd",
           .vertex = {embedded::crowd_vert_texel(), embedded::crowd_vert_storage()},
           .fragment = embedded::crowd_frag(),
@@ -129,12 +135,13 @@ gpu::GraphicsInfo crowdShading(int influences, bool matrices, bool tinted) {
           .pushBytes = sizeof(shared::CrowdConstants),
           .streams = streams(true),
           .constants = {{shared::CONSTANT_INFLUENCES, influences},
-                        {shared::CONSTANT_MATRICES, matrices},
-                        {shared::CONSTANT_TINTED, tinted}}};
+                        {shared::CONSTANT_MATRICES, forms.matrices},
+                        {shared::CONSTANT_TINTED, forms.tinted},
+                        {shared::CONSTANT_STUMPS, forms.stumps}}};
 }
 
-gpu::GraphicsInfo wornShading(int influences, bool matrices, bool tinted, const Material& material, int has) {
-  gpu::GraphicsInfo info = crowdShading(influences, matrices, tinted);
+gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Material& material, int has) {
+  gpu::GraphicsInfo info = crowdShading(influences, forms);
   info.name = "worn crowd";
   info.vertex = {embedded::worn_vert_texel(), embedded::worn_vert_storage()};
   info.fragment = embedded::worn_frag();
@@ -159,8 +166,8 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
     kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
     kind.mesh =
         uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
-    kind.draw = drawPipeline(s, crowdShading(kind.mesh.influences, clips, source.tinted));
-    kind.shadow = {s.context, shadowInfo(s, kind.mesh.influences, clips)};
+    kind.draw = drawPipeline(s, crowdShading(kind.mesh.influences, formsOf(source)));
+    kind.shadow = {s.context, shadowInfo(s, kind.mesh.influences, formsOf(source))};
     if (textures) makeParts(s, source, *textures, kind);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
@@ -185,7 +192,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
 
 void CrowdDrawing::makeParts(const Setting& s, const crowd::Kind& source, const Textures& textures,
                              Kind& kind) const {
-  const bool clips = crowd::traitsOf(source.controller).playsClips;
+  const CrowdForms forms = formsOf(source);
   for (const MeshPart& from : kind.mesh.parts) {
     Part& part = kind.parts.emplace_back();
     if (from.material == -1) continue;
@@ -201,8 +208,8 @@ void CrowdDrawing::makeParts(const Setting& s, const crowd::Kind& source, const 
     worn.textures = has;
     worn.cutout = cutout;
     worn.doubleSided = material.doubleSided;
-    worn.draw = drawPipeline(s, wornShading(kind.mesh.influences, clips, source.tinted, material, has));
-    if (cutout) worn.shadow = {s.context, cutoutInfo(s, kind.mesh.influences, clips, material, has)};
+    worn.draw = drawPipeline(s, wornShading(kind.mesh.influences, forms, material, has));
+    if (cutout) worn.shadow = {s.context, cutoutInfo(s, kind.mesh.influences, forms, material, has)};
   }
 }
 

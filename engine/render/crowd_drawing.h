@@ -8,11 +8,16 @@
 
 namespace skitter::render {
 
-// The pipeline that shades a kind, without its targets. `influences` is the most bones that carry a vertex;
-// `matrices` says that poses are matrices instead of rotations, `tinted` that agents have tints.
-gpu::GraphicsInfo crowdShading(int influences, bool matrices, bool tinted);
+// What a kind's shaders are made for.
+struct CrowdForms {
+  bool matrices = false;  // poses are matrices instead of rotations
+  bool tinted = false;    // agents have tints
+  bool stumps = false;    // bones may be lost
+};
+// The pipeline that shades a kind, without its targets. `influences` is the most bones that carry a vertex.
+gpu::GraphicsInfo crowdShading(int influences, const CrowdForms& forms);
 // The same of what a kind wears of a material that has the textures `has` (Textures::has).
-gpu::GraphicsInfo wornShading(int influences, bool matrices, bool tinted, const Material&, int has);
+gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Material&, int has);
 
 // The crowd, skinned where its poses lie: one indirect draw a page and level of detail.
 class CrowdDrawing {

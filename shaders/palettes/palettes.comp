@@ -6,6 +6,7 @@
 layout(constant_id = CONSTANT_ENTRIES) const int ENTRIES = 1;
 layout(constant_id = CONSTANT_JOINTS_STRETCH) const bool JOINTS_STRETCH = false;
 layout(constant_id = CONSTANT_RELATIVE) const bool RELATIVE = false;
+layout(constant_id = CONSTANT_LOSES_BONES) const bool LOSES_BONES = false;
 LOAD4_BUFFER(TRANSFORM_POSE, poses)
 LOAD4_BUFFER(TRANSFORM_START, starts)
 
@@ -33,6 +34,10 @@ void main() {
   if (RELATIVE) {
     rotation = quaternionProduct(back, rotation);
     place = rotate(back, place);
+  }
+  if (LOSES_BONES && LOAD4(poses, pose + 1).w != 0.0) {
+    writePoint(transform, from + place);
+    return;
   }
   writeRotation(transform, rotation, from + place - rotate(rotation, LOAD4(starts, int(entry)).xyz));
 }

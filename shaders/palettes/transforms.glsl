@@ -44,6 +44,17 @@ void writeRotation(uint transform, vec4 rotation, vec3 position) {
   }
 }
 
+// All that it moves goes to `position`, in metres along world axes.
+void writePoint(uint transform, vec3 position) {
+  vec3 place = constants.how.z * turnedToHost(position);
+  if (QUATERNIONS) {
+    writeVec4(transform, 0u, vec4(0.0, 0.0, 0.0, 1.0));
+    writeVec4(transform, 1u, vec4(place, 0.0));
+  } else {
+    writeMatrix(transform, mat3(0.0), place);
+  }
+}
+
 // Whether nobody is in the place whose body record begins there. The host draws nothing of it.
 bool isAbsent(int body) { return LOAD4(bodies, body + 1).w != 0.0; }
 void writeNothing(uint transform) {

@@ -21,6 +21,7 @@ TRANSFORM_CONST CONSTANT_ENTRIES = 0;         // of a palette
 TRANSFORM_CONST CONSTANT_JOINTS_STRETCH = 1;  // poses are matrices
 TRANSFORM_CONST CONSTANT_QUATERNIONS = 2;     // are written
 TRANSFORM_CONST CONSTANT_RELATIVE = 3;        // to the instance's transform
+TRANSFORM_CONST CONSTANT_LOSES_BONES = 4;     // bones may be lost
 
 // Push constants.
 struct TransformConstants {

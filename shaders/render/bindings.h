@@ -29,6 +29,7 @@ BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, fo
 BINDING CONSTANT_TINTED = 3;    // agents have tints (tint.h)
 BINDING CONSTANT_TEXTURES = 4;  // which textures the material has, bit by bit
 BINDING CONSTANT_CUTOUT = 5;    // what is less opaque than the material's cutoff is not drawn
+BINDING CONSTANT_STUMPS = 6;    // bones may be lost
 #undef BINDING
 
 #ifdef __cplusplus

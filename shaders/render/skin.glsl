@@ -5,6 +5,7 @@
 
 layout(constant_id = CONSTANT_INFLUENCES) const int INFLUENCES = 4;
 layout(constant_id = CONSTANT_MATRICES) const bool MATRICES = false;
+layout(constant_id = CONSTANT_STUMPS) const bool STUMPS = false;
 layout(push_constant) uniform ConstantBlock { CrowdConstants constants; };
 LOAD4_BUFFER(DRAW_BODY, bodies)
 LOAD4_BUFFER(DRAW_POSE, poses)
@@ -43,8 +44,10 @@ void influence(uint bone, vec4 part, vec3 normal, inout Skinned s) {
 #endif
     return;
   }
-  vec4 rotation = LOAD4(poses, entry);
-  s.position += part.w * (LOAD4(poses, entry + 1).xyz + rotate(rotation, part.xyz));
+  vec4 rotation = LOAD4(poses, entry), start = LOAD4(poses, entry + 1);
+  // The skin of a lost bone meets in the stump's end, so that the skin before it stays closed.
+  vec3 about = STUMPS && start.w != 0.0 ? vec3(0.0) : part.xyz;
+  s.position += part.w * (start.xyz + rotate(rotation, about));
   s.normal += part.w * rotate(rotation, normal);
 #ifdef WORN
   s.tangent += part.w * rotate(rotation, tangent.xyz);

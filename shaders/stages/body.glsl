@@ -4,10 +4,18 @@
 #include "lib/body.glsl"
 #include "stages/rig_legs.glsl"
 #include "stages/ground.glsl"
+#include "stages/hurt.glsl"
 
 // `body` is the agent's, `velocity` what it is steered to.
 Body makeBody(int agent, Body body, vec2 velocity) {
   float dt = parameters.dt;
+#ifdef HURT
+  Hurt hurt = hurtOf(agent);
+  velocity *= hurt.speed;
+  float points = max(float(LEGS - bitCount(hurt.idle)), 1.0);
+#else
+  const float points = float(LEGS);
+#endif
 
   // Ground points are summed relative to the old position; the new one differs by `moved`.
   Hold hold = Hold(0.0, 0.0);
@@ -16,7 +24,12 @@ Body makeBody(int agent, Body body, vec2 velocity) {
 #ifdef BLIND
   // Legs that do not know where they stand: the body lies on the ground below their homes.
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
-    vec3 home = rotate(body.orientation, RIG_LEG(leg, 1).xyz);
+    vec3 home = RIG_LEG(leg, 1).xyz;
+#ifdef HURT
+    home += hurt.shift;
+#endif
+    home = rotate(body.orientation, home);
+    WHERE_CARRIES(hurt, leg)
     addPoint(sums, vec3(home.x, groundAt(worldOf(body.local, body.tile) + home.xz).x - body.local.y, home.z));
   }
 #else
@@ -26,8 +39,10 @@ Body makeBody(int agent, Body body, vec2 velocity) {
     vec3 landing = fromStep(s.landing, s, body.local, body.tile);
     vec3 liftOff = fromStep(s.liftOff, s, body.local, body.tile);
     vec4 root = RIG_LEG(leg, 0);
-    addHold(hold, u >= 1.0, before * root.xyz, landing, RIG_LEG(leg, 2).z, LOAD_MISS(agent, leg), velocity);
-    addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));
+    WHERE_CARRIES(hurt, leg) {
+      addHold(hold, u >= 1.0, before * root.xyz, landing, RIG_LEG(leg, 2).z, LOAD_MISS(agent, leg), velocity);
+      addPoint(sums, u >= 1.0 ? landing : mix(liftOff, landing, u));
+    }
   }
 #endif
 
@@ -43,9 +58,12 @@ Body makeBody(int agent, Body body, vec2 velocity) {
   body.speed = min(body.speed, speedToEdge(parameters, body.local, body.tile, body.heading));
   vec2 moved = body.heading * (body.speed * dt);
 
-  vec3 plane = fitPlane(parameters, sums, float(LEGS));
+  vec3 plane = fitPlane(parameters, sums, points);
   vec2 slope = plane.xy;
   float planeHeight = body.local.y + plane.z + dot(slope, moved);
+#ifdef HURT
+  planeHeight -= hurt.shift.y;  // the body is so much lower
+#endif
 
 #ifdef BLIND
   vec3 settled = unit(vec3(-slope.x, 1.0, -slope.y));

@@ -7,16 +7,39 @@
 #include "lib/hermite.glsl"
 #include "lib/route.glsl"
 #include "stages/ground.glsl"
+#include "stages/hurt.glsl"
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_GAIT, gaits);
 LOAD4_BUFFER(BINDING_STEP, steps);
 LOAD4_BUFFER(BINDING_ARC, arcs);
+#ifdef HURT
+LOAD4_BUFFER(BINDING_CHAIN, chains);
+#endif
 STORE4_BUFFER(BINDING_STEP_OUT, stepsOut);
 STORE4_BUFFER(BINDING_ARC_OUT, arcsOut);
 layout(set = 0, binding = BINDING_LIST, std430) readonly buffer ListBlock { uint list[]; };
 #include "stages/counters.glsl"
+
+#ifdef HURT
+// Where a foot hangs that has not carried: the end of the leg's pose, relative to the body.
+vec3 hangingFoot(int record, int leg, vec4 orientation) {
+  int rigAt = leg * rigStride(BONES);
+  vec4 root = LOAD4(rig, rigAt), r = orientation;
+  vec3 p = rotate(r, root.xyz);
+  for (int i = 0; i < BONES; ++i) {
+    vec4 directions = LOAD4(chains, record * chainStride(BONES) + i / 2);
+    vec2 s = (i & 1) == 0 ? directions.xy : directions.zw;
+    int bone = rigAt + RIG_LEG_STRIDE + RIG_BONE_STRIDE * i;
+    vec4 a = LOAD4(rig, bone), b = LOAD4(rig, bone + 1);
+    vec3 axis = cross(b.xyz, a.xyz) * s.x - a.xyz * s.y;
+    r = quaternionProduct(r, vec4(axis, 1.0) * inversesqrt(1.0 + dot(s, s)));
+    p += root.w * a.w * rotate(r, b.xyz);
+  }
+  return p;
+}
+#endif
 
 // Where a leg may land, and what judges it.
 struct Search {
@@ -120,6 +143,14 @@ void main() {
   vec4 root = LOAD4(rig, rigAt), home = LOAD4(rig, rigAt + 1);
   float reach = root.w;
   float freshTicks = LOAD4(gaits, agent * GAIT_STRIDE).w, cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;
+#ifdef HURT
+  // gait lists it as both lifted and aimed anew.
+  uint both = uint(LOAD4(gaits, agent * GAIT_STRIDE).y) & uint(LOAD4(gaits, agent * GAIT_STRIDE).z);
+  bool rises = (both >> leg & 1u) != 0u;
+  reaim = reaim && !rises;
+  home.xyz += hurtOf(agent).shift;
+  freshTicks = slowTicks(freshTicks, HURT_LEG(agent, leg).w);
+#endif
   float flown = thisTick - 1.0 - old.firstTick;
   float ticks = reaim ? max(old.ticks - flown, REAIM_LEAST) : freshTicks;
   float time = ticks * parameters.dt, stance = cycle - freshTicks * parameters.dt;
@@ -149,6 +180,9 @@ void main() {
   float u = stepProgress(old, thisTick - 1.0);
   float rate = startRate(flight), way = easedTime(u, rate);
   vec3 p0 = reaim ? swingPoint(flight, way) : flight.p1;
+#ifdef HURT
+  if (rises) p0 = hangingFoot(record, leg, body.orientation);
+#endif
   vec3 p1 = best.point;
   vec3 m0 = reaim ? swingTangent(flight, way) * (easedRate(u, rate) * ticks / old.ticks) : vec3(0.0);
   vec3 lift = shortestLift(search, p0, p1, reaim, m0, parameters.stepHeight * (reaim ? 1.0 - u : 1.0));

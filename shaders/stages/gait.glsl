@@ -5,6 +5,7 @@
 #include "stages/rig_legs.glsl"
 #include "stages/ground.glsl"
 #include "lib/hermite.glsl"
+#include "stages/hurt.glsl"
 
 // In the ticks after an edit of the heights; else no height is looked up here.
 layout(constant_id = CONSTANT_WATCH) const int WATCH = 0;
@@ -18,7 +19,17 @@ float above(vec3 point, Body body) {
 }
 
 void makeGait(int agent, Body body) {
+#ifdef HURT
+  Hurt hurt = hurtOf(agent);
+  Stride stride = strideOfHurt(parameters, body, agent, hurt);
+  float groups = hurt.groups;
+  // Who carries again hangs in the air, and comes down by a step.
+  uint rises = uint(LOAD4(gaits, agent * GAIT_STRIDE + 1).w) & ~hurt.idle;
+  hurt.idle |= rises;
+#else
   Stride stride = strideFor(parameters, body.surfaceSpeed, body.turnRate, float(GROUPS));
+  const float groups = float(GROUPS);
+#endif
   float stance = stride.cycle - stride.swing;
   float phase = LOAD4(gaits, agent * GAIT_STRIDE).x + parameters.dt / stride.cycle;
   phase -= floor(phase);
@@ -37,11 +48,18 @@ void makeGait(int agent, Body body) {
     int record = legRecord(agent, leg, LEGS);
     Step s = LOAD_STEP(record);
     vec4 root = RIG_LEG(leg, 0), home = RIG_LEG(leg, 1), order = RIG_LEG(leg, 2);
+#ifdef HURT
+    vec4 own = HURT_LEG(agent, leg);
+    home = vec4(home.xyz + hurt.shift, own.x);
+    order.xy = own.yz;
+    stance = stride.cycle - slowTicks(stride.ticks, own.w) * parameters.dt;
+#endif
     float flown = thisTick - 1.0 - s.firstTick;
     float u = clamp(flown / s.ticks, 0.0, 1.0);
     vec3 landing = fromStep(s.landing, s, body.local, body.tile);
     vec3 foot = landing * orientation;
     bool moved = WATCH != 0 && !s.lastResort && abs(above(landing, body)) > parameters.groundTolerance;
+    WHERE_CARRIES(hurt, leg)
     if (u >= 1.0) {
       // Distances are compared by their squares.
       vec3 arm = (foot - root.xyz) * order.z;
@@ -50,7 +68,7 @@ void makeGait(int agent, Body body) {
       bool must = stretch < rootShare2 || stretch > stretchLift2 || off > strayShare2 ||
                   LOAD_MISS(agent, leg) > parameters.errorLift;
       bool far = off > liftShare2;
-      bool open = REACH != 0 || windowOpen(parameters, phase, home.w, order.x, stride, float(GROUPS));
+      bool open = REACH != 0 || windowOpen(parameters, phase, home.w, order.x, stride, groups);
       wants |= !settled && open && (far || must || s.lastResort) ? 1u << leg : 0u;
       // Who stands still steps only off ground that moves.
       must = moved || (!settled && (must || (REACH != 0 && far)));
@@ -77,15 +95,28 @@ void makeGait(int agent, Body body) {
     }
   }
 
+#ifdef HURT
+  air |= rises;
+#endif
   uint lift = (yields & air) == 0u ? first : 0u;
   wants &= ~yields;
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
+#ifdef HURT
+    uint neighbours = uint(HURT_LEG(agent, leg).z);
+#else
     uint neighbours = uint(RIG_LEG(leg, 2).y);
+#endif
     lift |= (neighbours & (air | lift)) == 0u ? wants & (1u << leg) : 0u;
   }
 
+  float idle = 0.0;
+#ifdef HURT
+  lift |= rises;
+  reaim |= rises;
+  idle = float(hurt.idle & ~rises);
+#endif
   STORE4_TWO(gaitsOut, agent * GAIT_STRIDE, vec4(phase, float(lift), float(reaim), stride.ticks),
-             vec4(stride.halfStride, stride.cycle, float(air), 0.0));
+             vec4(stride.halfStride, stride.cycle, float(air), idle));
 
   // Few legs begin a step in a tick: they are listed, and foothold runs over the list alone.
   uint begin = lift | reaim;

@@ -42,6 +42,12 @@ void main() {
   float reach = root.w;
   forwardKinematics(limb, pose);
 
+#ifdef HURT
+  if (!carries(agent, leg)) {
+    storeTip(record, orientation, root, pose, 0.0);
+    return;
+  }
+#endif
   Aim aim = aimAt((rotateBack(orientation, foot.xyz) - root.xyz) * (1.0 / reach), pose);
   if (PASS == PASS_QUICK) {
     bool solved = solveQuickly(limb, aim, pose), missed = missOf(foot, aim.error) != 0.0;

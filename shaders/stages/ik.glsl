@@ -11,6 +11,7 @@
 #include "lib/limb.glsl"
 #include "lib/rarely.glsl"
 #include "stages/rig_bones.glsl"
+#include "stages/hurt.glsl"
 // What is there to be compared stays out of what ships: some drivers take long over code that is never run.
 #ifdef COMPARED_SOLVERS
 #include "lib/ccd.glsl"
@@ -139,8 +140,13 @@ void solveWhole(Limb limb, int agent, inout Aim aim, inout Pose pose) {
   if (POLISH_ITERATIONS > 0) polish(limb, aim.target, aim.lost, pose, pose, aim.error);
 }
 
+// Where the tip of a pose that nobody solved is.
+void storeTip(int record, vec4 orientation, vec4 root, Pose pose, float error) {
+  if (FEET) STORE4(tipsOut, record, vec4(rotate(orientation, root.xyz + root.w * pose.tip), error * root.w));
+}
+
 void storeSolved(int record, vec4 orientation, vec4 root, Pose pose, float error) {
   STORE_SWINGS(chainsOut, record * chainStride(BONES), pose.swing, chainStride(BONES) % 2 == 0);
-  if (FEET) STORE4(tipsOut, record, vec4(rotate(orientation, root.xyz + root.w * pose.tip), error * root.w));
+  storeTip(record, orientation, root, pose, error);
 }
 #endif

@@ -7,6 +7,9 @@
 LOAD4_BUFFER(BINDING_FOOT, feet);
 LOAD4_BUFFER(BINDING_START, starts);
 STORE4_BUFFER(BINDING_FIX_OUT, fixesOut);
+#ifdef HURT
+LOAD4_BUFFER(BINDING_CHAIN, chains);
+#endif
 
 vec4 shortestArc(vec3 from, vec3 to) {
   vec4 q = vec4(cross(from, to), 1.0 + dot(from, to));
@@ -37,7 +40,20 @@ void main() {
     limb.edge[i] = max(limb.edge[i], length(pose.swing[i]));
   }
 
+#ifdef HURT
+  // It holds the pose that it had when it was hurt.
+  bool held = !carries(agent, leg);
+  if (held) {
+    LOAD_SWINGS(pose.swing, chains, record * chainStride(BONES));
+    forwardKinematics(limb, pose);
+    foot.xyz = rotate(orientation, root.xyz + reach * pose.tip);
+  }
+#endif
   Aim aim = aimAt((rotateBack(orientation, foot.xyz) - root.xyz) * (1.0 / reach), pose);
+#ifdef HURT
+  if (held) aim.error = 0.0;
+  else
+#endif
   if (PASS == PASS_QUICK) {
     if (!solveQuickly(limb, aim, pose)) {
       enlist(record);

@@ -5,6 +5,7 @@
 #include "lib/rarely.glsl"
 #include "stages/ground.glsl"
 #include "lib/trail.glsl"
+#include "stages/hurt.glsl"
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -140,6 +141,10 @@ void measure(int slot, int agent) {
   m6.zw += windowJerk(trail, closes, parameters.jerkTicks, parameters.jerkPath);
 
   int buckets = rowOf(agent) * HISTOGRAM_BUCKETS;
+  float lost = 0.0;  // leg-ticks of lost legs
+#ifdef HURT
+  lost = m3.w;
+#endif
   bool supported = false;
   vec2 anchor = vec2(0.0);
   for (int leg = 0; leg < LEGS; ++leg) {
@@ -159,6 +164,13 @@ void measure(int slot, int agent) {
     m1.xy += !planted && slip >= 0.0 ? vec2(slip, 1.0) : vec2(0.0);
     slip = !planted ? WATCH_AIR : (before ? (slip >= 0.0 ? slip + slide : WATCH_UNSEEN) : 0.0);
     storeTrail(at, trail, slip);
+#ifdef HURT
+    // All that is left of a lost leg is where its stump is.
+    if (isLost(agent, leg)) {
+      m3.w = ++lost;
+      continue;
+    }
+#endif
     m6.xy += windowJerk(trail, closes, parameters.jerkTicks, parameters.jerkPath);
 
     float above = tip.y + body.local.y - groundAt(world + tip.xz).x;
@@ -171,13 +183,19 @@ void measure(int slot, int agent) {
     m1.w = max(m1.w, limb.violation);
     float depth = depthOf(limb, body.orientation, body.local.y, world);
     bool breaks = 2.0 * limb.violation > parameters.limitDeadZone;
-    m3 = vec4(m3.x + depth, max(m3.y, depth), m3.z + (breaks ? 1.0 : 0.0), 0.0);
+    m3 = vec4(m3.x + depth, max(m3.y, depth), m3.z + (breaks ? 1.0 : 0.0), lost);
 
     int neighbour = neighbourOf(leg);
+#ifdef HURT
+    neighbour = neighbour >= 0 && isLost(agent, neighbour) ? -1 : neighbour;
+#endif
     stretch(max(neighbour, 0), firstLeg + max(neighbour, 0) * BLOCK, other);
     bool crosses = crossing(limb, other);
     m4.xy += neighbour >= 0 ? vec2(1.0, crosses ? 1.0 : 0.0) : vec2(0.0);
 
+#ifdef HURT
+    if (!carries(agent, leg)) continue;  // it has no target
+#endif
     float bucket = 4.0 * (log2(max(tip.w / parameters.legLength, 1e-30)) + 20.0);
     atomicAdd(histogram[buckets + int(clamp(floor(bucket), 0.0, float(HISTOGRAM_BUCKETS - 1)))], 1u);
   }

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/awake.glsl"
+#include "stages/hurt.glsl"
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -20,7 +21,17 @@ void main() {
   if (leg == 0) {
     STORE4_TWO(posesOut, poseAt - POSE_STRIDE, r, vec4(0.0));
   }
+#ifdef HURT
+  int whole = lostFrom(agent, leg);
+#endif
   for (int i = 0; i < BONES; ++i) {
+#ifdef HURT
+    // Lost bones have neither turn nor length: all of their skin is drawn to the stump's end.
+    if (i >= whole) {
+      STORE4_TWO(posesOut, poseAt + POSE_STRIDE * i, r, vec4(p, 1.0));
+      continue;
+    }
+#endif
     vec4 directions = LOAD4(chains, at + i / 2);
     vec2 s = (i & 1) == 0 ? directions.xy : directions.zw;
     int bone = rigAt + RIG_LEG_STRIDE + RIG_BONE_STRIDE * i;

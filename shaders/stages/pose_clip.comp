@@ -3,6 +3,7 @@
 #include "stages/awake.glsl"
 #include "shared/ik_batch.h"
 #include "lib/clip.glsl"
+#include "stages/hurt.glsl"
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_PLAY, plays);
@@ -10,6 +11,9 @@ LOAD4_BUFFER(BINDING_CLIP_ROW, rows);
 #ifdef PLANTED
 LOAD4_BUFFER(BINDING_CLIP_JOINT, joints);
 LOAD4_BUFFER(BINDING_FIX, fixes);
+#endif
+#ifdef HURT
+LOAD4_BUFFER(BINDING_CLIP_LEG, legs);
 #endif
 STORE4_BUFFER(BINDING_POSE_OUT, posesOut);
 
@@ -39,6 +43,17 @@ void main() {
   mat3 fix = matrixOf(bone >= 0 ? LOAD4(fixes, fixAt) : vec4(0.0, 0.0, 0.0, 1.0));
   column = fix * column;
   column[3] += bone >= 0 ? LOAD4(fixes, fixAt + 1).xyz : vec3(0.0);
+#ifdef HURT
+  int leg = own / BONES, whole = bone >= 0 ? lostFrom(agent, leg) : BONES;
+  // All of the skin of lost bones is drawn to the stump's end, where the first of them starts.
+  if (own % BONES >= whole) {
+    vec4 place = LOAD4(legs, leg * (BONES + 1) + whole);
+    LOAD_MATRIX(m, rows, play, int(place.w));
+    fixAt = (legRecord(agent, leg, LEGS) * BONES + whole) * FIX_STRIDE;
+    vec3 end = matrixOf(LOAD4(fixes, fixAt)) * transformed(m, place.xyz) + LOAD4(fixes, fixAt + 1).xyz;
+    column = mat4x3(vec3(0.0), vec3(0.0), vec3(0.0), end);
+  }
+#endif
 #endif
   mat3x4 row = transpose(turned * column);
   for (int r = 0; r < 3; ++r) STORE4(posesOut, (agent * JOINTS + joint) * MATRIX_STRIDE + r, row[r]);

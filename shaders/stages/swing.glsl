@@ -2,8 +2,12 @@
 #define SWING_STAGE_GLSL
 // Stage swing, for entry points that make it alone or together with ik; they declare its bindings.
 #include "lib/hermite.glsl"
+#include "stages/hurt.glsl"
 
 vec4 makeFoot(int agent, int record) {
+#ifdef HURT
+  if (!carries(agent, legOfRecord(record, LEGS))) return vec4(0.0);  // it has no target
+#endif
   Step s = LOAD_STEP(record);
   vec4 body = LOAD4(bodies, agent * BODY_STRIDE);
   vec3 local = body.xyz;

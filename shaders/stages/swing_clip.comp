@@ -6,6 +6,7 @@
 #include "lib/chain.glsl"
 #include "lib/clip.glsl"
 #include "lib/limb.glsl"
+#include "stages/hurt.glsl"
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -75,6 +76,14 @@ void main() {
   offset *= locked ? 1.0 : parameters.plantKeep;
   target = locked ? lock : wanted + offset;
   u = locked ? 1.0 : 0.5;
+#ifdef HURT
+  // It has no target, and when it carries again it begins off its lock.
+  if (!carries(agent, leg)) {
+    target = lock = offset = vec3(0.0);
+    u = 0.0;
+    locked = locks = false;
+  }
+#endif
   // A lock stays as it was written, in the tile of that tick; rounded anew in every tick it would creep.
   bool kept = locked && !locks;
   STORE4_TWO(stepsOut, stepAt, kept ? s0 : vec4(lock + body.local, packedTile(body.tile.x, body.tile.y)),

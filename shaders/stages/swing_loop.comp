@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "stages/awake.glsl"
 #include "lib/loop.glsl"
+#include "stages/hurt.glsl"
 
 LOAD4_BUFFER(BINDING_RIG, rig);
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -16,9 +17,21 @@ void main() {
   vec4 home = LOAD4(rig, leg * rigStride(BONES) + 1);
   vec4 gait = LOAD4(gaits, agent * GAIT_STRIDE);
   float cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1).y;
+  float groups = float(GROUPS);
+#ifdef HURT
+  Hurt hurt = hurtOf(agent);
+  if (!carries(agent, leg)) {
+    STORE4(feetOut, record, vec4(0.0));
+    return;
+  }
+  vec4 own = HURT_LEG(agent, leg);
+  home = vec4(home.xyz + hurt.shift, own.x);
+  groups = hurt.groups;
+  gait.w = slowTicks(gait.w, own.w);
+#endif
   float speed = body.surfaceSpeed + abs(body.turnRate) * parameters.homeRadius;
   float lift = parameters.stepHeight * min(1.0, speed / (0.1 * parameters.legLength));
-  LoopFoot foot = loopFoot(home.xyz, body.turnRate, body.surfaceSpeed, fract(gait.x + home.w / float(GROUPS)), cycle,
+  LoopFoot foot = loopFoot(home.xyz, body.turnRate, body.surfaceSpeed, fract(gait.x + home.w / groups), cycle,
                            gait.w * parameters.dt, lift);
   STORE4(feetOut, record, vec4(rotate(body.orientation, foot.place), foot.u));
 }

@@ -83,7 +83,7 @@ std::vector<std::string> namesOf(Controller controller, bool fuse, bool sleep, b
   CrowdOptions options = everything(fuse);
   options.sleep = sleep;
   std::vector<std::string> names;
-  for (const crowd::Stage& stage : crowd::stagesOf(controller, options, avoids))
+  for (const crowd::Stage& stage : crowd::stagesOf(controller, options, {.avoids = avoids}))
     names.push_back(stage.makes.name());
   return names;
 }
@@ -118,7 +118,7 @@ TEST(Records, ReplayHoldsAllThatAStageWrites) {
   for (const Controller controller : allControllers) {
     const std::vector<validation::CheckedStage> checked = validation::checkedStages(controller);
     auto next = checked.begin();
-    for (const crowd::Stage& stage : crowd::stagesOf(controller, everything(false), true)) {
+    for (const crowd::Stage& stage : crowd::stagesOf(controller, everything(false), {.avoids = true})) {
       if (stage.makes == crowd::StageId::wake) continue;
       SCOPED_TRACE(std::string(nameOf(controller)) + ", " + stage.makes.name());
       ASSERT_NE(next, checked.end());

@@ -163,7 +163,7 @@ class MaterialShadingTest : public test::GpuLoadTest {
     const Textures textures(context(), materials, notes);
     EXPECT_TRUE(notes.empty());
 
-    gpu::GraphicsInfo info = wornShading(1, false, true, shot.material, textures.has(0));
+    gpu::GraphicsInfo info = wornShading(1, {.tinted = true}, shot.material, textures.has(0));
     info.colour = vk::Format::eR32G32B32A32Sfloat;
     info.depthUse = gpu::DepthUse::none;
     const gpu::GraphicsPipeline pipeline(context(), info);

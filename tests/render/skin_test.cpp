@@ -123,8 +123,8 @@ class SkinTest : public test::GpuLoadTest {
     picture.tile = {kPictureTile, 100, 0};
     picture.ground = {0, 0, 1, 1};
 
-    gpu::GraphicsInfo info = worn ? wornShading(influences, asMatrices, false, Material(), 0)
-                                  : crowdShading(influences, asMatrices, false);
+    gpu::GraphicsInfo info = worn ? wornShading(influences, {.matrices = asMatrices}, Material(), 0)
+                                  : crowdShading(influences, {.matrices = asMatrices});
     info.fragment = worn ? embedded::tangent_frag() : embedded::normal_frag();
     std::erase_if(info.bindings, [](const auto& b) {
       return int(b.binding) == shared::DRAW_SHADOW || int(b.binding) >= shared::DRAW_MATERIAL;

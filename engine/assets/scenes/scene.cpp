@@ -16,6 +16,7 @@
 #include "assets/scenes/scene_writer.h"
 #include "embedded/crossing_json.h"
 #include "skitter/error.h"
+#include "skitter/rig.h"
 
 namespace skitter::scenes {
 
@@ -199,7 +200,7 @@ void checkKeys(const Obstacle& obstacle, const std::string& file, const std::str
 template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
   auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-         avoid, ways, threat, forage, phase, colour, tint] = herd;
+         avoid, ways, threat, forage, phase, colour, tint, hurt] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -220,6 +221,7 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.phase("phase", phase);
   fields.colour("colour", colour);
   fields.key("tint", tint, 0, 1);
+  fields.flag("hurt", hurt);
 }
 
 template <class Fields>
@@ -372,12 +374,23 @@ void keysOf(Fields& fields, const char* key, ThreatChange& change) {
 }
 
 template <class Fields>
+void keysOf(Fields& fields, const char* key, LegChange& change) {
+  auto& [herd, agents, share, leg, state, bone] = change;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+  fields.key("share", share, 0, 1);
+  fields.key(key, leg);
+  fields.named("state", state, allLegStates);
+  fields.integer("bone", bone, 0, Leg::maxBones - 1);
+}
+
+template <class Fields>
 void keysOf(Fields& fields, Event& event) {
   auto& [at, what] = event;
   fields.key("at", at, 0, Event::maxTime);
-  fields.oneOf(
-      {"mound", "edit", "goal", "speed", "teleport", "add", "remove", "addHerd", "removeHerd", "threat"},
-      what);
+  fields.oneOf({"mound", "edit", "goal", "speed", "teleport", "add", "remove", "addHerd", "removeHerd",
+                "threat", "leg"},
+               what);
 }
 void checkKeys(const Event& event, const std::string& file, const std::string& path) {
   const auto expectSome = [&](const char* key, const auto& list) {
@@ -387,6 +400,9 @@ void checkKeys(const Event& event, const std::string& file, const std::string& p
   if (const auto* teleport = std::get_if<Teleport>(&event.what)) expectSome("teleport", teleport->moves);
   if (const auto* addition = std::get_if<Addition>(&event.what)) expectSome("add", addition->arrivals);
   if (const auto* removal = std::get_if<Removal>(&event.what)) expectSome("remove", removal->agents);
+  const auto* change = std::get_if<LegChange>(&event.what);
+  if (change && change->share && !change->agents.empty())
+    throw inputError(fmt::format("{}: {} has agents and a share, expected one of them", file, path));
 }
 
 template <class Fields>

@@ -154,6 +154,12 @@ class Reader {
       values.push_back(static_cast<uint32_t>(whole(item, path, 0, most)));
     }
   }
+  void flag(const char* key, bool& value) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_boolean()) fail(pathOf(key), *json, "true or false");
+    value = json->get<bool>();
+  }
   // A number from 0 to 1, or "random", which is none, or "together", which is 0.
   void phase(const char* key, std::optional<float>& value) {
     const auto* json = find(key);

@@ -91,6 +91,10 @@ class Writer {
     for (const uint32_t value : values)
       array.push_back(whole(value, fmt::format("{}[{}]", pathOf(key), array.size()), 0, most));
   }
+  // A missing key means false, so a scene without it stays as it was.
+  void flag(const char* key, const bool& value) {
+    if (value) json_[key] = true;
+  }
   void phase(const char* key, const std::optional<float>& value) { this->key(key, value, 0, 1); }
   void colour(const char* key, const std::optional<glm::vec3>& value) {
     if (!value) return;

@@ -18,7 +18,7 @@ void prepareGait(const gpu::Context&, const skitter::Herd& from, const Rig&, Kin
 }
 
 void checkTick(const Kind& kind, float dt) {
-  const float ticks = kind.parameters.swingStill / dt;
+  const float ticks = (kind.hurts ? lameSlowness : 1.0f) * kind.parameters.swingStill / dt;
   if (!(ticks < shared::MOST_STEP_TICKS))
     throw inputError(
         fmt::format("dt {:.3g} s: a step of {} would last {:.0f} ticks, expected fewer than {:.0f}", dt,

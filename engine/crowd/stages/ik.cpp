@@ -6,12 +6,18 @@
 #include "embedded/ik_comp_texel.h"
 #include "embedded/ik_compared_comp_storage.h"
 #include "embedded/ik_compared_comp_texel.h"
+#include "embedded/ik_hurt_comp_storage.h"
+#include "embedded/ik_hurt_comp_texel.h"
 #include "embedded/ik_planted_comp_storage.h"
 #include "embedded/ik_planted_comp_texel.h"
+#include "embedded/ik_planted_hurt_comp_storage.h"
+#include "embedded/ik_planted_hurt_comp_texel.h"
 #include "embedded/swing_ik_comp_storage.h"
 #include "embedded/swing_ik_comp_texel.h"
 #include "embedded/swing_ik_compared_comp_storage.h"
 #include "embedded/swing_ik_compared_comp_texel.h"
+#include "embedded/swing_ik_hurt_comp_storage.h"
+#include "embedded/swing_ik_hurt_comp_texel.h"
 #include "gpu/context.h"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
@@ -76,63 +82,67 @@ void specialiseSwingAndIk(const StageNeeds& needs, StageKernels& kernels) {
 Stage ikStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return {StageId::ik,
-          {embedded::ik_comp_texel(), embedded::ik_comp_storage()},
-          {{BINDING_PARAMETERS, uniform},
-           {BINDING_RIG, load4},
-           {BINDING_BODY, load4},
-           {BINDING_FOOT, load4},
-           {BINDING_CHAIN, load4},
-           {BINDING_CHAIN_OUT, store},
-           {BINDING_MISS_OUT, store},
-           {BINDING_TIP_OUT, store},
-           {BINDING_LIST, store},
-           {BINDING_COUNTERS, store}},
-          Stage::Over::legs,
-          specialiseIk,
-          COUNTER_IK_DISPATCH_X};
+  return withHurt(Stage{StageId::ik,
+                        {embedded::ik_comp_texel(), embedded::ik_comp_storage()},
+                        {{BINDING_PARAMETERS, uniform},
+                         {BINDING_RIG, load4},
+                         {BINDING_BODY, load4},
+                         {BINDING_FOOT, load4},
+                         {BINDING_CHAIN, load4},
+                         {BINDING_CHAIN_OUT, store},
+                         {BINDING_MISS_OUT, store},
+                         {BINDING_TIP_OUT, store},
+                         {BINDING_LIST, store},
+                         {BINDING_COUNTERS, store}},
+                        Stage::Over::legs,
+                        specialiseIk,
+                        COUNTER_IK_DISPATCH_X},
+                  {embedded::ik_hurt_comp_texel(), embedded::ik_hurt_comp_storage()});
 }
 
 Stage swingAndIkStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return {{StageId::swing, StageId::ik},
-          {embedded::swing_ik_comp_texel(), embedded::swing_ik_comp_storage()},
-          {{BINDING_PARAMETERS, uniform},
-           {BINDING_RIG, load4},
-           {BINDING_BODY, load4},
-           {BINDING_STEP, load4},
-           {BINDING_ARC, load4},
-           {BINDING_FOOT_OUT, store},
-           {BINDING_CHAIN, load4},
-           {BINDING_CHAIN_OUT, store},
-           {BINDING_MISS_OUT, store},
-           {BINDING_TIP_OUT, store},
-           {BINDING_LIST, store},
-           {BINDING_COUNTERS, store}},
-          Stage::Over::legs,
-          specialiseSwingAndIk,
-          COUNTER_IK_DISPATCH_X};
+  return withHurt(Stage{{StageId::swing, StageId::ik},
+                        {embedded::swing_ik_comp_texel(), embedded::swing_ik_comp_storage()},
+                        {{BINDING_PARAMETERS, uniform},
+                         {BINDING_RIG, load4},
+                         {BINDING_BODY, load4},
+                         {BINDING_STEP, load4},
+                         {BINDING_ARC, load4},
+                         {BINDING_FOOT_OUT, store},
+                         {BINDING_CHAIN, load4},
+                         {BINDING_CHAIN_OUT, store},
+                         {BINDING_MISS_OUT, store},
+                         {BINDING_TIP_OUT, store},
+                         {BINDING_LIST, store},
+                         {BINDING_COUNTERS, store}},
+                        Stage::Over::legs,
+                        specialiseSwingAndIk,
+                        COUNTER_IK_DISPATCH_X},
+                  {embedded::swing_ik_hurt_comp_texel(), embedded::swing_ik_hurt_comp_storage()});
 }
 
 Stage plantedIkStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return {StageId::ik,
-          {embedded::ik_planted_comp_texel(), embedded::ik_planted_comp_storage()},
-          {{BINDING_PARAMETERS, uniform},
-           {BINDING_RIG, load4},
-           {BINDING_BODY, load4},
-           {BINDING_FOOT, load4},
-           {BINDING_START, load4},
-           {BINDING_CHAIN_OUT, store},
-           {BINDING_TIP_OUT, store},
-           {BINDING_FIX_OUT, store},
-           {BINDING_LIST, store},
-           {BINDING_COUNTERS, store}},
-          Stage::Over::legs,
-          specialiseSolve,
-          COUNTER_IK_DISPATCH_X};
+  return withHurt(Stage{StageId::ik,
+                        {embedded::ik_planted_comp_texel(), embedded::ik_planted_comp_storage()},
+                        {{BINDING_PARAMETERS, uniform},
+                         {BINDING_RIG, load4},
+                         {BINDING_BODY, load4},
+                         {BINDING_FOOT, load4},
+                         {BINDING_START, load4},
+                         {BINDING_CHAIN_OUT, store},
+                         {BINDING_TIP_OUT, store},
+                         {BINDING_FIX_OUT, store},
+                         {BINDING_LIST, store},
+                         {BINDING_COUNTERS, store}},
+                        Stage::Over::legs,
+                        specialiseSolve,
+                        COUNTER_IK_DISPATCH_X},
+                  {embedded::ik_planted_hurt_comp_texel(), embedded::ik_planted_hurt_comp_storage()},
+                  {{BINDING_CHAIN, load4}});
 }
 
 }  // namespace skitter::crowd

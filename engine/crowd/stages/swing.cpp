@@ -3,12 +3,18 @@
 #include "embedded/swing_clip_comp_texel.h"
 #include "embedded/swing_comp_storage.h"
 #include "embedded/swing_comp_texel.h"
+#include "embedded/swing_hurt_comp_storage.h"
+#include "embedded/swing_hurt_comp_texel.h"
 #include "embedded/swing_key_poses_comp_storage.h"
 #include "embedded/swing_key_poses_comp_texel.h"
 #include "embedded/swing_loop_comp_storage.h"
 #include "embedded/swing_loop_comp_texel.h"
+#include "embedded/swing_loop_hurt_comp_storage.h"
+#include "embedded/swing_loop_hurt_comp_texel.h"
 #include "embedded/swing_planted_comp_storage.h"
 #include "embedded/swing_planted_comp_texel.h"
+#include "embedded/swing_planted_hurt_comp_storage.h"
+#include "embedded/swing_planted_hurt_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -23,27 +29,29 @@ void addFeet(const StageNeeds& needs, StageKernels& kernels) {
 Stage swingStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return {StageId::swing,
-          {embedded::swing_comp_texel(), embedded::swing_comp_storage()},
-          {{BINDING_PARAMETERS, uniform},
-           {BINDING_BODY, load4},
-           {BINDING_STEP, load4},
-           {BINDING_ARC, load4},
-           {BINDING_FOOT_OUT, store}},
-          Stage::Over::legs};
+  return withHurt(Stage{StageId::swing,
+                        {embedded::swing_comp_texel(), embedded::swing_comp_storage()},
+                        {{BINDING_PARAMETERS, uniform},
+                         {BINDING_BODY, load4},
+                         {BINDING_STEP, load4},
+                         {BINDING_ARC, load4},
+                         {BINDING_FOOT_OUT, store}},
+                        Stage::Over::legs},
+                  {embedded::swing_hurt_comp_texel(), embedded::swing_hurt_comp_storage()});
 }
 
 Stage loopSwingStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return {StageId::swing,
-          {embedded::swing_loop_comp_texel(), embedded::swing_loop_comp_storage()},
-          {{BINDING_PARAMETERS, uniform},
-           {BINDING_RIG, load4},
-           {BINDING_BODY, load4},
-           {BINDING_GAIT, load4},
-           {BINDING_FOOT_OUT, store}},
-          Stage::Over::legs};
+  return withHurt(Stage{StageId::swing,
+                        {embedded::swing_loop_comp_texel(), embedded::swing_loop_comp_storage()},
+                        {{BINDING_PARAMETERS, uniform},
+                         {BINDING_RIG, load4},
+                         {BINDING_BODY, load4},
+                         {BINDING_GAIT, load4},
+                         {BINDING_FOOT_OUT, store}},
+                        Stage::Over::legs},
+                  {embedded::swing_loop_hurt_comp_texel(), embedded::swing_loop_hurt_comp_storage()});
 }
 
 Stage clipSwingStage() {
@@ -67,21 +75,22 @@ Stage clipSwingStage() {
 Stage plantedSwingStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return {StageId::swing,
-          {embedded::swing_planted_comp_texel(), embedded::swing_planted_comp_storage()},
-          {{BINDING_PARAMETERS, uniform},
-           {BINDING_HEIGHTS, heights},
-           {BINDING_RIG, load4},
-           {BINDING_BODY, load4},
-           {BINDING_STEP, load4},
-           {BINDING_STEP_OUT, store},
-           {BINDING_PLAY, load4},
-           {BINDING_CLIP_FRAME, load4},
-           {BINDING_CLIP_ROW, load4},
-           {BINDING_CLIP_LEG, load4},
-           {BINDING_FOOT_OUT, store},
-           {BINDING_START_OUT, store}},
-          Stage::Over::legs};
+  return withHurt(Stage{StageId::swing,
+                        {embedded::swing_planted_comp_texel(), embedded::swing_planted_comp_storage()},
+                        {{BINDING_PARAMETERS, uniform},
+                         {BINDING_HEIGHTS, heights},
+                         {BINDING_RIG, load4},
+                         {BINDING_BODY, load4},
+                         {BINDING_STEP, load4},
+                         {BINDING_STEP_OUT, store},
+                         {BINDING_PLAY, load4},
+                         {BINDING_CLIP_FRAME, load4},
+                         {BINDING_CLIP_ROW, load4},
+                         {BINDING_CLIP_LEG, load4},
+                         {BINDING_FOOT_OUT, store},
+                         {BINDING_START_OUT, store}},
+                        Stage::Over::legs},
+                  {embedded::swing_planted_hurt_comp_texel(), embedded::swing_planted_hurt_comp_storage()});
 }
 
 Stage keyPoseSwingStage() {

@@ -187,8 +187,8 @@ class SKITTER_API Crowd {
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, fragment, compute and transfer work recorded after it. Each recorded tick must be submitted
   // once, in order. What Scene::events has for that time happens first, as if the caller had called
-  // editHeights, steer, setSpeed, teleport, add, remove, addHerd, removeHerd or setThreat just before; no
-  // file is read for that. A tick before which a herd comes or goes takes the queue's lock, allocates,
+  // editHeights, steer, setSpeed, teleport, add, remove, hurt, addHerd, removeHerd or setThreat just before;
+  // no file is read for that. A tick before which a herd comes or goes takes the queue's lock, allocates,
   // submits and waits for the device, and is recorded when all that was recorded before it is submitted; one
   // for which fields are computed anew does so, too, and allocates nothing. The buffers of a herd that goes
   // are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
@@ -260,6 +260,16 @@ class SKITTER_API Crowd {
   bool has(AgentId agent) const;
   uint32_t places(uint32_t herd) const;
   uint32_t agentCount(uint32_t herd) const;
+
+  // Legs that are hurt, in herds that can be (Herd::hurt, docs/damage.md). A leg that does not carry has no
+  // foothold, no target and no solve; the others regroup in the next recorded tick. A hurt agent wakes.
+  //
+  // Throws Error(input) where a herd cannot be hurt, or for a leg or a bone that the rig lacks.
+  void hurt(std::span<const AgentLeg> legs);
+  void hurt(AgentId agent, uint32_t leg, LegState state = LegState::lost, std::optional<uint32_t> bone = {});
+  void heal(AgentId agent);  // all its legs are whole
+  // As the host has said. Throws Error(input) for a handle of nobody, and for a leg that the rig lacks.
+  LegState legState(AgentId agent, uint32_t leg) const;
 
   // Herds that come and go, between ticks. Both calls make or free device memory at once, submit and wait
   // under the queue's lock. Herd::rig is relative to the working directory.

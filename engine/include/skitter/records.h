@@ -140,7 +140,8 @@ SKITTER_CONST float ABSENT_HEIGHT = -1e6;
 
 // gait, per agent, written by gait.
 //   [0] phase phi in [0,1), lift mask, re-aim mask, step duration (ticks)
-//   [1] half stride a (m), cycle C (s), mask of legs in the air before lifting, unused
+//   [1] half stride a (m), cycle C (s), mask of legs in the air before lifting, mask of legs that do not
+//   carry
 SKITTER_CONST int GAIT_STRIDE = 2;
 
 // step, per leg, written by foothold when a step begins or is aimed anew.
@@ -198,8 +199,8 @@ SKITTER_CONST int TIP_STRIDE = 1;
 
 // pose, per agent, written by pose: 1 + legs * bones entries of
 //   [0] R, quaternion xyzw, world from rest
-//   [1] joint position relative to the body's position, world axes, x, y, z; unused
-// A vertex v of that bone is at  body + [1] + R (v - rest start).
+//   [1] joint position relative to the body's position, world axes, x, y, z; 1 where the bone is lost
+// A vertex v of that bone is at  body + [1] + R (v - rest start), of a lost bone at  body + [1].
 SKITTER_CONST int POSE_STRIDE = 2;
 
 // play, per agent, written by clip.
@@ -256,11 +257,28 @@ SKITTER_FUNCTION int watchStride(int legs) { return WATCH_TRAIL_STRIDE * (1 + le
 //   [1] slip over finished stances (m), finished stances, largest reach error (m),
 //       tan(largest limit violation / 2)
 //   [2] penetration, the same beyond the dead zone, float, the same beyond the dead zone (m)
-//   [3] segment penetration (m), its largest (m), leg-ticks beyond a limit, unused
+//   [3] segment penetration (m), its largest (m), leg-ticks beyond a limit, leg-ticks of lost legs
 //   [4] pair-ticks of neighbours, of these crossing, ticks with a support, unstable ticks
 //   [5] stability margin (m), its least (m), unused, unused
 //   [6] W^5 Q over windows of the tips, their P^2, the same of the body (m^2)
 SKITTER_CONST int METRIC_STRIDE = 7;
+
+// hurt, per agent of a herd that can be hurt, written by the host alone (Crowd::hurt): which of its legs are
+// hurt, and the gait that it has for it (docs/damage.md). A leg that is lost or stuck does not carry.
+//   [0] mask of lost legs, of stuck legs, of lame legs; groups of the gait
+//   [1] of lost legs the first bone that is lost: legs 0 to 5, 6 to 11, 12 to 17 and 18 to 23 (packedBone)
+//   [2] shift of the homes x, y, z (model, m); share of the desired velocity
+//   [3 + leg] group, lag in it, mask of the legs that must stand while it is in the air; how many times as
+//   long as others its step lasts
+SKITTER_CONST int HURT_LEGS = 3;  // where its vec4 of legs begin
+SKITTER_FUNCTION int hurtStride(int legs) { return HURT_LEGS + legs; }
+// Six bones, each below HURT_BONES, are one exact float.
+SKITTER_CONST int HURT_BONES = 16;
+SKITTER_CONST int HURT_BONES_LEGS = 6;
+// The bone of leg `leg` in the number of its six legs.
+SKITTER_INLINE int packedBone(float packed, int leg) {
+  return SKITTER_INT(SKITTER_UINT(packed) >> SKITTER_UINT(4 * (leg % HURT_BONES_LEGS))) % HURT_BONES;
+}
 
 // rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE per bone (zero-length bones pad short
 // legs).
@@ -364,7 +382,8 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
   RECORD(SPRING, spring, 38, leg,     chainStride(bones),              bound,      false, true) \
   RECORD(METRIC, metric, 40, agent,   METRIC_STRIDE,                   bound,      false, false) \
   RECORD(WATCH,  watch,  42, watched, watchStride(legs),               bound,      false, false) \
-  RECORD(FLIGHT, flight, 44, leg,     FLIGHT_STRIDE,                   bound,      false, false)
+  RECORD(FLIGHT, flight, 44, leg,     FLIGHT_STRIDE,                   bound,      false, false) \
+  RECORD(HURT,   hurt,   50, agent,   hurtStride(legs),                bound,      true,  true)
 // clang-format on
 
 #ifdef __cplusplus

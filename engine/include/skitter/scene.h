@@ -13,6 +13,7 @@
 #include "skitter/export.h"
 #include "skitter/forage.h"
 #include "skitter/heightfield.h"
+#include "skitter/leg_state.h"
 #include "skitter/solver.h"
 #include "skitter/tuning.h"
 #include "skitter/ways.h"
@@ -102,6 +103,9 @@ struct Herd {
   std::optional<glm::vec3> colour = {};
   // How much agents differ in colour, by the seed: 0 not at all, 1 by most; none: half, by their numbers.
   std::optional<float> tint = {};
+  // Whether legs of its agents can be hurt (Crowd::hurt): such a herd has a record more per agent, and
+  // pipelines of its own. Of controllers adaptive, loop and planted, with the solver activeSet.
+  bool hurt = false;
 
   bool operator==(const Herd&) const = default;
 };
@@ -208,6 +212,19 @@ struct Removal {
   bool operator==(const Removal&) const = default;
 };
 
+// A leg of some agents of a herd that can be hurt (Herd::hurt), as Crowd::hurt has it.
+struct LegChange {
+  uint32_t herd = 0;
+  std::vector<uint32_t> agents = {};  // empty: all who are there, or a share of them
+  std::optional<float> share = {};    // 0 to 1: each is drawn by the seed; without `agents`
+  std::string leg;                    // by its name in the rig
+  LegState state = LegState::lost;
+  std::optional<uint32_t> bone =
+      {};  // the first one that is lost, counted from the root; none: as Crowd::hurt
+
+  bool operator==(const LegChange&) const = default;
+};
+
 // A herd that comes, as Crowd::addHerd has it: it gets the lowest number that no herd has. Its rig and clips
 // are read when the crowd is made.
 struct HerdAddition {
@@ -238,7 +255,7 @@ struct Event {
 
   float at = 0;  // seconds
   std::variant<Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition,
-               HerdRemoval, ThreatChange>
+               HerdRemoval, ThreatChange, LegChange>
       what;
 
   bool operator==(const Event&) const = default;

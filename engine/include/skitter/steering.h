@@ -3,6 +3,7 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <optional>
 
 #include "skitter/scene.h"
 
@@ -52,6 +53,16 @@ struct AgentSpeed {
 struct AgentPlace {
   AgentId agent;
   Place place;
+};
+
+// A leg, by its number in the rig, and what it becomes.
+struct AgentLeg {
+  AgentId agent;
+  uint32_t leg = 0;
+  LegState state = LegState::lost;
+  // Of a lost leg: the first bone that is lost, counted from the root; none: all but the first, which is the
+  // stump, or the only one.
+  std::optional<uint32_t> bone = {};
 };
 
 // Goal records of a run of a herd's agents on the device, for shaders of the caller's, which may write them:

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "cpu_reference/types.h"
+
+namespace skitter::reference {
+
+// What an agent's damage makes of its legs and its gait (docs/damage.md).
+struct Hurt {
+  struct Turn {
+    int group = 0;
+    double lag = 0;
+    uint32_t neighbours = 0;
+    double slowness = 1;
+    size_t lostFrom = 0;  // the first bone that is lost, of a lost leg
+  };
+  uint32_t lost = 0, stuck = 0, lame = 0;  // masks of legs
+  int groups = 1;
+  glm::dvec3 shift{0};  // of the homes, model space
+  double speed = 1;
+  std::vector<Turn> legs;
+};
+
+// The creature that such an agent is.
+Creature hurtCreature(const Creature& whole, const Hurt& hurt);
+
+// Of a leg that does not carry: it has no target, and keeps its pose.
+Foot idleFoot();
+Chain heldLeg(const Limb& limb, const AgentBody& body, const Chain& previous);
+
+}  // namespace skitter::reference

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "skitter/rig.h"
+#include "skitter/tuning.h"
+
+namespace skitter::crowd {
+
+// Masks of legs: those that do not carry, and those that are lame.
+struct LegPattern {
+  uint32_t idle = 0, lame = 0;
+
+  auto operator<=>(const LegPattern&) const = default;
+};
+
+// A leg's place in a gait.
+struct LegTurn {
+  int group = 0;
+  float lag = 0;            // as LegOrder
+  uint32_t neighbours = 0;  // bit m: leg m must stand while this one is in the air
+  float slowness = 1;       // how many times as long as others its step lasts
+};
+
+// The gait of a creature with some legs that do not carry (docs/damage.md).
+struct Regait {
+  int groups = 1;
+  glm::vec3 shift{0};  // of the homes, model space, metres
+  float speed = 1;     // share of the desired velocity
+  std::vector<LegTurn> legs;
+};
+
+// How many times as long as others the step of a lame leg lasts.
+constexpr float lameSlowness = 1.5f;
+
+// By rule: the legs that carry regroup so that, at one leg length a second, the body's centre is outside the
+// support polygon for the least time; of the rig's own gait where all carry.
+Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& pattern);
+
+}  // namespace skitter::crowd
