@@ -118,6 +118,14 @@ void addSizes(const Crowd::Impl& crowd, uint32_t herd, nlohmann::ordered_json& d
                                   {"footprintRadius", crowd::footprintRadius(crowd.kinds[run.kind].rig)}});
 }
 
+nlohmann::ordered_json legState(const Rig& rig, uint64_t tick, uint32_t agent, uint32_t leg, LegState state,
+                                uint32_t bone) {
+  nlohmann::ordered_json entry = {
+      {"tick", tick}, {"agent", agent}, {"leg", rig.legs[leg].name}, {"state", nameOf(state)}};
+  if (state == LegState::lost) entry["bone"] = bone;
+  return entry;
+}
+
 // Without legs where the herd is gone.
 const Rig& tracedRig(const Crowd& crowd, uint32_t herd) {
   static const Rig none;
@@ -166,8 +174,24 @@ void Trace::append(const Crowd& crowd) {
     herds_[h].rotations.append(std::span<const float>(values.rotations));
     herds_[h].stance.append(std::span<const uint8_t>(values.stance));
     herds_[h].body.append(std::span<const float>(values.body));
+    if (!state.hurt.empty())
+      noteLegs(state, static_cast<uint32_t>(tracedRig(crowd, h).legCount()), herds_[h]);
   }
   ++entries_;
+}
+
+void Trace::noteLegs(const HerdState& state, uint32_t legs, HerdFiles& herd) const {
+  const auto floats = 4 * static_cast<size_t>(hurtStride(static_cast<int>(legs)));
+  herd.damages.resize(state.agents);
+  for (uint32_t agent = 0; agent < state.agents; ++agent) {
+    const crowd::Damage now =
+        crowd::Damage::ofValues(std::span(state.hurt).subspan(agent * floats, crowd::Damage::floats));
+    crowd::Damage& before = herd.damages[agent];
+    for (uint32_t leg = 0; leg < legs; ++leg)
+      if (now.of(leg) != before.of(leg) || now.bones[leg] != before.bones[leg])
+        herd.legs.push_back({firstTick_ + entries_, agent, leg, now.bones[leg], now.of(leg)});
+    before = now;
+  }
 }
 
 size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manifest& manifest) {
@@ -182,6 +206,8 @@ size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manif
     herds_[h].body.finish(entries_);
     herds.push_back(describe(tracedRig(crowd, h), herds_[h].agents));
     addSizes(implOf(crowd), h, herds.back());
+    for (const auto& [tick, agent, leg, bone, state] : herds_[h].legs)
+      herds.back()["hurt"].push_back(legState(tracedRig(crowd, h), tick, agent, leg, state, bone));
   }
   const nlohmann::ordered_json json = {{"dt", dt_},
                                        {"firstTick", firstTick_},

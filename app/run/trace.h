@@ -7,6 +7,7 @@
 #include "app/common/manifest.h"
 #include "app/common/staged_folder.h"
 #include "app/run/npy.h"
+#include "crowd/damage.h"
 #include "skitter/crowd.h"
 
 namespace skitter::app {
@@ -27,10 +28,19 @@ class Trace {
   size_t finish(const Crowd& crowd, const Heightfield& terrain, const Manifest& manifest);
 
  private:
+  // A leg that was hurt or healed just before a tick.
+  struct LegEntry {
+    uint64_t tick;
+    uint32_t agent, leg, bone;  // the first bone that is lost
+    LegState state;
+  };
   struct HerdFiles {
     uint32_t agents;
     NpyWriter joints, rotations, stance, body;
+    std::vector<crowd::Damage> damages = {};  // of each agent at the last entry, of a herd that can be hurt
+    std::vector<LegEntry> legs = {};
   };
+  void noteLegs(const HerdState& state, uint32_t legs, HerdFiles& herd) const;
   StagedFolder folder_;
   double dt_;
   uint64_t firstTick_ = 1, entries_ = 0;

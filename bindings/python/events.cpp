@@ -158,6 +158,31 @@ void bindThreats(py::module_& module) {
           [](ThreatChange& self, float radius) { self.threat.radius = radius; }, "Metres; 0: it goes.");
 }
 
+void bindLegs(py::module_& module) {
+  py::class_<LegChange> change(module, "LegChange", "A leg of some agents, of a herd that can be hurt.");
+  change
+      .def(py::init([](std::string leg, const std::string& state, uint32_t herd, Places agents,
+                       std::optional<float> share, std::optional<uint32_t> bone) {
+             return LegChange{.herd = herd,
+                              .agents = std::move(agents),
+                              .share = share,
+                              .leg = std::move(leg),
+                              .state = bindings::namedOf(allLegStates, "state", state),
+                              .bone = bone};
+           }),
+           "leg"_a, "state"_a = "lost", "herd"_a = 0, "agents"_a = Places{}, "share"_a = py::none(),
+           "bone"_a = py::none())
+      .def_readwrite("herd", &LegChange::herd, herdText)
+      .def_readwrite("leg", &LegChange::leg, "Its name in the rig.")
+      .def_readwrite("share", &LegChange::share,
+                     "Each agent is drawn with this chance, 0 to 1; None: all of `agents`.")
+      .def_readwrite("bone", &LegChange::bone,
+                     "The first bone that is lost, from the root; None: the second one.");
+  defineNamed(change, "state", &LegChange::state, allLegStates,
+              "\"whole\", \"lame\", \"stuck\" or \"lost\".");
+  defineTuple(change, "agents", &LegChange::agents, agentsText);
+}
+
 // Takes the object for a `Kind` if it is one.
 template <typename Kind>
 bool takes(const py::object& object, What& what) {
@@ -193,7 +218,7 @@ std::vector<Event> eventsIn(const py::list& events) {
     if (!isTaken(event.what, one.what))
       fail(".what", event.what,
            "a Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition, "
-           "HerdRemoval or ThreatChange");
+           "HerdRemoval, ThreatChange or LegChange");
     made.push_back(std::move(one));
   }
   return made;
@@ -204,6 +229,7 @@ void bindEvents(py::module_& module) {
   bindChanges(module);
   bindComing(module);
   bindThreats(module);
+  bindLegs(module);
   py::class_<PythonEvent, std::shared_ptr<PythonEvent>>(
       module, "Event", "What happens to a crowd while it runs, at a time (docs/scene.md).")
       .def(py::init([](float at, py::object what) {
@@ -214,7 +240,7 @@ void bindEvents(py::module_& module) {
                      "Seconds from the start: before the first tick that ends then or later.")
       .def_readwrite("what", &PythonEvent::what,
                      "A Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, "
-                     "HerdAddition, HerdRemoval or ThreatChange.")
+                     "HerdAddition, HerdRemoval, ThreatChange or LegChange.")
       .def("__repr__", [](const PythonEvent& self) {
         return fmt::format("<skitter.Event at {} s: {}>", self.at,
                            py::type::of(self.what).attr("__name__").cast<std::string>());

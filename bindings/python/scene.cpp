@@ -131,6 +131,7 @@ void bindHerd(py::module_& module) {
       .def_readwrite("colour", &Herd::colour, "Linear red, green and blue, 0 to 1; None: the model's.")
       .def_readwrite("tint", &Herd::tint,
                      "How much agents differ in colour, 0 to 1; None: half, by their numbers.")
+      .def_readwrite("hurt", &Herd::hurt, "Whether legs of its agents can be hurt.")
       .def("__repr__", [](const Herd& self) {
         return fmt::format("<skitter.Herd of {} agents, {}, {}>", self.agents, self.rig,
                            nameOf(self.controller));

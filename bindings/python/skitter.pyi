@@ -208,6 +208,7 @@ class Herd:
     phase: Optional[float]
     colour: Optional[Sequence[float]]
     tint: Optional[float]
+    hurt: bool
     def __init__(self, agents: int = 1000) -> None: ...
 
 class TerrainNoise:
@@ -380,6 +381,25 @@ class Removal:
     agents: Sequence[int]
     def __init__(self, agents: Sequence[int], herd: int = 0) -> None: ...
 
+class LegChange:
+    """A leg of some agents, of a herd that can be hurt."""
+
+    herd: int
+    leg: str
+    state: str
+    agents: Sequence[int]
+    share: Optional[float]
+    bone: Optional[int]
+    def __init__(
+        self,
+        leg: str,
+        state: str = "lost",
+        herd: int = 0,
+        agents: Sequence[int] = (),
+        share: Optional[float] = None,
+        bone: Optional[int] = None,
+    ) -> None: ...
+
 class HerdAddition:
     """A herd that comes; it gets the lowest number that is free."""
 
@@ -411,6 +431,7 @@ _What = Union[
     HerdAddition,
     HerdRemoval,
     ThreatChange,
+    LegChange,
 ]
 
 class Event:

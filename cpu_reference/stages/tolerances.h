@@ -158,6 +158,13 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
        (8 + legs) * roundoff * plane.spread * plane.heightSpread) /
           plane.leastEigenvalue +
       8 * roundoff * condition * (1 + slope);
+  // On few legs the points may lie closer together than to the body, where their sums are taken about: a sum
+  // of k products rounds k times at most, and the product of means that is taken off it 4 times.
+  const bool all = std::ranges::all_of(creature.limbs, [](const Limb& limb) { return limb.carries; });
+  const double mean = std::hypot(plane.mean.x, plane.mean.z);
+  if (!all)
+    bound.slope += (8 + legs) * roundoff * legs * mean * (mean * slope + std::abs(plane.mean.y) + mean) /
+                   plane.leastEigenvalue;
   // The lean into a turn: s omega times its gain.
   const double lean = t.leanGain * (next.speed * bound.turnRate + std::abs(next.turnRate) * bound.speed) +
                       8 * roundoff * t.leanMost + t.leanMost * bound.heading;

@@ -87,15 +87,19 @@ struct Grouping {
   std::vector<int> ofLeg;
 };
 
-// One leg after the other around the body, from the `first` one on, takes the next group. None where two
-// neighbours would have one.
-std::optional<Grouping> groupingOf(size_t legs, int groups, size_t first) {
+// One leg after the other around the body, from the `first` one on and in either direction, takes the next
+// group. None where two neighbours would have one.
+std::optional<Grouping> groupingOf(size_t legs, int groups, size_t first, bool backward) {
   Grouping made{groups, std::vector<int>(legs)};
   const auto g = static_cast<size_t>(groups);
   const bool meets = legs % g == 1;  // the last leg would be of the first one's group
   if (meets && groups == 2) return {};
-  for (size_t k = 0; k < legs; ++k) made.ofLeg[(first + k) % legs] = static_cast<int>(k % g);
-  if (meets) made.ofLeg[(first + legs - 1) % legs] = 1;
+  const auto place = [&](size_t k) {
+    const size_t forward = (first + k) % legs;
+    return backward ? legs - 1 - forward : forward;
+  };
+  for (size_t k = 0; k < legs; ++k) made.ofLeg[place(k)] = static_cast<int>(k % g);
+  if (meets) made.ofLeg[place(legs - 1)] = 1;
   return made;
 }
 
@@ -146,8 +150,8 @@ Choice chosen(const Points& homes, const glm::dvec2& offset, const Tuning& tunin
   Choice best;
   for (int groups = 2; groups <= static_cast<int>(homes.size()); ++groups) {
     const Walk walk = walkOf(tuning, groups, slowest);
-    for (size_t first = 0; first < static_cast<size_t>(groups); ++first) {
-      const std::optional<Grouping> grouping = groupingOf(homes.size(), groups, first);
+    for (size_t way = 0; way < 2 * static_cast<size_t>(groups); ++way) {
+      const std::optional<Grouping> grouping = groupingOf(homes.size(), groups, way / 2, way % 2 == 1);
       if (!grouping) continue;
       for (const double share : shares) {
         const glm::dvec2 centre = share * offset;

@@ -375,6 +375,25 @@ TEST_F(Trace, SizesAreListed) {
   EXPECT_EQ(next, 9u);
 }
 
+// By tick, as the events of a scene have it.
+TEST_F(Trace, LegsThatAreHurtAreListed) {
+  write("hurt.json", R"({"herds": [{"agents": 3, "hurt": true}, {"agents": 1}], "events": [
+    {"at": 0.1, "agents": [2], "leg": "R2"},
+    {"at": 0.1, "agents": [1], "leg": "L1", "state": "stuck"},
+    {"at": 0.2, "agents": [2], "leg": "R2", "state": "whole"}
+  ]})");
+  const Result result =
+      skitter({"run", file("hurt.json"), "--headless", "--frames", "20", "--trace", file("trace")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto herds = json("trace/trace.json").at("herds");
+  EXPECT_EQ(herds.at(0).at("hurt"), nlohmann::json::parse(R"([
+    {"tick": 6, "agent": 1, "leg": "L1", "state": "stuck"},
+    {"tick": 6, "agent": 2, "leg": "R2", "state": "lost", "bone": 1},
+    {"tick": 12, "agent": 2, "leg": "R2", "state": "whole"}
+  ])"));
+  EXPECT_FALSE(herds.at(1).contains("hurt"));
+}
+
 TEST_F(Trace, NoTicksAreNoEntries) {
   ASSERT_EQ(skitter({"run", "--headless", "--agents", "2", "--frames", "0", "--trace", file("trace")}).code,
             0);

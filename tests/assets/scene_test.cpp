@@ -10,6 +10,7 @@
 #include "base/split_mix.h"
 #include "files.h"
 #include "skitter/error.h"
+#include "skitter/rig.h"
 
 namespace skitter {
 namespace {
@@ -130,7 +131,10 @@ TEST(Scene, EventsOfEveryKind) {
     {"at": 4, "herd": 1, "add": [{"position": [7, 8], "heading": -1}, {"goal": {"kind": "none"}}]},
     {"at": 5, "remove": [2, 7]},
     {"at": 6, "addHerd": {"agents": 5, "reserve": 1, "rig": "crab.glb", "goal": {"kind": "none"}}},
-    {"at": 7, "removeHerd": 3}
+    {"at": 7, "removeHerd": 3},
+    {"at": 8, "herd": 1, "agents": [2], "leg": "L3"},
+    {"at": 9, "share": 0.25, "leg": "R2", "state": "lame"},
+    {"at": 9, "leg": "R1", "state": "lost", "bone": 3}
   ]})",
                                  "events.json", "folder");
   const Goal none{.kind = Goal::Kind::none}, point{.kind = Goal::Kind::point, .target = {5, 6}};
@@ -149,6 +153,9 @@ TEST(Scene, EventsOfEveryKind) {
       {5, Removal{.agents = {2, 7}}},
       {6, HerdAddition{crabs}},
       {7, HerdRemoval{3}},
+      {8, LegChange{.herd = 1, .agents = {2}, .leg = "L3"}},
+      {9, LegChange{.share = 0.25f, .leg = "R2", .state = LegState::lame}},
+      {9, LegChange{.leg = "R1", .bone = 3}},
   };
   ASSERT_EQ(scene.events.size(), expected.size());
   for (size_t e = 0; e < expected.size(); ++e) EXPECT_TRUE(scene.events[e] == expected[e]) << e;
@@ -285,6 +292,7 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": [{"at": -1, "mound": {}}]})", "events[0].at is -1"},
       {R"({"events": [{"at": 1}]})",
        "events[0] has 0 of mound, edit, goal, speed, teleport, add, remove, addHerd, removeHerd, threat, "
+       "leg, "
        "expected "
        "one"},
       {R"({"events": [{"mound": {}, "edit": {"columns": 1, "rows": 1, "heights": [0]}}]})",
@@ -318,6 +326,12 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": [{"teleport": [{"agent": 1, "position": [1, 4097]}]}]})",
        "events[0].teleport[0].position[1] is 4097"},
       {R"({"events": [{"agents": [1], "teleport": [{"agent": 1}]}]})", "events[0].agents is no known key"},
+      {R"({"events": [{"leg": ""}]})", "events[0].leg is \"\", expected a string that is not empty"},
+      {R"({"events": [{"leg": "R2", "state": "lots"}]})",
+       "events[0].state is \"lots\"; did you mean \"lost\"?"},
+      {R"({"events": [{"leg": "R2", "share": 2}]})", "events[0].share is 2, expected a number from 0 to 1"},
+      {R"({"events": [{"leg": "R2", "share": 1, "agents": [2]}]})", "events[0] has agents and a share"},
+      {R"({"herds": [{"hurt": 1}]})", "herds[0].hurt is 1, expected true or false"},
       {R"({"events": [{"add": {}}]})",
        "events[0].add is an object, expected an array of at most 65536 agents"},
       {R"({"events": [{"add": []}]})", "events[0].add is empty, expected at least one agent"},
@@ -560,7 +574,7 @@ class RandomScenes {
   Herd herd() {
     Herd made;
     auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-           avoid, ways, threat, forage, phase, colour, tint] = made;
+           avoid, ways, threat, forage, phase, colour, tint, hurt] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -588,6 +602,7 @@ class RandomScenes {
     maybe(phase, 0, 1);
     if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
     maybe(tint, 0, 1);
+    hurt = coin();
     return made;
   }
   Forage forage() {
@@ -626,7 +641,7 @@ class RandomScenes {
     return made;
   }
   decltype(Event::what) happening() {
-    switch (whole(0, 9)) {
+    switch (whole(0, 10)) {
       case 0:
         return mound();
       case 1:
@@ -679,6 +694,19 @@ class RandomScenes {
         return made;
       }
       case 8: {
+        LegChange made;
+        auto& [herd, agents, share, leg, state, bone] = made;
+        herd = someHerd();
+        if (coin())
+          maybe(share, 0, 1);
+        else
+          agents = numbers(0);
+        leg = text();
+        state = one(allLegStates);
+        if (coin()) bone = static_cast<uint32_t>(whole(0, Leg::maxBones - 1));
+        return made;
+      }
+      case 9: {
         HerdRemoval made;
         auto& [herd] = made;
         herd = someHerd();
@@ -811,6 +839,11 @@ TEST(Scene, IsNotWrittenWhereItCouldNotBeRead) {
   spoilt.herd.keys = 9;
   EXPECT_EQ(faultOfEvent(spoilt),
             "built-in: events[0].addHerd.keys is 9, expected a whole number from 2 to 8");
+  EXPECT_EQ(faultOfEvent(LegChange{}), "built-in: events[0].leg is missing");
+  EXPECT_EQ(faultOfEvent(LegChange{.leg = "R2", .bone = 15}),
+            "built-in: events[0].bone is 15, expected a whole number from 0 to 14");
+  EXPECT_EQ(faultOfEvent(LegChange{.agents = {1}, .share = 0.5f, .leg = "R2"}),
+            "built-in: events[0] has agents and a share, expected one of them");
   EXPECT_EQ(faultOfEvent(HerdRemoval{1024}),
             "built-in: events[0].removeHerd is 1024, expected a whole number from 0 to 1023");
   const std::vector<uint32_t> many(Event::maxAgents + 1);

@@ -76,6 +76,9 @@ std::vector<crowd::Stage> everyStage() {
     if (of.fused != nullptr)
       for (const crowd::Stage& stage : of.fused()) stages.push_back(stage);
   }
+  const size_t count = stages.size();
+  for (size_t i = 0; i < count; ++i)
+    if (stages[i].hurtCode) stages.emplace_back(stages[i]).code = *stages[i].hurtCode;
   return stages;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "crowd/changes.h"
 #include "crowd/herd.h"
 #include "gpu/transfer.h"
 #include "validation/herd_facts.h"
@@ -296,6 +297,44 @@ Results beyondTheLimits(Device& device, Controller controller, const CrowdOption
   return replay(device, crowd, ground, 60);
 }
 
+// Every agent is hurt in a way of its own, some to where they lie down; later half of them heal.
+Results losingLegs(Device& device, Controller controller, const CrowdOptions& options) {
+  constexpr uint32_t agents = 24, legs = 8;
+  const Heightfield ground = rollingGround();
+  Scene scene = sceneOf(agents, 1, 1, controller);
+  scene.herds[0].hurt = true;
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 40);
+  validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
+  const auto run = [&](int ticks) {
+    crowd::applyChanges(implOf(crowd));
+    HerdState before = crowd.download(0);
+    for (int i = 0; i < ticks; ++i) {
+      simulate(device, crowd, 1);
+      HerdState after = crowd.download(0);
+      replay.tick(crowd.tick(), before, after);
+      before = std::move(after);
+    }
+  };
+  std::vector<AgentLeg> hurt;
+  const auto add = [&](uint32_t agent, uint32_t leg, LegState state) {
+    hurt.push_back({crowd.agentId(0, agent), leg % legs, state, (agent + leg) % 4});
+  };
+  for (uint32_t agent = 0; agent < agents; ++agent) {
+    add(agent, agent, LegState::lost);
+    if (agent % 3 == 0) add(agent, 3 * agent + 1, LegState::stuck);
+    if (agent % 2 == 0) add(agent, 5 * agent + 2, LegState::lame);
+    if (agent % 12 == 11)
+      for (uint32_t leg = 0; leg < (agent == 23 ? legs : legs - 2); ++leg) add(agent, leg, LegState::lost);
+  }
+  crowd.hurt(hurt);
+  run(45);
+  for (uint32_t agent = 0; agent < agents; agent += 2) crowd.heal(crowd.agentId(0, agent));
+  crowd.heal(crowd.agentId(0, 23));
+  run(45);
+  return replay.results();
+}
+
 }  // namespace
 
 const std::vector<Situation>& situations() {
@@ -318,6 +357,7 @@ const std::vector<Situation>& situations() {
       {"changingGaits", {Controller::clip, Controller::planted}, changingGaits},
       {"foldingBack", {Controller::clip}, foldingBack},
       {"beyondTheLimits", {Controller::planted}, beyondTheLimits},
+      {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs},
   };
   return all;
 }

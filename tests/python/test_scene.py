@@ -174,6 +174,7 @@ def every_kind_of_event():
         skitter.Event(6, skitter.HerdAddition(skitter.Herd(6))),
         skitter.Event(7, skitter.HerdRemoval(2)),
         skitter.Event(8, skitter.ThreatChange(3, (1, -2), 4)),
+        skitter.Event(9, skitter.LegChange("R2", "stuck", herd=1, share=0.25)),
     ]
 
 
@@ -203,11 +204,12 @@ def test_events_are_objects_with_the_names_of_scene_files(scene):
     assert written[6]["remove"] == [2, 7]
     assert written[7]["addHerd"]["agents"] == 6 and written[8]["removeHerd"] == 2
     assert written[9]["threat"] == {"number": 3, "centre": [1, -2], "radius": 4}
+    assert written[10] == {"at": 9, "herd": 1, "share": 0.25, "leg": "R2", "state": "stuck"}
 
     events = skitter.Scene.parse(scene.to_json()).events
-    assert [event.at for event in events] == [0, 0.5, 1, 2, 3, 4, 5, 6, 7, 8]
+    assert [event.at for event in events] == [0, 0.5, 1, 2, 3, 4, 5, 6, 7, 8, 9]
     assert [type(event.what) for event in events] == [type(event.what) for event in every_kind_of_event()]
-    mound, samples, goal, speed, teleport, addition, removal, comes, goes, threat = (event.what for event in events)
+    mound, samples, goal, speed, teleport, addition, removal, comes, goes, threat, leg = (event.what for event in events)
     assert (mound.centre, mound.radius, mound.height) == ((1, 2), 1, -0.5)
     assert (samples.x, samples.z) == (3, 4) and samples.heights.tolist() == [[1, 2, 3], [4, 5, 6]]
     assert (goal.herd, goal.agents, goal.goal.kind, goal.goal.target) == (0, (3, 1), "point", (5, 6))
@@ -218,14 +220,16 @@ def test_events_are_objects_with_the_names_of_scene_files(scene):
     assert (removal.herd, removal.agents) == (0, (2, 7))
     assert comes.herd.agents == 6 and goes.herd == 2
     assert (threat.number, threat.centre, threat.radius) == (3, (1, -2), 4)
-    assert "at 7 s: HerdRemoval" in repr(events[-2])
+    assert (leg.leg, leg.state, leg.share, leg.agents, leg.bone, leg.herd) == ("R2", "stuck", 0.25, (), None, 1)
+    assert "at 7 s: HerdRemoval" in repr(events[-3])
 
 
 def test_events_change_where_they_are(scene):
     scene.events = every_kind_of_event()
-    what = [event.what for event in scene.events]
-    mound, samples, goal, speed, teleport, addition, removal, comes, goes, threat = what
+    *others, leg = (event.what for event in scene.events)
+    mound, samples, goal, speed, teleport, addition, removal, comes, goes, threat = others
     threat.number, threat.centre, threat.radius = 5, (6, 7), 0
+    leg.state, leg.share, leg.agents, leg.bone = "lost", None, [4], 2
     mound.radius, samples.heights, goal.goal.speed, goal.agents = 3, [[7]], 2, ()
     speed.speed, teleport.herd, removal.agents, comes.herd.reserve, goes.herd = 4, 0, [1], 5, 0
     move = skitter.Move(1, (2, 3))
@@ -244,6 +248,7 @@ def test_events_change_where_they_are(scene):
     assert written[5]["add"][0]["position"] == [2, 2] and written[5]["add"][0]["goal"]["kind"] == "cross"
     assert written[6]["remove"] == [1] and written[7]["addHerd"]["reserve"] == 5 and written[8]["removeHerd"] == 0
     assert written[9]["threat"] == {"number": 5, "centre": [6, 7], "radius": 0}
+    assert written[10] == {"at": 9, "herd": 1, "agents": [4], "leg": "R2", "state": "lost", "bone": 2}
     event = scene.events.pop(0)
     scene.events.clear()
     del scene

@@ -240,6 +240,8 @@ INSTANTIATE_TEST_SUITE_P(
                           }},
                     Fault{"bodyInfinite", "body", [](HerdState& s) { s.body[15] = INFINITY; }},
                     Fault{"gaitNan", "gait", [](HerdState& s) { s.gait[5] = notANumber; }},
+                    Fault{"idleLegs", "gait", [](HerdState& s) { s.gait[7] = 2; }},
+                    Fault{"lostBone", "pose", [](HerdState& s) { s.pose[8 * 7 + 7] = 1; }},
                     Fault{"landingZ", "foothold", [](HerdState& s) { s.step[2] += 1e-3f; }},
                     Fault{"landingHeight", "foothold", [](HerdState& s) { s.step[1] += 1e-3f; }},
                     Fault{"landingTile", "foothold", [](HerdState& s) { s.step[7] += 1; }},

@@ -401,6 +401,7 @@ void checkKeys(const Event& event, const std::string& file, const std::string& p
   if (const auto* addition = std::get_if<Addition>(&event.what)) expectSome("add", addition->arrivals);
   if (const auto* removal = std::get_if<Removal>(&event.what)) expectSome("remove", removal->agents);
   const auto* change = std::get_if<LegChange>(&event.what);
+  if (change && change->leg.empty()) throw inputError(fmt::format("{}: {}.leg is missing", file, path));
   if (change && change->share && !change->agents.empty())
     throw inputError(fmt::format("{}: {} has agents and a share, expected one of them", file, path));
 }
