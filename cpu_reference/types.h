@@ -67,7 +67,7 @@ struct Limb {
   double lag = 0;           // in its group: 0 lifts first, 1 last
   uint32_t neighbours = 0;  // bit m: leg m must stand while this one is in the air
   std::vector<BoneRest> bones;
-  // Of a leg that is hurt (cpu_reference/stages/hurt.h).
+  // These differ for a leg that is hurt (cpu_reference/stages/hurt.h).
   bool carries = true, lost = false;
   size_t left = SIZE_MAX;  // bones from the root on that it has left
   double slowness = 1;     // how many times as long as others its step lasts

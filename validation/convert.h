@@ -20,7 +20,7 @@ reference::Heights heightsOf(const Heightfield& field, const shared::Parameters&
 reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, int bones, int groups);
 reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones);
 
-// Of a herd that can be hurt.
+// The state is a herd's that can be hurt.
 reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs);
 
 reference::Goal goalOf(const HerdState& state, size_t agent);

@@ -13,7 +13,7 @@ struct SolveVerdict {
 SolveVerdict compareSolve(const Setting& setting, const Moment& moment, size_t l, const reference::Limb& limb,
                           const reference::Chain& previous);
 
-// Of a leg that does not carry: it must be as it was. `root` is where it starts, model space.
+// A leg that does not carry must be as it was.
 Sample compareHeld(const Setting& setting, const Moment& moment, size_t l, const reference::Limb& limb);
 
 // The error of forward kinematics along the limb, a share of the reach.

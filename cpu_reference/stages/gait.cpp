@@ -166,7 +166,7 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
     const Limb& limb = creature.limbs[l];
     const bool wasIdle = (idleBefore >> l & 1u) != 0;
     if (!limb.carries || wasIdle) {
-      // Who carries again is in the air, and comes down by a step.
+      // A leg that carries again is in the air, and comes down by a step.
       uint32_t& mask = limb.carries ? rising : next.idle;
       mask |= 1u << l;
       result.legs.push_back(idleDecision());

@@ -6,7 +6,7 @@
 
 namespace skitter::reference {
 
-// What an agent's damage makes of its legs and its gait (docs/damage.md).
+// An agent's damage, and the gait that it has for it (docs/damage.md).
 struct Hurt {
   struct Turn {
     int group = 0;
@@ -25,7 +25,7 @@ struct Hurt {
 // The creature that such an agent is.
 Creature hurtCreature(const Creature& whole, const Hurt& hurt);
 
-// Of a leg that does not carry: it has no target, and keeps its pose.
+// A leg that does not carry has no target, and keeps its pose.
 Foot idleFoot();
 Chain heldLeg(const Limb& limb, const AgentBody& body, const Chain& previous);
 

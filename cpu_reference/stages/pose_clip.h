@@ -12,7 +12,7 @@ Affine clipPose(const ClipTable& table, const AgentBody& body, const Play& play,
 Affine plantedPose(const ClipTable& table, const AgentBody& body, const Play& play, size_t joint,
                    const BoneFix& fix);
 
-// Of any joint of a leg's lost bones: all of its skin goes to the stump's end, which is where `bone`, the
+// A joint of any of a leg's lost bones: all of its skin goes to the stump's end, which is where `bone`, the
 // first of them, starts. `fix` is that bone's.
 Affine stumpPose(const ClipTable& table, const AgentBody& body, const Play& play, size_t leg, size_t bone,
                  const BoneFix& fix);

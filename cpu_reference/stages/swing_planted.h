@@ -26,7 +26,7 @@ struct PlantedFoot {
   double strayMargin = 0;  // metres between |o.xz| and the bound that it was held against; infinite: none
 };
 
-// Of a leg that does not carry: it has no target, and no lock.
+// A leg that does not carry has no target, and no lock.
 PlantedFoot idlePlantedFoot(const Plant& previous);
 
 // `inModel` is the clip's foot, p_bones, and `stands` whether it stands there; `locked`, if any, is the

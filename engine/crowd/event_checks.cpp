@@ -130,7 +130,7 @@ void check(const Removal& removal, const Where& at) {
     throw inputError(fmt::format("{}.remove has agent {} twice, expected once", at.event, *twice));
 }
 
-// Of a herd that the crowd begins with; nullptr for one that comes, whose file is read later.
+// The rig of a herd that the crowd begins with; nullptr for one that comes, whose file is read later.
 const Rig* knownRig(const skitter::Herd& herd, const Where& at) {
   for (const SizedHerd& sized : at.kinds.herds)
     if (&at.scene.herds[sized.herd] == &herd) return &at.kinds.rigs[sized.kind];

@@ -12,12 +12,12 @@
 namespace skitter::crowd {
 namespace {
 
-// Metres per leg length: how far the centre must be inside the support polygon to count as supported.
+// Leg lengths: how far the centre must be inside the support polygon to count as supported.
 constexpr double wantedMargin = 0.03;
-// Of a metre, or of a share of time: candidates that are nearer to each other than this are equally good, so
+// Leg lengths, or a share of time: candidates that are nearer to each other than this are equally good, so
 // that rounding does not choose between the patterns of a symmetric rig.
 constexpr double sameWithin = 1e-6;
-// Of the way from the mean of all homes to that of the legs that carry.
+// Shares of the way from the mean of all homes to that of the legs that carry.
 constexpr double shares[] = {0, 0.25, 0.5, 0.75, 1};
 // Below so many legs that carry a creature lies down.
 constexpr size_t fewestThatWalk = 3;
@@ -70,7 +70,7 @@ double marginOf(const Points& points, const glm::dvec2& centre) {
   return margin;
 }
 
-// Of a walk at one leg length a second: seconds of a step, and of a cycle of so many groups.
+// A walk at one leg length per second: seconds per step, and per cycle of so many groups.
 struct Walk {
   double step, cycle;
 };
@@ -103,7 +103,7 @@ std::optional<Grouping> groupingOf(size_t legs, int groups, size_t first, bool b
   return made;
 }
 
-// What a grouping comes to with the body's centre in a place.
+// How stable a grouping is with the body's centre in a place.
 struct Stability {
   double unstable;  // share of the time
   double margin;    // the least, in leg lengths

@@ -8,7 +8,7 @@
 
 namespace skitter::render {
 
-// What a kind's shaders are made for.
+// The forms of a kind's shaders.
 struct CrowdForms {
   bool matrices = false;  // poses are matrices instead of rotations
   bool tinted = false;    // agents have tints

@@ -23,7 +23,7 @@ void makeGait(int agent, Body body) {
   Hurt hurt = hurtOf(agent);
   Stride stride = strideOfHurt(parameters, body, agent, hurt);
   float groups = hurt.groups;
-  // Who carries again hangs in the air, and comes down by a step.
+  // A leg that carries again hangs in the air, and comes down by a step.
   uint rises = uint(LOAD4(gaits, agent * GAIT_STRIDE + 1).w) & ~hurt.idle;
   hurt.idle |= rises;
 #else

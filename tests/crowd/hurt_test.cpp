@@ -39,7 +39,7 @@ std::vector<float> recordsOf(const HerdState& state, Record record, size_t first
           from.begin() + static_cast<ptrdiff_t>((first + count) * each)};
 }
 
-// Of an agent, from the feet that stand.
+// An agent's stability margin, from the feet that stand.
 double marginOf(const HerdState& state, size_t agent, size_t legs, double bodyHeight) {
   std::vector<glm::dvec2> feet;
   for (size_t leg = agent * legs; leg < (agent + 1) * legs; ++leg)

@@ -127,7 +127,7 @@ TEST(Regait, LameLegsSlowTheWalk) {
   EXPECT_EQ(regaitByRule(rig, Tuning{}, {.idle = 1, .lame = 1}).speed, 1);
 }
 
-// What is wrong with one side is wrong with the other.
+// The gait without a right leg is that without the left one, mirrored.
 TEST(Regait, MirrorsALoss) {
   const Rig rig = spiderRig();
   const auto shiftWithout = [&](const char* leg) { return spiderWithout({leg}).shift; };

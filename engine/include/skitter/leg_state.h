@@ -4,7 +4,7 @@
 
 namespace skitter {
 
-// What a leg is good for (docs/damage.md).
+// The state of a leg (docs/damage.md).
 enum class LegState {
   whole,
   lame,   // its steps take longer, and the body goes slower

@@ -140,8 +140,7 @@ SKITTER_CONST float ABSENT_HEIGHT = -1e6;
 
 // gait, per agent, written by gait.
 //   [0] phase phi in [0,1), lift mask, re-aim mask, step duration (ticks)
-//   [1] half stride a (m), cycle C (s), mask of legs in the air before lifting, mask of legs that do not
-//   carry
+//   [1] half stride a (m), cycle C (s), masks of legs in the air before lifting, of legs that do not carry
 SKITTER_CONST int GAIT_STRIDE = 2;
 
 // step, per leg, written by foothold when a step begins or is aimed anew.

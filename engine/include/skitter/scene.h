@@ -219,7 +219,7 @@ struct LegChange {
   std::optional<float> share = {};    // 0 to 1: each is drawn by the seed; without `agents`
   std::string leg;                    // by its name in the rig
   LegState state = LegState::lost;
-  std::optional<uint32_t> bone = {};  // the first one that is lost, from the root on; none: as Crowd::hurt
+  std::optional<uint32_t> bone = {};  // the first one that is lost, from the root on; none: as of AgentLeg
 
   bool operator==(const LegChange&) const = default;
 };

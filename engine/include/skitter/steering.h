@@ -60,8 +60,8 @@ struct AgentLeg {
   AgentId agent;
   uint32_t leg = 0;
   LegState state = LegState::lost;
-  // Of a lost leg: the first bone that is lost, counted from the root; none: all but the first, which is the
-  // stump, or the only one.
+  // The first bone that a lost leg has lost, counted from the root; none: the second, so that the first is
+  // left as a stump, or the only one.
   std::optional<uint32_t> bone = {};
 };
 
