@@ -328,7 +328,7 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": [{"agents": [1], "teleport": [{"agent": 1}]}]})", "events[0].agents is no known key"},
       {R"({"events": [{"leg": ""}]})", "events[0].leg is \"\", expected a string that is not empty"},
       {R"({"events": [{"leg": "R2", "state": "lots"}]})",
-       "events[0].state is \"lots\"; did you mean \"lost\"?"},
+       "events[0].state is \"lots\"; did you mean lost? Expected one of \"whole\""},
       {R"({"events": [{"leg": "R2", "share": 2}]})", "events[0].share is 2, expected a number from 0 to 1"},
       {R"({"events": [{"leg": "R2", "share": 1, "agents": [2]}]})", "events[0] has agents and a share"},
       {R"({"herds": [{"hurt": 1}]})", "herds[0].hurt is 1, expected true or false"},
