@@ -29,6 +29,7 @@ TEST_F(PublicRenderer, DrawsTheCrowdIntoItsImage) {
   if (device().report().limits.timestampBits > 0) {
     EXPECT_FALSE(renderer.stageTimes().empty());
   }
+  EXPECT_TRUE(renderer.notes().empty());
   const std::vector<uint8_t> pixels = renderer.download();
   ASSERT_EQ(pixels.size(), 64u * 48 * 4);
   // Ground, sky and legs differ.

@@ -10,6 +10,7 @@
 #include "render/bindings.h"
 #include "render/composition.h"
 #include "render/crowd_drawing.h"
+#include "render/shading_reference.h"
 #include "render/textures.h"
 #include "render/tint.h"
 #include "skitter/records.h"
@@ -49,83 +50,79 @@ Texels normalTexels() {
   return texels;
 }
 
-double decoded(double code) {
-  const double s = std::clamp(code / 255, 0.0, 1.0);
-  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-}
-
-glm::dvec3 ambientFrom(const glm::dvec3& direction) {
-  return glm::mix(glm::dvec3(0.25, 0.19, 0.13), glm::dvec3(0.31, 0.43, 0.66), 0.5 + 0.5 * direction.y);
-}
-
-// The tone curve of the picture.
-glm::dvec3 developed(glm::dvec3 x) {
-  x *= 0.62;
-  return glm::clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
-}
-
 struct Shot {
   Material material;
   std::vector<Texels> images;  // as the material's textures name them
   bool fromBehind = false, lightness = false;
+  double slack = 0;  // linear light by which a device may filter colours otherwise
 };
 
-// The colour of a pixel: docs/stages/pictures.md, Materials. Texels of colours are taken `off` codes further.
+// Which of `size` texels a coordinate falls on, in texels.
+int texelAt(double place, int size, TextureSampler::Wrap wrap) {
+  const auto at = int(std::floor(place));
+  const auto within = [at](int period) { return (at % period + period) % period; };
+  switch (wrap) {
+    case TextureSampler::Wrap::clamp:
+      return std::clamp(at, 0, size - 1);
+    case TextureSampler::Wrap::mirror:
+      return std::min(within(2 * size), 2 * size - 1 - within(2 * size));
+    case TextureSampler::Wrap::repeat:
+      break;
+  }
+  return within(size);
+}
+
+// A texture at a pixel: the mean of the texels about it, weighed by their nearness, or the one that it lies
+// on. Texels of colours are taken `off` codes further. Second coordinates are those that the first ones are.
+std::optional<glm::dvec4> lookedUp(const Shot& shot, TextureRole role, int column, int row, double off) {
+  const Texture& texture = shot.material.texture(role);
+  if (texture.image == -1) return {};
+  glm::dvec2 place = glm::dvec2(column + 0.5, row + 0.5) / double(kPixels);
+  if (texture.set == 0) place = glm::dvec2(texture.scale) * place + glm::dvec2(texture.offset);
+  place *= kPixels;
+  const auto texel = [&](double x, double y) {
+    const int i = texelAt(x, kPixels, texture.sampler.wrapS), j = texelAt(y, kPixels, texture.sampler.wrapT);
+    const uint8_t* t = &shot.images[size_t(texture.image)].rgba[size_t(4 * (j * kPixels + i))];
+    glm::dvec4 value = glm::dvec4(t[0], t[1], t[2], t[3]) / 255.0;
+    for (int k = 0; isColour(role) && k < 3; ++k) value[k] = test::decodedSrgb(t[k] + off);
+    return value;
+  };
+  if (texture.sampler.magNearest) return texel(place.x, place.y);
+  const glm::dvec2 first = glm::floor(place - 0.5), share = place - 0.5 - first;
+  const auto across = [&](double y) { return glm::mix(texel(first.x, y), texel(first.x + 1, y), share.x); };
+  return glm::mix(across(first.y), across(first.y + 1), share.y) + glm::dvec4(off * shot.slack);
+}
+
+// The colour of a pixel: docs/stages/pictures.md, Materials.
 std::optional<glm::dvec3> expectedAt(const Shot& shot, int column, int row, double off) {
   const Material& m = shot.material;
   const double x = (column + 0.5) / kPixels * 2 - 1, y = 1 - (row + 0.5) / kPixels * 2;
-  const auto texel = [&](TextureRole role) -> const uint8_t* {
-    const int image = m.texture(role).image;
-    if (image == -1) return nullptr;
-    return &shot.images[size_t(image)].rgba[size_t(4 * (row * kPixels + column))];
-  };
-  const auto light = [&](const uint8_t* t) {
-    return t ? glm::dvec3(decoded(t[0] + off), decoded(t[1] + off), decoded(t[2] + off)) : glm::dvec3(1);
-  };
-  const uint8_t* base = texel(TextureRole::baseColour);
-  if (m.alphaCutoff > 0 && kOpacity * (base ? base[3] / 255.0 : 1) < double(m.alphaCutoff)) return {};
-  glm::dvec3 colour = kColour * light(base);
+  const auto at = [&](TextureRole role) { return lookedUp(shot, role, column, row, off); };
+  const glm::dvec4 base = at(TextureRole::baseColour).value_or(glm::dvec4(1));
+  if (m.alphaCutoff > 0 && kOpacity * base.a < double(m.alphaCutoff)) return {};
+  glm::dvec3 colour = kColour * glm::dvec3(base);
   if (shot.lightness) colour = glm::dvec3(glm::dot(colour, {0.2126, 0.7152, 0.0722}));
   colour *= kTint;
-  double metallic = double(m.metallic), roughness = double(m.roughness), occlusion = 1;
-  if (const uint8_t* t = texel(TextureRole::metallicRoughness)) {
-    roughness *= t[1] / 255.0;
-    metallic *= t[2] / 255.0;
-  }
-  if (const uint8_t* t = texel(TextureRole::occlusion))
-    occlusion = 1 + double(m.occlusionStrength) * (t[0] / 255.0 - 1);
+  const glm::dvec4 surface = at(TextureRole::metallicRoughness).value_or(glm::dvec4(1));
+  const double red = at(TextureRole::occlusion).value_or(glm::dvec4(1)).r;
+  const double occlusion = 1 + double(m.occlusionStrength) * (red - 1);
   glm::dvec3 normal = normalAt(x, y);
-  if (const uint8_t* t = texel(TextureRole::normal)) {
-    // The image's right is +X, its top +Y.
-    const glm::dvec3 right = glm::normalize(glm::dvec3(1, 0, 0) - normal.x * normal);
-    const glm::dvec3 top = glm::cross(normal, right);
-    const glm::dvec3 bump = glm::dvec3(t[0], t[1], t[2]) / 127.5 - 1.0;
-    normal = glm::normalize(double(m.normalScale) * (bump.x * right + bump.y * top) + bump.z * normal);
-  }
+  // The image's right is +X, its top +Y.
+  if (const auto bump = at(TextureRole::normal))
+    normal = test::bentBy(255.0 * glm::dvec3(*bump), normal, {1, 0, 0}, 1, double(m.normalScale));
   if (shot.fromBehind) normal = -normal;
 
-  const glm::dvec3 sun = glm::dvec3(sunDirection());
-  const glm::dvec3 toEye = glm::normalize(kEye - (kBody + glm::dvec3(x, y, 0)));
-  const double r = std::max(roughness, 0.05), a = r * r;
-  const glm::dvec3 f0 = glm::mix(glm::dvec3(0.04), colour, metallic), scattered = colour * (1 - metallic);
-  const double nl = std::max(glm::dot(normal, sun), 0.0), nv = std::max(glm::dot(normal, toEye), 1e-4);
-  const glm::dvec3 half = glm::normalize(sun + toEye);
-  const double nh = std::max(glm::dot(normal, half), 0.0), vh = std::max(glm::dot(toEye, half), 0.0);
-  const double d = a * a / std::pow(nh * nh * (a * a - 1) + 1, 2);
-  const double v =
-      0.5 / (nl * std::sqrt(nv * nv * (1 - a * a) + a * a) + nv * std::sqrt(nl * nl * (1 - a * a) + a * a));
-  const glm::dvec3 f = f0 + (1.0 - f0) * std::pow(1 - vh, 5);
-  const glm::dvec3 direct = ((1.0 - f) * scattered + f * (d * v)) * nl;
-  const glm::dvec4 fit = r * glm::dvec4(-1, -0.0275, -0.572, 0.022) + glm::dvec4(1, 0.0425, 1.04, -0.04);
-  const double seen = std::max(glm::dot(normal, toEye), 0.0);
-  const double bias = std::min(fit.x * fit.x, std::exp2(-9.28 * seen)) * fit.x + fit.y;
-  const glm::dvec3 mirrored = f0 * (-1.04 * bias + fit.z) + 1.04 * bias + fit.w;
   // The sky's share is found at the corners, at y = -1 and 3, and is linear between them.
   const double open = (0.3 + 0.7 * (y + 1) / 4) * occlusion;
-  const glm::dvec3 ambient =
-      ambientFrom(normal) * scattered + ambientFrom(2 * glm::dot(normal, toEye) * normal - toEye) * mirrored;
-  const glm::dvec3 glow = glm::dvec3(m.emissive) * light(texel(TextureRole::emissive));
-  return developed(glm::dvec3(3.10, 2.55, 1.85) * direct + ambient * open + glow);
+  return test::developedLight(test::lightOf(
+      {.colour = colour,
+       .metallic = double(m.metallic) * surface.b,
+       .roughness = double(m.roughness) * surface.g,
+       .open = open,
+       .glow = glm::dvec3(m.emissive) * glm::dvec3(at(TextureRole::emissive).value_or(glm::dvec4(1))),
+       .normal = normal,
+       .toEye = glm::normalize(kEye - (kBody + glm::dvec3(x, y, 0))),
+       .toSun = glm::dvec3(sunDirection())}));
 }
 
 class MaterialShadingTest : public test::GpuLoadTest {
@@ -348,6 +345,35 @@ TEST_P(MaterialShadingTest, MasksTintsAndBacks) {
   for (const glm::vec4& pixel : draw(behind)) EXPECT_EQ(pixel.w, 0) << "it has one side";
   behind.material.doubleSided = true;
   expectShaded(behind);
+}
+
+TEST_P(MaterialShadingTest, SamplersWrapAndTakeTheNearestTexel) {
+  using Wrap = TextureSampler::Wrap;
+  for (const Wrap wrapS : {Wrap::repeat, Wrap::mirror, Wrap::clamp})
+    for (const Wrap wrapT : {Wrap::repeat, Wrap::mirror, Wrap::clamp})
+      expectShaded(shotOf([&](Shot& s) {
+        s.images = {randomTexels(6)};
+        // From one image before to one behind. Pixels hit the middles of texels.
+        Texture texture{.image = 0, .scale = {3, -3}, .offset = {-1, 2}};
+        texture.sampler = {.wrapS = wrapS,
+                           .wrapT = wrapT,
+                           .magNearest = true,
+                           .minNearest = true,
+                           .mips = TextureSampler::Mips::none};
+        s.material.texture(TextureRole::baseColour) = texture;
+      }));
+}
+
+TEST_P(MaterialShadingTest, SamplersMixTheTexelsAboutAPlace) {
+  const uint32_t bits = context().physical().getProperties().limits.subTexelPrecisionBits;
+  expectShaded(shotOf([&](Shot& s) {
+    s.images = {randomTexels(7)};
+    Texture texture{.image = 0, .scale = {0.4f, 0.7f}, .offset = {-0.1f, 0.6f}};
+    texture.sampler.wrapS = TextureSampler::Wrap::mirror;
+    s.material.texture(TextureRole::baseColour) = texture;
+    // A weight may be off by a step in either direction; texels of random codes differ by less than 0.9.
+    s.slack = 2 * 0.9 / double(1u << bits);
+  }));
 }
 
 // Far smaller than its texels, a board of black and white has the mean of its light, and in a texture of

@@ -82,7 +82,7 @@ def is_called(name, text):
     owner, _, function = name.rpartition("::")
     if owner == function:  # a constructor
         return re.search(r"\b%s(<\w+>)?( \w+)?\s*[({]" % function, text)
-    return re.search(r"(\.|->|::)%s\s*\(" % function if owner else r"\b%s\s*\(" % function, text)
+    return re.search(r"(\.|->|::)(operator )?%s\s*\(" % function if owner else r"\b%s\s*\(" % function, text)
 
 
 class Public(unittest.TestCase):
