@@ -106,11 +106,15 @@ class Replay {
   void setWays(std::vector<reference::WayField> ways, std::vector<reference::WayPlace> places) {
     setting_.ways = std::move(ways);
     setting_.wayPlaces = std::move(places);
+    ofAgent_.reset();
     waysAreNew_ = true;
   }
 
   // Likewise the ground of those who forage.
-  void setForage(std::optional<ForageFacts> forage) { setting_.forage = std::move(forage); }
+  void setForage(std::optional<ForageFacts> forage) {
+    setting_.forage = std::move(forage);
+    ofAgent_.reset();
+  }
 
   // The stages that are compared, in order, less those that every tick left out.
   std::vector<StageResult> results() const;
@@ -122,7 +126,7 @@ class Replay {
 
   Heightfield terrain_;
   Setting setting_;
-  std::optional<Setting> ofAgent_;
+  std::optional<Setting> ofAgent_;  // made of setting_ where there is none
   std::vector<crowd::StageId> only_;
   std::vector<Judge> judges_;
   bool waysAreNew_ = true;     // no tick has compared them
