@@ -1,191 +1,248 @@
 #include "crowd/regait.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <ranges>
+#include <set>
 #include <utility>
 
 #include "crowd/leg_order.h"
+#include "crowd/support.h"
 
+// Lengths are in leg lengths and speeds in leg lengths per second, where nothing else is said.
 namespace skitter::crowd {
 namespace {
 
-// Leg lengths: how far the centre must be inside the support polygon to count as supported.
-constexpr double wantedMargin = 0.03;
-// Leg lengths, or a share of time: candidates that are nearer to each other than this are equally good, so
+// Places where the body's centre may be: a grid about where it is in the rig.
+constexpr double centreStep = 0.05;
+constexpr int centreSteps = 6;  // to each side
+// How far the centre must be inside the support polygon to count as supported, and how far is enough: from
+// there on a centre nearer to the rig's own is worth more.
+constexpr double wantedMargin = 0.03, enoughMargin = 0.08;
+// Of a length, or of a share of time: candidates that are nearer to each other than this are equally good, so
 // that rounding does not choose between the patterns of a symmetric rig.
 constexpr double sameWithin = 1e-6;
-// Shares of the way from the mean of all homes to that of the legs that carry.
-constexpr double shares[] = {0, 0.25, 0.5, 0.75, 1};
-// Below so many legs that carry a creature lies down.
+// With three groups or more, steps are so much shorter: with the rig's own the next group would have a tenth
+// of a step to wait for a leg that is late, and then every later one would wait for the one before it.
+constexpr double quickness = 0.75;
+constexpr int fewGroups = 2, mostGroups = 8;
+// Shares of the desired velocity that are tried, the largest first.
+constexpr double triedShares[] = {1, 0.9, 0.8, 0.7, 0.6, 0.5};
+// Below so many legs that carry a creature lies down. As many stand while others step, or all but one.
 constexpr size_t fewestThatWalk = 3;
 // Most of the body's height by which it is lowered.
 constexpr float lowestShare = 0.3f;
 
-using Points = std::vector<glm::dvec2>;
+double paceOf(int groups) { return groups > fewGroups ? quickness : 1; }
 
-double crossOf(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-// Counter-clockwise, without points within its edges (Andrew 1979).
-Points hullOf(Points points) {
-  std::ranges::sort(points, [](const glm::dvec2& a, const glm::dvec2& b) {
-    return a.x < b.x || (a.x == b.x && a.y < b.y);
-  });
-  Points hull;
-  const auto goAlong = [&](auto&& range) {
-    const size_t begin = hull.size();
-    for (const glm::dvec2& point : range) {
-      while (hull.size() > begin + 1 &&
-             crossOf(hull.back() - hull[hull.size() - 2], point - hull[hull.size() - 2]) <= 0)
-        hull.pop_back();
-      hull.push_back(point);
-    }
-    hull.pop_back();
-  };
-  if (points.size() < 3) return points;
-  goAlong(points);
-  goAlong(points | std::views::reverse);
-  return hull;
-}
-
-double distanceToSegment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 way = b - a;
-  const double square = glm::dot(way, way);
-  const double t = square > 0 ? std::clamp(glm::dot(p - a, way) / square, 0.0, 1.0) : 0;
-  return glm::length(p - a - t * way);
-}
-
-// How far the centre is inside the polygon of the points; below 0 outside of it.
-double marginOf(const Points& points, const glm::dvec2& centre) {
-  const Points hull = hullOf(points);
-  if (hull.empty()) return -std::numeric_limits<double>::infinity();
-  if (hull.size() < 3) return -distanceToSegment(centre, hull.front(), hull.back());
-  double margin = std::numeric_limits<double>::infinity();
-  for (size_t i = 0; i < hull.size(); ++i) {
-    const glm::dvec2 edge = hull[(i + 1) % hull.size()] - hull[i];
-    margin = std::min(margin, crossOf(edge, centre - hull[i]) / glm::length(edge));
-  }
-  return margin;
-}
-
-// A walk at one leg length per second: seconds per step, and per cycle of so many groups.
+// Of a walk: its speed, seconds of the slowest leg's step, and of a cycle.
 struct Walk {
-  double step, cycle;
+  double speed, step, cycle;
+
+  double halfWay() const {
+    return speed * (cycle - step) / 2;
+  }  // of the way that a foot goes while it stands
 };
-Walk walkOf(const Tuning& tuning, int groups, double slowest) {
-  const double step = double{tuning.swingStill} / (1 + 1 / double{tuning.swingSpeed});
-  const double duty = std::max(double{tuning.dutyLeast}, double{tuning.dutyStill} - double{tuning.dutyGain});
-  const double cycle = std::min(double{tuning.cycleMax}, step / (1 - duty));
-  return {slowest * step, std::max(cycle, groups * slowest * step * double{tuning.windowSlack})};
+// `slow`: how many times as long as the rig's own that step lasts.
+Walk walkOf(const Tuning& tuning, int groups, double slow, double speed) {
+  const double fresh = double{tuning.swingStill} / (1 + speed / double{tuning.swingSpeed});
+  const double duty =
+      std::max(double{tuning.dutyLeast}, double{tuning.dutyStill} - double{tuning.dutyGain} * speed);
+  const double cycle = std::min(double{tuning.cycleMax}, fresh / (1 - duty));
+  return {speed, slow * fresh,
+          std::max(cycle, groups * std::max(1.0, slow) * fresh * double{tuning.windowSlack})};
 }
 
-// Legs by their place in a list, and the group of each.
-struct Grouping {
-  int groups = 0;
-  std::vector<int> ofLeg;
-};
+// The group of each leg, by its place around the body.
+using Grouping = std::vector<int>;
 
-// One leg after the other around the body, from the `first` one on and in either direction, takes the next
-// group. None where two neighbours would have one.
-std::optional<Grouping> groupingOf(size_t legs, int groups, size_t first, bool backward) {
-  Grouping made{groups, std::vector<int>(legs)};
+// Each leg takes the next group, from any leg on and either way round. Groups are counted from that of the
+// first leg: the others are the same gait at another time.
+std::set<Grouping> groupingsOf(size_t legs, int groups) {
   const auto g = static_cast<size_t>(groups);
-  const bool meets = legs % g == 1;  // the last leg would be of the first one's group
-  if (meets && groups == 2) return {};
-  const auto place = [&](size_t k) {
-    const size_t forward = (first + k) % legs;
-    return backward ? legs - 1 - forward : forward;
-  };
-  for (size_t k = 0; k < legs; ++k) made.ofLeg[place(k)] = static_cast<int>(k % g);
-  if (meets) made.ofLeg[place(legs - 1)] = 1;
-  return made;
+  std::set<Grouping> all;
+  for (size_t first = 0; first < legs; ++first)
+    for (const size_t way : {size_t{1}, legs - 1}) {
+      Grouping made(legs);
+      for (size_t k = 0; k < legs; ++k) made[(first + k * way) % legs] = static_cast<int>(k % g);
+      // The last leg would be of the first one's group, and is beside it.
+      if (legs % g == 1 && groups > fewGroups) made[(first + (legs - 1) * way) % legs] = 1;
+      const int start = made.front();
+      for (int& group : made) group = (group - start + groups) % groups;
+      size_t most = 0;
+      for (int group = 0; group < groups; ++group)
+        most = std::max(most, static_cast<size_t>(std::ranges::count(made, group)));
+      if (legs - most >= std::min(fewestThatWalk, legs - 1)) all.insert(std::move(made));
+    }
+  return all;
 }
 
-// How stable a grouping is with the body's centre in a place.
-struct Stability {
-  double unstable;  // share of the time
-  double margin;    // the least, in leg lengths
-};
-
-// `homes` are those of the legs that carry, in leg lengths. While a group is in the air each of the others
-// goes back from half a stride in front of its homes, since when it landed: its legs are looked at when the
-// step begins, in its middle and when it ends.
-Stability stabilityOf(const Points& homes, const Grouping& grouping, const Walk& walk,
-                      const glm::dvec2& centre) {
-  Stability found{0, std::numeric_limits<double>::infinity()};
-  for (int air = 0; air < grouping.groups; ++air) {
-    double margin = std::numeric_limits<double>::infinity();
-    for (const double part : {0.0, 0.5, 1.0}) {
-      Points feet;
-      for (size_t leg = 0; leg < homes.size(); ++leg) {
-        const int before = (air - grouping.ofLeg[leg] + grouping.groups) % grouping.groups;
-        if (before == 0) continue;
-        const double stood = before * walk.cycle / grouping.groups + (part - 1) * walk.step;
-        feet.push_back(homes[leg] + glm::dvec2(0, (walk.cycle - walk.step) / 2 - stood));
-      }
-      margin = std::min(margin, marginOf(feet, centre));
+// While a group is in the air each of the others goes back from half of its way in front of its homes, since
+// when it landed. Its support is looked at when the step begins, in its middle and when it ends.
+std::vector<std::array<SupportPolygon, 3>> supportsOf(const std::vector<glm::dvec2>& homes,
+                                                      const Grouping& grouping, int groups,
+                                                      const Walk& walk) {
+  const auto feetWithout = [&](int air, double part) {
+    std::vector<glm::dvec2> feet;
+    for (size_t leg = 0; leg < homes.size(); ++leg) {
+      const int before = (air - grouping[leg] + groups) % groups;
+      if (before == 0) continue;
+      const double stood = before * walk.cycle / groups + (part - 1) * walk.step;
+      feet.push_back(homes[leg] + glm::dvec2(0, walk.halfWay() - walk.speed * stood));
     }
-    if (margin < wantedMargin) found.unstable += walk.step / walk.cycle;
-    found.margin = std::min(found.margin, margin);
-  }
-  return found;
+    return feet;
+  };
+  std::vector<std::array<SupportPolygon, 3>> supports;
+  for (int air = 0; air < groups; ++air)
+    supports.push_back({SupportPolygon(feetWithout(air, 0)), SupportPolygon(feetWithout(air, 0.5)),
+                        SupportPolygon(feetWithout(air, 1))});
+  return supports;
 }
 
 struct Choice {
   Grouping grouping;
-  glm::dvec2 centre{0};  // leg lengths
-  Stability stability{std::numeric_limits<double>::infinity(), 0};
+  int groups = 0;
+  glm::dvec2 centre{0};
+  double speed = 0;
+  double unstable = std::numeric_limits<double>::infinity();  // share of the time
+  double margin = -std::numeric_limits<double>::infinity();   // the least
 
-  bool isWorseThan(const Choice& other) const {
-    const double gain = stability.unstable - other.stability.unstable;
-    if (std::abs(gain) > sameWithin) return gain > 0;
-    return other.grouping.groups == grouping.groups && other.stability.margin > stability.margin + sameWithin;
+  bool isStable() const { return unstable <= sameWithin; }
+  // The least unstable time, then the fewest groups, a margin that is enough, the smallest shift, the largest
+  // margin.
+  std::array<double, 5> cost() const {
+    return {unstable, static_cast<double>(groups), -std::min(margin, enoughMargin), glm::length(centre),
+            -margin};
+  }
+  bool isBetterThan(const Choice& other) const {
+    const std::array<double, 5> ours = cost(), theirs = other.cost();
+    for (size_t i = 0; i < ours.size(); ++i)
+      if (!(std::abs(ours[i] - theirs[i]) <= sameWithin)) return ours[i] < theirs[i];
+    return false;
   }
 };
 
-// The best of all: the least unstable time, then the fewest groups, then the largest margin.
-Choice chosen(const Points& homes, const glm::dvec2& offset, const Tuning& tuning, double slowest) {
-  Choice best;
-  for (int groups = 2; groups <= static_cast<int>(homes.size()); ++groups) {
-    const Walk walk = walkOf(tuning, groups, slowest);
-    for (size_t way = 0; way < 2 * static_cast<size_t>(groups); ++way) {
-      const std::optional<Grouping> grouping = groupingOf(homes.size(), groups, way / 2, way % 2 == 1);
-      if (!grouping) continue;
-      for (const double share : shares) {
-        const glm::dvec2 centre = share * offset;
-        Choice choice{*grouping, centre, stabilityOf(homes, *grouping, walk, centre)};
-        if (best.isWorseThan(choice)) best = std::move(choice);
-      }
-    }
-    if (best.stability.unstable == 0) break;
-  }
-  return best;
-}
+glm::dvec2 homeOf(const Leg& leg) { return {leg.home.x, leg.home.z}; }
 
-glm::vec2 homeOf(const Leg& leg) { return {leg.home.x, leg.home.z}; }
-
-glm::vec2 meanHome(const Rig& rig, const std::vector<size_t>& legs) {
-  glm::vec2 sum(0);
-  for (const size_t l : legs) sum += homeOf(rig.legs[l]);
-  return sum / static_cast<float>(legs.size());
-}
-
-// How much lower the body must be for every leg to reach its home as well as before, or comfortably.
+// How much lower the body must be for every leg to reach its home as well as before, or comfortably. Metres.
 float loweringFor(const Rig& rig, const Tuning& tuning, const std::vector<size_t>& carriers,
                   const glm::vec2& centre) {
   float lowering = 0;
   for (const size_t l : carriers) {
     const Leg& leg = rig.legs[l];
     const float reach = std::max(tuning.reachComfort * leg.reach, glm::distance(leg.home, leg.root()));
-    const glm::vec2 aside = homeOf(leg) - centre - glm::vec2(leg.root().x, leg.root().z);
+    const glm::vec2 aside = glm::vec2(homeOf(leg)) - centre - glm::vec2(leg.root().x, leg.root().z);
     const float above = leg.root().y - leg.home.y;
     const float most = std::sqrt(std::max(0.0f, reach * reach - glm::dot(aside, aside)));
     lowering = std::max(lowering, above - most);
   }
   return std::min(lowering, lowestShare * rig.bodyHeight);
 }
+
+// What share of its reach a leg needs at the ends of its stance. Metres.
+double stretchOf(const Leg& leg, const glm::dvec2& centre, double halfWay, double lowering) {
+  const glm::dvec2 aside = homeOf(leg) - centre - glm::dvec2(leg.root().x, leg.root().z);
+  const double above = double{leg.root().y} - lowering - double{leg.home.y};
+  const double ahead = std::abs(aside.y) + halfWay;
+  return std::sqrt(aside.x * aside.x + above * above + ahead * ahead) / double{leg.reach};
+}
+
+// Looks for the gait of the legs that carry.
+class Regrouping {
+ public:
+  // `carriers` lie around the body in this order; `slowest` is the largest slowness among them.
+  Regrouping(const Rig& rig, const Tuning& tuning, const std::vector<size_t>& carriers, double slowest)
+      : rig_(rig), tuning_(tuning), carriers_(carriers), slowest_(slowest) {
+    for (const size_t l : carriers) homes_.push_back(homeOf(rig.legs[l]) / double{rig.legLength});
+    for (int i = -centreSteps; i <= centreSteps; ++i)
+      for (int j = -centreSteps; j <= centreSteps; ++j) {
+        const glm::dvec2 centre(centreStep * i, centreStep * j);
+        centres_.push_back({centre, loweringAt(centre)});
+      }
+  }
+
+  // The fastest that is stable; if none is, the fastest of which all legs reach the ends of their stances.
+  Choice best() const {
+    std::optional<Choice> fastest;
+    for (const double speed : triedShares) {
+      const std::optional<Choice> choice = bestAt(speed, true);
+      if (!choice) continue;
+      if (choice->isStable()) return *choice;
+      if (!fastest) fastest = choice;
+    }
+    return fastest ? *fastest : *bestAt(*std::rbegin(triedShares), false);
+  }
+  float loweringAt(const glm::dvec2& centre) const {
+    return loweringFor(rig_, tuning_, carriers_, glm::vec2(centre) * rig_.legLength);
+  }
+
+ private:
+  struct Centre {
+    glm::dvec2 place;
+    float lowering;  // metres
+  };
+
+  std::optional<Choice> bestAt(double speed, bool reaches) const {
+    std::optional<Choice> best;
+    const std::vector<double> limits = limitsAt(speed);
+    for (int groups = fewGroups; groups <= std::min(static_cast<int>(homes_.size()), mostGroups); ++groups) {
+      const Walk walk = walkOf(tuning_, groups, slowest_ * paceOf(groups), speed);
+      std::vector<glm::dvec2> centres;
+      for (const Centre& centre : centres_)
+        if (!reaches || canReach(centre, walk, limits)) centres.push_back(centre.place);
+      if (centres.empty()) continue;
+      for (const Grouping& grouping : groupingsOf(homes_.size(), groups)) {
+        const auto supports = supportsOf(homes_, grouping, groups, walk);
+        for (const glm::dvec2& centre : centres) {
+          Choice choice{.grouping = grouping, .groups = groups, .centre = centre, .speed = speed};
+          judge(supports, walk, choice);
+          if (!best || choice.isBetterThan(*best)) best = std::move(choice);
+        }
+      }
+    }
+    return best;
+  }
+
+  static void judge(const std::vector<std::array<SupportPolygon, 3>>& supports, const Walk& walk,
+                    Choice& choice) {
+    choice.unstable = 0;
+    choice.margin = std::numeric_limits<double>::infinity();
+    for (const auto& moments : supports) {
+      double margin = std::numeric_limits<double>::infinity();
+      for (const SupportPolygon& support : moments)
+        margin = std::min(margin, support.marginOf(choice.centre));
+      if (margin < wantedMargin) choice.unstable += walk.step / walk.cycle;
+      choice.margin = std::min(choice.margin, margin);
+    }
+  }
+
+  // How far each leg may stretch: as far as in the rig's own gait, or as does not slow the body.
+  std::vector<double> limitsAt(double speed) const {
+    const Walk own = walkOf(tuning_, rig_.groupCount(), 1, speed);
+    std::vector<double> limits;
+    for (const size_t l : carriers_)
+      limits.push_back(std::max(double{tuning_.stretchSlow},
+                                stretchOf(rig_.legs[l], {0, 0}, own.halfWay() * double{rig_.legLength}, 0)));
+    return limits;
+  }
+  bool canReach(const Centre& centre, const Walk& walk, const std::vector<double>& limits) const {
+    const double length = rig_.legLength;
+    for (size_t k = 0; k < carriers_.size(); ++k)
+      if (stretchOf(rig_.legs[carriers_[k]], length * centre.place, length * walk.halfWay(),
+                    double{centre.lowering}) > limits[k] + sameWithin)
+        return false;
+    return true;
+  }
+
+  const Rig& rig_;
+  const Tuning& tuning_;
+  const std::vector<size_t>& carriers_;
+  double slowest_;
+  std::vector<glm::dvec2> homes_;
+  std::vector<Centre> centres_;
+};
 
 // Every leg that carries must stand while one of another group is in the air: all feet but those of a group
 // are on the ground, which is what its stability was found for.
@@ -197,16 +254,17 @@ void setNeighbours(const std::vector<size_t>& carriers, Regait& gait) {
 
 void regroup(const Rig& rig, const Tuning& tuning, const std::vector<size_t>& carriers, double slowest,
              Regait& gait) {
-  std::vector<size_t> all(rig.legs.size());
-  for (size_t l = 0; l < all.size(); ++l) all[l] = l;
-  Points homes;
-  for (const size_t l : carriers) homes.push_back(glm::dvec2(homeOf(rig.legs[l])) / double{rig.legLength});
-  const glm::dvec2 offset = glm::dvec2(meanHome(rig, carriers) - meanHome(rig, all)) / double{rig.legLength};
-  const Choice choice = chosen(homes, offset, tuning, slowest);
-  gait.groups = choice.grouping.groups;
-  for (size_t k = 0; k < carriers.size(); ++k) gait.legs[carriers[k]].group = choice.grouping.ofLeg[k];
+  const Regrouping regrouping(rig, tuning, carriers, slowest);
+  const Choice choice = regrouping.best();
+  gait.groups = choice.groups;
+  gait.speed = std::min(gait.speed, static_cast<float>(choice.speed));
+  for (size_t k = 0; k < carriers.size(); ++k) {
+    LegTurn& leg = gait.legs[carriers[k]];
+    leg.group = choice.grouping[k];
+    leg.slowness *= static_cast<float>(paceOf(choice.groups));
+  }
   const glm::vec2 centre = glm::vec2(choice.centre) * rig.legLength;
-  gait.shift = {-centre.x, loweringFor(rig, tuning, carriers, centre), -centre.y};
+  gait.shift = {-centre.x, regrouping.loweringAt(choice.centre), -centre.y};
 }
 
 // On its belly, without a step that it need not make.

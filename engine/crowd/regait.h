@@ -36,8 +36,9 @@ struct Regait {
 // How many times as long as others the step of a lame leg lasts.
 constexpr float lameSlowness = 1.5f;
 
-// By rule: the legs that carry regroup so that, at one leg length per second, the body's centre is outside
-// the support polygon for the least time; of the rig's own gait where all carry.
+// By rule: the legs that carry regroup so that the body's centre stays inside of the support polygon and no
+// leg is stretched too far, at one leg length per second or as much of it as that allows. The rig's own gait
+// where all carry.
 Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& pattern);
 
 }  // namespace skitter::crowd
