@@ -132,7 +132,9 @@ Rendering::Rendering(vk::CommandBuffer cmd, const RenderTargets& targets, bool y
   if (targets.colour) {
     colour = {.imageView = targets.colour->view(),
               .imageLayout = vk::ImageLayout::eColorAttachmentOptimal,
-              .loadOp = targets.drawnOver ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eClear,
+              .loadOp = targets.drawnOver ? vk::AttachmentLoadOp::eLoad
+                        : targets.covered ? vk::AttachmentLoadOp::eDontCare
+                                          : vk::AttachmentLoadOp::eClear,
               .storeOp = targets.resolve ? vk::AttachmentStoreOp::eDontCare : vk::AttachmentStoreOp::eStore};
     if (targets.resolve) {
       colour.resolveMode = vk::ResolveModeFlagBits::eAverage;

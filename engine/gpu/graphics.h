@@ -69,12 +69,13 @@ class GraphicsPipeline {
 };
 
 struct RenderTargets {
-  const Image* colour = nullptr;   // cleared to black unless drawnOver; in state colour
+  const Image* colour = nullptr;   // cleared to black unless drawnOver or covered; in state colour
   const Image* resolve = nullptr;  // where multisampled colour ends; in state colour
   const Image* depth = nullptr;    // in state depth
   float depthClear = 0;
   bool keepDepth = false;
   bool drawnOver = false;  // colour and depth are kept, not cleared
+  bool covered = false;    // every pixel of colour is drawn, so that it need not be cleared
 };
 
 // Dynamic rendering from construction to destruction. `yUp` makes clip y point up in the picture, as the

@@ -190,7 +190,8 @@ void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
                                            .resolve = filtered() || (parted && !last) ? nullptr : &colour,
                                            .depth = &depth,
                                            .keepDepth = parted,
-                                           .drawnOver = !first},
+                                           .drawnOver = !first,
+                                           .covered = true},  // by the sky, wherever nothing else is
                         true);
   };
   pass("crowd", true, false);
@@ -208,7 +209,7 @@ void Renderer::Impl::smoothEdges(vk::CommandBuffer cmd) {
   timer.next(cmd, "edges");
   gpu::transition(cmd, drawn, gpu::ImageState::colour, gpu::ImageState::sampled);
   {
-    const gpu::Rendering rendering(cmd, {.colour = &colour}, true);
+    const gpu::Rendering rendering(cmd, {.colour = &colour, .covered = true}, true);
     antialias.draw(cmd);
   }
   timer.end(cmd, "edges");
