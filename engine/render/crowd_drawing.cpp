@@ -106,7 +106,8 @@ gpu::GraphicsInfo cutoutInfo(const Setting& s, int influences, const CrowdForms&
 }
 
 CrowdForms formsOf(const crowd::Kind& kind) {
-  return {.matrices = crowd::traitsOf(kind.controller).playsClips, .tinted = kind.tinted, .stumps = kind.hurts};
+  return {
+      .matrices = crowd::traitsOf(kind.controller).playsClips, .tinted = kind.tinted, .stumps = kind.hurts};
 }
 
 // The level that a list draws: of the camera's each its own.
@@ -301,6 +302,10 @@ void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
         drawListPart(cmd, kinds_[k], page, list, p);
       }
     }
+}
+
+bool CrowdDrawing::hasAgents() const {
+  return std::ranges::any_of(kinds_, [](const Kind& kind) { return !kind.pages.empty(); });
 }
 
 void CrowdDrawing::draw(vk::CommandBuffer cmd) const {

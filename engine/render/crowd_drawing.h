@@ -33,6 +33,8 @@ class CrowdDrawing {
   void countParts(vk::CommandBuffer) const;
   void drawShadows(vk::CommandBuffer, int cascade) const;
   void draw(vk::CommandBuffer) const;
+  // Whether there is anybody who could be drawn.
+  bool hasAgents() const;
 
  private:
   struct Page {

@@ -9,6 +9,7 @@ namespace skitter::render {
 class ObstacleDrawing {
  public:
   ObstacleDrawing(const Setting&, const Crowd::Impl&);
+  explicit operator bool() const { return indexCount_ > 0; }
 
   void drawShadows(vk::CommandBuffer, int cascade) const;
   void draw(vk::CommandBuffer) const;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "gpu/barrier.h"
+#include "gpu/submit.h"
 #include "gpu/timer.h"
 #include "gpu/transfer.h"
 #include "render/antialias.h"
@@ -52,13 +53,15 @@ struct Renderer::Impl {
   void record(vk::CommandBuffer, const View&, const std::function<void(VkCommandBuffer)>& over);
   bool filtered() const { return samples == vk::SampleCountFlagBits::e1; }
   vk::Format drawnFormat() const { return filtered() ? vk::Format::eR8G8B8A8Unorm : kColour; }
+  void lookForCasters();
   void drawShadows(vk::CommandBuffer);
   void drawPicture(vk::CommandBuffer);
   void smoothEdges(vk::CommandBuffer);
 
   const gpu::Context& context;
   const Crowd::Impl& live;
-  uint32_t revision;  // of the live crowd, as it is drawn
+  uint32_t revision;   // of the live crowd, as it is drawn
+  bool casts = false;  // whether there is anything that casts a shadow
   gpu::StageTimer timer;
   vk::SampleCountFlagBits samples;
   gpu::Image colour, depth;
@@ -112,6 +115,7 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
                       .samples = samples},
                      "picture, drawn");
   if (filtered()) antialias = render::Antialias(c, drawn, kColour);
+  lookForCasters();
 }
 
 // The whole picture.
@@ -122,6 +126,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
     context.waitIdle();
     crowd = render::CrowdDrawing(setting, live, textures);
     revision = live.revision;
+    lookForCasters();
   }
   const vk::Extent2D extent = colour.extent();
   const render::Composition composition =
@@ -144,7 +149,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   crowd.countParts(cmd);
 
   timer.next(cmd, "shadow");
-  drawShadows(cmd);
+  if (casts) drawShadows(cmd);
   drawPicture(cmd);
   if (filtered()) smoothEdges(cmd);
   if (over) {
@@ -154,6 +159,12 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   }
   gpu::transition(cmd, colour, gpu::ImageState::colour, gpu::ImageState::transferSrc);
   context.endLabel(cmd);
+}
+
+// Where nothing casts, the map is emptied here once and for all: no picture draws it.
+void Renderer::Impl::lookForCasters() {
+  casts = obstacles || crowd.hasAgents();
+  if (!casts) gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) { drawShadows(cmd); });
 }
 
 void Renderer::Impl::drawShadows(vk::CommandBuffer cmd) {

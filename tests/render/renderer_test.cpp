@@ -474,6 +474,25 @@ TEST_P(RendererTest, agentsCastShadows) {
   EXPECT_GT(darkness(stage.draw(above), empty.draw(above)).pixels, 100);
 }
 
+// Where nobody casts a shadow, the map is emptied once. Who comes casts one, and none is left of who goes.
+TEST_P(RendererTest, shadowsComeAndGoWithTheirHerd) {
+  Scene one = smallScene(1);
+  one.herds[0].goal.kind = Goal::Kind::none;
+  one.herds[0].keys = 5;  // which its controller does not read: a kind of its own, so that it can go
+  Stage always(device(), one, 160, 160), never(device(), smallScene(0), 160, 160);
+  Stage stage(device(), smallScene(0), 160, 160);
+  always.tick(1);
+  const glm::vec3 body = bodyOf(always.crowd.download(0));
+  const View above{.eye = body + glm::vec3(0, 7, -0.1f), .target = body, .fieldOfView = 0.9f};
+  const Picture empty = never.draw(above);
+  EXPECT_EQ(differing(stage.draw(above), empty), 0u);
+  const HerdId guest = stage.crowd.addHerd(one.herds[0]);
+  stage.tick(1);
+  EXPECT_GT(darkness(stage.draw(above), empty).pixels, 100);
+  stage.crowd.removeHerd(guest);
+  for (int frame = 0; frame < 2; ++frame) EXPECT_EQ(differing(stage.draw(above), empty), 0u) << frame;
+}
+
 // From afar and from near, and across the light, along which the cascades end where the eye is.
 TEST_P(RendererTest, shadowsAreAsDarkFromAnyDistance) {
   Stage stage(device(), smallScene(1), 160, 160), empty(device(), smallScene(0), 160, 160);
