@@ -37,10 +37,18 @@ class Chooser {
     for (float z = std::floor(middle.y - reach.y); z <= middle.y + reach.y; ++z)
       for (float x = std::floor(middle.x - reach.x); x <= middle.x + reach.x; ++x)
         visit(glm::vec2(x, z) * side, level);
-    return std::move(patches_);
+    // What is hidden by ground before it is then not shaded.
+    std::ranges::stable_sort(found_, {}, &Found::away);
+    std::vector<Patch> patches;
+    for (const Found& found : found_) patches.push_back(found.patch);
+    return patches;
   }
 
  private:
+  struct Found {
+    float away;  // metres, its nearest point
+    Patch patch;
+  };
   static float stride(int level) { return std::exp2(float(level)); }
   float range(int level) const {
     return kRangeOfSize * kCells * stride(level) * std::max(spacing_.x, spacing_.y);
@@ -57,7 +65,7 @@ class Chooser {
         visit(at + quarter * (side / 2), level - 1);
       return;
     }
-    patches_.push_back({at.x, at.y, stride(level), range(level)});
+    found_.push_back({away, {at.x, at.y, stride(level), range(level)}});
   }
 
   // As the vertex shader measures it, by which neighbours agree on how far they have morphed.
@@ -80,7 +88,7 @@ class Chooser {
   float lowest_, highest_;
   glm::vec2 origin_, spacing_;
   int finest_ = 0;
-  std::vector<Patch> patches_;
+  std::vector<Found> found_;
 };
 
 std::vector<uint16_t> patchIndices() {

@@ -9,8 +9,8 @@ namespace skitter::render {
 // (shaders/render/terrain.vert).
 using Patch = glm::vec4;
 
-// The patches that cover all ground in sight, finer towards the eye. Beyond its edge the terrain goes on as
-// its mirror image (Heightfield::seenAt).
+// The patches that cover all ground in sight, finer towards the eye, nearest first. Beyond its edge the
+// terrain goes on as its mirror image (Heightfield::seenAt).
 std::vector<Patch> choosePatches(const Composition&, const Heightfield&, float lowest, float highest);
 
 // The ground, drawn from the very height image that the crowd walks on.

@@ -56,6 +56,23 @@ TEST(Patches, coverWhatTheCameraSees) {
   }
 }
 
+// Ground that hides other ground is drawn before it.
+TEST(Patches, comeNearestFirst) {
+  const Ground g = ground();
+  const Composition c = composed(g, {.eye = {3, 4, -8}, .target = {0, 0, 0}});
+  const auto nearest = [&](const Patch& patch) {
+    const glm::vec2 spacing(c.block.ground.z, c.block.ground.w), eye(c.block.eye.x, c.block.eye.z);
+    const glm::vec2 low = glm::vec2(c.block.ground) + glm::vec2(patch) * spacing;
+    return glm::distance(eye, glm::clamp(eye, low, low + 32 * patch.z * spacing));
+  };
+  float last = 0;
+  for (const Patch& patch : choosePatches(c, g.field, g.lowest, g.highest)) {
+    EXPECT_GE(nearest(patch), last - 1e-3f);
+    last = nearest(patch);
+  }
+  EXPECT_GT(last, 50);
+}
+
 // Where two levels meet, the finer one has morphed into the coarser, and the coarser one not yet into the
 // next.
 TEST(Patches, neighboursMeetWhereTheFinerOneHasMorphed) {
