@@ -12,33 +12,81 @@
 namespace skitter::render {
 namespace {
 
-constexpr int kCells = 32;               // along a patch
-constexpr float kRangeOfSize = 4;        // a patch serves up to this many times its size away
+constexpr int kCells = shared::PATCH_CELLS;
 constexpr float kFinestSpacing = 0.12f;  // metres between vertices below which a finer patch gains nothing
 constexpr uint32_t kMostPatches = 4096;  // 64 KiB, the most that an update takes
 
+// By how much a mesh may differ from the ground, root mean square, before a finer one takes its place.
+constexpr float kErrorPixels = 1.0f / 3;
+// A level serves at least so many sides of a patch, or neighbours could be two levels apart, and at most as
+// far as its cells have so many pixels across: smaller triangles cost more than they show.
+constexpr float kLeastRange = 4, kCellPixels = 8;
+constexpr float kMorphBegins = 0.87f;  // of the range, in shaders/render/terrain.vert
+
+constexpr double kJudgedCells = 1 << 14;  // of the ground, for each level
+
+float strideOf(int level) { return std::exp2(float(level)); }
+
+// Root mean square of what `each` returns of cells (x, z) of a grid, at most about kJudgedCells of them. They
+// are an odd number apart, so that they lie everywhere in the cells of coarse meshes.
+template <class Each>
+float meanOf(uint32_t columns, uint32_t rows, const Each& each) {
+  const double cells = double(columns) * double(rows);
+  const uint32_t step = uint32_t(std::ceil(std::sqrt(cells / kJudgedCells))) | 1;
+  double sum = 0, count = 0;
+  for (uint32_t z = 0; z < rows; z += step)
+    for (uint32_t x = 0; x < columns; x += step) {
+      const double off = each(x, z);
+      sum += off * off;
+      ++count;
+    }
+  return count > 0 ? float(std::sqrt(sum / count)) : 0;
+}
+
+// Between the ground in cell (x, z) and the triangles of a mesh with a vertex every `stride` samples: root
+// mean square.
+double deviationIn(const Heightfield& field, uint32_t x, uint32_t z, uint32_t stride) {
+  const auto at = [&](uint32_t column, uint32_t row) {
+    return double(field.heights[size_t(row) * field.columns + column]);
+  };
+  const uint32_t x0 = x / stride * stride, x1 = x0 + stride, z0 = z / stride * stride, z1 = z0 + stride;
+  double sum = 0;
+  // Two points of Gauss each way: the square of a bilinear function is integrated exactly.
+  for (const double a : {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)})
+    for (const double b : {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)}) {
+      const double ground =
+          std::lerp(std::lerp(at(x, z), at(x + 1, z), a), std::lerp(at(x, z + 1), at(x + 1, z + 1), a), b);
+      const double u = (double(x - x0) + a) / stride, v = (double(z - z0) + b) / stride;
+      // As patchIndices() divides a cell.
+      const double drawn =
+          u + v < 1 ? at(x0, z0) + u * (at(x1, z0) - at(x0, z0)) + v * (at(x0, z1) - at(x0, z0))
+                    : at(x1, z1) + (1 - u) * (at(x0, z1) - at(x1, z1)) + (1 - v) * (at(x1, z0) - at(x1, z1));
+      sum += 0.25 * (drawn - ground) * (drawn - ground);
+    }
+  return std::sqrt(sum);
+}
+
 class Chooser {
  public:
-  Chooser(const Composition& composition, const Heightfield& field, float lowest, float highest)
-      : c_(composition), lowest_(lowest), highest_(highest) {
+  Chooser(const Composition& composition, const Heightfield& field, const Relief& relief)
+      : c_(composition), relief_(relief) {
     origin_ = {c_.block.ground.x, c_.block.ground.y};
     spacing_ = {field.spacingX, field.spacingZ};
     const float coarse = std::max(field.spacingX, field.spacingZ);
-    while (coarse * stride(finest_) > kFinestSpacing * 1.4f) --finest_;
+    while (coarse * strideOf(finest_) > kFinestSpacing * 1.4f) --finest_;
   }
 
   std::vector<Patch> choose() {
-    int level = finest_;
-    while (range(level) < c_.viewDistance) ++level;
-    const float side = stride(level) * kCells;
-    const glm::vec2 eye{c_.block.eye.x, c_.block.eye.z};
-    const glm::vec2 reach = glm::vec2(c_.viewDistance) / (spacing_ * side);
-    const glm::vec2 middle = (eye - origin_) / (spacing_ * side);
-    for (float z = std::floor(middle.y - reach.y); z <= middle.y + reach.y; ++z)
-      for (float x = std::floor(middle.x - reach.x); x <= middle.x + reach.x; ++x)
-        visit(glm::vec2(x, z) * side, level);
+    // Rough ground that is seen from all around at once may need more patches than there is room for.
+    float coarser = 1;
+    do {
+      setRanges(coarser);
+      visitAll();
+      coarser *= 2;
+    } while (found_.size() > kMostPatches && coarser < 1e3f);
     // What is hidden by ground before it is then not shaded.
     std::ranges::stable_sort(found_, {}, &Found::away);
+    found_.resize(std::min(found_.size(), size_t(kMostPatches)));
     std::vector<Patch> patches;
     for (const Found& found : found_) patches.push_back(found.patch);
     return patches;
@@ -49,15 +97,51 @@ class Chooser {
     float away;  // metres, its nearest point
     Patch patch;
   };
-  static float stride(int level) { return std::exp2(float(level)); }
-  float range(int level) const {
-    return kRangeOfSize * kCells * stride(level) * std::max(spacing_.x, spacing_.y);
+  float range(int level) const { return ranges_[size_t(level - finest_)]; }
+
+  // Each level serves as far as the next one would be seen to differ from the ground, and so far that it has
+  // become the next one wherever both meet, before that becomes the one after.
+  void setRanges(float coarser) {
+    ranges_.clear();
+    float before = 0;
+    for (int level = finest_; before < c_.viewDistance; ++level) {
+      const float cells = kCells * strideOf(level), cell = strideOf(level) * std::max(spacing_.x, spacing_.y);
+      const float wanted = distanceOf(relief_.deviationOf(level + 1), coarser * kErrorPixels);
+      const float most = cell / (coarser * kCellPixels * c_.block.eye.w);
+      before = std::max({std::min(wanted, most), kLeastRange * kCells * cell,
+                         (before + cells * glm::length(spacing_)) / kMorphBegins});
+      ranges_.push_back(before);
+    }
+  }
+
+  // From where on `metres` are at most so many pixels. What fog takes of a pixel's light, it takes of an
+  // error.
+  float distanceOf(float metres, float pixels) const {
+    float near = 0, far = c_.viewDistance;
+    for (int step = 0; step < 24; ++step) {
+      const float middle = 0.5f * (near + far), depth = middle * c_.block.tile.w;
+      const bool differs = metres * std::exp(-depth * depth) > pixels * c_.block.eye.w * middle;
+      (differs ? near : far) = middle;
+    }
+    return far;
+  }
+
+  void visitAll() {
+    found_.clear();
+    const int level = finest_ + int(ranges_.size()) - 1;
+    const float side = strideOf(level) * kCells;
+    const glm::vec2 eye{c_.block.eye.x, c_.block.eye.z};
+    const glm::vec2 reach = glm::vec2(c_.viewDistance) / (spacing_ * side);
+    const glm::vec2 middle = (eye - origin_) / (spacing_ * side);
+    for (float z = std::floor(middle.y - reach.y); z <= middle.y + reach.y; ++z)
+      for (float x = std::floor(middle.x - reach.x); x <= middle.x + reach.x; ++x)
+        visit(glm::vec2(x, z) * side, level);
   }
 
   void visit(const glm::vec2& at, int level) {
-    const float side = stride(level) * kCells;
-    const glm::vec3 low{origin_.x + at.x * spacing_.x, lowest_, origin_.y + at.y * spacing_.y};
-    const glm::vec3 high{low.x + side * spacing_.x, highest_, low.z + side * spacing_.y};
+    const float side = strideOf(level) * kCells;
+    const glm::vec3 low{origin_.x + at.x * spacing_.x, relief_.lowest, origin_.y + at.y * spacing_.y};
+    const glm::vec3 high{low.x + side * spacing_.x, relief_.highest, low.z + side * spacing_.y};
     const float away = distanceTo(low, high);
     if (away > c_.viewDistance || !seen(low, high)) return;
     if (level > finest_ && away < range(level - 1)) {
@@ -65,7 +149,7 @@ class Chooser {
         visit(at + quarter * (side / 2), level - 1);
       return;
     }
-    found_.push_back({away, {at.x, at.y, stride(level), range(level)}});
+    found_.push_back({away, {at.x, at.y, strideOf(level), range(level)}});
   }
 
   // As the vertex shader measures it, by which neighbours agree on how far they have morphed.
@@ -85,9 +169,10 @@ class Chooser {
   }
 
   const Composition& c_;
-  float lowest_, highest_;
+  const Relief& relief_;
   glm::vec2 origin_, spacing_;
   int finest_ = 0;
+  std::vector<float> ranges_;  // of the levels from finest_ on, metres
   std::vector<Found> found_;
 };
 
@@ -105,16 +190,36 @@ std::vector<uint16_t> patchIndices() {
 
 }  // namespace
 
-std::vector<Patch> choosePatches(const Composition& composition, const Heightfield& field, float lowest,
-                                 float highest) {
-  return Chooser(composition, field, lowest, highest).choose();
+float Relief::deviationOf(int level) const {
+  // Between the triangles of a cell and its bilinear surface lies the twist times x y, with x + y below 1 in
+  // each triangle: its square's mean is 1/90. A cell of half the size has a quarter of the twist.
+  if (level <= 0) return twist * std::sqrt(1.0f / 90) * std::exp2(2 * float(level));
+  if (deviations.empty()) return highest - lowest;
+  return deviations[std::min(size_t(level), deviations.size()) - 1];
 }
 
-Terrain::Terrain(const Setting& s) : field_(s.terrain) {
-  const auto [lowest, highest] = std::minmax_element(field_.heights.begin(), field_.heights.end());
-  lowest_ = *lowest;
-  highest_ = *highest;
+Relief reliefOf(const Heightfield& field) {
+  const auto at = [&](uint32_t x, uint32_t z) {
+    return double(field.heights[size_t(z) * field.columns + x]);
+  };
+  const auto [lowest, highest] = std::ranges::minmax(field.heights);
+  Relief relief{.lowest = lowest, .highest = highest, .twist = 0, .deviations = {}};
+  relief.twist = meanOf(field.columns - 1, field.rows - 1, [&](uint32_t x, uint32_t z) {
+    return at(x, z) + at(x + 1, z + 1) - at(x + 1, z) - at(x, z + 1);
+  });
+  for (uint32_t stride = 2; stride < std::min(field.columns, field.rows); stride *= 2)
+    relief.deviations.push_back(
+        meanOf((field.columns - 1) / stride * stride, (field.rows - 1) / stride * stride,
+               [&](uint32_t x, uint32_t z) { return deviationIn(field, x, z, stride); }));
+  return relief;
+}
 
+std::vector<Patch> choosePatches(const Composition& composition, const Heightfield& field,
+                                 const Relief& relief) {
+  return Chooser(composition, field, relief).choose();
+}
+
+Terrain::Terrain(const Setting& s) : field_(s.terrain), relief_(reliefOf(s.terrain)) {
   using gpu::BindingKind;
   pipeline_ = gpu::GraphicsPipeline(s.context,
                                     {.name = "terrain",
@@ -146,7 +251,7 @@ Terrain::Terrain(const Setting& s) : field_(s.terrain) {
 }
 
 void Terrain::prepare(vk::CommandBuffer cmd, const Composition& composition) {
-  const std::vector<Patch> patches = choosePatches(composition, field_, lowest_, highest_);
+  const std::vector<Patch> patches = choosePatches(composition, field_, relief_);
   assert(patches.size() <= kMostPatches);
   patchCount_ = uint32_t(patches.size());
   if (patchCount_ > 0) cmd.updateBuffer(patches_.handle(), 0, patchCount_ * sizeof(Patch), patches.data());

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "render/composition.h"
 #include "render/setting.h"
 
@@ -9,17 +11,28 @@ namespace skitter::render {
 // (shaders/render/terrain.vert).
 using Patch = glm::vec4;
 
+// How the ground's triangles differ from it. A mesh of level n has a vertex every 2^n samples.
+struct Relief {
+  float lowest = 0, highest = 0;  // metres, as are the others
+  float twist = 0;  // root mean square over cells: of the sum of two opposite corners less the others'
+  std::vector<float> deviations;  // of the meshes of level 1, 2, ...: root mean square
+
+  float deviationOf(int level) const;
+};
+// Of ground as it is now: later edits of a few places change it little.
+Relief reliefOf(const Heightfield&);
+
 // The patches that cover all ground in sight, finer towards the eye, nearest first. Beyond its edge the
 // terrain goes on as its mirror image (Heightfield::seenAt).
-std::vector<Patch> choosePatches(const Composition&, const Heightfield&, float lowest, float highest);
+std::vector<Patch> choosePatches(const Composition&, const Heightfield&, const Relief&);
 
 // The ground, drawn from the very height image that the crowd walks on.
 class Terrain {
  public:
   Terrain(const Setting&);
 
-  float lowest() const { return lowest_; }
-  float highest() const { return highest_; }
+  float lowest() const { return relief_.lowest; }
+  float highest() const { return relief_.highest; }
 
   // Outside rendering, before a transferToGraphics().
   void prepare(vk::CommandBuffer, const Composition&);
@@ -27,7 +40,7 @@ class Terrain {
 
  private:
   const Heightfield& field_;
-  float lowest_ = 0, highest_ = 0;
+  Relief relief_;
   gpu::GraphicsPipeline pipeline_;
   gpu::Bindings bindings_;
   gpu::Buffer indices_, patches_;

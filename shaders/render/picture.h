@@ -24,6 +24,8 @@ SKITTER_PICTURE_CONST INSTANCE_LISTS = 6;
 // clipFromPicture[VIEW_CAMERA], then one of each cascade.
 SKITTER_PICTURE_CONST VIEW_CAMERA = 0;
 SKITTER_PICTURE_CONST VIEWS = 3;
+// Cells along a patch of the ground.
+SKITTER_PICTURE_CONST PATCH_CELLS = 8;
 // uint32 of a VkDrawIndexedIndirectCommand.
 SKITTER_PICTURE_CONST DRAW_WORDS = 5;
 

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A square patch of 32 x 32 cells at a stride of its own, laid on the bilinear surface that the crowd walks
+// A square patch of PATCH_CELLS x PATCH_CELLS cells at a stride of its own, laid on the bilinear surface that the crowd walks
 // on. Towards the end of its range a patch moves each odd vertex onto its even neighbour, so that it meets
 // the coarser patch beside it without a crack and never pops (Strugar 2009, "Continuous Distance-Dependent
 // Level of Detail").
@@ -19,7 +19,7 @@ layout(location = 3) out vec3 outFarAt;
 vec2 pictureAt(vec2 at) { return picture.ground.xy + at * picture.ground.zw; }
 
 void main() {
-  vec2 grid = vec2(gl_VertexIndex % 33, gl_VertexIndex / 33);
+  vec2 grid = vec2(gl_VertexIndex % (PATCH_CELLS + 1), gl_VertexIndex / (PATCH_CELLS + 1));
   vec2 at = patchAt.xy + grid * patchAt.z;
   float away = length(vec3(pictureAt(at) - picture.eye.xz, picture.shadow.z));
   float morph = clamp((away / patchAt.w - 0.87) / 0.12, 0.0, 1.0);
