@@ -139,7 +139,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   gpu::graphicsToTransfer(cmd);  // the last picture may still be reading what is written now
   gpu::graphicsToCompute(cmd);
   cmd.updateBuffer(picture.handle(), 0, sizeof(shared::Picture), &composition.block);
-  terrain.prepare(cmd, composition);
+  terrain.prepare(cmd, composition, casts);
   crowd.prepare(cmd);
   gpu::transferToCompute(cmd);
   gpu::transferToGraphics(cmd);

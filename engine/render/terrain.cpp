@@ -23,6 +23,12 @@ constexpr float kErrorPixels = 1.0f / 3;
 constexpr float kLeastRange = 4, kCellPixels = 8;
 constexpr float kMorphBegins = 0.87f;  // of the range, in shaders/render/terrain.vert
 
+// Metres across a pixel from which grains, of 0.062 m, are not seen, nor pebbles, which have at most 0.048 m
+// (shaders/render/terrain.frag), with a little for rounding.
+constexpr float kNoDetail = 0.4f * 0.062f * 1.01f;
+// Of the depth to which shadows reach, where they have faded (shaders/render/shadow.glsl), likewise.
+constexpr float kNoShadow = 0.98f * 1.01f;
+
 constexpr double kJudgedCells = 1 << 14;  // of the ground, for each level
 
 float strideOf(int level) { return std::exp2(float(level)); }
@@ -219,28 +225,47 @@ std::vector<Patch> choosePatches(const Composition& composition, const Heightfie
   return Chooser(composition, field, relief).choose();
 }
 
+GroundForm formOf(const Composition& composition, const Relief& relief, const Patch& patch, bool casts) {
+  const shared::Picture& b = composition.block;
+  const glm::vec2 spacing(b.ground.z, b.ground.w);
+  const glm::vec2 from = glm::vec2(b.ground) + glm::vec2(patch) * spacing;
+  const glm::vec2 to = from + float(kCells) * patch.z * spacing;
+  const glm::vec3 eye(b.eye), low(from.x, relief.lowest, from.y), high(to.x, relief.highest, to.y);
+  const float away = glm::distance(eye, glm::clamp(eye, low, high));
+  const glm::vec3 forward(b.forward);
+  const glm::vec3 first = glm::mix(high, low, glm::greaterThan(forward, glm::vec3(0)));
+  return {.detailed = away * b.eye.w < kNoDetail,
+          .shaded = casts && glm::dot(first - eye, forward) < kNoShadow * b.forward.w};
+}
+
 Terrain::Terrain(const Setting& s) : field_(s.terrain), relief_(reliefOf(s.terrain)) {
   using gpu::BindingKind;
-  pipeline_ = gpu::GraphicsPipeline(s.context,
-                                    {.name = "terrain",
-                                     .vertex = embedded::terrain_vert(),
-                                     .fragment = embedded::terrain_frag(),
-                                     .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
-                                                  {shared::DRAW_HEIGHTS, BindingKind::heights},
-                                                  {shared::DRAW_GROUND, BindingKind::texture},
-                                                  {shared::DRAW_SHADOW, BindingKind::texture}},
-                                     .streams = {{.stride = sizeof(Patch),
-                                                  .rate = vk::VertexInputRate::eInstance,
-                                                  .attributes = {{0, vk::Format::eR32G32B32A32Sfloat, 0}}}},
-                                     .colour = s.colour,
-                                     .depth = s.depth,
-                                     .samples = s.samples,
-                                     .constants = {{shared::CONSTANT_ROOTS, s.filtered()}}});
   const std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &s.picture},
                                        {shared::DRAW_HEIGHTS, &s.heights},
                                        {shared::DRAW_GROUND, &s.ground, s.groundSampler},
                                        {shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()}};
-  bindings_ = pipeline_.bind(s.context, list);
+  for (const bool detailed : {true, false})
+    for (const bool shaded : {true, false}) {
+      Form& form = forms_[size_t(GroundForm{detailed, shaded}.index())];
+      form.pipeline = gpu::GraphicsPipeline(
+          s.context, {.name = "ground",
+                      .vertex = embedded::terrain_vert(),
+                      .fragment = embedded::terrain_frag(),
+                      .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
+                                   {shared::DRAW_HEIGHTS, BindingKind::heights},
+                                   {shared::DRAW_GROUND, BindingKind::texture},
+                                   {shared::DRAW_SHADOW, BindingKind::texture}},
+                      .streams = {{.stride = sizeof(Patch),
+                                   .rate = vk::VertexInputRate::eInstance,
+                                   .attributes = {{0, vk::Format::eR32G32B32A32Sfloat, 0}}}},
+                      .colour = s.colour,
+                      .depth = s.depth,
+                      .samples = s.samples,
+                      .constants = {{shared::CONSTANT_ROOTS, s.filtered()},
+                                    {shared::CONSTANT_DETAIL, detailed},
+                                    {shared::CONSTANT_SHADED, shaded}}});
+      form.bindings = form.pipeline.bind(s.context, list);
+    }
 
   const std::vector<uint16_t> indices = patchIndices();
   indexCount_ = uint32_t(indices.size());
@@ -250,19 +275,30 @@ Terrain::Terrain(const Setting& s) : field_(s.terrain), relief_(reliefOf(s.terra
   patches_ = gpu::Buffer(s.context, kMostPatches * sizeof(Patch), "terrain patches", gpu::BufferUse::vertex);
 }
 
-void Terrain::prepare(vk::CommandBuffer cmd, const Composition& composition) {
-  const std::vector<Patch> patches = choosePatches(composition, field_, relief_);
+void Terrain::prepare(vk::CommandBuffer cmd, const Composition& composition, bool casts) {
+  std::array<std::vector<Patch>, kGroundForms> byForm;
+  for (const Patch& patch : choosePatches(composition, field_, relief_))
+    byForm[size_t(formOf(composition, relief_, patch, casts).index())].push_back(patch);
+  std::vector<Patch> patches;
+  for (size_t f = 0; f < byForm.size(); ++f) {
+    forms_[f].patches = uint32_t(byForm[f].size());
+    patches.insert(patches.end(), byForm[f].begin(), byForm[f].end());
+  }
   assert(patches.size() <= kMostPatches);
-  patchCount_ = uint32_t(patches.size());
-  if (patchCount_ > 0) cmd.updateBuffer(patches_.handle(), 0, patchCount_ * sizeof(Patch), patches.data());
+  if (!patches.empty())
+    cmd.updateBuffer(patches_.handle(), 0, patches.size() * sizeof(Patch), patches.data());
 }
 
 void Terrain::draw(vk::CommandBuffer cmd) const {
-  if (patchCount_ == 0) return;
-  pipeline_.use(cmd, bindings_, {});
-  cmd.bindVertexBuffers(0, patches_.handle(), vk::DeviceSize(0));
-  cmd.bindIndexBuffer(indices_.handle(), 0, vk::IndexType::eUint16);
-  cmd.drawIndexed(indexCount_, patchCount_, 0, 0, 0);
+  vk::DeviceSize first = 0;
+  for (const Form& form : forms_) {
+    if (form.patches == 0) continue;
+    form.pipeline.use(cmd, form.bindings, {});
+    cmd.bindVertexBuffers(0, patches_.handle(), first);
+    cmd.bindIndexBuffer(indices_.handle(), 0, vk::IndexType::eUint16);
+    cmd.drawIndexed(indexCount_, form.patches, 0, 0, 0);
+    first += form.patches * sizeof(Patch);
+  }
 }
 
 }  // namespace skitter::render

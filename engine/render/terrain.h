@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "render/composition.h"
@@ -26,6 +27,16 @@ Relief reliefOf(const Heightfield&);
 // terrain goes on as its mirror image (Heightfield::seenAt).
 std::vector<Patch> choosePatches(const Composition&, const Heightfield&, const Relief&);
 
+// What a patch needs of the ground's shader.
+struct GroundForm {
+  bool detailed = true;  // its finest detail may be seen
+  bool shaded = true;    // shadows may fall on it
+  int index() const { return (detailed ? 0 : 2) + (shaded ? 0 : 1); }
+};
+constexpr int kGroundForms = 4;
+// `casts`: whether anything casts shadows.
+GroundForm formOf(const Composition&, const Relief&, const Patch&, bool casts);
+
 // The ground, drawn from the very height image that the crowd walks on.
 class Terrain {
  public:
@@ -34,17 +45,21 @@ class Terrain {
   float lowest() const { return relief_.lowest; }
   float highest() const { return relief_.highest; }
 
-  // Outside rendering, before a transferToGraphics().
-  void prepare(vk::CommandBuffer, const Composition&);
+  // Outside rendering, before a transferToGraphics(). `casts`: whether anything casts shadows.
+  void prepare(vk::CommandBuffer, const Composition&, bool casts);
   void draw(vk::CommandBuffer) const;
 
  private:
   const Heightfield& field_;
   Relief relief_;
-  gpu::GraphicsPipeline pipeline_;
-  gpu::Bindings bindings_;
+  struct Form {
+    gpu::GraphicsPipeline pipeline;
+    gpu::Bindings bindings;
+    uint32_t patches = 0;  // of this picture
+  };
+  std::array<Form, kGroundForms> forms_;  // by GroundForm::index; nearest ground first
   gpu::Buffer indices_, patches_;
-  uint32_t indexCount_ = 0, patchCount_ = 0;
+  uint32_t indexCount_ = 0;
 };
 
 }  // namespace skitter::render

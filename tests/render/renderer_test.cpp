@@ -489,6 +489,10 @@ TEST_P(RendererTest, shadowsComeAndGoWithTheirHerd) {
   const HerdId guest = stage.crowd.addHerd(one.herds[0]);
   stage.tick(1);
   EXPECT_GT(darkness(stage.draw(above), empty).pixels, 100);
+  // Whose shadow is out of sight changes nothing, though ground is then drawn in a form that looks for
+  // shadows.
+  const View aside{.eye = body + glm::vec3(14, 5, 14), .target = body + glm::vec3(20, 0, 20)};
+  EXPECT_EQ(differing(stage.draw(aside), never.draw(aside)), 0u);
   stage.crowd.removeHerd(guest);
   for (int frame = 0; frame < 2; ++frame) EXPECT_EQ(differing(stage.draw(above), empty), 0u) << frame;
 }

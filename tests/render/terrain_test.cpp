@@ -149,6 +149,43 @@ TEST(Patches, areAsFineAsIsSeen) {
   }
 }
 
+// A patch is drawn without detail where no pixel of it shows any, and without shadows where they have faded.
+TEST(Patches, haveTheFormsThatTheyNeed) {
+  const Ground g = ground({});
+  for (const float up : {3.0f, 60.0f}) {
+    const View view{.eye = {3, up, -8}, .target = {0, 0.5f * up, 0}};
+    const Composition c = composed(g, view, 1280, 720);
+    const glm::vec3 eye(c.block.eye), forward(c.block.forward);
+    int counts[kGroundForms] = {};
+    for (const Patch& patch : chosen(g, c)) {
+      const GroundForm form = formOf(c, g.relief, patch, true);
+      ++counts[form.index()];
+      EXPECT_FALSE(formOf(c, g.relief, patch, false).shaded);
+      EXPECT_EQ(formOf(c, g.relief, patch, false).detailed, form.detailed);
+      bool showsGrains = false, fallsWithin = false;
+      for (int i = 0; i <= 8; ++i)
+        for (int j = 0; j <= 8; ++j) {
+          const glm::vec2 at = glm::vec2(patch) + patch.z * glm::vec2(i, j);
+          const glm::vec2 world = at * spacingOf(c) + glm::vec2(g.field.originX(), g.field.originZ());
+          const glm::vec3 p(glm::vec2(c.block.ground).x + at.x * c.block.ground.z,
+                            g.field.seenAt(world.x, world.y), c.block.ground.y + at.y * c.block.ground.w);
+          // As shaders/render/noise.glsl fades grains, on ground that faces the eye.
+          showsGrains = showsGrains || 2 - 5 * glm::distance(p, eye) * c.block.eye.w / 0.062f > 0;
+          fallsWithin = fallsWithin || glm::dot(p - eye, forward) < 0.98f * c.block.forward.w;
+        }
+      EXPECT_TRUE(form.detailed || !showsGrains) << patch.x << ", " << patch.y;
+      EXPECT_TRUE(form.shaded || !fallsWithin) << patch.x << ", " << patch.y;
+    }
+    if (up < 10) {
+      EXPECT_GT(counts[(GroundForm{true, true}).index()], 20);
+      EXPECT_GT(counts[(GroundForm{false, true}).index()], 20);
+      EXPECT_GT(counts[(GroundForm{false, false}).index()], 5);
+    } else {
+      EXPECT_EQ(counts[(GroundForm{true, true}).index()], 0);
+    }
+  }
+}
+
 // However rough the ground is and however much of it one sees.
 TEST(Patches, areNeverTooMany) {
   const Ground g = ground({.columns = 257, .rows = 257, .spacing = 0.5f, .amplitude = 400, .gain = 0.9f});
