@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
 #include <optional>
+#include <thread>
 
 #include "app/common/staged_folder.h"
 #include "skitter/error.h"
@@ -66,12 +71,72 @@ double pictureBytes(const OutTarget& target, uint32_t width, uint32_t height, ui
 struct Pictures::Impl {
   OutTarget target;
   uint32_t width, height;
-  uint64_t frames = 0;
   std::optional<StagedFolder> folder;
   std::optional<VideoWriter> video;
 
+  std::mutex mutex;
+  std::condition_variable changed;
+  // All below is the mutex's.
+  std::deque<std::span<const uint8_t>> waiting;
+  uint64_t added = 0, encoded = 0;
+  std::exception_ptr fault;
+  bool ends = false;
+  std::thread thread;
+
   static std::string frameName(uint64_t frame) { return fmt::format("frame_{:05}.png", frame); }
+
+  ~Impl() { end(); }
+  void end();
+  void encodeAll();
+  void encode(std::span<const uint8_t> pixels, uint64_t frame);
 };
+
+// What waits is left out.
+void Pictures::Impl::end() {
+  {
+    const std::lock_guard lock(mutex);
+    ends = true;
+    waiting.clear();
+  }
+  changed.notify_all();
+  if (thread.joinable()) thread.join();
+}
+
+void Pictures::Impl::encodeAll() {
+  std::unique_lock lock(mutex);
+  for (;;) {
+    changed.wait(lock, [&] { return ends || !waiting.empty(); });
+    if (waiting.empty()) return;
+    const std::span<const uint8_t> pixels = waiting.front();
+    waiting.pop_front();
+    const uint64_t frame = encoded;
+    lock.unlock();
+    std::exception_ptr failed;
+    try {
+      encode(pixels, frame);
+    } catch (...) {
+      failed = std::current_exception();
+    }
+    lock.lock();
+    if (failed) {
+      fault = failed;
+      waiting.clear();
+    } else {
+      ++encoded;
+    }
+    changed.notify_all();
+    if (fault) return;
+  }
+}
+
+void Pictures::Impl::encode(std::span<const uint8_t> pixels, uint64_t frame) {
+  if (folder) {
+    writePng(folder->add(frameName(frame)), width, height, pixels);
+  } else if (target.kind == OutTarget::Kind::picture) {
+    writePng(target.path, width, height, pixels);
+  }
+  if (video) video->write(pixels);
+}
 
 Pictures::Pictures(const OutTarget& target, uint32_t width, uint32_t height, double framesPerSecond,
                    double picturesPerSecond)
@@ -80,30 +145,44 @@ Pictures::Pictures(const OutTarget& target, uint32_t width, uint32_t height, dou
   impl_->width = width;
   impl_->height = height;
   if (target.kind == OutTarget::Kind::folder) impl_->folder.emplace(target.path);
-  if (!target.isEveryFrame()) return;
-  impl_->video.emplace(impl_->folder ? impl_->folder->add(videoName) : target.path, width, height,
-                       framesPerSecond, picturesPerSecond);
+  if (target.isEveryFrame())
+    impl_->video.emplace(impl_->folder ? impl_->folder->add(videoName) : target.path, width, height,
+                         framesPerSecond, picturesPerSecond);
+  impl_->thread = std::thread([impl = impl_.get()] { impl->encodeAll(); });
 }
 
 Pictures::~Pictures() = default;
 
-void Pictures::add(const std::vector<uint8_t>& pixels) {
-  if (impl_->folder) {
-    writePng(impl_->folder->add(Impl::frameName(impl_->frames)), impl_->width, impl_->height, pixels);
-  } else if (impl_->target.kind == OutTarget::Kind::picture) {
-    writePng(impl_->target.path, impl_->width, impl_->height, pixels);
+void Pictures::add(std::span<const uint8_t> pixels) {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->fault) std::rethrow_exception(impl_->fault);
+    impl_->waiting.push_back(pixels);
+    ++impl_->added;
   }
-  if (impl_->video) impl_->video->write(pixels);
-  ++impl_->frames;
+  impl_->changed.notify_all();
+}
+
+void Pictures::settle(uint64_t count) {
+  std::unique_lock lock(impl_->mutex);
+  impl_->changed.wait(lock, [&] { return impl_->encoded >= count || impl_->fault; });
+  if (impl_->fault) std::rethrow_exception(impl_->fault);
+}
+
+uint64_t Pictures::count() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->added;
 }
 
 std::vector<std::string> Pictures::finish() {
-  if (impl_->frames == 0) return {};
+  const uint64_t frames = count();
+  if (frames == 0) return {};
+  settle(frames);
   if (impl_->video) impl_->video->finish();
   const fs::path& path = impl_->target.path;
   if (!impl_->folder) return {path.string()};
   const size_t replaced = impl_->folder->commit();
-  return {fmt::format("{} to {}{}", (path / Impl::frameName(0)).string(), Impl::frameName(impl_->frames - 1),
+  return {fmt::format("{} to {}{}", (path / Impl::frameName(0)).string(), Impl::frameName(frames - 1),
                       replaced > 0 ? fmt::format(", in place of an earlier run's {} files", replaced) : ""),
           (path / videoName).string()};
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,8 @@ bool isPicture(const std::filesystem::path& name);
 // About what so many frames take on disk.
 double pictureBytes(const OutTarget& target, uint32_t width, uint32_t height, uint64_t frames);
 
-// The frames of a run on their way to disk. Nothing has its name until all is whole; then a folder's frames
-// take the place of an earlier run's, so that two runs never mix.
+// The frames of a run on their way to disk, encoded on a thread of their own. Nothing has its name until all
+// is whole; then a folder's frames take the place of an earlier run's, so that two runs never mix.
 class Pictures {
  public:
   // So many of the pictures last a second of the video.
@@ -39,9 +40,14 @@ class Pictures {
            double picturesPerSecond);
   ~Pictures();
 
-  // Tightly packed RGBA8 rows, top row first.
-  void add(const std::vector<uint8_t>& pixels);
-  // Returns what was written, for people to read. Without this call nothing remains.
+  // Tightly packed RGBA8 rows, top row first, which stay as they are until settle() says so. Throws the fault
+  // of an earlier picture.
+  void add(std::span<const uint8_t> pixels);
+  // Waits until the first `count` pictures are encoded, or until it is known that they never will be. Throws
+  // their fault.
+  void settle(uint64_t count);
+  uint64_t count() const;  // of those that were added
+  // Waits for all, and returns what was written, for people to read. Without this call nothing remains.
   std::vector<std::string> finish();
 
  private:

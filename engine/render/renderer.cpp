@@ -20,7 +20,7 @@ namespace {
 
 constexpr vk::Format kColour = vk::Format(Renderer::colourFormat);
 constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
-constexpr uint32_t kPasses = 6;  // cull, shadow, crowd, terrain, sky, edges
+constexpr uint32_t kPasses = 6;  // cull, shadow, crowd, ground, sky, filter
 
 vk::Extent2D checkedExtent(const gpu::Context& context, uint32_t width, uint32_t height) {
   const uint32_t most = context.limits().maxImageDimension2D;
@@ -207,7 +207,7 @@ void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
   };
   pass("crowd", true, false);
   crowd.draw(cmd);
-  pass("terrain", false, false);
+  pass("ground", false, false);
   obstacles.draw(cmd);
   terrain.draw(cmd);
   pass("sky", false, true);
@@ -217,13 +217,13 @@ void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
 }
 
 void Renderer::Impl::smoothEdges(vk::CommandBuffer cmd) {
-  timer.next(cmd, "edges");
+  timer.next(cmd, "filter");
   gpu::transition(cmd, drawn, gpu::ImageState::colour, gpu::ImageState::sampled);
   {
     const gpu::Rendering rendering(cmd, {.colour = &colour, .covered = true}, true);
     antialias.draw(cmd);
   }
-  timer.end(cmd, "edges");
+  timer.end(cmd, "filter");
 }
 
 Renderer::Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height)

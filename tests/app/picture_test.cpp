@@ -87,7 +87,8 @@ TEST_F(Picture, TimingsTellEveryPassOfAFrame) {
   timed.push_back("--timings");
   const Result result = skitter(timed);
   ASSERT_EQ(result.code, 0) << result.err;
-  for (const char* pass : {"cull", "shadow", "crowd", "terrain", "sky", "edges", "readback", "write"})
+  for (const char* pass :
+       {"simulation", "cull", "shadow", "crowd", "ground", "sky", "filter", "readback", "encode"})
     EXPECT_THAT(result.out, ::testing::ContainsRegex(pass + std::string(" +[0-9.]+ ms a frame"))) << pass;
   EXPECT_EQ(plain.out.find("ms a frame"), std::string::npos) << plain.out;
 }

@@ -412,7 +412,7 @@ TEST_P(RendererTest, groundGoesOnMirroredBeyondItsEdge) {
   EXPECT_LT(apart / double(mirrored.rgba.size()), 3);
 }
 
-// Timed, crowd, terrain and sky are drawn one rendering after the other instead of in one.
+// Timed, crowd, ground and sky are drawn one rendering after the other instead of in one.
 TEST_P(RendererTest, timingAPictureDoesNotChangeIt) {
   Stage stage(device(), smallScene(40), 200, 120);
   stage.tick(1);
@@ -428,7 +428,7 @@ TEST_P(RendererTest, timingAPictureDoesNotChangeIt) {
     EXPECT_GE(time.milliseconds, 0) << time.stage;
   }
   passes.resize(5);  // edges are smoothed by a pass only where there are no samples to resolve
-  EXPECT_THAT(passes, ::testing::ElementsAre("cull", "shadow", "crowd", "terrain", "sky"));
+  EXPECT_THAT(passes, ::testing::ElementsAre("cull", "shadow", "crowd", "ground", "sky"));
 }
 
 TEST_P(RendererTest, whatIsDrawnOverKeepsThePictureAroundIt) {
