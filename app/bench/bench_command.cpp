@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "app/bench/baseline.h"
+#include "app/bench/frame_times.h"
 #include "app/bench/match_report.h"
 #include "app/commands.h"
 #include "app/common/files.h"
@@ -33,16 +34,23 @@ using namespace bench;
 constexpr uint64_t mostRounds = 1000;
 constexpr uint32_t quickRounds = 3, quickWarmUp = 20;
 constexpr double quickTurn = 0.05;
+constexpr uint32_t quickFrames = 10, quickWarmUpFrames = 3, quickTimedFrames = 3;
 constexpr double usualFailAbove = 10, mostFailAbove = 1e6;  // per cent
 
 struct BenchOptions {
   SceneOptions scene;
-  std::vector<double> agents = {1000, 10000, 100000};
+  std::optional<std::vector<double>> agents;
   std::vector<Controller> controllers = {Controller::adaptive, Controller::clip};
   std::optional<uint64_t> rounds;
   std::string json, baseline;
   std::optional<double> failAbove;  // per cent
-  bool poses = false, quick = false, quiet = false;
+  std::optional<Size> size;         // of pictures
+  bool poses = false, quick = false, quiet = false, draw = false;
+
+  std::vector<double> counts() const {
+    if (agents) return *agents;
+    return draw ? std::vector<double>{0, 1000, 10000, 100000} : std::vector<double>{1000, 10000, 100000};
+  }
 };
 
 // Figures of a slow build, or of a driver that is watched, are figures of nothing.
@@ -75,7 +83,7 @@ ContestOptions contestOf(const BenchOptions& options, Controller controller) {
 // The measurements so far.
 struct Record {
   Manifest manifest;
-  ordered_json devices = ordered_json::array();
+  ordered_json devices = ordered_json::array(), draw = ordered_json::array();
   uint64_t matches = 0, wanted = 0;
   std::optional<Baseline> baseline = {};
   uint64_t compared = 0;    // matches that the baseline has
@@ -84,10 +92,15 @@ struct Record {
 
 void write(const BenchOptions& options, const Record& record) {
   if (options.json.empty()) return;
-  const ordered_json json = {{"devices", record.devices},
-                             {"matches", record.matches},
-                             {"matchesWanted", record.wanted},
-                             {"interrupted", record.matches < record.wanted}};
+  ordered_json json = {{"devices", record.devices},
+                       {"matches", record.matches},
+                       {"matchesWanted", record.wanted},
+                       {"interrupted", record.matches < record.wanted}};
+  if (options.draw)
+    json = {{"devices", record.devices},
+            {"draw", record.draw},
+            {"drawsWanted", record.wanted},
+            {"interrupted", record.draw.size() < record.wanted}};
   writeJson(options.json, json, record.manifest);
 }
 
@@ -136,7 +149,7 @@ void benchDevice(const BenchOptions& options, const Heightfield& terrain, const 
   made["operationsPerSecond"] = peaks.operationsPerSecond;
   made["matches"] = ordered_json::array();
   for (const Controller controller : options.controllers)
-    for (const double agents : options.agents) {
+    for (const double agents : options.counts()) {
       SceneOptions chosen = options.scene;
       chosen.controller = controller;
       chosen.agents = static_cast<uint64_t>(agents);
@@ -169,6 +182,75 @@ void benchDevice(const BenchOptions& options, const Heightfield& terrain, const 
     }
 }
 
+FrameOptions framesOf(const BenchOptions& options) {
+  FrameOptions frames;
+  frames.dt = options.scene.dt;
+  if (options.size) frames.size = *options.size;
+  if (options.quick) {
+    frames.warmUp = quickWarmUpFrames;
+    frames.frames = quickFrames;
+    frames.timedFrames = quickTimedFrames;
+  }
+  return frames;
+}
+
+void drawOn(const BenchOptions& options, const Heightfield& terrain, const std::string& name,
+            Record& record) {
+  const auto leave = [&] {
+    write(options, record);
+    return interruptedAfter(record.draw.size(), record.wanted, "scenes");
+  };
+  std::optional<StopDeadline> opening(leave);
+  DeviceRequest request;
+  if (!name.empty()) request.device = name;
+  Device device = Device::create(request);
+  opening.reset();
+  record.manifest.add(device.report());
+  record.devices.push_back(describeMachine(device.report()));
+  const FrameOptions frames = framesOf(options);
+  fmt::print("device        {} ({})\npictures      {} x {} pixels, {} after {}\n", device.report().name,
+             device.report().typeName(), frames.size.width, frames.size.height, frames.frames, frames.warmUp);
+  for (const double agents : options.counts()) {
+    SceneOptions chosen = options.scene;
+    chosen.agents = static_cast<uint64_t>(agents);
+    const Scene scene = chosen.load();
+    FrameTimes times;
+    {
+      Progress progress(fmt::format("{} agents", chosen.agents.value()), options.quiet);
+      const StopDeadline deadline(leave);
+      times = timeFrames(
+          device, terrain, scene, frames, [&](double share) { progress.updateShare(share); },
+          [] { return stopRequested(); });
+    }
+    if (stopRequested()) throw Interrupted(leave());
+    print(times);
+    ordered_json row = jsonOf(times);
+    row["device"] = device.report().name;
+    record.draw.push_back(row);
+  }
+}
+
+// Each option that means nothing beside the others. Throws Error(input).
+void refuseWhatMeansNothing(const BenchOptions& options, const CLI::App& command) {
+  if (!options.draw && options.size) throw inputError("--size is of pictures, expected --draw beside it");
+  for (const char* option : {"--controllers", "--rounds", "--poses", "--baseline", "--fail-above"})
+    if (options.draw && command.count(option) > 0)
+      throw inputError(fmt::format("{} is of matches, expected none beside --draw", option));
+  for (const double agents : options.counts())
+    if (!options.draw && agents < 1)
+      throw inputError(fmt::format("--agents is {:g}, expected at least 1 without --draw", agents));
+}
+
+int draw(const BenchOptions& options, const Scene& scene) {
+  const Heightfield terrain = scene.loadTerrain();
+  const std::vector<std::string> names = options.scene.devices();
+  Record record{.manifest = {.scene = &scene, .terrain = &terrain, .dt = options.scene.dt}};
+  record.wanted = names.size() * options.counts().size();
+  for (const std::string& name : names) drawOn(options, terrain, name, record);
+  write(options, record);
+  return 0;
+}
+
 int bench(const BenchOptions& options) {
   refuseSlowness();
   Files files;
@@ -177,6 +259,7 @@ int bench(const BenchOptions& options) {
   files.reads("--baseline", options.baseline);
   files.writes("--json", options.json);
   files.check();
+  if (options.draw) return draw(options, scene);
   for (size_t h = 0; h < scene.herds.size(); ++h)
     if (scene.herds[h].avoid)
       throw inputError(fmt::format(
@@ -195,7 +278,7 @@ int bench(const BenchOptions& options) {
   const std::vector<std::string> names = options.scene.devices();
   Record record{.manifest = {.scene = &scene, .terrain = &terrain, .dt = options.scene.dt}};
   if (!options.baseline.empty()) record.baseline.emplace(options.baseline);
-  record.wanted = names.size() * options.controllers.size() * options.agents.size();
+  record.wanted = names.size() * options.controllers.size() * options.counts().size();
   for (const std::string& name : names) benchDevice(options, terrain, name, record);
   write(options, record);
   if (record.baseline && record.compared == 0)
@@ -219,12 +302,12 @@ void addBench(CLI::App& app, Command& chosen) {
       ->add_option_function<std::string>(
           "--agents",
           [options](const std::string& text) {
-            options->agents = parseNumbers("--agents", text, 1, Scene::maxAgents);
-            for (const double count : options->agents)
+            options->agents = parseNumbers("--agents", text, 0, Scene::maxAgents);
+            for (const double count : *options->agents)
               if (count != std::floor(count))
                 throw inputError(fmt::format("--agents is {}, expected whole numbers N,N,..", text));
           },
-          "how many agents, one match each [1000,10000,100000]")
+          "how many agents, one match or scene that is drawn each [1000,10000,100000; with --draw also 0]")
       ->type_name("N,N,..");
   command
       ->add_option_function<std::string>(
@@ -243,7 +326,14 @@ void addBench(CLI::App& app, Command& chosen) {
           "turns of each contestant [7]")
       ->type_name("N");
   command->add_flag("--poses", options->poses, "bone poses for everybody; those of clips are always made");
-  command->add_flag("--quick", options->quick, "3 short rounds");
+  command->add_flag("--draw", options->draw,
+                    "time frames instead: a tick, its picture, and the picture's way to the host");
+  command
+      ->add_option_function<std::string>(
+          "--size", [options](const std::string& text) { options->size = parseSize("--size", text); },
+          "of the pictures that --draw draws, in pixels [1280x720]")
+      ->type_name("WxH");
+  command->add_flag("--quick", options->quick, "3 short rounds; with --draw 10 frames");
   command->add_option("--json", options->json, "write all figures to a file, for scripts/plots")
       ->type_name("FILE");
   command
@@ -272,8 +362,14 @@ void addBench(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  skitter bench --quick\n"
       "  skitter bench --agents 1000,10000,100000,1000000 --controllers adaptive --json bench.json\n"
-      "  skitter bench --agents 10000 --baseline bench.json --fail-above 10");
-  command->callback([options, &chosen] { chosen = [options] { return bench(*options); }; });
+      "  skitter bench --agents 10000 --baseline bench.json --fail-above 10\n"
+      "  skitter bench --draw --json draw.json");
+  command->callback([options, command, &chosen] {
+    chosen = [options, command] {
+      refuseWhatMeansNothing(*options, *command);
+      return bench(*options);
+    };
+  });
 }
 
 }  // namespace skitter::app

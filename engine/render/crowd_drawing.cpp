@@ -308,6 +308,19 @@ bool CrowdDrawing::hasAgents() const {
   return std::ranges::any_of(kinds_, [](const Kind& kind) { return !kind.pages.empty(); });
 }
 
+PictureCounts CrowdDrawing::counts(const gpu::Context& context) const {
+  PictureCounts counts;
+  for (const Kind& kind : kinds_)
+    for (const Page& page : kind.pages) {
+      const auto draws = gpu::download<VkDrawIndexedIndirectCommand>(context, page.culled.commands);
+      for (size_t lod = 0; lod < shared::CAMERA_LODS; ++lod) {
+        counts.agents += draws[lod].instanceCount;
+        counts.triangles += uint64_t(draws[lod].instanceCount) * (draws[lod].indexCount / 3);
+      }
+    }
+  return counts;
+}
+
 void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
   for (uint32_t k = 0; k < kinds_.size(); ++k)
     for (const Page& page : kinds_[k].pages) {

@@ -5,6 +5,7 @@
 #include "render/mesh.h"
 #include "render/setting.h"
 #include "render/textures.h"
+#include "skitter/renderer.h"
 
 namespace skitter::render {
 
@@ -35,6 +36,8 @@ class CrowdDrawing {
   void draw(vk::CommandBuffer) const;
   // Whether there is anybody who could be drawn.
   bool hasAgents() const;
+  // Of the last picture, from the device, which has drawn it.
+  PictureCounts counts(const gpu::Context&) const;
 
  private:
   struct Page {

@@ -10,6 +10,7 @@ class ObstacleDrawing {
  public:
   ObstacleDrawing(const Setting&, const Crowd::Impl&);
   explicit operator bool() const { return indexCount_ > 0; }
+  uint64_t triangles() const { return indexCount_ / 3; }
 
   void drawShadows(vk::CommandBuffer, int cascade) const;
   void draw(vk::CommandBuffer) const;

@@ -62,6 +62,7 @@ struct Renderer::Impl {
   const Crowd::Impl& live;
   uint32_t revision;   // of the live crowd, as it is drawn
   bool casts = false;  // whether there is anything that casts a shadow
+  bool drew = false;   // a picture was recorded
   gpu::StageTimer timer;
   vk::SampleCountFlagBits samples;
   gpu::Image colour, depth;
@@ -128,6 +129,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
     revision = live.revision;
     lookForCasters();
   }
+  drew = true;
   const vk::Extent2D extent = colour.extent();
   const render::Composition composition =
       render::compose(view, setting.terrain, terrain.lowest(), terrain.highest(), extent.width, extent.height,
@@ -249,6 +251,14 @@ std::vector<StageTime> Renderer::stageTimes() const {
   impl_->context.waitIdle();
   for (const gpu::StageTime& t : impl_->timer.milliseconds()) times.push_back({t.stage, t.milliseconds});
   return times;
+}
+
+PictureCounts Renderer::counts() const {
+  if (!impl_->drew) return {};
+  impl_->context.waitIdle();
+  PictureCounts counts = impl_->crowd.counts(impl_->context);
+  counts.triangles += impl_->terrain.triangles() + impl_->obstacles.triangles();
+  return counts;
 }
 
 std::vector<uint8_t> Renderer::download() const {

@@ -289,6 +289,12 @@ void Terrain::prepare(vk::CommandBuffer cmd, const Composition& composition, boo
     cmd.updateBuffer(patches_.handle(), 0, patches.size() * sizeof(Patch), patches.data());
 }
 
+uint64_t Terrain::triangles() const {
+  uint64_t patches = 0;
+  for (const Form& form : forms_) patches += form.patches;
+  return patches * indexCount_ / 3;
+}
+
 void Terrain::draw(vk::CommandBuffer cmd) const {
   vk::DeviceSize first = 0;
   for (const Form& form : forms_) {

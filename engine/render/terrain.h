@@ -48,6 +48,7 @@ class Terrain {
   // Outside rendering, before a transferToGraphics(). `casts`: whether anything casts shadows.
   void prepare(vk::CommandBuffer, const Composition&, bool casts);
   void draw(vk::CommandBuffer) const;
+  uint64_t triangles() const;  // of what prepare() chose
 
  private:
   const Heightfield& field_;

@@ -48,6 +48,40 @@ TEST_F(Bench, RefusesWhatCannotBeTimed) {
   }
 }
 
+TEST_F(Bench, DrawTellsWhatFramesCost) {
+  const Result result =
+      skitter({"bench", "--draw", "--quick", "--agents", "0,3", "--size", "64x36", "--json", file("d.json")});
+  ASSERT_EQ(result.code, 0) << result.out << result.err;
+  const nlohmann::json all = json("d.json");
+  EXPECT_FALSE(all.at("interrupted"));
+  ASSERT_EQ(all.at("draw").size(), 2u);
+  const nlohmann::json &none = all.at("draw").at(0), &three = all.at("draw").at(1);
+  for (const nlohmann::json& row : {none, three}) {
+    EXPECT_GT(row.at("framesPerSecond"), 0);
+    EXPECT_GT(row.at("cpuMilliseconds"), 0);
+    EXPECT_EQ(row.at("device"), all.at("devices").at(0).at("device"));
+    for (const char* part : {"simulation", "readback"}) EXPECT_GT(row.at("milliseconds").at(part), 0) << part;
+    EXPECT_FALSE(row.at("milliseconds").contains("encode"));
+  }
+  EXPECT_EQ(none.at("agents"), 0);
+  EXPECT_EQ(none.at("inView"), 0);
+  EXPECT_GT(none.at("triangles"), 100);
+  EXPECT_EQ(three.at("agents"), 3);
+  EXPECT_GE(three.at("inView"), 1);
+  EXPECT_LE(three.at("inView"), 3);
+  EXPECT_GT(three.at("triangles"), none.at("triangles"));
+}
+
+TEST_F(Bench, DrawRefusesWhatIsOfMatches) {
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--rounds", "2"}, {"--poses"}, {"--controllers", "clip"}}) {
+    std::vector<std::string> arguments = {"bench", "--draw", "--quick"};
+    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+    expectRefusal(skitter(arguments), 2, {wrong[0], "--draw"});
+  }
+  expectRefusal(skitter({"bench", "--quick", "--size", "64x36"}), 2, {"--size", "--draw"});
+}
+
 // The device's tick took `factor` times as long as in the first match of the file.
 void scaleTimes(nlohmann::json& figures, double factor) {
   nlohmann::json& result = figures["devices"][0]["matches"][0]["results"][0];

@@ -40,6 +40,23 @@ TEST_F(PublicRenderer, DrawsTheCrowdIntoItsImage) {
   EXPECT_EQ(renderer.download(), pixels);
 }
 
+// As many agents as the camera has in sight, and more triangles with them than without.
+TEST_F(PublicRenderer, CountsWhatIsInThePicture) {
+  const Scene scene = standingScene(4);
+  Crowd crowd(device(), flatGround(), scene);
+  walk(device(), crowd, 1);
+  Renderer renderer(device(), crowd, 64, 48);
+  EXPECT_EQ(renderer.counts().triangles, 0u);
+  const View above{.eye = {0, 60, 0}, .target = {0, 0, 0.1f}};
+  const View away{.eye = {0, 60, 0}, .target = {0, 120, 0.1f}};
+  device().run([&](VkCommandBuffer commands) { renderer.record(commands, above); });
+  const PictureCounts seen = renderer.counts();
+  EXPECT_EQ(seen.agents, 4u);
+  device().run([&](VkCommandBuffer commands) { renderer.record(commands, away); });
+  EXPECT_EQ(renderer.counts().agents, 0u);
+  EXPECT_LT(renderer.counts().triangles, seen.triangles);
+}
+
 TEST_F(PublicRenderer, LooksFromTheScenesCamera) {
   Scene scene = standingScene(4);
   const Crowd crowd(device(), flatGround(), scene);

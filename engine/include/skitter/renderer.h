@@ -30,6 +30,12 @@ struct View {
 // `scene`. Throws Error(input) for a path of keys that cannot be (Camera::keys).
 SKITTER_API View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
 
+// What a picture consists of.
+struct PictureCounts {
+  uint64_t agents = 0;     // in the camera's sight
+  uint64_t triangles = 0;  // of these, of the ground and of obstacles, without shadows
+};
+
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.
 class SKITTER_API Renderer {
  public:
@@ -57,6 +63,9 @@ class SKITTER_API Renderer {
   // they are not. Not free on software devices: each timestamp waits for what was drawn before it.
   void timeStages(bool on);
   std::vector<StageTime> stageTimes() const;  // of the last picture; waits for the device
+
+  // Of the last picture, which has been submitted; waits for the device. Nothing before the first one.
+  PictureCounts counts() const;
 
   // Waits for the device; tightly packed RGBA8 rows, top row first.
   std::vector<uint8_t> download() const;
