@@ -6,6 +6,7 @@
 
 #include "bench/crowd/contestant.h"
 #include "bench/crowd/demand.h"
+#include "bench/crowd/turns.h"
 #include "skitter/crowd.h"
 #include "validation/judge.h"
 
@@ -19,21 +20,6 @@ struct ContestOptions {
   double turnSeconds = 0.25;  // about what the counted ticks of a turn of the device take
   bool scalar = true;         // with the scalar opponent
   uint64_t seed = 1;          // decides which agents are checked
-};
-
-// Over the rounds, milliseconds a tick.
-struct Spread {
-  double median = 0, low = 0, high = 0;  // quartiles
-};
-
-struct Result {
-  std::string name;
-  int threads = 0;                              // of the CPU that it may use; 0: the device
-  Spread wall, cpu;                             // cpu: of all threads of the process
-  std::vector<StageTime> stages;                // a tick: the device's clock, or CPU time
-  uint64_t checkedTick = 0;                     // a counted tick of one of the turns, drawn by the seed
-  std::vector<validation::StageResult> checks;  // of that tick, against the reference
-  bool pass = false;
 };
 
 struct Match {

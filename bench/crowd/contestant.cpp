@@ -86,15 +86,6 @@ class CpuContestant : public Contestant {
 
 }  // namespace
 
-void add(std::vector<StageTime>& sums, const std::string& stage, double milliseconds) {
-  const auto known =
-      std::find_if(sums.begin(), sums.end(), [&](const StageTime& t) { return t.stage == stage; });
-  if (known == sums.end())
-    sums.push_back({stage, milliseconds});
-  else
-    known->milliseconds += milliseconds;
-}
-
 std::unique_ptr<Contestant> deviceContestant(Device& device, Crowd& crowd, float dt) {
   return std::make_unique<DeviceContestant>(device, crowd, dt);
 }
