@@ -7,7 +7,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
+#include "app/bench/avoid_report.h"
 #include "app/bench/baseline.h"
 #include "app/bench/frame_times.h"
 #include "app/bench/match_report.h"
@@ -18,6 +20,7 @@
 #include "app/common/scene_options.h"
 #include "app/common/signals.h"
 #include "app/common/values.h"
+#include "bench/crowd/avoid_contest.h"
 #include "bench/crowd/contest.h"
 #include "bench/crowd/peaks.h"
 #include "bench/ik/machine.h"
@@ -45,11 +48,13 @@ struct BenchOptions {
   std::string json, baseline;
   std::optional<double> failAbove;  // per cent
   std::optional<Size> size;         // of pictures
-  bool poses = false, quick = false, quiet = false, draw = false;
+  bool avoid = false, poses = false, quick = false, quiet = false, draw = false;
 
   std::vector<double> counts() const {
     if (agents) return *agents;
-    return draw ? std::vector<double>{0, 1000, 10000, 100000} : std::vector<double>{1000, 10000, 100000};
+    if (draw) return {0, 1000, 10000, 100000};
+    if (avoid) return {10000, 100000, 1000000};
+    return {1000, 10000, 100000};
   }
 };
 
@@ -125,6 +130,39 @@ void compare(const BenchOptions& options, const DeviceReport& device, Controller
                                  nameOf(controller), match.agents, median);
 }
 
+// Grid and avoid of crowds that differ in nothing but the number of agents.
+void benchAvoid(const BenchOptions& options, Device& device, ordered_json& made, Record& record,
+                const StopDeadline::Leave& leave) {
+  const bool cpu = isCpu(device.report());
+  const Scene scene = options.scene.load();
+  ContestOptions contest = contestOf(options, Controller::adaptive);
+  contest.seed = scene.seed;
+  made["avoidMatches"] = ordered_json::array();
+  std::vector<AvoidMatch> matches;
+  for (const double agents : options.counts()) {
+    const AvoidCrowd crowd = avoidCrowdOf(scene, static_cast<uint32_t>(agents));
+    AvoidMatch match;
+    {
+      Progress progress(fmt::format("grid and avoid, {} agents", agents), options.quiet);
+      const StopDeadline deadline(leave);
+      match = avoidContest(
+          device, crowd, contest, [&](double share) { progress.updateShare(share); },
+          [] { return stopRequested(); });
+    }
+    if (stopRequested()) throw Interrupted(leave());
+    print(match, contest.rounds, cpu);
+    if (const std::string faults = faultsOf(match.results); !faults.empty())
+      throw Error(Error::Kind::check,
+                  fmt::format("grid and avoid, {} agents: results are wrong: {}", match.agents, faults));
+    made["avoidMatches"].push_back(jsonOf(match));
+    matches.push_back(std::move(match));
+    ++record.matches;
+  }
+  const std::vector<Growth> growth = growthOf(matches, cpu);
+  print(growth);
+  made["growth"] = jsonOf(growth);
+}
+
 void benchDevice(const BenchOptions& options, const Heightfield& terrain, const std::string& name,
                  Record& record) {
   const auto leave = [&] {
@@ -148,6 +186,7 @@ void benchDevice(const BenchOptions& options, const Heightfield& terrain, const 
   made["copyBytesPerSecond"] = peaks.bytesPerSecond;
   made["operationsPerSecond"] = peaks.operationsPerSecond;
   made["matches"] = ordered_json::array();
+  if (options.avoid) return benchAvoid(options, device, made, record, leave);
   for (const Controller controller : options.controllers)
     for (const double agents : options.counts()) {
       SceneOptions chosen = options.scene;
@@ -170,9 +209,9 @@ void benchDevice(const BenchOptions& options, const Heightfield& terrain, const 
                  nameOf(controller), match.agents, contestOptions.crowd.pose ? " with poses" : "",
                  contestOptions.rounds, match.ticks, static_cast<double>(match.memoryBytes) / (1 << 20),
                  cpu ? "CPU time" : "the wall clock");
-      printResults(match, cpu);
+      printResults(match.agents, match.results, cpu);
       printStages(match, peaks, cpu);
-      if (const std::string faults = faultsOf(match); !faults.empty())
+      if (const std::string faults = faultsOf(match.results); !faults.empty())
         throw Error(Error::Kind::check, fmt::format("{}, {} agents: results are wrong: {}",
                                                     nameOf(controller), match.agents, faults));
       ordered_json& row = made["matches"].emplace_back(jsonOf(controller, match));
@@ -230,12 +269,30 @@ void drawOn(const BenchOptions& options, const Heightfield& terrain, const std::
   }
 }
 
+// Its crowds are not the scene's.
+void refuseBesideAvoid(const BenchOptions& options, const CLI::App& command) {
+  const std::pair<const char*, bool> given[] = {{"a scene", !options.scene.scene.empty()},
+                                                {"--terrain", !options.scene.terrain.empty()},
+                                                {"--controllers", command.count("--controllers") > 0},
+                                                {"--solver", options.scene.solver.has_value()},
+                                                {"--stepping", options.scene.stepping.has_value()},
+                                                {"--baseline", !options.baseline.empty()},
+                                                {"--poses", options.poses}};
+  for (const auto& [what, isGiven] : given)
+    if (isGiven)
+      throw inputError(
+          fmt::format("bench: --avoid and {} are given, expected one of them: --avoid times a "
+                      "crowd of its own, without whole ticks",
+                      what));
+}
+
 // Each option that means nothing beside the others. Throws Error(input).
 void refuseWhatMeansNothing(const BenchOptions& options, const CLI::App& command) {
   if (!options.draw && options.size) throw inputError("--size is of pictures, expected --draw beside it");
-  for (const char* option : {"--controllers", "--rounds", "--poses", "--baseline", "--fail-above"})
+  for (const char* option : {"--avoid", "--controllers", "--rounds", "--poses", "--baseline", "--fail-above"})
     if (options.draw && command.count(option) > 0)
       throw inputError(fmt::format("{} is of matches, expected none beside --draw", option));
+  if (options.avoid) refuseBesideAvoid(options, command);
   for (const double agents : options.counts())
     if (!options.draw && agents < 1)
       throw inputError(fmt::format("--agents is {:g}, expected at least 1 without --draw", agents));
@@ -262,8 +319,10 @@ int bench(const BenchOptions& options) {
   if (options.draw) return draw(options, scene);
   for (size_t h = 0; h < scene.herds.size(); ++h)
     if (scene.herds[h].avoid)
-      throw inputError(fmt::format(
-          "bench: herds[{}].avoid of {} is true, expected false: the opponents do not avoid", h, scene.name));
+      throw inputError(
+          fmt::format("bench: herds[{}].avoid of {} is true, expected false: whole ticks are timed "
+                      "without it; --avoid times it by itself",
+                      h, scene.name));
   for (size_t h = 0; h < scene.herds.size(); ++h)
     if (scene.herds[h].forage)
       throw inputError(fmt::format(
@@ -278,7 +337,7 @@ int bench(const BenchOptions& options) {
   const std::vector<std::string> names = options.scene.devices();
   Record record{.manifest = {.scene = &scene, .terrain = &terrain, .dt = options.scene.dt}};
   if (!options.baseline.empty()) record.baseline.emplace(options.baseline);
-  record.wanted = names.size() * options.controllers.size() * options.counts().size();
+  record.wanted = names.size() * (options.avoid ? 1 : options.controllers.size()) * options.counts().size();
   for (const std::string& name : names) benchDevice(options, terrain, name, record);
   write(options, record);
   if (record.baseline && record.compared == 0)
@@ -307,7 +366,9 @@ void addBench(CLI::App& app, Command& chosen) {
               if (count != std::floor(count))
                 throw inputError(fmt::format("--agents is {}, expected whole numbers N,N,..", text));
           },
-          "how many agents, one match or scene that is drawn each [1000,10000,100000; with --draw also 0]")
+          "how many agents, one match or scene that is drawn each [1000,10000,100000; with --draw also 0; "
+          "with "
+          "--avoid 10000,100000,1000000]")
       ->type_name("N,N,..");
   command
       ->add_option_function<std::string>(
@@ -325,6 +386,10 @@ void addBench(CLI::App& app, Command& chosen) {
           },
           "turns of each contestant [7]")
       ->type_name("N");
+  command->add_flag(
+      "--avoid", options->avoid,
+      "instead of whole ticks: the grid of neighbours and stage avoid, of agents with ten others "
+      "in reach, beside the same work and RVO2's algorithm on the CPU");
   command->add_flag("--poses", options->poses, "bone poses for everybody; those of clips are always made");
   command->add_flag("--draw", options->draw,
                     "time frames instead: a tick, its picture, and the picture's way to the host");
@@ -362,6 +427,7 @@ void addBench(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  skitter bench --quick\n"
       "  skitter bench --agents 1000,10000,100000,1000000 --controllers adaptive --json bench.json\n"
+      "  skitter bench --avoid --agents 10000,1000000\n"
       "  skitter bench --agents 10000 --baseline bench.json --fail-above 10\n"
       "  skitter bench --draw --json draw.json");
   command->callback([options, command, &chosen] {

@@ -31,15 +31,15 @@ StageTime sameOf(const std::vector<StageTime>& stages, const std::string& name) 
   return same;
 }
 
-// The clocks of stages give shares; how long the whole takes is CPU time where `cpu`, else the wall's, so
-// that who else is at work on the machine does not count.
+ordered_json jsonOf(const Spread& spread) {
+  return {{"median", spread.median}, {"low", spread.low}, {"high", spread.high}};
+}
+
+}  // namespace
+
 double millisecondsOf(const StageTime& stage, const Result& result, bool cpu) {
   const double sum = std::max(sumOf(result.stages), 1e-9);
   return std::max(stage.milliseconds / sum * (cpu ? result.cpu.median : sum), 1e-9);
-}
-
-ordered_json jsonOf(const Spread& spread) {
-  return {{"median", spread.median}, {"low", spread.low}, {"high", spread.high}};
 }
 
 ordered_json jsonOf(const Result& result) {
@@ -61,14 +61,12 @@ ordered_json jsonOf(const Result& result) {
           {"checks", checks}};
 }
 
-}  // namespace
-
-void printResults(const Match& match, bool cpu) {
-  const auto agents = static_cast<double>(match.agents);
+void printResults(uint64_t agentCount, const std::vector<Result>& results, bool cpu) {
+  const auto agents = static_cast<double>(agentCount);
   fmt::print("{:<22}{:>10}  {:<24}{:>8}{:>18}{:>8}\n", "", "ms a tick", "(quartiles)", "CPU ms",
              "core-us an agent", "speed");
-  const double device = costOf(match.results.front(), cpu);
-  for (const Result& result : match.results) {
+  const double device = costOf(results.front(), cpu);
+  for (const Result& result : results) {
     const std::string range = fmt::format("({:.3f} to {:.3f})", result.wall.low, result.wall.high);
     fmt::print("{:<22}{:>10.3f}  {:<24}{:>8.3f}{:>18.4f}{:>8.2f}{}\n", result.name, result.wall.median, range,
                result.cpu.median, agents > 0 ? 1e3 * result.cpu.median / agents : 0,
@@ -113,9 +111,9 @@ ordered_json jsonOf(Controller controller, const Match& match) {
           {"memoryBytes", match.memoryBytes}, {"results", results},     {"demands", demands}};
 }
 
-std::string faultsOf(const Match& match) {
+std::string faultsOf(const std::vector<Result>& results) {
   std::string faults;
-  for (const Result& result : match.results)
+  for (const Result& result : results)
     for (const validation::StageResult& check : result.checks)
       if (!check.pass)
         faults += fmt::format("{}{}, {}: {}", faults.empty() ? "" : "; ", result.name, check.name, check.why);

@@ -35,6 +35,50 @@ TEST_F(Bench, TimesAndChecksEveryContestant) {
   EXPECT_GE(adaptive.at("results").size(), 3u);  // the device, and the CPU vectorised and scalar
 }
 
+TEST_F(Bench, TimesGridAndAvoidByThemselves) {
+  const Result result = skitter(
+      {"bench", "--avoid", "--quick", "--rounds", "1", "--agents", "64,300", "--json", file("a.json")});
+  ASSERT_EQ(result.code, 0) << result.out << result.err;
+  const nlohmann::json device = json("a.json").at("devices").at(0);
+  EXPECT_TRUE(device.at("matches").empty());
+  ASSERT_EQ(device.at("avoidMatches").size(), 2u);
+  for (const nlohmann::json& match : device.at("avoidMatches")) {
+    SCOPED_TRACE(match.at("agents").get<int>());
+    EXPECT_GT(match.at("inReach"), 4);
+    EXPECT_GT(match.at("inReach"), match.at("keptClear"));
+    EXPECT_GT(match.at("density"), 0.1);
+    EXPECT_EQ(match.at("results").at(0).at("name"), "device");
+    for (const nlohmann::json& contestant : match.at("results")) {
+      EXPECT_GT(contestant.at("cpuMilliseconds").at("median"), 0);
+      ASSERT_FALSE(contestant.at("checks").empty());
+      for (const nlohmann::json& check : contestant.at("checks")) EXPECT_TRUE(check.at("pass")) << check;
+      EXPECT_NE(result.out.find(contestant.at("name").get<std::string>()), std::string::npos);
+    }
+  }
+  EXPECT_NE(result.out.find("in reach of an agent"), std::string::npos) << result.out;
+  const nlohmann::json& growth = device.at("growth");
+  ASSERT_EQ(growth.size(), device.at("avoidMatches").at(0).at("results").size());
+  EXPECT_EQ(growth.at(0).at("from"), 64);
+  EXPECT_EQ(growth.at(0).at("to"), 300);
+  EXPECT_GT(growth.at(0).at("ratio"), 0);
+}
+
+TEST_F(Bench, RefusesWhatIsNotOfAvoid) {
+  write("scene.json", "{}");
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--controllers", "clip"},
+                                                {"--poses"},
+                                                {"--solver", "fabrik"},
+                                                {"--terrain", "noise"},
+                                                {file("scene.json")}}) {
+    std::vector<std::string> arguments = {"bench", "--quick", "--avoid"};
+    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+    const std::string named = wrong.front()[0] == '-' ? wrong.front() : "a scene";
+    expectRefusal(skitter(arguments), 2, {"--avoid", named});
+  }
+  write("avoids.json", R"({"herds": [{"avoid": true}]})");
+  expectRefusal(skitter({"bench", "--quick", file("avoids.json")}), 2, {"herds[0].avoid", "--avoid"});
+}
+
 TEST_F(Bench, RefusesWhatCannotBeTimed) {
   for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--agents", "1.5"},
                                                 {"--agents", "0"},

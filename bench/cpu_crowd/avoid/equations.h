@@ -1,0 +1,137 @@
+#pragma once
+
+#include "bench/cpu_crowd/avoid/neighbours.h"
+
+// docs/stages/avoid.md, "2. What is wanted" to "6. Result", of the agents of a block. Metres, metres per
+// second; x, z.
+namespace skitter::cpu_avoid {
+
+constexpr float horizon = 2, pushTime = 0.5f;
+constexpr float rightBias = 0.05f;
+constexpr float softness = 0.05f;
+constexpr int sweeps = 6;
+constexpr float pushSpeed = 0.3f, steadySpeed = 0.05f;  // leg lengths a second
+
+template <class F>
+struct Vec2 {
+  F x, z;
+};
+template <class F>
+F dot(const Vec2<F>& a, const Vec2<F>& b) {
+  return a.x * b.x + a.z * b.z;
+}
+template <class F>
+F lengthOf(const Vec2<F>& a) {
+  return squareRoot(dot(a, a));
+}
+
+// A neighbour, as an agent sees it.
+template <class F>
+struct Neighbour {
+  Mask<F> isThere;
+  Vec2<F> p;  // from the agent to it
+  F d;        // |p|
+  F radii;    // of both
+  F power;
+  Vec2<F> v;     // the agent's velocity less its own
+  F share;       // of the change that the agent takes
+  Vec2<F> part;  // where the agent goes if p is 0
+};
+
+// "2. What is wanted"
+template <class F>
+struct Wish {
+  Vec2<F> desired;  // v_n
+  F speed;          // |v_n|
+  F close = F(0), press = F(0);
+
+  explicit Wish(const Vec2<F>& of) : desired(of), speed(lengthOf(of)) {}
+  void see(const Neighbour<F>& other) {
+    const F c = select(other.isThere, clamp(F(2) - other.d / other.radii, 0, 1), F(0));
+    close = larger(close, c);
+    press = larger(press, c * larger(F(0), dot(other.p, desired)) / larger(other.d * speed, F(1e-6f)));
+  }
+  // v_0, of an agent that goes at speed s.
+  Vec2<F> wanted(const F& s) const {
+    const F t = press * larger(F(0), F(1) - s / larger(speed, F(1e-6f)));
+    const F norm = F(1) / squareRoot(F(1) + t * t);
+    return {(desired.x - t * desired.z) * norm, (desired.z + t * desired.x) * norm};
+  }
+};
+
+template <class F>
+struct HalfPlane {
+  Vec2<F> n;
+  F bound;
+};
+
+// "3. Half-planes". As n . u, of a neighbour's u, is all that a bound needs, u is that number here.
+template <class F>
+HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own) {
+  const auto& [isThere, p, d, radii, power, v, share, part] = other;
+  const Vec2<F> w{v.x - p.x * F(1 / horizon), v.z - p.z * F(1 / horizon)};
+  const F along = dot(w, p), speed2 = dot(w, w), speed = squareRoot(speed2);
+  // one of the cone's sides
+  const F a = p.x * w.z - p.z * w.x + F(rightBias) * d * speed;
+  const F side = select(F(0) <= a, F(1), F(-1)), l = side * squareRoot(larger(power, F(0)));
+  const F inverse2 = F(1) / larger(d * d, F(1e-20f));
+  Vec2<F> n{-(p.z * l + p.x * radii) * inverse2, (p.x * l - p.z * radii) * inverse2};
+  F u = -dot(n, v);
+  // its round end
+  const Mask<F> round = (along < F(0)) & (radii * radii * speed2 < along * along);
+  if (any(round)) {
+    const F inverse = F(1) / larger(speed, F(1e-9f));
+    n = {select(round, w.x * inverse, n.x), select(round, w.z * inverse, n.z)};
+    u = select(round, radii * F(1 / horizon) - speed, u);
+  }
+  const Mask<F> overlaps = power <= F(0);
+  if (any(overlaps)) {
+    const F inverse = F(-1) / larger(d, F(1e-20f));
+    const Mask<F> apart = F(0) < d;
+    const Vec2<F> away{select(apart, p.x * inverse, part.x), select(apart, p.z * inverse, part.z)};
+    n = {select(overlaps, away.x, n.x), select(overlaps, away.z, n.z)};
+    u = select(overlaps, (radii - d) * F(1 / pushTime) - dot(away, v), u);
+  }
+  // Who is not there forbids nothing.
+  return {{select(isThere, n.x, F(0)), select(isThere, n.z, F(0))},
+          select(isThere, dot(n, own) + share * u, F(-1))};
+}
+
+template <class F>
+bool isForbidden(const HalfPlane<F>* planes, int count, const Vec2<F>& v) {
+  bool forbidden = false;
+  for (int k = 0; k < count; ++k) forbidden = forbidden || any(dot(planes[k].n, v) < planes[k].bound);
+  return forbidden;
+}
+
+// "5. Solution", without obstacles.
+template <class F>
+Vec2<F> solved(const HalfPlane<F>* planes, int count, Vec2<F> v) {
+  F lambda[mostNeighbours];
+  for (int k = 0; k < count; ++k) lambda[k] = F(0);
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (int k = count - 1; k >= 0; --k) {
+      const auto& [n, bound] = planes[k];
+      const F lacking = bound - dot(n, v) - F(softness) * lambda[k];
+      const F more = larger(F(0), lambda[k] + lacking * F(1 / (1 + softness)));
+      const F step = more - lambda[k];
+      v = {v.x + step * n.x, v.z + step * n.z};
+      lambda[k] = more;
+    }
+  return v;
+}
+
+// "6. Result", of an agent that does not sleep.
+template <class F>
+Vec2<F> resultOf(const Vec2<F>& v, const Wish<F>& wish, const Vec2<F>& heading, float legLength) {
+  const F most = larger(wish.speed, F(pushSpeed * legLength)), length = lengthOf(v);
+  const F cut = select(most < length, most / larger(length, F(1e-6f)), F(1)), m = smaller(length, most);
+  const F steady = F(steadySpeed * legLength) * wish.close;
+  const F share = m / larger(m + steady, F(1e-6f));
+  const Mask<F> isAmongOthers = F(0) < wish.close;
+  const Vec2<F> kept{v.x * cut, v.z * cut};
+  return {select(isAmongOthers, (kept.x + steady * heading.x) * share, kept.x),
+          select(isAmongOthers, (kept.z + steady * heading.z) * share, kept.z)};
+}
+
+}  // namespace skitter::cpu_avoid
