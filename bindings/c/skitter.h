@@ -333,6 +333,29 @@ SKITTER_C skitter_result skitter_crowd_remove(skitter_crowd* crowd, skitter_agen
 SKITTER_C skitter_result skitter_crowd_cannot_reach(const skitter_crowd* crowd, uint32_t herd,
                                                     uint32_t* agents);
 
+/* Legs that are hurt, and heal, of herds whose scene says "hurt": true (docs/damage.md). */
+typedef enum skitter_leg_state {
+  SKITTER_LEG_WHOLE = 0,
+  SKITTER_LEG_LAME = 1,  /* its steps take longer, and the body goes slower */
+  SKITTER_LEG_STUCK = 2, /* holds its pose, and does not carry */
+  SKITTER_LEG_LOST = 3   /* ends at one of its joints, and does not carry */
+} skitter_leg_state;
+/* As `bone`: the first one is left as a stump; of a leg with only one, nothing is. */
+#define SKITTER_STUMP UINT32_MAX
+typedef struct skitter_agent_leg {
+  skitter_agent_id agent;
+  uint32_t leg; /* by its number in the rig, from 0 on */
+  skitter_leg_state state;
+  uint32_t bone; /* of a lost leg: the first one that is lost, counted from the root */
+} skitter_agent_leg;
+/* The other legs regroup in the next tick. A herd that cannot be hurt, and a leg or a bone that the rig
+ * lacks, are SKITTER_ERROR_INPUT. heal: all legs of the agent are whole. `state`: as was said last. */
+SKITTER_C skitter_result skitter_crowd_hurt(skitter_crowd* crowd, const skitter_agent_leg* legs,
+                                            size_t count);
+SKITTER_C skitter_result skitter_crowd_heal(skitter_crowd* crowd, skitter_agent_id agent);
+SKITTER_C skitter_result skitter_crowd_leg_state(const skitter_crowd* crowd, skitter_agent_id agent,
+                                                 uint32_t leg, skitter_leg_state* state);
+
 /* A threat of that number, 0 to 63, comes, moves or, with radius 0, goes: a disc about x, z, metres, that
  * agents of herds with ways keep off (docs/ways.md). */
 SKITTER_C skitter_result skitter_crowd_set_threat(skitter_crowd* crowd, uint32_t number,

@@ -49,6 +49,20 @@ Goal goalOf(const skitter_goal& goal) {
           .agent = goal.follow_agent != 0 ? std::optional(goal.agent) : std::nullopt};
 }
 
+static_assert(SKITTER_LEG_WHOLE == static_cast<int>(LegState::whole) &&
+              SKITTER_LEG_LAME == static_cast<int>(LegState::lame) &&
+              SKITTER_LEG_STUCK == static_cast<int>(LegState::stuck) &&
+              SKITTER_LEG_LOST == static_cast<int>(LegState::lost));
+
+AgentLeg agentLegOf(const skitter_agent_leg& leg) {
+  if (const int state = static_cast<int>(leg.state); state < SKITTER_LEG_WHOLE || state > SKITTER_LEG_LOST)
+    throw inputError(fmt::format("state is {}, expected a skitter_leg_state", state));
+  AgentLeg made{
+      .agent = AgentId::ofBits(leg.agent), .leg = leg.leg, .state = static_cast<LegState>(leg.state)};
+  if (leg.bone != SKITTER_STUMP) made.bone = leg.bone;
+  return made;
+}
+
 Place placeOf(const skitter_place& place) { return {{place.x, place.z}, place.heading}; }
 
 // A list of AgentGoal, AgentSpeed or AgentPlace.
@@ -150,6 +164,28 @@ skitter_result skitter_crowd_remove(skitter_crowd* crowd, skitter_agent_id agent
 
 skitter_result skitter_crowd_cannot_reach(const skitter_crowd* crowd, uint32_t herd, uint32_t* agents) {
   return c::tell(crowd, agents, "agents", [&](const Crowd& asked) { return asked.cannotReach(herd); });
+}
+
+skitter_result skitter_crowd_hurt(skitter_crowd* crowd, const skitter_agent_leg* legs, size_t count) {
+  return guarded([&] {
+    Crowd& hurt = crowdOf(crowd);
+    std::vector<AgentLeg> all;
+    for (const skitter_agent_leg& leg : listOf(legs, count, "legs")) all.push_back(agentLegOf(leg));
+    hurt.hurt(all);
+  });
+}
+
+skitter_result skitter_crowd_heal(skitter_crowd* crowd, skitter_agent_id agent) {
+  return guarded([&] { crowdOf(crowd).heal(AgentId::ofBits(agent)); });
+}
+
+skitter_result skitter_crowd_leg_state(const skitter_crowd* crowd, skitter_agent_id agent, uint32_t leg,
+                                       skitter_leg_state* state) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(state, "state");
+    *state = static_cast<skitter_leg_state>(asked.legState(AgentId::ofBits(agent), leg));
+  });
 }
 
 skitter_result skitter_crowd_set_threat(skitter_crowd* crowd, uint32_t number, const float centre[2],

@@ -1,6 +1,11 @@
 #include <limits>
+#include <string>
+#include <variant>
+#include <vector>
 
+#include "bindings/common/names.h"
 #include "bindings/python/crowd.h"
+#include "crowd/steer.h"
 
 namespace skitter::python {
 namespace {
@@ -98,6 +103,41 @@ void teleport(PythonCrowd& self, const Ids& agents, const Floats& positions, con
   self.told([&](Crowd& crowd) { crowd.teleport(places); });
 }
 
+// Of a rig, by its name or its number.
+using LegOf = std::variant<uint32_t, std::string>;
+uint32_t legOf(const Crowd& crowd, AgentId agent, const LegOf& leg) {
+  if (const auto* number = std::get_if<uint32_t>(&leg)) return *number;
+  const auto name = [&] { return fmt::format("herd {}, agent {}", agent.herd(), agent.agent()); };
+  return crowd::legNamed(name, crowd.rig(agent.herd()), std::get<std::string>(leg));
+}
+
+void hurt(PythonCrowd& self, const Ids& agents, const LegOf& leg, const std::string& state,
+          std::optional<uint32_t> bone) {
+  const LegState made = bindings::namedOf(allLegStates, "state", state);
+  self.told([&](Crowd& crowd) {
+    std::vector<AgentLeg> legs;
+    for (const AgentId agent : agentsOf(agents))
+      legs.push_back({agent, legOf(crowd, agent, leg), made, bone});
+    crowd.hurt(legs);
+  });
+}
+
+// Of several, none is healed where one is not there.
+void heal(PythonCrowd& self, const Ids& agents) {
+  self.told([&](Crowd& crowd) {
+    std::vector<AgentLeg> legs;
+    for (const AgentId agent : agentsOf(agents))
+      for (uint32_t leg = 0; leg < crowd.rig(agent.herd()).legs.size(); ++leg)
+        legs.push_back({agent, leg, LegState::whole, {}});
+    crowd.hurt(legs);
+  });
+}
+
+std::string legState(PythonCrowd& self, uint64_t agent, const LegOf& leg) {
+  const AgentId id = AgentId::ofBits(agent);
+  return self.told([&](const Crowd& crowd) { return nameOf(crowd.legState(id, legOf(crowd, id, leg))); });
+}
+
 uint64_t add(PythonCrowd& self, const glm::vec2& position, float heading, uint32_t herd,
              const std::optional<Goal>& goal) {
   const Place place{position, heading};
@@ -182,6 +222,18 @@ void bindAgents(CrowdClass& bound) {
           "A disc that agents of herds with ways keep off comes, moves or, with radius 0, goes.");
 }
 
+void bindDamage(CrowdClass& bound) {
+  bound
+      .def("hurt", &hurt, "agents"_a, "leg"_a, "state"_a = "lost", "bone"_a = py::none(),
+           "Makes a leg of the agents of one or more handles \"whole\", \"lame\", \"stuck\" or \"lost\", in "
+           "herds "
+           "with `hurt`. `leg`: its name in the rig, or its number. `bone`: the first one that is lost, "
+           "counted "
+           "from the root; None: the second one. The other legs regroup in the next tick.")
+      .def("heal", &heal, "agents"_a, "Makes all legs of the agents of one or more handles whole.")
+      .def("leg_state", &legState, "agent"_a, "leg"_a, "What a leg of the agent of that handle is.");
+}
+
 void bindHerds(CrowdClass& bound) {
   bound
       .def("add_herd", &addHerd, "herd"_a,
@@ -209,6 +261,7 @@ void bindHerds(CrowdClass& bound) {
 void bindSteering(CrowdClass& bound) {
   bindGoals(bound);
   bindAgents(bound);
+  bindDamage(bound);
   bindHerds(bound);
 }
 

@@ -177,6 +177,7 @@ static void testErrors(void) {
   skitter_place place;
   skitter_herd_id herd = {0, 0};
   skitter_picked picked;
+  skitter_leg_state leg;
   const char* note;
   int is;
   uint32_t n;
@@ -251,6 +252,9 @@ static void testErrors(void) {
   REFUSED(skitter_crowd_remove(NULL, 0), "crowd is NULL");
   REFUSED(skitter_crowd_set_threat(NULL, 0, numbers, 1), "crowd is NULL");
   REFUSED(skitter_crowd_cannot_reach(NULL, 0, &n), "crowd is NULL");
+  REFUSED(skitter_crowd_hurt(NULL, NULL, 0), "crowd is NULL");
+  REFUSED(skitter_crowd_heal(NULL, 0), "crowd is NULL");
+  REFUSED(skitter_crowd_leg_state(NULL, 0, 0, &leg), "crowd is NULL");
   REFUSED(skitter_crowd_add_herd(NULL, scene, 0, &herd), "crowd is NULL");
   REFUSED(skitter_crowd_remove_herd(NULL, herd), "crowd is NULL");
   REFUSED(skitter_crowd_herd_id(NULL, 0, &herd), "crowd is NULL");
@@ -521,6 +525,65 @@ static void testSpeeds(skitter_crowd* crowd, const skitter_agent_id* ids) {
   OK(skitter_crowd_step(crowd, 60, dt));
   waysOf(crowd, 60, ways);
   for (i = 0; i < 4; ++i) CHECK(fabs(ways[i][1] - (i == 2 ? 0 : 0.5)) < 0.1);
+}
+
+static skitter_leg_state legOf(const skitter_crowd* crowd, skitter_agent_id agent, uint32_t leg) {
+  skitter_leg_state state = SKITTER_LEG_LAME;
+  OK(skitter_crowd_leg_state(crowd, agent, leg, &state));
+  return state;
+}
+
+static void testLegs(void) {
+  skitter_device* device = openDevice();
+  skitter_crowd* crowd = makeCrowdOf(
+      "{\"terrain\": {\"columns\": 65, \"rows\": 65, \"amplitude\": 0},"
+      " \"herds\": [{\"agents\": 4, \"hurt\": true}, {\"agents\": 1}]}",
+      device, NULL);
+  skitter_agent_leg legs[2] = {{0, 3, SKITTER_LEG_LOST, SKITTER_STUMP}, {0, 4, SKITTER_LEG_STUCK, 0}};
+  skitter_agent_id ids[4], other;
+  skitter_leg_state state;
+  size_t count = 0;
+  static float hurt[4 * 11 * 4];
+  OK(skitter_crowd_agent_ids(crowd, 0, ids, 4));
+  OK(skitter_crowd_agent_id(crowd, 1, 0, &other));
+  CHECK(legOf(crowd, ids[1], 3) == SKITTER_LEG_WHOLE);
+  legs[0].agent = ids[1];
+  legs[1].agent = ids[2];
+  OK(skitter_crowd_hurt(crowd, legs, 2));
+  OK(skitter_crowd_hurt(crowd, NULL, 0));
+  CHECK(legOf(crowd, ids[1], 3) == SKITTER_LEG_LOST && legOf(crowd, ids[2], 4) == SKITTER_LEG_STUCK);
+  CHECK(legOf(crowd, ids[0], 3) == SKITTER_LEG_WHOLE && legOf(crowd, ids[1], 4) == SKITTER_LEG_WHOLE);
+  OK(skitter_crowd_step(crowd, 60, dt));
+  OK(skitter_crowd_heal(crowd, ids[1]));
+  CHECK(legOf(crowd, ids[1], 3) == SKITTER_LEG_WHOLE && legOf(crowd, ids[2], 4) == SKITTER_LEG_STUCK);
+  OK(skitter_crowd_step(crowd, 1, dt));
+  /* The mask of lost legs, and of stuck ones: docs/damage.md. */
+  OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_HURT, hurt, COUNT(hurt), &count));
+  CHECK(count == COUNT(hurt));
+  CHECK(hurt[4 * 11] == 0 && hurt[2 * 4 * 11 + 1] == 16);
+
+  /* Nothing is changed where something cannot be. */
+  legs[0].state = SKITTER_LEG_LAME;
+  legs[1].leg = 8;
+  REFUSED(skitter_crowd_hurt(crowd, legs, 2), "leg is 8, expected less than 8");
+  CHECK(legOf(crowd, ids[1], 3) == SKITTER_LEG_WHOLE);
+  legs[0].state = SKITTER_LEG_LOST;
+  legs[0].bone = 4;
+  REFUSED(skitter_crowd_hurt(crowd, legs, 1), "bone is 4, expected less than 4");
+  legs[0].bone = 2;
+  legs[0].state = (skitter_leg_state)4;
+  REFUSED(skitter_crowd_hurt(crowd, legs, 1), "state is 4, expected a skitter_leg_state");
+  legs[0].state = SKITTER_LEG_LOST;
+  legs[0].agent = other;
+  REFUSED(skitter_crowd_hurt(crowd, legs, 1), "hurt is false");
+  legs[0].agent = SKITTER_NO_AGENT;
+  REFUSED(skitter_crowd_hurt(crowd, legs, 1), "herd");
+  REFUSED(skitter_crowd_hurt(crowd, NULL, 1), "legs is NULL");
+  REFUSED(skitter_crowd_heal(crowd, other), "hurt is false");
+  REFUSED(skitter_crowd_leg_state(crowd, ids[1], 8, &state), "leg is 8");
+  REFUSED(skitter_crowd_leg_state(crowd, ids[1], 0, NULL), "state is NULL");
+  OK(skitter_crowd_destroy(crowd));
+  OK(skitter_device_destroy(device));
 }
 
 static void testThreats(skitter_crowd* crowd) {
@@ -1994,14 +2057,13 @@ int main(int argc, char** argv) {
   static const struct {
     const char* name;
     void (*run)(void);
-  } tests[] = {{"errors", testErrors},     {"scene", testScene},
-               {"crowd", testCrowd},       {"sizes", testSizes},
-               {"steering", testSteering}, {"herds", testHerds},
-               {"state", testState},       {"adoption", testAdoption},
-               {"ground", testGround},     {"records", testRecords},
-               {"readback", testReadback}, {"drawing", testDrawing},
-               {"pictures", testPictures}, {"ik", testIk},
-               {"splines", testSplines},   {"ways", testWays}};
+  } tests[] = {{"errors", testErrors},   {"scene", testScene},       {"crowd", testCrowd},
+               {"sizes", testSizes},     {"steering", testSteering}, {"legs", testLegs},
+               {"herds", testHerds},     {"state", testState},       {"adoption", testAdoption},
+               {"ground", testGround},   {"records", testRecords},   {"readback", testReadback},
+               {"drawing", testDrawing}, {"pictures", testPictures}, {"ik", testIk},
+               {"splines", testSplines},
+               {"ways", testWays}};
   size_t i;
   for (i = 0; argc == 2 && i < COUNT(tests); ++i) {
     if (strcmp(argv[1], tests[i].name) != 0) continue;

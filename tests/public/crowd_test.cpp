@@ -390,6 +390,36 @@ TEST_F(PublicCrowd, LeavesThreats) {
   EXPECT_TRUE(crowd.threats().empty());
 }
 
+TEST_F(PublicCrowd, HurtsLegsAndHealsThem) {
+  Scene scene = standingScene(3);
+  scene.herds[0].hurt = true;
+  scene.herds.push_back(standingScene(1).herds[0]);
+  scene.herds[0].goal = goingBy(0, 1);
+  Crowd crowd(device(), flatGround(), scene);
+  const AgentId agent = crowd.agentId(0, 1);
+  const auto legs = static_cast<uint32_t>(crowd.rig(0).legs.size());
+  EXPECT_EQ(crowd.legState(agent, 2), LegState::whole);
+  crowd.hurt(agent, 2);
+  const AgentLeg lame{.agent = agent, .leg = 5, .state = LegState::lame};
+  crowd.hurt({&lame, 1});
+  EXPECT_EQ(crowd.legState(agent, 2), LegState::lost);
+  EXPECT_EQ(crowd.legState(agent, 5), LegState::lame);
+  EXPECT_EQ(crowd.legState(crowd.agentId(0, 0), 2), LegState::whole);
+  walk(device(), crowd, 120);
+  EXPECT_GT(bodyIn(crowd, 0, 1).position.z, bodyIn(crowd, 1, 0).position.z);
+  crowd.heal(agent);
+  EXPECT_EQ(crowd.legState(agent, 2), LegState::whole);
+  walk(device(), crowd, 1);
+
+  const uint64_t before = crowd.stateHash();
+  expectRefused("herd 1, agent 0: hurt is false", [&] { crowd.hurt(crowd.agentId(1, 0), 0); });
+  expectRefused("expected less than", [&] { crowd.hurt(agent, legs); });
+  expectRefused("bone is 99", [&] { crowd.hurt(agent, 0, LegState::lost, 99); });
+  expectRefused("nobody", [&] { crowd.heal(AgentId(0, 9)); });
+  expectRefused("expected less than", [&] { crowd.legState(agent, legs); });
+  EXPECT_EQ(crowd.stateHash(), before);
+}
+
 // Two of four in one place, the others far from anybody.
 TEST_F(PublicCrowd, MeasuresHowFarAgentsOverlap) {
   Crowd crowd(device(), flatGround(), standingScene(4), {.crowding = true});

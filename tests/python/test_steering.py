@@ -234,6 +234,42 @@ def test_agents_come_and_go(device, standing):
     assert again != first and crowd.has(again) and not crowd.has(first)
 
 
+def test_legs_are_hurt_and_heal(device, standing):
+    standing.herds[0].hurt = True
+    standing.herds[0].goal = velocity(0, 1)
+    crowd = skitter.Crowd(device, standing, feet=True)
+    ids = crowd.agent_ids()[:4]
+    crowd.hurt(ids[0], "R2")
+    crowd.hurt(ids[1:3], 4, "stuck")
+    crowd.hurt(ids[3], leg="L1", state="lost", bone=3)
+    assert crowd.leg_state(ids[0], "R2") == "lost" and crowd.leg_state(ids[0], "L2") == "whole"
+    assert [crowd.leg_state(agent, "L3") for agent in ids] == ["whole", "stuck", "stuck", "whole"]
+    crowd.step(120)
+    lost, stuck = crowd.records()["hurt"][:4, :2].T
+    assert lost.tolist() == [8, 0, 0, 1] and stuck.tolist() == [0, 16, 16, 0]
+    assert (crowd.positions()[:4, 2] > 0.5).all()
+    crowd.heal(ids[1:])
+    assert crowd.leg_state(ids[1], 4) == "whole" and crowd.leg_state(ids[0], 3) == "lost"
+    crowd.step()
+
+    before = crowd.state_hash()
+    for spoil, what in (
+        (lambda: crowd.hurt(ids[0], "R9"), r'has no leg "R9"'),
+        (lambda: crowd.hurt(ids[0], 8), "leg is 8, expected less than 8"),
+        (lambda: crowd.hurt(ids[0], "R2", "broken"), 'state is "broken", expected one of whole, lame, stuck, lost'),
+        (lambda: crowd.hurt(ids[0], "R2", bone=4), "bone is 4, expected less than 4"),
+        (lambda: crowd.hurt(skitter.no_agent, 0), "herd"),
+        (lambda: crowd.leg_state(ids[0], "R9"), "has no leg"),
+    ):
+        with pytest.raises(skitter.InputError, match=what):
+            spoil()
+    assert crowd.state_hash() == before
+    standing.herds[0].hurt = False
+    whole = skitter.Crowd(device, standing)
+    with pytest.raises(skitter.InputError, match="hurt is false, expected a herd whose legs can be hurt"):
+        whole.hurt(whole.agent_id(0), "R2")
+
+
 def test_herds_come_and_go(device, standing):
     crowd = skitter.Crowd(device, standing)
     crowd.step()
