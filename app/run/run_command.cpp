@@ -15,6 +15,7 @@
 #include "app/common/manifest.h"
 #include "app/common/scene_options.h"
 #include "app/common/signals.h"
+#include "app/run/damage_watch.h"
 #include "app/run/forage_log.h"
 #include "app/run/obstacle.h"
 #include "app/run/offscreen.h"
@@ -88,6 +89,9 @@ class Run {
 
   void raiseObstacle();
   void watchCrowding();
+  void watchDamage();
+  bool watchesDamage() const { return !options_.json.empty() && DamageWatch::isOf(scene_); }
+  CrowdOptions crowdOptions() const;
   void tellWhoCannotReach(uint32_t herd, uint32_t count);
   void afterTick();
   void save();
@@ -120,6 +124,7 @@ class Run {
   std::optional<Obstacle> obstacle_;
   std::optional<CrowdingWatch> crowdingWatch_;
   std::set<uint32_t> toldOf_;  // herds of which it was said that somebody cannot reach the goal
+  std::optional<DamageWatch> damageWatch_;
 };
 
 Run::Run(RunOptions options)
@@ -178,9 +183,8 @@ void Run::start() {
     request.instanceExtensions = window_->instanceExtensions();
   }
   device_ = Device::create(request);
-  const CrowdOptions crowdOptions = options_.crowdOptions(target_, windowed_);
   if (state_) {
-    state_->options = crowdOptions;
+    state_->options = crowdOptions();
     state_->scene.camera = scene_.camera;
     crowd_.emplace(*device_, *state_);
     done_ = state_->tick;
@@ -188,12 +192,13 @@ void Run::start() {
     if (options_.obstacle) obstacle_.emplace(*crowd_, note_.obstacle);
     if (obstacle_) terrain_ = obstacle_->groundWithout();
   } else {
-    crowd_.emplace(*device_, terrain_, scene_, crowdOptions);
+    crowd_.emplace(*device_, terrain_, scene_, crowdOptions());
     raiseObstacle();
   }
   for (uint32_t h = 0; h < crowd_->herdCount(); ++h) tellWhoCannotReach(h, crowd_->cannotReach(h));
   foraging_ = ForageLog(*crowd_);
   watchCrowding();
+  watchDamage();
   starting.reset();
   manifest_.terrain = &terrain_;
   manifest_.add(device_->report());
@@ -221,6 +226,21 @@ void Run::watchCrowding() {
   if (options_.crowding) crowdingWatch_.emplace(*crowd_, options_.scene.dt);
 }
 
+CrowdOptions Run::crowdOptions() const {
+  CrowdOptions asked = options_.crowdOptions(target_, windowed_);
+  if (watchesDamage()) asked.feet = true;
+  return asked;
+}
+
+void Run::watchDamage() {
+  damageWatch_.reset();
+  if (!watchesDamage()) return;
+  if (summary_.resumedAt)
+    damageWatch_.emplace(*device_, scene_, options_.scene.dt);
+  else
+    damageWatch_.emplace(*device_, terrain_, scene_, crowdOptions(), options_.scene.dt, obstacle_);
+}
+
 // Once for each herd: as the run begins or, where it is so only then, as it ends.
 void Run::tellWhoCannotReach(uint32_t herd, uint32_t count) {
   if (count == 0 || !toldOf_.insert(herd).second) return;
@@ -234,6 +254,7 @@ void Run::afterTick() {
   outputs_.append(*crowd_);
   foraging_.append(*crowd_, options_.scene.dt);
   if (crowdingWatch_) crowdingWatch_->look(*crowd_);
+  if (damageWatch_) damageWatch_->look(*crowd_);
   if (obstacle_) obstacle_->move(*crowd_, static_cast<double>(crowd_->tick()) * options_.scene.dt);
   done_ = crowd_->tick();
   if (options_.saveEvery && crowd_->tick() % (*options_.saveEvery * options_.ticksPerFrame) == 0) save();
@@ -258,7 +279,7 @@ void Run::restart(std::optional<Controller> controller) {
   Scene next = scene_;
   for (Herd* herd : herdsOf(next))
     if (controller) herd->controller = *controller;
-  *crowd_ = Crowd(*device_, terrain_, next, options_.crowdOptions(target_, windowed_));
+  *crowd_ = Crowd(*device_, terrain_, next, crowdOptions());
   scene_ = std::move(next);
   manifest_.sceneHashBefore.clear();
   savedAt_ = -1;
@@ -266,6 +287,7 @@ void Run::restart(std::optional<Controller> controller) {
   raiseObstacle();
   foraging_ = ForageLog(*crowd_);
   watchCrowding();
+  watchDamage();
 }
 
 void Run::runWindow() {
@@ -316,6 +338,7 @@ void Run::finish() {
     summary_.crowding = crowd_->crowding();
     summary_.foraging = foraging_.figures(*crowd_, options_.scene.dt);
     if (crowdingWatch_) summary_.jams = crowdingWatch_->jams();
+    if (damageWatch_) summary_.damage = damageWatch_->figures();
     if (options_.sleep) summary_.sleeping = crowd_->sleeping();
     summary_.stateHash = crowd_->stateHash();
     summary_.memory = memoryOf(*crowd_);

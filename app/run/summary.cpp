@@ -72,6 +72,19 @@ void printCrowding(const Crowding& crowding, const Jams& jams) {
                                        shared::NEIGHBOURS));
 }
 
+void printDamage(const DamageFigures& damage) {
+  const std::string speed =
+      damage.speedKept
+          ? fmt::format(
+                "{:.1f} % of their speed{}", 100 * *damage.speedKept,
+                damage.counts().value_or(false) ? "" : " (which does not count, for feet slide or miss)")
+          : "speed not compared";
+  printRow("damage", fmt::format("{} agents are hurt: {}, unstable {:.3f} % of the time; slip at most {:.3f} "
+                                 "% of leg length a stance, reach error {:.4f} % (99th percentile)",
+                                 damage.agents, speed, 100 * damage.unstable.value_or(0),
+                                 100 * damage.slip.value_or(0), 100 * damage.reachErrorP99.value_or(0)));
+}
+
 nlohmann::ordered_json jsonOf(const Crowding& crowding, const Jams& jams) {
   return {{"overlapMost", orNull(crowding.overlapMost)},
           {"overlapMean", orNull(crowding.overlapMean)},
@@ -149,6 +162,7 @@ void Summary::print() const {
   }
   printFidelity(fidelity, watchEvery);
   printCrowding(crowding, jams);
+  if (damage) printDamage(*damage);
   for (const ForageFigures& herd : foraging)
     printRow("foraging", fmt::format("herd {}: {} loads carried home, {} returns without one", herd.herd,
                                      herd.done.brought, herd.done.empty));
@@ -188,6 +202,7 @@ nlohmann::ordered_json Summary::json() const {
           {"fidelity", jsonOf(fidelity)},
           {"crowding", jsonOf(crowding, jams)},
           {"foraging", jsonOf(foraging)},
+          {"damage", damage ? jsonOf(*damage) : nlohmann::ordered_json(nullptr)},
           {"herds", perHerd},
           {"stateHash", fmt::format("{:016x}", stateHash)}};
 }

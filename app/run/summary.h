@@ -8,6 +8,7 @@
 
 #include "app/common/simulate.h"
 #include "app/run/crowding_watch.h"
+#include "app/run/damage.h"
 #include "app/run/forage_log.h"
 #include "skitter/crowd.h"
 #include "skitter/device.h"
@@ -45,7 +46,8 @@ struct Summary {
   Crowding crowding;
   std::vector<ForageFigures> foraging;  // of the herds that forage
   Jams jams;
-  std::optional<uint64_t> sleeping;  // agents at the end; none where they may not
+  std::optional<DamageFigures> damage;  // where events hurt legs, and it was asked for
+  std::optional<uint64_t> sleeping;     // agents at the end; none where they may not
   uint64_t stateHash = 0;
   std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times
   double startSeconds = 0, startCpuSeconds = 0;  // before the first tick; told likewise

@@ -106,7 +106,9 @@ TEST(Regait, ASpiderKeepsItsSpeedWithoutALegAndMostOfItWithoutTwo) {
   for (uint32_t idle = 1; idle < 256; ++idle) {
     if (std::popcount(idle) > 2) continue;
     const float speed = regaitByRule(rig, Tuning{}, {.idle = idle}).speed;
-    if (std::popcount(idle) == 1) EXPECT_EQ(speed, 1) << "idle " << idle;
+    if (std::popcount(idle) == 1) {
+      EXPECT_EQ(speed, 1) << "idle " << idle;
+    }
     EXPECT_GE(speed, 0.8f) << "idle " << idle;
     whole += speed == 1;
   }
@@ -142,7 +144,9 @@ TEST(Regait, StepsAreQuickWhereManyGroupsTakeTurns) {
     const Regait gait = regaitByRule(rig, Tuning{}, {.idle = idle});
     groups.insert(gait.groups);
     for (size_t l = 0; l < 8; ++l)
-      if ((idle >> l & 1u) == 0) EXPECT_EQ(gait.legs[l].slowness, gait.groups > 2 ? 0.75f : 1.0f) << idle;
+      if ((idle >> l & 1u) == 0) {
+        EXPECT_EQ(gait.legs[l].slowness, gait.groups > 2 ? 0.75f : 1.0f) << idle;
+      }
   }
   EXPECT_EQ(groups, (std::set<int>{2, 3, 4}));
 }
