@@ -12,12 +12,14 @@
 #include "skitter/error.h"
 #include "skitter/state.h"
 #include "validation/convert.h"
+#include "validation/lockstep/lockstep.h"
 
 namespace skitter::test {
 namespace {
 
 class HurtTest : public GpuTest, public ::testing::WithParamInterface<Controller> {};
 using HurtGaitTest = GpuTest;
+using HurtReplayTest = GpuTest;
 using HurtInputTest = GpuTest;
 
 Scene hurtScene(uint32_t agents, Controller controller = Controller::adaptive) {
@@ -260,6 +262,66 @@ TEST_F(HurtGaitTest, ASpiderWithoutTwoLegsIsNeverAboutToFall) {
   EXPECT_GT(speeds[agents / 2], 0.75);
 }
 
+// Runs a scene in lock step with the reference, event by event.
+void expectFollowed(Device& device, const Heightfield& ground, const Scene& scene, int ticks) {
+  Crowd crowd(device, ground, scene, kAll);
+  validation::Lockstep lockstep(crowd, scene, kTick);
+  for (int i = 0; i < ticks; ++i) {
+    lockstep.begin();
+    simulate(device, crowd, 1);
+    lockstep.end();
+  }
+  expectAllPass(lockstep.results());
+}
+
+Event hurtAll(float at, const char* leg, LegState state = LegState::lost) {
+  return {at, LegChange{.leg = leg, .state = state}};
+}
+
+TEST_F(HurtReplayTest, ForagersAndThoseWhoAvoidLoseLegs) {
+  Scene scene = hurtScene(30);
+  scene.obstacles = {{Capsule{.from = {-4, -2}, .to = {-4, 3}, .radius = 0.3f}}};
+  scene.herds[0].avoid = true;
+  scene.herds[0].goal.speed = 2;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f, .centre = {0, -4}};
+  scene.herds[0].forage = Forage{.nest = {.centre = {0, -4}, .radius = 1.5f},
+                                 .food = {{.centre = {0, 3}, .radius = 3, .amount = 1000}},
+                                 .cell = 1,
+                                 .rest = 0.5f};
+  scene.events = {hurtAll(0.2f, "L1"), hurtAll(0.6f, "R2", LegState::stuck), hurtAll(1.2f, "L3"),
+                  hurtAll(1.8f, "L1", LegState::whole)};
+  // Obstacles change nothing, but an edit gives the reference a new ground to forage on.
+  scene.events.insert(scene.events.begin() + 2, {0.8f, Mound{.centre = {3, 0}, .radius = 1, .height = 0.5f}});
+  expectFollowed(device(), smallRollingGround(), scene, 150);
+}
+
+// The fields are others after a threat has come, and so are those that the reference goes by.
+TEST_F(HurtReplayTest, ThoseWhoFindTheirWayLoseLegs) {
+  Scene scene = hurtScene(20);
+  scene.herds[0].ways = Ways{};
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1, .centre = {0, -6}};
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0, 8}, .speed = 2};
+  scene.events = {hurtAll(0.2f, "R2"),
+                  hurtAll(0.4f, "L3"),
+                  {0.8f, ThreatChange{.number = 0, .threat = {.centre = {0, 2}, .radius = 2}}},
+                  hurtAll(1.6f, "L4", LegState::lame)};
+  expectFollowed(device(), smallRollingGround(), scene, 150);
+}
+
+TEST_F(HurtGaitTest, AForagerWithoutTwoLegsCarriesFoodHome) {
+  Scene scene = hurtScene(12);
+  scene.herds[0].goal.speed = 2;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f};
+  scene.herds[0].forage = Forage{.nest = {.centre = {0, 0}, .radius = 2},
+                                 .food = {{.centre = {0, 5}, .radius = 3, .amount = 1000}},
+                                 .cell = 1,
+                                 .rest = 0};
+  scene.events = {hurtAll(0.1f, "R2"), hurtAll(0.1f, "L3")};
+  Crowd crowd(device(), flatGround(), scene);
+  simulate(device(), crowd, 1200);
+  EXPECT_GT(crowd.foraging(0).brought, 0u);
+}
+
 TEST_F(HurtGaitTest, ASpiderWithoutLegsLiesOnItsBelly) {
   Scene scene = hurtScene(3);
   Crowd crowd(device(), flatGround(), scene, kAll);
@@ -275,6 +337,36 @@ TEST_F(HurtGaitTest, ASpiderWithoutLegsLiesOnItsBelly) {
     EXPECT_LT(positionOf(state, agent).y, height - 0.1);
     EXPECT_EQ(validation::bodyOf(state, agent).speed, 0);
     for (const float value : recordsOf(state, Record::pose, agent, 1, 3)) EXPECT_TRUE(std::isfinite(value));
+  }
+}
+
+// With every controller that can be hurt: nothing is divided by legs that are not there.
+TEST_F(HurtGaitTest, AQuadrupedWithoutLegsLiesStill) {
+  for (const Controller controller : {Controller::adaptive, Controller::loop, Controller::planted}) {
+    Scene scene = hurtScene(4, controller);
+    scene.herds[0].rig = SKITTER_ROOT "/assets/quadruped.glb";
+    Crowd crowd(device(), rollingGround(), scene, kAll);
+    simulate(device(), crowd, 60);
+    // Agent 0 loses none, and the others one, three and all four.
+    for (uint32_t leg = 0; leg < 4; ++leg) {
+      if (leg < 1) crowd.hurt(crowd.agentId(0, 1), leg);
+      if (leg < 3) crowd.hurt(crowd.agentId(0, 2), leg);
+      crowd.hurt(crowd.agentId(0, 3), leg);
+    }
+    simulate(device(), crowd, 180);
+    const HerdState before = crowd.download(0);
+    simulate(device(), crowd, 60);
+    const HerdState state = crowd.download(0);
+    for (const Record record :
+         {Record::body, Record::gait, Record::step, Record::chain, Record::pose, Record::tip, Record::metric})
+      for (const float value : state.of(record)) ASSERT_TRUE(std::isfinite(value)) << nameOf(controller);
+    for (size_t agent = 0; agent < 4; ++agent) {
+      const double way = glm::distance(positionOf(before, agent), positionOf(state, agent));
+      if (agent < 2)
+        EXPECT_GT(way, 0.1) << nameOf(controller) << ", agent " << agent;
+      else
+        EXPECT_LT(way, 0.02) << nameOf(controller) << ", agent " << agent;
+    }
   }
 }
 
