@@ -97,7 +97,7 @@ reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, i
     limb.root = root;
     limb.reach = root.w;
     limb.home = home;
-    limb.group = static_cast<int>(home.w);
+    limb.group = home.w;
     limb.lag = order.x;
     limb.neighbours = mask(order.y);
     for (int b = 0; b < bones; ++b) {
@@ -132,7 +132,7 @@ reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs) {
   for (int l = 0; l < legs; ++l) {
     const glm::dvec4 turn = load(state.hurt, first + shared::HURT_LEGS + static_cast<size_t>(l));
     const auto packed = static_cast<float>(bones[l / shared::HURT_BONES_LEGS]);
-    hurt.legs.push_back({.group = static_cast<int>(turn.x),
+    hurt.legs.push_back({.group = turn.x,
                          .lag = turn.y,
                          .neighbours = mask(turn.z),
                          .slowness = turn.w,

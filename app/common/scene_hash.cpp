@@ -6,6 +6,7 @@
 #include <map>
 #include <string_view>
 
+#include "skitter/rig_gaits.h"
 #include "skitter/rig_setup.h"
 
 namespace skitter::app {
@@ -132,7 +133,12 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
     hash.add("phase");
     hash.add(*phase);
   }
-  if (hurt) hash.add("hurt");
+  if (hurt) {
+    hash.add("hurt");
+    std::error_code ignored;
+    if (rig != "spider" && std::filesystem::exists(gaitsOf(rig), ignored))
+      hash.add(fileHashes.hashOf(gaitsOf(rig)));
+  }
   for (const TuningInfo& info : allTunings)
     if (tuning.*info.member != info.usual) {
       hash.add(info.name);

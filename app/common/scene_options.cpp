@@ -12,6 +12,7 @@
 #include "app/common/noise_option.h"
 #include "skitter/device.h"
 #include "skitter/error.h"
+#include "skitter/rig_gaits.h"
 #include "skitter/rig_setup.h"
 
 namespace skitter::app {
@@ -280,6 +281,7 @@ void SceneOptions::declare(Files& files, const Scene& loaded) const {
   for (const std::string& file : rigs) {
     files.reads(option, file);
     files.reads(option, sidecarOf(file));
+    files.reads(option, gaitsOf(file));
   }
 }
 

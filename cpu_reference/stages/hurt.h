@@ -9,7 +9,7 @@ namespace skitter::reference {
 // An agent's damage, and the gait that it has for it (docs/damage.md).
 struct Hurt {
   struct Turn {
-    int group = 0;
+    double group = 0;  // with what its turn begins after that of its group, in turns
     double lag = 0;
     uint32_t neighbours = 0;
     double slowness = 1;

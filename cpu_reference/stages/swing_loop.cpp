@@ -8,7 +8,7 @@ LoopFoot loopSwing(const Tuning& tuning, int groups, const Limb& limb, const Age
                    const Gait& gait) {
   LoopFoot result;
   const double swingTime = limb.stepTicks(gait.duration) * tuning.dt, stanceTime = gait.cycle - swingTime;
-  result.theta = gait.phase + static_cast<double>(limb.group) / groups;
+  result.theta = gait.phase + limb.group / groups;
   result.theta -= std::floor(result.theta);
   const double time = result.theta * gait.cycle;
   result.flown = (time - stanceTime) / swingTime;

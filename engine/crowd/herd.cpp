@@ -12,7 +12,7 @@ namespace crowd {
 const Regait& Kind::regaitOf(const LegPattern& pattern) {
   const auto known = regaits.find(pattern);
   if (known != regaits.end()) return known->second;
-  return regaits.emplace(pattern, regaitByRule(rig, tuning, pattern)).first->second;
+  return regaits.emplace(pattern, regaitFor(rig, tuning, pattern)).first->second;
 }
 
 std::vector<float> Kind::hurtRecordOf(uint32_t agent) {

@@ -10,6 +10,7 @@
 
 #include "crowd/leg_order.h"
 #include "crowd/support.h"
+#include "crowd/symmetry.h"
 
 // Lengths are in leg lengths and speeds in leg lengths per second, where nothing else is said.
 namespace skitter::crowd {
@@ -279,7 +280,10 @@ void takeOwnGait(const Rig& rig, Regait& gait) {
   const std::vector<LegOrder> order = legOrder(rig);
   gait.groups = rig.groupCount();
   for (size_t l = 0; l < rig.legs.size(); ++l)
-    gait.legs[l] = {rig.legs[l].group, order[l].lag, order[l].neighbours, gait.legs[l].slowness};
+    gait.legs[l] = {.group = rig.legs[l].group,
+                    .lag = order[l].lag,
+                    .neighbours = order[l].neighbours,
+                    .slowness = gait.legs[l].slowness};
 }
 
 }  // namespace
@@ -305,6 +309,71 @@ Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& patt
     regroup(rig, tuning, carriers, lame > 0 ? double{lameSlowness} : 1.0, gait);
   setNeighbours(carriers, gait);
   return gait;
+}
+
+namespace {
+
+bool isIdle(uint32_t idle, size_t leg) { return (idle >> leg & 1u) != 0; }
+
+// Turns between the phases of two legs, the shorter way around the cycle.
+float turnsApart(const RigGait& gait, size_t a, size_t b) {
+  const float apart = std::abs(gait.turns[a].phase - gait.turns[b].phase);
+  return static_cast<float>(gait.groups) * std::min(apart, 1 - apart);
+}
+
+RigGait mirrorImage(const RigGait& gait, const std::vector<size_t>& legs) {
+  RigGait image = gait;
+  image.idle = mirrored(gait.idle, legs);
+  image.shift.x = -gait.shift.x;
+  for (size_t leg = 0; leg < legs.size(); ++leg) image.turns[legs[leg]] = gait.turns[leg];
+  return image;
+}
+
+const RigGait* gaitWithout(const Rig& rig, uint32_t idle) {
+  const auto found = std::ranges::find(rig.gaits, idle, &RigGait::idle);
+  return found == rig.gaits.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Regait regaitOf(const Rig& rig, const RigGait& found, const LegPattern& pattern) {
+  Regait gait;
+  gait.groups = static_cast<int>(found.groups);
+  gait.shift = found.shift * rig.legLength;
+  gait.speed = found.speed;
+  gait.legs.resize(rig.legs.size());
+  std::vector<size_t> carriers;
+  for (const size_t leg : legsAround(rig))
+    if (!isIdle(found.idle, leg)) carriers.push_back(leg);
+  size_t lame = 0;
+  for (size_t k = 0; k < carriers.size(); ++k) {
+    const size_t leg = carriers[k];
+    LegTurn& turn = gait.legs[leg];
+    const float turns = found.turns[leg].phase * static_cast<float>(found.groups);
+    turn.group = std::min(static_cast<int>(turns), gait.groups - 1);
+    turn.within = turns - static_cast<float>(turn.group);
+    turn.slowness = found.turns[leg].slowness;
+    if (isIdle(pattern.lame, leg)) turn.slowness *= lameSlowness, ++lame;
+    for (size_t m = 0; m < carriers.size(); ++m) {
+      const size_t between = m > k ? m - k : k - m;
+      const bool isNext = between == 1 || between + 1 == carriers.size();
+      // Legs that begin within half a turn of each other step together.
+      const bool waits = turnsApart(found, leg, carriers[m]) >= 0.5f && (isNext || !found.adjacent);
+      if (m != k && waits) turn.neighbours |= 1u << carriers[m];
+    }
+  }
+  if (lame > 0) gait.speed *= 1 - static_cast<float>(lame) / (2 * static_cast<float>(carriers.size()));
+  return gait;
+}
+
+Regait regaitFor(const Rig& rig, const Tuning& tuning, const LegPattern& pattern) {
+  if (const RigGait* found = gaitWithout(rig, pattern.idle)) return regaitOf(rig, *found, pattern);
+  if (!rig.gaits.empty()) {
+    const std::vector<size_t> mirror = mirroredLegs(rig);
+    const RigGait* image = mirror.empty() ? nullptr : gaitWithout(rig, mirrored(pattern.idle, mirror));
+    if (image != nullptr) return regaitOf(rig, mirrorImage(*image, mirror), pattern);
+  }
+  return regaitByRule(rig, tuning, pattern);
 }
 
 }  // namespace skitter::crowd

@@ -20,6 +20,7 @@ struct LegPattern {
 // A leg's place in a gait.
 struct LegTurn {
   int group = 0;
+  float within = 0;         // how much later than its group's the leg's turn begins, in turns, 0 to less than 1
   float lag = 0;            // as LegOrder
   uint32_t neighbours = 0;  // bit m: leg m must stand while this one is in the air
   float slowness = 1;       // how many times as long as others its step lasts
@@ -40,5 +41,11 @@ constexpr float lameSlowness = 1.5f;
 // leg is stretched too far, at one leg length per second or as much of it as that allows. The rig's own gait
 // where all carry.
 Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& pattern);
+
+// As the rig's table has it for the pattern or for its mirror image (docs/evolve.md); else by rule.
+Regait regaitFor(const Rig& rig, const Tuning& tuning, const LegPattern& pattern);
+
+// What a gait of a table is for a pattern whose idle legs are the gait's. Lame legs are slower, as by rule.
+Regait regaitOf(const Rig& rig, const RigGait& gait, const LegPattern& pattern);
 
 }  // namespace skitter::crowd

@@ -32,7 +32,7 @@ void scale(Clip& clip, float size) {
 }  // namespace
 
 Rig scaled(Rig rig, float size) {
-  auto& [name, legs, groups, legLength, bodyHeight, bodyRadius, vertices, indices, look] = rig;
+  auto& [name, legs, groups, legLength, bodyHeight, bodyRadius, vertices, indices, look, gaits] = rig;
   for (Leg& leg : legs) scale(leg, size);
   legLength *= size;
   bodyHeight *= size;

@@ -214,6 +214,12 @@ uint32_t fingerprintOf(const Kind& kind) {
        {&kind.clips.heads, &kind.clips.times, &kind.clips.rows, &kind.clips.legs, &kind.clips.bones})
     add(*each);
   add(kind.keyPoses.records);
+  if (!kind.hurts) return sum;
+  for (const RigGait& gait : kind.rig.gaits) {
+    add({static_cast<float>(gait.idle), static_cast<float>(gait.groups), gait.adjacent ? 1.0f : 0.0f,
+         gait.shift.x, gait.shift.y, gait.shift.z, gait.speed});
+    for (const RigGait::Turn& turn : gait.turns) add({turn.phase, turn.slowness});
+  }
   return sum;
 }
 

@@ -5,15 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <system_error>
 
 #include "assets/materials/tangents.h"
 #include "assets/rigs/bend.h"
 #include "assets/rigs/placement.h"
 #include "assets/rigs/rig_setup.h"
 #include "assets/rigs/rig_source.h"
+#if defined(SKITTER_SPIDER_GAITS)
+#include "embedded/spider_gaits.h"
+#endif
 #include "embedded/spider_glb.h"
 #include "skitter/clip.h"
 #include "skitter/error.h"
+#include "skitter/rig_gaits.h"
 
 namespace skitter {
 namespace {
@@ -243,7 +248,13 @@ Rig parseRig(std::span<const uint8_t> gltf, const std::string& name) {
   return buildRig(parseRigSource(gltf, name));
 }
 
-Rig loadRig(const std::filesystem::path& file) { return buildRig(loadRigSource(file, NoLegs::refused)); }
+Rig loadRig(const std::filesystem::path& file) {
+  Rig rig = buildRig(loadRigSource(file, NoLegs::refused));
+  const std::filesystem::path gaits = gaitsOf(file);
+  std::error_code ignored;
+  if (std::filesystem::exists(gaits, ignored)) rig.gaits = loadGaits(gaits, rig);
+  return rig;
+}
 
 Rig proposedRig(const std::filesystem::path& file) {
   const RigSource source = loadRigSource(file, NoLegs::proposed);
@@ -254,6 +265,13 @@ Rig proposedRig(const std::filesystem::path& file) {
   return buildRig(source);
 }
 
-Rig spiderRig() { return parseRig(embedded::spider_glb(), "spider.glb"); }
+Rig spiderRig() {
+  Rig rig = parseRig(embedded::spider_glb(), "spider.glb");
+#if defined(SKITTER_SPIDER_GAITS)
+  const std::span<const uint8_t> gaits = embedded::spider_gaits();
+  rig.gaits = parseGaits(std::string(gaits.begin(), gaits.end()), "spider.gaits.json", rig);
+#endif
+  return rig;
+}
 
 }  // namespace skitter

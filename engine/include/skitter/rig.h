@@ -50,6 +50,28 @@ struct SkinVertex {
   bool operator==(const SkinVertex&) const = default;
 };
 
+// A gait that was found for a pattern of legs that do not carry (docs/evolve.md). Lengths are leg lengths.
+struct RigGait {
+  struct Turn {
+    float phase = 0;     // share of the cycle at which the leg's step may begin, 0 to less than 1
+    float slowness = 1;  // how many times as long as others its step lasts, 0.5 to 2
+
+    bool operator==(const Turn&) const = default;
+  };
+  static constexpr uint32_t maxGroups = 24;
+  static constexpr float minSlowness = 0.5f, maxSlowness = 2, maxShift = 0.5f;
+
+  uint32_t idle = 0;      // mask of the legs that do not carry
+  uint32_t groups = 2;    // turns in a cycle, 1 to maxGroups
+  bool adjacent = false;  // only the next legs around the body wait for a leg that is in the air, not all
+  glm::vec3 shift{0};     // of the homes, each within maxShift; the body is lower by its y
+  float speed = 1;        // share of the desired speed, more than 0, up to 1
+  float fitness = 0;      // that it was found to have, 0 to 1
+  std::vector<Turn> turns;  // one per leg of the rig; of legs that do not carry without a meaning
+
+  bool operator==(const RigGait&) const = default;
+};
+
 // A skeleton, its skin, its legs and their limits; immutable once loaded.
 struct SKITTER_API Rig {
   static constexpr size_t maxLegs = 24;
@@ -63,6 +85,7 @@ struct SKITTER_API Rig {
   std::vector<SkinVertex> vertices;
   std::vector<uint32_t> indices;  // triangles, counter-clockwise from outside
   Look look;                      // of a model with textures and the like
+  std::vector<RigGait> gaits;     // for patterns of legs that do not carry; others have one by rule
 
   int legCount() const { return static_cast<int>(legs.size()); }
   int groupCount() const { return static_cast<int>(groups.size()); }
@@ -74,7 +97,8 @@ struct SKITTER_API Rig {
 };
 
 // A sidecar (NAME.rig.json); or a model (.glb, .gltf) with its sidecar beside it or, failing that, with legs
-// in its extras (docs/rig.md). Throws Error(input) that names the file and the fault.
+// in its extras (docs/rig.md); with the gaits of NAME.gaits.json, where that is beside it (docs/evolve.md).
+// Throws Error(input) that names the file and the fault.
 SKITTER_API Rig loadRig(const std::filesystem::path& file);
 // A model whose extras hold the legs, everything in one file.
 SKITTER_API Rig parseRig(std::span<const uint8_t> gltf, const std::string& name);

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "skitter/device.h"
+#include "skitter/export.h"
+#include "skitter/rig.h"
+
+// The search for gaits of a creature some of whose legs do not carry (docs/evolve.md).
+namespace skitter {
+
+// Another shader for shaders/evolve/trial.comp, compiled once for each load path (skitter/crowd.h), for
+// experiments. Empty: the built-in one.
+struct TrialShader {
+  std::span<const uint8_t> texel = {}, storage = {};
+};
+
+struct EvolutionOptions {
+  static constexpr uint32_t maxBatch = 1 << 18;
+  static constexpr float minDt = 1.0f / 240, maxDt = 1.0f / 20;
+
+  uint64_t seed = 1;
+  uint32_t batch = 4096;    // candidates that are tried at once, 1 to maxBatch; it changes what is found
+  float dt = 1.0f / 60;     // seconds per tick of a trial, minDt to maxDt
+  TrialShader shader = {};  // read while the search is made
+};
+
+// How a gait walked for some time, by measure (docs/stages/measure.md). Lengths in leg lengths.
+struct GaitJudgement {
+  uint32_t idle = 0;      // mask of the legs that do not carry
+  double speed = 0;       // mean, leg lengths per second
+  double unstable = 0;    // share of ticks without static stability
+  double margin = 0;      // mean stability margin
+  double slip = 0;        // per stance
+  double reachError = 0;  // the largest
+};
+
+// One search, on one device. Not thread-safe. The same rig, options and batches give the same bits on a
+// device, whether or not the search was stopped in between.
+class SKITTER_API Evolution {
+ public:
+  // Leg lengths per second that creatures in trials want to go.
+  static constexpr double wantedSpeed = 1.5;
+
+  // Throws Error(input) for options out of their range and for a rig without a pattern to search, else as a
+  // crowd does (skitter/crowd.h).
+  Evolution(Device& device, const Rig& rig, const EvolutionOptions& options = {});
+  // Goes on from the text of map(); `name` begins messages. The seed, batch and dt are the map's. Throws
+  // Error(input), too, where it is damaged or another rig's.
+  Evolution(Device& device, const Rig& rig, const std::string& map, const std::string& name,
+            const TrialShader& shader = {});
+  ~Evolution();
+  Evolution(Evolution&&) noexcept;
+  Evolution& operator=(Evolution&&) noexcept;
+
+  // Draws a batch, tries it and lets it enter the map. Waits for the device.
+  void step();
+
+  const EvolutionOptions& options() const;
+  uint64_t evaluations() const;    // so far, whole batches
+  uint32_t patternCount() const;   // that are searched
+  uint64_t cellCount() const;      // of the map
+  uint64_t filledCount() const;    // cells with an elite
+  double seconds() const;          // simulated of each trial
+  // The best of each pattern, by pattern, those without a fitness left out: Rig::gaits.
+  std::vector<RigGait> gaits() const;
+  // The whole search as JSON, with which another one can go on.
+  std::string map() const;
+
+  // Walks of `seconds` on flat ground: with the given gaits, each by a creature without that gait's legs; or,
+  // `byRule`, with the gaits that a rig without a table has then. Waits for the device.
+  std::vector<GaitJudgement> judge(std::span<const RigGait> gaits, double seconds, bool byRule = false) const;
+
+  struct SKITTER_LOCAL Impl;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skitter
