@@ -22,6 +22,7 @@ using Command = std::function<int()>;
 #define SKITTER_COMMANDS(COMMAND) \
   SKITTER_WHERE_BENCH(COMMAND(Bench)) \
   COMMAND(Colony) \
+  COMMAND(Evolve) \
   COMMAND(Fields) \
   COMMAND(Ik) \
   COMMAND(Info) \

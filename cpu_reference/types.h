@@ -63,9 +63,9 @@ struct BoneRest : Limit {
 struct Limb {
   glm::dvec3 root{0}, home{0};  // model space
   double reach = 0;             // metres
-  double group = 0;         // whole, but for a gait that was found for a hurt creature
-  double lag = 0;           // in its group: 0 lifts first, 1 last
-  uint32_t neighbours = 0;  // bit m: leg m must stand while this one is in the air
+  double group = 0;             // whole, but for a gait that was found for a hurt creature
+  double lag = 0;               // in its group: 0 lifts first, 1 last
+  uint32_t neighbours = 0;      // bit m: leg m must stand while this one is in the air
   std::vector<BoneRest> bones;
   // These differ for a leg that is hurt (cpu_reference/stages/hurt.h).
   bool carries = true, lost = false;

@@ -54,8 +54,8 @@ std::vector<float> hurtRecord(const Damage& damage, const Regait& gait) {
   record[3] = static_cast<float>(gait.groups);
   record.insert(record.end(), {gait.shift.x, gait.shift.y, gait.shift.z, gait.speed});
   for (const LegTurn& leg : gait.legs)
-    record.insert(record.end(),
-                  {static_cast<float>(leg.group) + leg.within, leg.lag, static_cast<float>(leg.neighbours), leg.slowness});
+    record.insert(record.end(), {static_cast<float>(leg.group) + leg.within, leg.lag,
+                                 static_cast<float>(leg.neighbours), leg.slowness});
   return record;
 }
 

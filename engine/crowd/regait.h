@@ -20,8 +20,8 @@ struct LegPattern {
 // A leg's place in a gait.
 struct LegTurn {
   int group = 0;
-  float within = 0;         // how much later than its group's the leg's turn begins, in turns, 0 to less than 1
-  float lag = 0;            // as LegOrder
+  float within = 0;  // how much later than its group's the leg's turn begins, in turns, 0 to less than 1
+  float lag = 0;     // as LegOrder
   uint32_t neighbours = 0;  // bit m: leg m must stand while this one is in the air
   float slowness = 1;       // how many times as long as others its step lasts
 };

@@ -67,14 +67,16 @@ RigGait GeneSpace::decode(std::span<const uint16_t> genes, uint32_t idle) const 
   gait.groups = 2 + uint32_t{genes[groupsGene]} * (mostGroups(idle) - 1) / static_cast<uint32_t>(geneEnd);
   gait.adjacent = genes[adjacentGene] >= geneEnd / 2;
   const double lowering = loweringSpan.of(genes[loweringGene]) * bodyHeight_ / legLength_;
-  gait.shift = {shiftX.of(genes[shiftXGene]), std::clamp(lowering, -most, most), shiftZ.of(genes[shiftZGene])};
+  gait.shift = {shiftX.of(genes[shiftXGene]), std::clamp(lowering, -most, most),
+                shiftZ.of(genes[shiftZGene])};
   const double speed = speedSpan.of(genes[speedGene]);
   gait.speed = static_cast<float>(speed);
   gait.turns.resize(legs_);
   const double common = commonSlowness.of(genes[slownessGene]);
   double slowest = 1;  // the cycle has room for usual steps in any case
   for (size_t leg = 0; leg < legs_; ++leg)
-    if (isCarrier(idle, leg)) slowest = std::max(slowest, common * ownSlowness.of(genes[firstTurn + legs_ + leg]));
+    if (isCarrier(idle, leg))
+      slowest = std::max(slowest, common * ownSlowness.of(genes[firstTurn + legs_ + leg]));
   const double cycle = gait.groups * stepTime(speed) * windowSlack_ * slowest;
   const double shorter = std::min(1.0, longestCycle / cycle);
   for (size_t leg = 0; leg < legs_; ++leg) {

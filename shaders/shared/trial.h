@@ -30,10 +30,10 @@ struct TrialConstants {
 #ifdef __cplusplus
   using uint = uint32_t;
 #endif
-  uint count;  // agents
-  uint begins;  // 1: nothing is counted yet
+  uint count;                   // agents
+  uint begins;                  // 1: nothing is counted yet
   float legLength, bodyHeight;  // metres
-  float safe;  // margin below which a sample counts as unstable, metres
+  float safe;                   // margin below which a sample counts as unstable, metres
 };
 
 #ifdef __cplusplus

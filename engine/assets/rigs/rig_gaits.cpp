@@ -71,8 +71,7 @@ class GaitReader {
   const nlohmann::json& member(const nlohmann::json& json, const char* key, const std::string& path) const {
     const auto found = json.find(key);
     if (found == json.end())
-      throw inputError(
-          fmt::format("{}: {}{}{} is missing", name_, path, path.empty() ? "" : ".", key));
+      throw inputError(fmt::format("{}: {}{}{} is missing", name_, path, path.empty() ? "" : ".", key));
     return *found;
   }
 
@@ -170,8 +169,8 @@ std::vector<RigGait> loadGaits(const std::filesystem::path& file, const Rig& rig
 std::string writeGaits(const Rig& rig, std::span<const RigGait> gaits, const std::string& found) {
   const std::vector<std::string> legs = namesOfLegs(rig);
   // A gait a line, so that tables can be compared line by line.
-  std::string text = fmt::format("{{\n\"version\": {},\n\"legs\": {},\n", gaitsVersion,
-                                 nlohmann::ordered_json(legs).dump());
+  std::string text =
+      fmt::format("{{\n\"version\": {},\n\"legs\": {},\n", gaitsVersion, nlohmann::ordered_json(legs).dump());
   if (!found.empty()) text += fmt::format("\"found\": {},\n", nlohmann::ordered_json::parse(found).dump());
   text += "\"gaits\": [";
   for (size_t i = 0; i < gaits.size(); ++i) {

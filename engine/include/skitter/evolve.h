@@ -61,11 +61,11 @@ class SKITTER_API Evolution {
   void step();
 
   const EvolutionOptions& options() const;
-  uint64_t evaluations() const;    // so far, whole batches
-  uint32_t patternCount() const;   // that are searched
-  uint64_t cellCount() const;      // of the map
-  uint64_t filledCount() const;    // cells with an elite
-  double seconds() const;          // simulated of each trial
+  uint64_t evaluations() const;   // so far, whole batches
+  uint32_t patternCount() const;  // that are searched
+  uint64_t cellCount() const;     // of the map
+  uint64_t filledCount() const;   // cells with an elite
+  double seconds() const;         // simulated of each trial
   // The best of each pattern, by pattern, those without a fitness left out: Rig::gaits.
   std::vector<RigGait> gaits() const;
   // The whole search as JSON, with which another one can go on.

@@ -61,12 +61,12 @@ struct RigGait {
   static constexpr uint32_t maxGroups = 24;
   static constexpr float minSlowness = 0.5f, maxSlowness = 2, maxShift = 0.5f;
 
-  uint32_t idle = 0;      // mask of the legs that do not carry
-  uint32_t groups = 2;    // turns in a cycle, 1 to maxGroups
-  bool adjacent = false;  // only the next legs around the body wait for a leg that is in the air, not all
-  glm::vec3 shift{0};     // of the homes, each within maxShift; the body is lower by its y
-  float speed = 1;        // share of the desired speed, more than 0, up to 1
-  float fitness = 0;      // that it was found to have, 0 to 1
+  uint32_t idle = 0;        // mask of the legs that do not carry
+  uint32_t groups = 2;      // turns in a cycle, 1 to maxGroups
+  bool adjacent = false;    // only the next legs around the body wait for a leg that is in the air, not all
+  glm::vec3 shift{0};       // of the homes, each within maxShift; the body is lower by its y
+  float speed = 1;          // share of the desired speed, more than 0, up to 1
+  float fitness = 0;        // that it was found to have, 0 to 1
   std::vector<Turn> turns;  // one per leg of the rig; of legs that do not carry without a meaning
 
   bool operator==(const RigGait&) const = default;

@@ -1,0 +1,213 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <utility>
+
+#include "base/split_mix.h"
+#include "crowd/herd.h"
+#include "crowd/regait.h"
+#include "evolve/archive.h"
+#include "evolve/genes.h"
+#include "evolve/map_file.h"
+#include "evolve/patterns.h"
+#include "evolve/trials.h"
+#include "gpu/submit.h"
+#include "skitter/error.h"
+#include "skitter/evolve.h"
+
+namespace skitter {
+namespace {
+
+// Candidates of a pattern that are no children: the gait by rule, and drawn ones.
+constexpr uint64_t candidatesAtFirst = 32;
+constexpr double judgedSide = 72;  // leg lengths
+constexpr double mostJudged = 20;  // seconds that the ground has room for
+constexpr uint32_t ticksAtOnce = 64;
+
+std::vector<uint32_t> searchedPatterns(const Rig& rig) {
+  std::vector<uint32_t> patterns = evolve::patternsOf(rig);
+  if (patterns.empty())
+    throw inputError(
+        fmt::format("{}: has {} legs, expected at least 4: on fewer than three a creature lies down",
+                    rig.name, rig.legs.size()));
+  return patterns;
+}
+
+void checkEvolution(const EvolutionOptions& options) {
+  if (options.batch < 1 || options.batch > EvolutionOptions::maxBatch)
+    throw inputError(
+        fmt::format("batch of a search is {}, expected 1 to {}", options.batch, EvolutionOptions::maxBatch));
+  if (!(options.dt >= EvolutionOptions::minDt && options.dt <= EvolutionOptions::maxDt))
+    throw inputError(fmt::format("dt of a search is {}, expected {:.4g} to {:.4g} s", options.dt,
+                                 EvolutionOptions::minDt, EvolutionOptions::maxDt));
+}
+
+size_t carriersOf(const Rig& rig, uint32_t idle) {
+  return rig.legs.size() - static_cast<size_t>(std::popcount(idle));
+}
+
+glm::dvec2 worldOfBody(const HerdState& state, size_t agent) {
+  const float* body = &state.body[agent * 4 * shared::BODY_STRIDE];
+  return {double{body[0]} + double{shared::TILE_SIZE} * double{shared::tileX(body[3])},
+          double{body[2]} + double{shared::TILE_SIZE} * double{shared::tileZ(body[3])}};
+}
+
+}  // namespace
+
+struct Evolution::Impl {
+  Impl(Device& madeOn, const Rig& rigOf, const EvolutionOptions& asked)
+      : device(&madeOn),
+        rig(evolve::bareRig(rigOf)),
+        options(asked),
+        patterns(searchedPatterns(rig)),
+        space(rig, tuning, wantedSpeed),
+        state{.seed = asked.seed,
+              .batch = asked.batch,
+              .dt = asked.dt,
+              .archive = evolve::Archive(patterns.size())} {}
+
+  void makeTrials() {
+    checkEvolution(options);
+    trials = std::make_unique<evolve::Trials>(*device, rig, options.batch, options.dt, options.shader);
+    options.shader = {};  // it has been read
+  }
+
+  evolve::Genes candidate(uint64_t number) const;
+  void enter(uint64_t number, evolve::Genes genes, const evolve::TrialFigures& figures);
+
+  Device* device;
+  Rig rig;
+  Tuning tuning;
+  EvolutionOptions options;
+  std::vector<uint32_t> patterns;
+  evolve::GeneSpace space;
+  evolve::SearchState state;
+  std::unique_ptr<evolve::Trials> trials;
+};
+
+evolve::Genes Evolution::Impl::candidate(uint64_t number) const {
+  const size_t pattern = static_cast<size_t>(number % patterns.size());
+  const uint64_t ofPattern = number / patterns.size();
+  if (ofPattern == 0)
+    return space.encode(crowd::regaitByRule(rig, tuning, {.idle = patterns[pattern]}), patterns[pattern]);
+  base::SplitMix64 random(base::SplitMix64::draw(state.seed, number + 1));
+  const std::vector<const evolve::Elite*> elites = state.archive.elitesOf(pattern);
+  if (ofPattern < candidatesAtFirst || elites.empty()) return space.drawn(random);
+  const evolve::Elite& elite = *elites[random() % elites.size()];
+  const evolve::Elite& other = *elites[random() % elites.size()];
+  return space.varied(elite.genes, other.genes, random);
+}
+
+void Evolution::Impl::enter(uint64_t number, evolve::Genes genes, const evolve::TrialFigures& figures) {
+  const size_t pattern = static_cast<size_t>(number % patterns.size());
+  const uint32_t idle = patterns[pattern];
+  const double fitness = evolve::fitnessOf(figures, double{rig.legLength}, carriersOf(rig, idle),
+                                           trials->countedSeconds(), wantedSpeed);
+  const uint32_t cell = evolve::cellOf(rig, idle, figures.shares);
+  state.archive.offer(pattern, cell,
+                      {.candidate = number,
+                       .fitness = static_cast<float>(fitness),
+                       .genes = std::move(genes),
+                       .shares = figures.shares});
+}
+
+Evolution::Evolution(Device& device, const Rig& rig, const EvolutionOptions& options)
+    : impl_(std::make_unique<Impl>(device, rig, options)) {
+  impl_->makeTrials();
+}
+
+Evolution::Evolution(Device& device, const Rig& rig, const std::string& map, const std::string& name,
+                     const TrialShader& shader)
+    : impl_(std::make_unique<Impl>(device, rig, EvolutionOptions{.shader = shader})) {
+  Impl& search = *impl_;
+  search.state = evolve::readMap(map, name, search.rig, search.patterns, search.space.count());
+  search.options.seed = search.state.seed;
+  search.options.batch = search.state.batch;
+  search.options.dt = search.state.dt;
+  search.makeTrials();
+}
+
+Evolution::~Evolution() = default;
+Evolution::Evolution(Evolution&&) noexcept = default;
+Evolution& Evolution::operator=(Evolution&&) noexcept = default;
+
+void Evolution::step() {
+  Impl& search = *impl_;
+  const uint64_t first = search.state.evaluations;
+  std::vector<evolve::Genes> candidates;
+  std::vector<evolve::TrialTask> tasks;
+  for (uint64_t number = first; number < first + search.options.batch; ++number) {
+    candidates.push_back(search.candidate(number));
+    const uint32_t idle = search.patterns[number % search.patterns.size()];
+    const RigGait gait = search.space.decode(candidates.back(), idle);
+    tasks.push_back({idle, crowd::regaitOf(search.rig, gait, {.idle = idle})});
+  }
+  const std::vector<evolve::TrialFigures> figures = search.trials->run(tasks);
+  for (size_t i = 0; i < figures.size(); ++i) search.enter(first + i, std::move(candidates[i]), figures[i]);
+  search.state.evaluations += search.options.batch;
+}
+
+const EvolutionOptions& Evolution::options() const { return impl_->options; }
+uint64_t Evolution::evaluations() const { return impl_->state.evaluations; }
+uint32_t Evolution::patternCount() const { return static_cast<uint32_t>(impl_->patterns.size()); }
+uint64_t Evolution::cellCount() const { return impl_->state.archive.cellCount(); }
+uint64_t Evolution::filledCount() const { return impl_->state.archive.filledCount(); }
+double Evolution::seconds() const { return impl_->trials->seconds(); }
+
+std::vector<RigGait> Evolution::gaits() const {
+  std::vector<RigGait> gaits;
+  for (size_t pattern = 0; pattern < impl_->patterns.size(); ++pattern) {
+    const evolve::Elite* best = impl_->state.archive.bestOf(pattern);
+    if (best == nullptr) continue;
+    gaits.push_back(impl_->space.decode(best->genes, impl_->patterns[pattern]));
+    gaits.back().fitness = best->fitness;
+  }
+  return gaits;
+}
+
+std::string Evolution::map() const { return evolve::writeMap(impl_->rig, impl_->patterns, impl_->state); }
+
+std::vector<GaitJudgement> Evolution::judge(std::span<const RigGait> gaits, double seconds,
+                                            bool byRule) const {
+  if (gaits.empty()) return {};
+  if (!(seconds > 0 && seconds <= mostJudged))
+    throw inputError(
+        fmt::format("seconds of a judgement is {}, expected more than 0, up to {}", seconds, mostJudged));
+  Rig rig = impl_->rig;
+  if (!byRule) rig.gaits.assign(gaits.begin(), gaits.end());
+  CrowdOptions options{.pose = false, .watchEvery = 1};
+  options.rigs = {rig};
+  Crowd crowd(*impl_->device, evolve::flatGround(rig, judgedSide),
+              evolve::walkOf(rig, static_cast<uint32_t>(gaits.size()), wantedSpeed), options);
+  std::vector<AgentLeg> legs;
+  for (uint32_t agent = 0; agent < gaits.size(); ++agent)
+    for (uint32_t leg = 0; leg < rig.legs.size(); ++leg)
+      if ((gaits[agent].idle >> leg & 1u) != 0)
+        legs.push_back({crowd.agentId(0, agent), leg, LegState::lost, 1u});
+  crowd.hurt(legs);
+  const HerdState before = crowd.download(0);
+  const auto ticks = static_cast<uint32_t>(std::lround(seconds / double{impl_->options.dt}));
+  for (uint32_t done = 0; done < ticks; done += ticksAtOnce)
+    impl_->device->run([&](VkCommandBuffer cmd) {
+      for (uint32_t tick = done; tick < std::min(ticks, done + ticksAtOnce); ++tick)
+        crowd.record(cmd, impl_->options.dt);
+    });
+  const HerdState after = crowd.download(0);
+  const std::vector<Fidelity> fidelity = crowd.agentFidelity(0);
+  std::vector<GaitJudgement> judged;
+  for (size_t agent = 0; agent < gaits.size(); ++agent) {
+    const double way = worldOfBody(after, agent).y - worldOfBody(before, agent).y;
+    judged.push_back({.idle = gaits[agent].idle,
+                      .speed = way / (double{rig.legLength} * ticks * double{impl_->options.dt}),
+                      .unstable = fidelity[agent].unstable,
+                      .margin = fidelity[agent].margin,
+                      .slip = fidelity[agent].slip,
+                      .reachError = fidelity[agent].reachErrorMost});
+  }
+  return judged;
+}
+
+}  // namespace skitter
