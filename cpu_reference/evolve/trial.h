@@ -17,7 +17,7 @@ struct Trial {
   double slip = 0, error = 0, least = 0;
   glm::dvec3 body{0};  // at the last sample, tile-local
   double phase = 0;
-  std::vector<Leg> legs;
+  std::vector<Leg> legs = {};
 };
 
 // What a trial is judged by.

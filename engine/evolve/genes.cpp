@@ -19,9 +19,19 @@ struct Span {
     return static_cast<uint16_t>(std::clamp(std::floor(share * geneEnd + 0.5), 0.0, geneEnd - 1));
   }
 };
-constexpr Span commonSlowness{0.8, 1.3}, ownSlowness{0.9, 1.1}, shiftX{-0.2, 0.2}, shiftZ{-0.25, 0.25},
-    loweringSpan{-0.1, 0.3}, speedSpan{0.5, 1};
+constexpr Span commonSlowness{0.8, 1.3}, ownSlowness{0.9, 1.1}, loweringSpan{-0.1, 0.3}, speedSpan{0.5, 1};
 constexpr uint32_t mostTurns = 5;
+// Leg lengths. Most homes shift little, so most genes stand for little.
+constexpr double mostShift = 0.7;
+
+double shiftOf(uint16_t gene) {
+  const double x = 2 * (gene / geneEnd) - 1;
+  return mostShift * x * x * x;
+}
+uint16_t geneOfShift(double shift) {
+  const double x = std::cbrt(shift / mostShift);
+  return static_cast<uint16_t>(std::clamp(std::floor((x + 1) / 2 * geneEnd + 0.5), 0.0, geneEnd - 1));
+}
 
 // Iso-line variation (Vassiliades & Mouret 2018).
 constexpr double isoShare = 0.02, lineShare = 0.2;
@@ -39,7 +49,7 @@ bool isCarrier(uint32_t idle, size_t leg) { return (idle >> leg & 1u) == 0; }
 
 // The shorter way around the cycle.
 double phaseWay(uint16_t from, uint16_t to) {
-  const double way = double{to} - double{from};
+  const auto way = static_cast<double>(to - from);
   return way - geneEnd * std::floor(way / geneEnd + 0.5);
 }
 
@@ -67,8 +77,7 @@ RigGait GeneSpace::decode(std::span<const uint16_t> genes, uint32_t idle) const 
   gait.groups = 2 + uint32_t{genes[groupsGene]} * (mostGroups(idle) - 1) / static_cast<uint32_t>(geneEnd);
   gait.adjacent = genes[adjacentGene] >= geneEnd / 2;
   const double lowering = loweringSpan.of(genes[loweringGene]) * bodyHeight_ / legLength_;
-  gait.shift = {shiftX.of(genes[shiftXGene]), std::clamp(lowering, -most, most),
-                shiftZ.of(genes[shiftZGene])};
+  gait.shift = {shiftOf(genes[shiftXGene]), std::clamp(lowering, -most, most), shiftOf(genes[shiftZGene])};
   const double speed = speedSpan.of(genes[speedGene]);
   gait.speed = static_cast<float>(speed);
   gait.turns.resize(legs_);
@@ -94,8 +103,8 @@ Genes GeneSpace::encode(const crowd::Regait& gait, uint32_t idle) const {
   const uint32_t groups = std::clamp(static_cast<uint32_t>(gait.groups), 2u, most);
   genes[groupsGene] = static_cast<uint16_t>((groups - 2 + 0.5) * geneEnd / (most - 1));
   genes[slownessGene] = commonSlowness.geneOf(1);
-  genes[shiftXGene] = shiftX.geneOf(double{gait.shift.x} / legLength_);
-  genes[shiftZGene] = shiftZ.geneOf(double{gait.shift.z} / legLength_);
+  genes[shiftXGene] = geneOfShift(double{gait.shift.x} / legLength_);
+  genes[shiftZGene] = geneOfShift(double{gait.shift.z} / legLength_);
   genes[loweringGene] = loweringSpan.geneOf(double{gait.shift.y} / bodyHeight_);
   genes[speedGene] = speedSpan.geneOf(double{gait.speed});
   for (size_t leg = 0; leg < legs_; ++leg) {
@@ -119,7 +128,7 @@ Genes GeneSpace::varied(const Genes& elite, const Genes& other, base::SplitMix64
   const double along = lineShare * normalOf(random());
   for (size_t i = 0; i < child.size(); ++i) {
     const uint64_t draw = random(), choice = random();
-    const double way = isPhase(i) ? phaseWay(elite[i], other[i]) : double{other[i]} - double{elite[i]};
+    const double way = isPhase(i) ? phaseWay(elite[i], other[i]) : static_cast<double>(other[i] - elite[i]);
     double gene = std::floor(elite[i] + isoShare * geneEnd * normalOf(draw) + along * way + 0.5);
     gene = isPhase(i) ? gene - geneEnd * std::floor(gene / geneEnd) : std::clamp(gene, 0.0, geneEnd - 1);
     child[i] = choice % drawnAnewOf == 0 ? static_cast<uint16_t>(choice >> 48) : static_cast<uint16_t>(gene);

@@ -92,11 +92,11 @@ Rig bareRig(const Rig& rig) {
 
 Heightfield flatGround(const Rig& rig, double side) {
   const auto spacing = static_cast<float>(side * double{rig.legLength} / (samplesOfGround - 1));
-  return {.columns = samplesOfGround,
-          .rows = samplesOfGround,
-          .spacingX = spacing,
-          .spacingZ = spacing,
-          .heights = std::vector<float>(size_t{samplesOfGround} * samplesOfGround, 0.0f)};
+  Heightfield ground;
+  ground.columns = ground.rows = samplesOfGround;
+  ground.spacingX = ground.spacingZ = spacing;
+  ground.heights.assign(size_t{samplesOfGround} * samplesOfGround, 0.0f);
+  return ground;
 }
 
 Scene walkOf(const Rig& rig, uint32_t agents, double speed) {
@@ -129,7 +129,7 @@ Trials::Trials(Device& device, const Rig& rig, uint32_t agents, float dt, const 
     : context_(&device.context()),
       dt_(dt),
       settleTicks_(wholeTicks(settleSeconds, dt)),
-      samples_(wholeTicks(countedSeconds / ticksOfSample, dt)),
+      samples_(wholeTicks(wantedSeconds / ticksOfSample, dt)),
       crowd_(trialCrowd(device, rig, agents)) {
   standAtTheOrigin();
   makePages(shader);

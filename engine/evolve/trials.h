@@ -17,7 +17,7 @@ namespace skitter::evolve {
 struct TrialFigures {
   double samples = 0, distance = 0, cycles = 0, unstable = 0;
   double slip = 0, error = 0, least = 0;
-  std::vector<float> shares;  // of the samples in which each leg stood
+  std::vector<float> shares = {};  // of the samples in which each leg stood
 };
 
 // What a creature in a trial is.
@@ -29,7 +29,7 @@ struct TrialTask {
 // A herd on flat ground that tries one gait per agent, again and again.
 class Trials {
  public:
-  static constexpr double settleSeconds = 1, countedSeconds = 3.2;
+  static constexpr double settleSeconds = 1, wantedSeconds = 3.2;
   static constexpr uint32_t ticksOfSample = 2;
   static constexpr double safeMargin = 0.03;  // leg lengths
 

@@ -59,7 +59,7 @@ struct RigGait {
     bool operator==(const Turn&) const = default;
   };
   static constexpr uint32_t maxGroups = 24;
-  static constexpr float minSlowness = 0.5f, maxSlowness = 2, maxShift = 0.5f;
+  static constexpr float minSlowness = 0.5f, maxSlowness = 2, maxShift = 0.75f;
 
   uint32_t idle = 0;        // mask of the legs that do not carry
   uint32_t groups = 2;      // turns in a cycle, 1 to maxGroups

@@ -1,0 +1,39 @@
+#include "skitter/evolve.h"
+
+#include <utility>
+
+#include "public/public.h"
+
+namespace skitter::test {
+namespace {
+
+using PublicEvolution = PublicTest;
+
+TEST_F(PublicEvolution, SearchesAndGoesOn) {
+  const Rig rig = spiderRig();
+  Evolution first(device(), rig, {.seed = 2, .batch = 130, .dt = 1.0f / 20});
+  Evolution search = std::move(first);
+  EXPECT_EQ(search.options().seed, 2u);
+  EXPECT_EQ(search.evaluations(), 0u);
+  EXPECT_EQ(search.patternCount(), 114u);
+  EXPECT_EQ(search.cellCount(), 114u * 64);
+  EXPECT_NEAR(search.seconds(), 4.2, 0.1);
+  search.step();
+  EXPECT_EQ(search.evaluations(), 130u);
+  EXPECT_GT(search.filledCount(), 0u);
+  const std::vector<RigGait> gaits = search.gaits();
+  ASSERT_FALSE(gaits.empty());
+  const std::string map = search.map();
+  search = Evolution(device(), rig, map, "map");
+  EXPECT_EQ(search.map(), map);
+  EXPECT_EQ(search.gaits(), gaits);
+  const std::vector<GaitJudgement> judged = search.judge(std::span(gaits).first(1), 1, true);
+  ASSERT_EQ(judged.size(), 1u);
+  EXPECT_GT(judged[0].speed, 0);
+  EXPECT_TRUE(search.judge({}, 1).empty());
+  expectRefused("seconds of a judgement is 0", [&] { search.judge(gaits, 0); });
+  expectRefused("map:", [&] { Evolution(device(), rig, "{", "map"); });
+}
+
+}  // namespace
+}  // namespace skitter::test
