@@ -32,6 +32,7 @@ constexpr uint64_t usualEvaluations = 1000000, mostEvaluations = 1000000000000;
 constexpr double judgedSeconds = 20;
 constexpr auto savedEvery = std::chrono::seconds(30);
 constexpr double eliteBytes = 300;
+constexpr uint64_t mostAdapted = 10000;
 
 struct EvolveCommand {
   std::string rig = "spider", out, json;
@@ -39,6 +40,7 @@ struct EvolveCommand {
   std::optional<uint64_t> seed, batch;
   std::optional<double> dt;
   uint64_t evaluations = usualEvaluations;
+  uint32_t adapt = 0;
   bool resume = false, force = false, quiet = false;
 
   bool isBuiltin() const { return rig == "spider"; }
@@ -158,6 +160,26 @@ void printSearch(const Evolution& search, uint64_t done, double seconds) {
              search.patternCount());
 }
 
+// How creatures found a gait again that they were not told of.
+struct AdaptationFigures {
+  size_t creatures = 0, failed = 0;
+  uint32_t median = 0, most = 0;  // trials of those who found one
+
+  explicit AdaptationFigures(const std::vector<AdaptationReport>& reports) : creatures(reports.size()) {
+    std::vector<uint32_t> trials;
+    for (const AdaptationReport& report : reports)
+      if (report.trials > 0) trials.push_back(report.trials);
+    failed = creatures - trials.size();
+    if (trials.empty()) return;
+    std::ranges::sort(trials);
+    median = trials[(trials.size() - 1) / 2];
+    most = trials.back();
+  }
+  nlohmann::ordered_json json() const {
+    return {{"creatures", creatures}, {"failed", failed}, {"trialsMedian", median}, {"trialsMost", most}};
+  }
+};
+
 int evolve(const EvolveCommand& options) {
   checkEvolve(options);
   Files files = evolveFiles(options);
@@ -200,11 +222,19 @@ int evolve(const EvolveCommand& options) {
     const std::vector<RigGait> gaits = search.gaits();
     judged = Judged{search.judge(gaits, judgedSeconds), search.judge(gaits, judgedSeconds, true)};
   }
+  std::optional<AdaptationFigures> adapted;
+  if (judged && options.adapt > 0) {
+    const StopDeadline whileAdapting(leave);
+    adapted.emplace(search.adapt(options.adapt, search.options().seed));
+  }
   writeTable(options, rig, search, judged);
   if (!options.json.empty()) {
     nlohmann::ordered_json json = searchJson(search, judged);
+    json["interrupted"] = !judged;
+    json["evaluationsWanted"] = options.evaluations;
     json["evaluationsNow"] = done;
     json["seconds"] = seconds;
+    if (adapted) json["adapted"] = adapted->json();
     Manifest manifest{.dt = double{search.options().dt}, .seed = search.options().seed};
     manifest.add(device.report());
     writeJson(options.json, json, manifest);
@@ -214,6 +244,11 @@ int evolve(const EvolveCommand& options) {
     printSearch(search, done, seconds);
     printJudgement("found", judged->found);
     printJudgement("by rule", judged->byRule);
+    if (adapted)
+      fmt::print(
+          "trial, error   {} of {} losses came to 90 % of the best gait known, in {} trials at the median, "
+          "{} at most\n",
+          adapted->creatures - adapted->failed, adapted->creatures, adapted->median, adapted->most);
     fmt::print("written        {} ({} gaits), {}\n", options.table().string(), judged->found.size(),
                options.map().string());
   }
@@ -264,6 +299,14 @@ void addEvolve(CLI::App& app, Command& chosen) {
           },
           "seconds per tick of a trial [1/60]")
       ->type_name("S");
+  command
+      ->add_option_function<std::string>(
+          "--adapt",
+          [options](const std::string& text) {
+            options->adapt = static_cast<uint32_t>(parseWhole("--adapt", text, 1, mostAdapted));
+          },
+          "then so many creatures lose legs and are not told which, and find a gait by trial and error")
+      ->type_name("N");
   command->add_flag("--resume", options->resume, "go on from the map beside the table");
   command->add_flag("--force", options->force, "begin anew, and write over a map that is there");
   command

@@ -321,14 +321,6 @@ float turnsApart(const RigGait& gait, size_t a, size_t b) {
   return static_cast<float>(gait.groups) * std::min(apart, 1 - apart);
 }
 
-RigGait mirrorImage(const RigGait& gait, const std::vector<size_t>& legs) {
-  RigGait image = gait;
-  image.idle = mirrored(gait.idle, legs);
-  image.shift.x = -gait.shift.x;
-  for (size_t leg = 0; leg < legs.size(); ++leg) image.turns[legs[leg]] = gait.turns[leg];
-  return image;
-}
-
 const RigGait* gaitWithout(const Rig& rig, uint32_t idle) {
   const auto found = std::ranges::find(rig.gaits, idle, &RigGait::idle);
   return found == rig.gaits.end() ? nullptr : &*found;

@@ -46,4 +46,12 @@ uint32_t mirrored(uint32_t mask, const std::vector<size_t>& legs) {
   return image;
 }
 
+RigGait mirrorImage(const RigGait& gait, const std::vector<size_t>& legs) {
+  RigGait image = gait;
+  image.idle = mirrored(gait.idle, legs);
+  image.shift.x = -gait.shift.x;
+  for (size_t leg = 0; leg < legs.size(); ++leg) image.turns[legs[leg]] = gait.turns[leg];
+  return image;
+}
+
 }  // namespace skitter::crowd

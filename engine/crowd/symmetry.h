@@ -15,5 +15,7 @@ std::vector<size_t> mirroredLegs(const Rig& rig);
 
 // The mask of the legs' mirror images.
 uint32_t mirrored(uint32_t mask, const std::vector<size_t>& legs);
+// The gait with left and right exchanged.
+RigGait mirrorImage(const RigGait& gait, const std::vector<size_t>& legs);
 
 }  // namespace skitter::crowd

@@ -4,11 +4,14 @@
 #include <bit>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <optional>
 #include <utility>
 
 #include "base/split_mix.h"
 #include "crowd/herd.h"
 #include "crowd/regait.h"
+#include "crowd/symmetry.h"
+#include "evolve/adaptation.h"
 #include "evolve/archive.h"
 #include "evolve/genes.h"
 #include "evolve/map_file.h"
@@ -55,6 +58,41 @@ glm::dvec2 worldOfBody(const HerdState& state, size_t agent) {
           double{body[2]} + double{shared::TILE_SIZE} * double{shared::tileZ(body[3])}};
 }
 
+// A gait of the map, for the legs that it was found for or for their mirror images.
+struct KnownGait {
+  RigGait gait;
+  float fitness;
+};
+
+// Everything that the map has: behaviours, and the gaits that lead to them, by the same numbers.
+struct KnownGaits {
+  evolve::BehaviourMap map;
+  std::vector<KnownGait> gaits = {};
+
+  explicit KnownGaits(size_t legs) : map(legs) {}
+  void add(const RigGait& gait, std::span<const float> shares, float fitness) {
+    map.add(shares, fitness);
+    gaits.push_back({gait, fitness});
+  }
+  // The best fitness of a gait for these legs; 0 where there is none.
+  double bestWithout(uint32_t idle) const {
+    double best = 0;
+    for (const KnownGait& known : gaits)
+      if (known.gait.idle == idle) best = std::max(best, double{known.fitness});
+    return best;
+  }
+};
+
+constexpr double nearlyAsGood = 0.9;
+constexpr uint64_t mostLost = 3;
+
+uint32_t drawnLoss(base::SplitMix64& random, size_t legs) {
+  const auto count = static_cast<int>(1 + random() % mostLost);
+  uint32_t lost = 0;
+  while (std::popcount(lost) < count) lost |= 1u << random() % legs;
+  return lost;
+}
+
 }  // namespace
 
 struct Evolution::Impl {
@@ -76,6 +114,7 @@ struct Evolution::Impl {
   }
 
   evolve::Genes candidate(uint64_t number) const;
+  KnownGaits known() const;
   void enter(uint64_t number, evolve::Genes genes, const evolve::TrialFigures& figures);
 
   Device* device;
@@ -208,6 +247,60 @@ std::vector<GaitJudgement> Evolution::judge(std::span<const RigGait> gaits, doub
                       .reachError = fidelity[agent].reachErrorMost});
   }
   return judged;
+}
+
+KnownGaits Evolution::Impl::known() const {
+  KnownGaits all(rig.legs.size());
+  const std::vector<size_t> mirror = crowd::mirroredLegs(rig);
+  for (size_t pattern = 0; pattern < patterns.size(); ++pattern) {
+    for (const evolve::Elite* elite : state.archive.elitesOf(pattern)) {
+      const RigGait gait = space.decode(elite->genes, patterns[pattern]);
+      all.add(gait, elite->shares, elite->fitness);
+      if (mirror.empty() || crowd::mirrored(gait.idle, mirror) == gait.idle) continue;
+      std::vector<float> shares(elite->shares.size());
+      for (size_t leg = 0; leg < shares.size(); ++leg) shares[mirror[leg]] = elite->shares[leg];
+      all.add(crowd::mirrorImage(gait, mirror), shares, elite->fitness);
+    }
+  }
+  return all;
+}
+
+std::vector<AdaptationReport> Evolution::adapt(uint32_t creatures, uint64_t seed) const {
+  const Impl& search = *impl_;
+  const KnownGaits known = search.known();
+  base::SplitMix64 random(seed);
+  std::vector<AdaptationReport> reports;
+  std::vector<evolve::Adaptation> minds;
+  for (uint32_t creature = 0; creature < creatures; ++creature) {
+    const uint32_t lost = drawnLoss(random, search.rig.legs.size());
+    const double best = known.bestWithout(lost);
+    if (best == 0) continue;
+    reports.push_back({.lost = lost, .bestKnown = best});
+    minds.emplace_back(known.map, evolve::AdaptationOptions{});
+  }
+  while (true) {
+    // All who go on try at once.
+    std::vector<std::pair<size_t, uint32_t>> tried;
+    std::vector<evolve::TrialTask> tasks;
+    for (size_t i = 0; i < minds.size() && tasks.size() < search.options.batch; ++i) {
+      const std::optional<uint32_t> next = reports[i].trials > 0 ? std::nullopt : minds[i].next();
+      if (!next) continue;
+      const RigGait& gait = known.gaits[*next].gait;
+      tried.emplace_back(i, *next);
+      tasks.push_back({gait.idle | reports[i].lost, crowd::regaitOf(search.rig, gait, {.idle = gait.idle})});
+    }
+    if (tasks.empty()) return reports;
+    const std::vector<evolve::TrialFigures> figures = search.trials->run(tasks);
+    for (size_t t = 0; t < tried.size(); ++t) {
+      const auto [i, behaviour] = tried[t];
+      const double fitness =
+          evolve::fitnessOf(figures[t], double{search.rig.legLength}, carriersOf(search.rig, tasks[t].idle),
+                            search.trials->countedSeconds(), wantedSpeed);
+      minds[i].tell(behaviour, fitness);
+      reports[i].found = minds[i].bestFitness();
+      if (reports[i].found >= nearlyAsGood * reports[i].bestKnown) reports[i].trials = minds[i].trials();
+    }
+  }
 }
 
 }  // namespace skitter

@@ -199,6 +199,8 @@ void Trials::makePages(const TrialShader& shader) {
 }
 
 void Trials::write(std::span<const TrialTask> tasks) {
+  // Everybody begins anew, time too: records hold ticks as floats.
+  implOf(crowd_).tick = 0;
   const crowd::Kind& kind = implOf(crowd_).kinds.front();
   size_t task = 0;
   for (Page& page : pages_) {

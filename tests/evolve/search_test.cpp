@@ -147,9 +147,9 @@ TEST(Genes, ACycleIsNoLongerThanATrialHasRoomFor) {
     for (size_t leg = 1; leg < 8; ++leg) slowest = std::max(slowest, gait.turns[leg].slowness);
     const double step = double{tuning.swingStill} /
                         (1 + double{gait.speed} * Evolution::wantedSpeed / double{tuning.swingSpeed});
-    if (slowest > 1)
-      EXPECT_LE(gait.groups * step * double{tuning.windowSlack} * double{slowest},
-                GeneSpace::longestCycle + 1e-6);
+    if (slowest == 1) continue;
+    EXPECT_LE(gait.groups * step * double{tuning.windowSlack} * double{slowest},
+              GeneSpace::longestCycle + 1e-6);
   }
 }
 
@@ -175,17 +175,18 @@ TEST(Genes, TheGaitByRuleIsAmongThem) {
 }
 
 TEST_F(EvolutionTest, TheSameSeedGivesTheSameBitsResumedOrNot) {
-  const Rig rig = spiderRig();
-  const EvolutionOptions options{.seed = 5, .batch = 120, .dt = 1.0f / 20};
+  // Few patterns, so that the last batches are children of the first ones.
+  const Rig rig = loadRig(SKITTER_ROOT "/assets/quadruped.glb");
+  const EvolutionOptions options{.seed = 5, .batch = 80, .dt = 1.0f / 20};
   Evolution whole(device(), rig, options), parts(device(), rig, options);
   EXPECT_EQ(whole.filledCount(), 0u);
-  // The third batch has children of those before.
   for (int i = 0; i < 2; ++i) whole.step(), parts.step();
   const std::string half = parts.map();
   EXPECT_EQ(whole.map(), half);
   Evolution resumed(device(), rig, half, "half");
   EXPECT_EQ(resumed.map(), half);
-  EXPECT_EQ(resumed.evaluations(), 240u);
+  EXPECT_EQ(resumed.evaluations(), 160u);
+  EXPECT_GT(resumed.filledCount(), 0u);
   for (int i = 0; i < 2; ++i) whole.step(), resumed.step();
   EXPECT_EQ(whole.map(), resumed.map());
   EXPECT_NE(whole.map(), half);

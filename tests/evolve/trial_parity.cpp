@@ -44,7 +44,8 @@ reference::Trial trialOf(const std::vector<float>& records, size_t agent, size_t
   return trial;
 }
 
-std::string differenceOf(const reference::Trial& device, const reference::Trial& truth, bool marginIsSure) {
+std::string trialDifference(const reference::Trial& device, const reference::Trial& truth,
+                            bool marginIsSure) {
   const auto compare = [](const char* name, double found, double expected, double error) {
     return std::abs(found - expected) <= error ? std::string()
                                                : fmt::format("{} is {}, expected {}", name, found, expected);
@@ -121,7 +122,7 @@ std::string differenceOf(evolve::Trials& trials, const std::vector<evolve::Trial
         else
           truth.trial.least = device.least;  // it begins with the first sample that counts
         const bool isSure = sample == 0 || std::abs(truth.margin - numbers.safe) > marginError;
-        const std::string difference = differenceOf(device, truth.trial, isSure);
+        const std::string difference = trialDifference(device, truth.trial, isSure);
         if (!difference.empty())
           return fmt::format("trial {}, sample {}, agent {}: {}", trial, sample, agent, difference);
       }

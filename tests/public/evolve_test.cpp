@@ -31,6 +31,15 @@ TEST_F(PublicEvolution, SearchesAndGoesOn) {
   ASSERT_EQ(judged.size(), 1u);
   EXPECT_GT(judged[0].speed, 0);
   EXPECT_TRUE(search.judge({}, 1).empty());
+  const std::vector<AdaptationReport> reports = search.adapt(5, 1);
+  ASSERT_FALSE(reports.empty());
+  EXPECT_LE(reports.size(), 5u);
+  for (const AdaptationReport& report : reports) {
+    EXPECT_NE(report.lost, 0u);
+    EXPECT_GT(report.bestKnown, 0);
+    EXPECT_LE(report.trials, 20u);
+    EXPECT_EQ(report.trials > 0, report.found >= 0.9 * report.bestKnown);
+  }
   expectRefused("seconds of a judgement is 0", [&] { search.judge(gaits, 0); });
   expectRefused("map:", [&] { Evolution(device(), rig, "{", "map"); });
 }

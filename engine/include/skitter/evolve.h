@@ -39,6 +39,14 @@ struct GaitJudgement {
   double reachError = 0;  // the largest
 };
 
+// How a creature came through a loss that it did not know of, by trial and error over the map.
+struct AdaptationReport {
+  uint32_t lost = 0;     // mask of legs
+  double bestKnown = 0;  // fitness of the best gait that the map has for these
+  double found = 0;      // of the best that was tried
+  uint32_t trials = 0;   // up to the first with 90 % of bestKnown; 0: none had it
+};
+
 // One search, on one device. Not thread-safe. The same rig, options and batches give the same bits on a
 // device, whether or not the search was stopped in between.
 class SKITTER_API Evolution {
@@ -74,6 +82,11 @@ class SKITTER_API Evolution {
   // Walks of `seconds` on flat ground: with the given gaits, each by a creature without that gait's legs; or,
   // `byRule`, with the gaits that a rig without a table has then. Waits for the device.
   std::vector<GaitJudgement> judge(std::span<const RigGait> gaits, double seconds, bool byRule = false) const;
+
+  // Creatures that lose one to three legs each, drawn by the seed, and are not told which: each tries gaits
+  // of the map, of any pattern, at most 20 of them. Losses for which the map has no gait are left out. Waits
+  // for the device.
+  std::vector<AdaptationReport> adapt(uint32_t creatures, uint64_t seed) const;
 
   struct SKITTER_LOCAL Impl;
 
