@@ -87,6 +87,22 @@ void checkRig(const Rig& rig) {
     check(leg.group >= 0 && leg.group < rig.groupCount(),
           fmt::format("leg {} is of group {}, expected one of {}", leg.name, leg.group, rig.groupCount()));
   }
+  for (size_t i = 0; i < rig.gaits.size(); ++i) {
+    const RigGait& gait = rig.gaits[i];
+    const auto isTurn = [](const RigGait::Turn& turn) {
+      return turn.phase >= 0 && turn.phase < 1 && turn.slowness >= RigGait::minSlowness &&
+             turn.slowness <= RigGait::maxSlowness;
+    };
+    check(gait.idle != 0 && gait.idle >> rig.legs.size() == 0,
+          fmt::format("gaits[{}] is without legs {:#x}, expected a mask of the rig's", i, gait.idle));
+    check(gait.turns.size() == rig.legs.size(),
+          fmt::format("gaits[{}] has {} turns, expected {}", i, gait.turns.size(), rig.legs.size()));
+    check(gait.groups >= 1 && gait.groups <= RigGait::maxGroups,
+          fmt::format("gaits[{}] has {} groups, expected 1 to {}", i, gait.groups, RigGait::maxGroups));
+    check(std::ranges::all_of(gait.turns, isTurn) && gait.speed > 0 && gait.speed <= 1 &&
+              std::isfinite(gait.shift.x + gait.shift.y + gait.shift.z),
+          fmt::format("gaits[{}] has a number out of its range (skitter/rig.h)", i));
+  }
   checkLook(rig);
 }
 

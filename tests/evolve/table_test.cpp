@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "crowd/herd.h"
 #include "crowd/regait.h"
@@ -166,6 +167,27 @@ TEST(RigGaits, OnlyTheNextLegsWaitWhereSoSaid) {
       EXPECT_EQ(all.legs[leg].neighbours >> other & 1u, all.legs[other].neighbours >> leg & 1u);
   }
   EXPECT_GT(std::popcount(all.legs[legCalled(rig, "L1")].neighbours), 2);
+}
+
+TEST_F(TableTest, ATableThatCannotBeIsRefusedBeforeACrowdIsMade) {
+  Scene scene = sceneOf(1);
+  scene.herds[0].hurt = true;
+  const auto expectRefused = [&](const char* words, const std::function<void(RigGait&)>& spoil) {
+    CrowdOptions options;
+    options.rigs = {spiderWithTable()};
+    spoil(options.rigs.front().gaits.front());
+    try {
+      Crowd(device(), flatGround(), scene, options);
+      ADD_FAILURE() << words;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(words));
+    }
+  };
+  expectRefused("gaits[0] has 7 turns, expected 8", [](RigGait& gait) { gait.turns.pop_back(); });
+  expectRefused("gaits[0] has 0 groups", [](RigGait& gait) { gait.groups = 0; });
+  expectRefused("gaits[0] is without legs 0x100", [](RigGait& gait) { gait.idle = 256; });
+  expectRefused("out of its range", [](RigGait& gait) { gait.turns[0].phase = 1; });
+  expectRefused("out of its range", [](RigGait& gait) { gait.shift.y = NAN; });
 }
 
 // Lock-step replay with phases that are no whole turns.
