@@ -218,6 +218,8 @@ int evolve(const EvolveCommand& options) {
   const uint64_t done = search.evaluations() - before;
   std::optional<Judged> judged;
   if (search.evaluations() >= options.evaluations) {
+    writeText(options.map(), search.map());
+    saved = search.evaluations();
     const StopDeadline whileJudging(leave);
     const std::vector<RigGait> gaits = search.gaits();
     judged = Judged{search.judge(gaits, judgedSeconds), search.judge(gaits, judgedSeconds, true)};
@@ -317,9 +319,9 @@ void addEvolve(CLI::App& app, Command& chosen) {
   command->add_option("--json", options->json, "write the figures to a file")->type_name("FILE");
   command->add_flag("--quiet", options->quiet, "no figures on stdout, no progress on stderr");
   command->footer(
-      "Ctrl-C ends it within a second or two and leaves the table and the map so far. docs/evolve.md "
-      "explains "
-      "the search and its files.\n"
+      "Ctrl-C ends it within a second and leaves the table and the map so far; a batch that takes longer is "
+      "given "
+      "up, and the map is then at most 30 s old. docs/evolve.md explains the search and its files.\n"
       "\n"
       "Examples:\n"
       "  skitter evolve --out spider.gaits.json\n"

@@ -85,6 +85,7 @@ struct KnownGaits {
 
 constexpr double nearlyAsGood = 0.9;
 constexpr uint64_t mostLost = 3;
+constexpr size_t mindsAtOnce = 128;  // each remembers 20 numbers for each gait of the map
 
 uint32_t drawnLoss(base::SplitMix64& random, size_t legs) {
   const auto count = static_cast<int>(1 + random() % mostLost);
@@ -115,6 +116,7 @@ struct Evolution::Impl {
 
   evolve::Genes candidate(uint64_t number) const;
   KnownGaits known() const;
+  void adaptAll(const KnownGaits& known, std::span<AdaptationReport> reports) const;
   void enter(uint64_t number, evolve::Genes genes, const evolve::TrialFigures& figures);
 
   Device* device;
@@ -265,42 +267,48 @@ KnownGaits Evolution::Impl::known() const {
   return all;
 }
 
-std::vector<AdaptationReport> Evolution::adapt(uint32_t creatures, uint64_t seed) const {
-  const Impl& search = *impl_;
-  const KnownGaits known = search.known();
-  base::SplitMix64 random(seed);
-  std::vector<AdaptationReport> reports;
-  std::vector<evolve::Adaptation> minds;
-  for (uint32_t creature = 0; creature < creatures; ++creature) {
-    const uint32_t lost = drawnLoss(random, search.rig.legs.size());
-    const double best = known.bestWithout(lost);
-    if (best == 0) continue;
-    reports.push_back({.lost = lost, .bestKnown = best});
-    minds.emplace_back(known.map, evolve::AdaptationOptions{});
-  }
+// All who go on try at once, until nobody does.
+void Evolution::Impl::adaptAll(const KnownGaits& known, std::span<AdaptationReport> reports) const {
+  std::vector<evolve::Adaptation> minds(reports.size(),
+                                        evolve::Adaptation(known.map, evolve::AdaptationOptions{}));
   while (true) {
-    // All who go on try at once.
     std::vector<std::pair<size_t, uint32_t>> tried;
     std::vector<evolve::TrialTask> tasks;
-    for (size_t i = 0; i < minds.size() && tasks.size() < search.options.batch; ++i) {
+    for (size_t i = 0; i < minds.size(); ++i) {
       const std::optional<uint32_t> next = reports[i].trials > 0 ? std::nullopt : minds[i].next();
       if (!next) continue;
       const RigGait& gait = known.gaits[*next].gait;
       tried.emplace_back(i, *next);
-      tasks.push_back({gait.idle | reports[i].lost, crowd::regaitOf(search.rig, gait, {.idle = gait.idle})});
+      tasks.push_back({gait.idle | reports[i].lost, crowd::regaitOf(rig, gait, {.idle = gait.idle})});
     }
-    if (tasks.empty()) return reports;
-    const std::vector<evolve::TrialFigures> figures = search.trials->run(tasks);
+    if (tasks.empty()) return;
+    const std::vector<evolve::TrialFigures> figures = trials->run(tasks);
     for (size_t t = 0; t < tried.size(); ++t) {
       const auto [i, behaviour] = tried[t];
       const double fitness =
-          evolve::fitnessOf(figures[t], double{search.rig.legLength}, carriersOf(search.rig, tasks[t].idle),
-                            search.trials->countedSeconds(), wantedSpeed);
+          evolve::fitnessOf(figures[t], double{rig.legLength}, carriersOf(rig, tasks[t].idle),
+                            trials->countedSeconds(), wantedSpeed);
       minds[i].tell(behaviour, fitness);
       reports[i].found = minds[i].bestFitness();
       if (reports[i].found >= nearlyAsGood * reports[i].bestKnown) reports[i].trials = minds[i].trials();
     }
   }
+}
+
+std::vector<AdaptationReport> Evolution::adapt(uint32_t creatures, uint64_t seed) const {
+  const Impl& search = *impl_;
+  const KnownGaits known = search.known();
+  base::SplitMix64 random(seed);
+  std::vector<AdaptationReport> reports;
+  for (uint32_t creature = 0; creature < creatures; ++creature) {
+    const uint32_t lost = drawnLoss(random, search.rig.legs.size());
+    const double best = known.bestWithout(lost);
+    if (best > 0) reports.push_back({.lost = lost, .bestKnown = best});
+  }
+  const size_t atOnce = std::min<size_t>(mindsAtOnce, search.options.batch);
+  for (size_t first = 0; first < reports.size(); first += atOnce)
+    search.adaptAll(known, std::span(reports).subspan(first, std::min(atOnce, reports.size() - first)));
+  return reports;
 }
 
 }  // namespace skitter
