@@ -153,7 +153,7 @@ class GaitReader {
 };
 
 // As few digits as are read back as the same float.
-nlohmann::ordered_json shortest(float value) { return std::stod(fmt::format("{}", value)); }
+nlohmann::ordered_json jsonNumber(float value) { return std::stod(fmt::format("{}", value)); }
 
 }  // namespace
 
@@ -185,13 +185,13 @@ std::string writeGaits(const Rig& rig, std::span<const RigGait> gaits, const std
       if ((gait.idle >> leg & 1u) != 0)
         json["without"].push_back(legs[leg]);
       else
-        turns[legs[leg]] = {shortest(gait.turns[leg].phase), shortest(gait.turns[leg].slowness)};
+        turns[legs[leg]] = {jsonNumber(gait.turns[leg].phase), jsonNumber(gait.turns[leg].slowness)};
     }
     json["groups"] = gait.groups;
     json["wait"] = gait.adjacent ? waitAdjacent : waitAll;
-    json["shift"] = {shortest(gait.shift.x), shortest(gait.shift.y), shortest(gait.shift.z)};
-    json["speed"] = shortest(gait.speed);
-    json["fitness"] = shortest(gait.fitness);
+    json["shift"] = {jsonNumber(gait.shift.x), jsonNumber(gait.shift.y), jsonNumber(gait.shift.z)};
+    json["speed"] = jsonNumber(gait.speed);
+    json["fitness"] = jsonNumber(gait.fitness);
     json["turns"] = turns;
     text += fmt::format("{}\n{}", i > 0 ? "," : "", json.dump());
   }
