@@ -67,7 +67,7 @@ void checkHurt(const skitter::Herd& herd, const std::string& what) {
 void checkSpawn(const Spawn& spawn, const std::string& what) {
   constexpr double most = Scene::maxCoordinate;
   const auto name = [&] { return what; };
-  expectWithin(name, "spawn.spacing", double{spawn.spacing}, 0.01, most, "m");
+  expectWithin(name, "spawn.spacing", double{spawn.spacing}, double{0.01f}, most, "m");
   expectWithin(name, "spawn.centre x", double{spawn.centre.x}, -most, most, "m");
   expectWithin(name, "spawn.centre z", double{spawn.centre.y}, -most, most, "m");
   expectWithin(name, "spawn.heading", double{spawn.heading}, -1000, 1000, "radians");
