@@ -94,7 +94,7 @@ TEST(RigGaits, ABrokenTableIsRefusedByItsKey) {
   const size_t first = text.find("{\"without\""), end = text.rfind("\n]");
   twice.insert(end, ",\n" + text.substr(first, end - first));
   EXPECT_THAT(refusal(twice, rig), testing::HasSubstr("gaits[1].without is"));
-  EXPECT_THAT(refusal("[]", rig), name + "the file is [], expected an object");
+  EXPECT_THAT(refusal("[]", rig), name + "the file is an array of 0, expected an object");
 }
 
 TEST(RigGaits, LieBesideTheRig) {
