@@ -87,8 +87,8 @@ class DeviceAvoid final : public AvoidRunner {
   }
   std::vector<StageTime> stageTimes() const override { return times_; }
   std::vector<float> records() const override {
-    constexpr std::array records = {Record::avoid};
-    return crowd::downloadRecords(crowd_, 0, records).avoid;
+    constexpr std::array wanted = {Record::avoid};
+    return crowd::downloadRecords(crowd_, 0, wanted).avoid;
   }
   void forget() override {
     constexpr uint32_t notANumber = UINT32_MAX;
@@ -147,8 +147,8 @@ Walkers walkersOf(const Crowd& crowd) {
   const Crowd::Impl& impl = implOf(crowd);
   const crowd::Kind& kind = impl.kinds.front();
   const crowd::Quanta quanta = crowd::quantaOf(impl);
-  constexpr std::array records = {Record::body, Record::steer};
-  const HerdState state = crowd::downloadRecords(impl, 0, records);
+  constexpr std::array wanted = {Record::body, Record::steer};
+  const HerdState state = crowd::downloadRecords(impl, 0, wanted);
   Walkers walkers;
   walkers.quanta = quanta.inMetre;
   walkers.look = static_cast<int32_t>(quanta.lookOf(kind));
@@ -231,11 +231,11 @@ validation::StageResult againstDevice(const std::vector<float>& device, const st
     else
       ++result.ties;
   }
-  const double others = static_cast<double>(result.ties) / static_cast<double>(result.samples);
-  if (result.why.empty() && others > mostOtherSides)
+  // One may be otherwise in however few.
+  const double most = std::max(1.0, mostOtherSides * static_cast<double>(result.samples));
+  if (result.why.empty() && static_cast<double>(result.ties) > most)
     result.why = fmt::format(
-        "velocities of {} of {} agents are farther from the device's than {} m/s, "
-        "expected at most {:g} %",
+        "velocities of {} of {} agents are farther from the device's than {} m/s, expected at most {:g} %",
         result.ties, result.samples, sameVelocity, 100 * mostOtherSides);
   result.pass = result.why.empty();
   return result;
@@ -246,7 +246,7 @@ validation::StageResult againstHalfPlanes(const Walkers& walkers, const std::vec
                                           uint64_t tick, uint64_t seed) {
   const auto agents = static_cast<uint32_t>(walkers.size());
   const AgentSample sample = validation::sampleAt(seed, tick, agents, agentsJudged);
-  validation::Judge judge("half-planes");
+  validation::Judge verdict("half-planes");
   for (size_t agent = sample.first; agent < agents; agent += sample.stride) {
     const cpu_avoid::Velocity v{records[4 * agent], records[4 * agent + 1]};
     validation::Sample compared;
@@ -254,9 +254,9 @@ validation::StageResult againstHalfPlanes(const Walkers& walkers, const std::vec
     compared.compare("violation beyond the least, m/s",
                      std::max(0.0, cpu_avoid::orcaFault(walkers, agent, v)), cpu_avoid::orcaTolerance,
                      glm::dvec4(0), {v.x, v.z, 0, 0});
-    judge.add(tick, agent, -1, compared);
+    verdict.add(tick, agent, -1, compared);
   }
-  return judge.result();
+  return verdict.result();
 }
 
 std::vector<validation::StageResult> checksOf(const Crowd& crowd, const Walkers& walkers,

@@ -1,9 +1,17 @@
+#include <fstream>
+#include <iterator>
+
 #include "process.h"
 
 namespace skitter::test {
 namespace {
 
 using Bench = AppTest;
+
+std::string documentOf(const std::string& name) {
+  std::ifstream in(std::string(SKITTER_ROOT "/docs/") + name);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
 
 TEST_F(Bench, TimesAndChecksEveryContestant) {
   const Result result =
@@ -56,6 +64,16 @@ TEST_F(Bench, TimesGridAndAvoidByThemselves) {
     }
   }
   EXPECT_NE(result.out.find("in reach of an agent"), std::string::npos) << result.out;
+  const std::string keys = documentOf("json.md"), rows = documentOf("performance.md");
+  for (const nlohmann::json& object : {device.at("avoidMatches").at(0), device.at("growth").at(0)})
+    for (const auto& [key, value] : object.items()) {
+      // `key` or `key[i].another`
+      EXPECT_TRUE(keys.find("`" + key + "`") != keys.npos || keys.find("`" + key + "[") != keys.npos) << key;
+    }
+  for (const nlohmann::json& contestant : device.at("avoidMatches").at(0).at("results")) {
+    const std::string name = contestant.at("name");
+    EXPECT_NE(rows.find("\n| " + name.substr(0, name.find(','))), rows.npos) << name;
+  }
   const nlohmann::json& growth = device.at("growth");
   ASSERT_EQ(growth.size(), device.at("avoidMatches").at(0).at("results").size());
   EXPECT_EQ(growth.at(0).at("from"), 64);

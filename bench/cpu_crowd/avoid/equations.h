@@ -54,8 +54,12 @@ struct Wish {
   // v_0, of an agent that goes at speed s.
   Vec2<F> wanted(const F& s) const {
     const F t = press * larger(F(0), F(1) - s / larger(speed, F(1e-6f)));
+    // Without neighbours it is v_n to the last bit, however the root is rounded.
+    const Mask<F> turns = F(0) < t;
+    if (!any(turns)) return desired;
     const F norm = F(1) / squareRoot(F(1) + t * t);
-    return {(desired.x - t * desired.z) * norm, (desired.z + t * desired.x) * norm};
+    return {select(turns, (desired.x - t * desired.z) * norm, desired.x),
+            select(turns, (desired.z + t * desired.x) * norm, desired.z)};
   }
 };
 
