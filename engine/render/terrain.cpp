@@ -17,7 +17,7 @@ constexpr float kFinestSpacing = 0.12f;  // metres between vertices below which 
 constexpr uint32_t kMostPatches = 4096;  // 64 KiB, the most that an update takes
 
 // By how much a mesh may differ from the ground, root mean square, before a finer one takes its place.
-constexpr float kErrorPixels = 1.0f / 3;
+constexpr float kErrorPixels = 1.0f / 4;
 // A level serves at least so many sides of a patch, or neighbours could be two levels apart, and at most as
 // far as its cells have so many pixels across: smaller triangles cost more than they show.
 constexpr float kLeastRange = 4, kCellPixels = 8;

@@ -366,7 +366,7 @@ TEST_F(TexturedModelTest, IsAsTheReferenceDrawsIt) {
   const std::vector<Hit> hits = seenBy(lens, animal);
   const Tally tally = tallyOf(animal, lens, hits, picture, {});
   EXPECT_GT(tally.compared, 2000);
-  EXPECT_GT(tally.sharp, tally.compared / 4);
+  EXPECT_GT(tally.sharp, tally.compared / 16);
   // A shadow's map may be coarser than the penumbra allows for in a few places.
   EXPECT_LE(tally.off, tally.compared / 200) << "of " << tally.compared << ", sharp " << tally.sharp;
   // A texture that was not drawn would be seen.
