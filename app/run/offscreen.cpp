@@ -76,6 +76,7 @@ void Offscreen::draw(Summary& summary) {
     read_->record(cmd, renderer_->image(), slot);
     ring_.wait(ring_.submit());
   }
+  warnOfImages(*renderer_);  // of herds that have come
   ++summary.frames;
   if (!options_.timings) pictures_->add(read_->pixels(slot));
 }

@@ -421,6 +421,7 @@ void Viewer::draw(Size size, const Input& input, float seconds) {
 
   const vk::CommandBuffer cmd = ring_.begin();
   renderer.record(cmd, camera_.view(run_.crowd.terrain()), [&](VkCommandBuffer in) { gui_.draw(in); });
+  warnOfImages(renderer);  // of herds that have come
   swapchain_.show(cmd, renderer.image(), {renderer.width(), renderer.height()}, ring_.slot());
   ring_.submit(swapchain_.links());
   swapchain_.present();

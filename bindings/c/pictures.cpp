@@ -94,6 +94,14 @@ skitter_result skitter_renderer_pixels(const skitter_renderer* renderer, uint8_t
   });
 }
 
+skitter_result skitter_renderer_note(const skitter_renderer* renderer, size_t index, const char** note) {
+  return guarded([&] {
+    given(note, "note");
+    const std::vector<std::string>& notes = given(renderer, "renderer").renderer.notes();
+    *note = index < notes.size() ? notes[index].c_str() : nullptr;
+  });
+}
+
 skitter_result skitter_renderer_destroy(skitter_renderer* renderer) {
   return guarded([&] { delete renderer; });
 }

@@ -691,6 +691,10 @@ SKITTER_C skitter_result skitter_renderer_image(const skitter_renderer* renderer
  * to `rgba`, which has room for `room` bytes. Waits for the device. */
 SKITTER_C skitter_result skitter_renderer_pixels(const skitter_renderer* renderer, uint8_t* rgba,
                                                  size_t room);
+/* Which image of the crowd's models cannot be decoded, and why: the index-th of them, from 0 on, or NULL
+ * behind the last. Its material is drawn in a flat colour. It lives until the next picture. */
+SKITTER_C skitter_result skitter_renderer_note(const skitter_renderer* renderer, size_t index,
+                                               const char** note);
 SKITTER_C skitter_result skitter_renderer_destroy(skitter_renderer* renderer);
 
 /* Writes such pixels, 4 bytes each, as an opaque PNG. The file takes its name once it is whole. */

@@ -31,18 +31,25 @@ void step(PythonCrowd& self, uint64_t ticks, std::optional<float> dt) {
 py::array_t<uint8_t> render(PythonCrowd& self, uint32_t width, uint32_t height,
                             const std::optional<View>& view) {
   std::vector<uint8_t> pixels;
+  std::vector<std::string> news;
   {
     const Turn turn(*self.device);
     if (!self.renderer || self.renderer->width() != width || self.renderer->height() != height) {
       self.renderer.reset();
       self.renderer.emplace(self.device->device, self.crowd, width, height);
+      self.warned = 0;
     }
     const double seconds = static_cast<double>(self.crowd.tick()) * double{self.dt()};
     self.walk.run([&](VkCommandBuffer commands) {
       self.renderer->record(commands, view ? *view : viewOf(self.scene, self.crowd, seconds));
     });
     pixels = self.renderer->download();
+    const std::vector<std::string>& notes = self.renderer->notes();
+    news.assign(notes.begin() + static_cast<std::ptrdiff_t>(self.warned), notes.end());
+    self.warned = notes.size();
   }
+  for (const std::string& note : news)
+    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
   return arrayOf(std::move(pixels), {height, width, 4});
 }
 

@@ -89,6 +89,7 @@ static void testNothingRead(void) {
   skitter_skin_mesh* mesh = NULL;
   skitter_renderer* renderer = NULL;
   VkImage image;
+  const char* note;
   const float* records;
   float numbers[16];
   double least[3], most[3];
@@ -155,6 +156,7 @@ static void testNothingRead(void) {
   REFUSED(skitter_renderer_record(NULL, NULL, &view, NULL, NULL), "renderer is NULL");
   REFUSED(skitter_renderer_image(NULL, &image), "renderer is NULL");
   REFUSED(skitter_renderer_pixels(NULL, pixels, sizeof pixels), "renderer is NULL");
+  REFUSED(skitter_renderer_note(NULL, 0, &note), "renderer is NULL");
 
   OK(skitter_readback_destroy(NULL));
   OK(skitter_palettes_destroy(NULL));
@@ -1828,6 +1830,47 @@ static void testPng(const uint8_t* pixels) {
   REFUSED(skitter_write_png("a.png", 1, 1, NULL), "rgba is NULL");
 }
 
+/* Copies a file of assets here. A broken one has another byte among the rows of its first PNG. */
+static void copyAsset(const char* name, int broken) {
+  static unsigned char bytes[1 << 20];
+  char path[1024];
+  size_t size, i;
+  FILE* file;
+  snprintf(path, sizeof path, "%s/%s", SKITTER_ASSETS, name);
+  file = fopen(path, "rb");
+  if (file == NULL) exit(1);
+  size = fread(bytes, 1, sizeof bytes, file);
+  fclose(file);
+  for (i = 0; broken && i + 44 < size; ++i)
+    if (memcmp(bytes + i, "IDAT", 4) == 0) {
+      bytes[i + 40] ^= 1;
+      break;
+    }
+  file = fopen(name, "wb");
+  if (file == NULL) exit(1);
+  CHECK(fwrite(bytes, 1, size, file) == size);
+  fclose(file);
+}
+
+/* A model whose first image cannot be decoded is drawn. */
+static void testNotes(skitter_device* device) {
+  skitter_crowd* crowd;
+  skitter_renderer* renderer = NULL;
+  const char* note = NULL;
+  copyAsset("piebald.glb", 1);
+  copyAsset("piebald.rig.json", 0);
+  crowd = makeCrowdOf("{\"herds\": [{\"agents\": 1, \"rig\": \"piebald.glb\"}]}", device, NULL);
+  remove("piebald.glb");
+  remove("piebald.rig.json");
+  NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, &renderer));
+  OK(skitter_renderer_note(renderer, 0, &note));
+  CHECK(note != NULL && strstr(note, "images[0]: corrupt PNG: ") != NULL);
+  OK(skitter_renderer_note(renderer, 1, &note));
+  CHECK(note == NULL);
+  OK(skitter_renderer_destroy(renderer));
+  OK(skitter_crowd_destroy(crowd));
+}
+
 static void testPictures(void) {
   host h = makeHost();
   skitter_device* device = adopt(&h);
@@ -1837,6 +1880,7 @@ static void testPictures(void) {
   skitter_renderer* renderer = NULL;
   skitter_view view = {{0}, {0}, 0}, up;
   VkImage image = VK_NULL_HANDLE;
+  const char* note = "";
   static uint8_t pixels[pictureBytes], again[pictureBytes];
   int painted = 0, i;
 
@@ -1891,8 +1935,13 @@ static void testPictures(void) {
   for (i = 0; i < pictureBytes; i += 4) CHECK(again[i] == 255 && again[i + 1] == 0 && again[i + 2] == 0);
   OK(skitter_renderer_image(renderer, &image));
   CHECK(image != VK_NULL_HANDLE);
+  /* Its spiders have no images. */
+  REFUSED(skitter_renderer_note(renderer, 0, NULL), "note is NULL");
+  OK(skitter_renderer_note(renderer, 0, &note));
+  CHECK(note == NULL);
   testPng(pixels);
   OK(skitter_renderer_destroy(renderer));
+  testNotes(device);
   OK(skitter_device_destroy(device));
   closeHost(&h);
 }

@@ -1,7 +1,9 @@
 import gc
+import pathlib
 import signal
 import threading
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -185,6 +187,21 @@ def test_a_picture_is_an_array(device, scene):
         crowd.render(0, 10)
     with pytest.raises(skitter.InputError):
         skitter.Crowd(device, scene, pose=False).render(16, 16)
+
+
+def test_an_image_that_cannot_be_decoded_is_a_warning(device, tmp_path):
+    assets = pathlib.Path(__file__).parent.parent.parent / "assets"
+    model = bytearray((assets / "piebald.glb").read_bytes())
+    model[model.index(b"IDAT") + 40] ^= 1
+    (tmp_path / "piebald.glb").write_bytes(model)
+    (tmp_path / "piebald.rig.json").write_bytes((assets / "piebald.rig.json").read_bytes())
+    scene = skitter.Scene.parse('{"herds": [{"agents": 1, "rig": "piebald.glb"}]}', folder=str(tmp_path))
+    crowd = skitter.Crowd(device, scene)
+    with pytest.warns(UserWarning, match=r"images\[0\]: corrupt PNG: .*drawn as a flat colour"):
+        crowd.render(32, 32)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        crowd.render(32, 32)  # it was said
 
 
 def test_ctrl_c_ends_a_long_step_between_two_ticks(device, scene):
