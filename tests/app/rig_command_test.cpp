@@ -59,10 +59,18 @@ TEST_F(RigCommand, ABrokenImageIsAWarningAndAFlatColour) {
   std::ofstream(file("piebald.glb"), std::ios::binary) << bytes;
   fs::copy_file(SKITTER_ROOT "/assets/piebald.rig.json", file("piebald.rig.json"));
   const std::string fault = "images[0]: corrupt PNG: ";
-  const Result seen = skitter({"inspect", file("piebald.glb"), "--json", file("piebald.json")});
+  const Result seen =
+      skitter({"inspect", file("piebald.glb"), "--json", file("piebald.json"), "--out", file("piebald.png")});
   ASSERT_EQ(seen.code, 0) << seen.err;
   EXPECT_NE(seen.out.find(fault), std::string::npos) << seen.out;
   EXPECT_EQ(json("piebald.json").at("images").at(0).at("fault").get<std::string>().rfind(fault, 0), 0u);
+  // The picture shows the sound image, and that it is missing.
+  EXPECT_EQ(skitter({"inspect", SKITTER_ROOT "/assets/piebald.glb", "--out", file("sound.png")}).code, 0);
+  const auto contents = [&](const char* name) {
+    std::ifstream stream(file(name), std::ios::binary);
+    return std::string{std::istreambuf_iterator<char>(stream), {}};
+  };
+  EXPECT_NE(contents("piebald.png"), contents("sound.png"));
   const Result drawn = skitter({"run", "--rig", file("piebald.glb"), "--agents", "3", "--frames", "2",
                                 "--size", "64x36", "--quiet", "--out", file("herd.png")});
   EXPECT_EQ(drawn.code, 0) << drawn.err;

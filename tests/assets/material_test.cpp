@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
 
 #include "assets/materials/worn_colours.h"
+#include "base/srgb.h"
 #include "files.h"
 #include "glb_builder.h"
 #include "skitter/clip.h"
@@ -42,6 +45,11 @@ class MaterialsTest : public ::testing::Test {
   }
   static nlohmann::json& primitive(Glb& glb) { return glb.json["meshes"][0]["primitives"][0]; }
   static nlohmann::json& material(Glb& glb) { return glb.json["materials"][0]; }
+  // As the triangle has them, which faces -Z.
+  static void addNormals(Glb& glb) {
+    primitive(glb)["attributes"]["NORMAL"] =
+        glb.append(std::vector<float>{0, 0, -1, 0, 0, -1, 0, 0, -1}, "VEC3");
+  }
 
   // An image in the binary chunk. Returns its index.
   static size_t addImage(Glb& glb, const std::vector<uint8_t>& bytes) {
@@ -231,6 +239,7 @@ TEST_F(MaterialsTest, FaultsLeaveOneTextureOutAndAreNoted) {
 // Tangents of the file go with the mesh, and change sides where it is mirrored.
 TEST_F(MaterialsTest, TangentsTurnWithTheirVertices) {
   Glb glb = wornRig();
+  addNormals(glb);
   primitive(glb)["attributes"]["TANGENT"] =
       glb.append(std::vector<float>{1, 0, 0, 1, 0, 1, 0, -1, 0, 0, 0, 1}, "VEC4");
   primitive(glb)["attributes"]["NORMAL"] = glb.append(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
@@ -245,6 +254,34 @@ TEST_F(MaterialsTest, TangentsTurnWithTheirVertices) {
   model = load(glb);
   EXPECT_LT(glm::distance(model.look.vertices[0].tangent, {0, -1, 0, -1}), 1e-6f);
   EXPECT_LT(glm::distance(model.look.vertices[1].tangent, {-1, 0, 0, 1}), 1e-6f);
+}
+
+// Tangents were made for normals; without these they count for nothing (glTF 2.0, section 3.7.2.1).
+TEST_F(MaterialsTest, TangentsWithoutNormalsAreMadeAnew) {
+  Glb glb = wornRig();
+  glb.json["nodes"][0].erase("skin");
+  material(glb)["normalTexture"] = {{"index", 0}};
+  const std::vector<float> up{0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
+  primitive(glb)["attributes"]["TANGENT"] = glb.append(up, "VEC4");
+  const Model made = load(glb);
+  for (const MaterialVertex& vertex : made.look.vertices)
+    EXPECT_LT(glm::distance(vertex.tangent, {-1, 0, 0, 1}), 1e-6f);
+  addNormals(glb);
+  const Model kept = load(glb);
+  for (const MaterialVertex& vertex : kept.look.vertices)
+    EXPECT_LT(glm::distance(vertex.tangent, {0, 1, 0, 1}), 1e-6f);
+}
+
+TEST_F(MaterialsTest, MissingTextureCoordinatesAreNoted) {
+  Glb glb = wornRig();
+  EXPECT_FALSE(hasNote(load(glb), "TEXCOORD"));
+  material(glb)["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
+  const Model model = load(glb);
+  EXPECT_TRUE(hasNote(model,
+                      "meshes[0].primitives[0] has no TEXCOORD_1, where materials[0] looks textures up: "
+                      "(0, 0) counts"));
+  EXPECT_EQ(model.look.vertices[0].uv[1], glm::vec2(0));
+  EXPECT_EQ(model.look.vertices[0].uv[0], glm::vec2(1, 0));
 }
 
 // Without tangents in the file, they are made for normal textures alone.
@@ -324,6 +361,45 @@ TEST_F(MaterialsTest, WornColoursAreTheTexturesThere) {
   EXPECT_LT(glm::distance(colours[1], {0, 0.5028865f, 0}), 1e-6f);  // ((188 / 255 + 0.055) / 1.055)^2.4
   EXPECT_LT(glm::distance(colours[2], {0.5f, 0, 0}), 1e-6f) << "images repeat";
   EXPECT_EQ(wornColours(rig.vertices, {})[0], glm::vec3(0.5f, 1, 1));
+}
+
+// Texel by texel, as pictures of rigs have them.
+TEST(BaseColours, AreTexelsAtALevel) {
+  const Texels image = test::texelsOf(
+      4, 2, [](uint32_t x, uint32_t y) { return glm::ivec4(60 * x, 120 * y, 255, 100 + 50 * y); });
+  Materials materials;
+  materials.images.push_back(test::pngFile(image));
+  Texture& texture = materials.list.emplace_back().texture(TextureRole::baseColour);
+  texture.image = 0;
+  texture.sampler = {.wrapS = TextureSampler::Wrap::mirror, .wrapT = TextureSampler::Wrap::clamp};
+  materials.list.emplace_back();
+  const Look look{{}, std::make_shared<const Materials>(materials)};
+  const BaseColours colours(look);
+  const auto codes = [&](float u, float v, size_t level = 0, uint16_t from = 0) {
+    const glm::vec4 found = colours.at({.uv = {{u, v}, {}}, .material = from}, level);
+    return glm::ivec4(base::byteOfLinear(found.r), base::byteOfLinear(found.g), base::byteOfLinear(found.b),
+                      std::lround(255 * found.a));
+  };
+  EXPECT_EQ(codes(0.3f, 0.2f), glm::ivec4(60, 0, 255, 100));
+  EXPECT_EQ(codes(0.9f, 0.7f), glm::ivec4(180, 120, 255, 150));
+  EXPECT_EQ(codes(1.3f, 7), glm::ivec4(120, 120, 255, 150)) << "mirrored across, ended below";
+  EXPECT_EQ(codes(-0.3f, -7), glm::ivec4(60, 0, 255, 100));
+  EXPECT_EQ(codes(INFINITY, NAN), glm::ivec4(0, 0, 255, 100));
+  EXPECT_EQ(codes(0.3f, 0.2f, 0, 1), glm::ivec4(255)) << "a material without a texture";
+  // The level of one row has the light of both, and there is none behind the last.
+  EXPECT_EQ(codes(0.3f, 0.2f, 1).a, 125);
+  EXPECT_EQ(codes(0.3f, 0.2f, 9), codes(0.3f, 0.2f, 2));
+  // A triangle over half of the image, thus 4 texels.
+  std::array<MaterialVertex, 3> corners;
+  corners[1].uv[0] = {1, 0};
+  corners[2].uv[0] = {0, 1};
+  EXPECT_EQ(colours.levelOf(corners, 100), 0u);
+  EXPECT_EQ(colours.levelOf(corners, 4), 0u);
+  EXPECT_EQ(colours.levelOf(corners, 1), 1u);
+  EXPECT_EQ(colours.levelOf(corners, 1e-6f), 2u);
+  EXPECT_EQ(colours.levelOf(corners, 0), 2u);
+  // None of more texels than asked for.
+  EXPECT_EQ(BaseColours(look, 2).at({.uv = {{0.3f, 0.2f}, {}}}).a, 125 / 255.0f);
 }
 
 // zlib may pack images otherwise elsewhere, so texels are compared, not bytes.
