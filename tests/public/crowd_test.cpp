@@ -405,8 +405,9 @@ TEST_F(PublicCrowd, HurtsLegsAndHealsThem) {
   EXPECT_EQ(crowd.legState(agent, 2), LegState::lost);
   EXPECT_EQ(crowd.legState(agent, 5), LegState::lame);
   EXPECT_EQ(crowd.legState(crowd.agentId(0, 0), 2), LegState::whole);
+  const double began = bodyIn(crowd, 0, 1).position.z;
   walk(device(), crowd, 120);
-  EXPECT_GT(bodyIn(crowd, 0, 1).position.z, bodyIn(crowd, 1, 0).position.z);
+  EXPECT_GT(bodyIn(crowd, 0, 1).position.z, began + 1);
   crowd.heal(agent);
   EXPECT_EQ(crowd.legState(agent, 2), LegState::whole);
   walk(device(), crowd, 1);

@@ -11,7 +11,7 @@ using PublicEvolution = PublicTest;
 
 TEST_F(PublicEvolution, SearchesAndGoesOn) {
   const Rig rig = spiderRig();
-  Evolution first(device(), rig, {.seed = 2, .batch = 130, .dt = 1.0f / 20});
+  Evolution first(device(), rig, {.seed = 2, .batch = 1000, .dt = 1.0f / 20});
   Evolution search = std::move(first);
   EXPECT_EQ(search.options().seed, 2u);
   EXPECT_EQ(search.evaluations(), 0u);
@@ -19,7 +19,7 @@ TEST_F(PublicEvolution, SearchesAndGoesOn) {
   EXPECT_EQ(search.cellCount(), 114u * 64);
   EXPECT_NEAR(search.seconds(), 4.2, 0.1);
   search.step();
-  EXPECT_EQ(search.evaluations(), 130u);
+  EXPECT_EQ(search.evaluations(), 1000u);
   EXPECT_GT(search.filledCount(), 0u);
   const std::vector<RigGait> gaits = search.gaits();
   ASSERT_FALSE(gaits.empty());
