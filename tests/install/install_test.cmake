@@ -77,7 +77,7 @@ execute_process(COMMAND ${CMAKE_COMMAND} -S ${ROOT}/tests/install/component -B $
 if(status EQUAL 0)
   message(FATAL_ERROR "find_package finds the component wings")
 endif()
-expect("an unknown component" "${err}" "no component wings, expected some of assets, gpu, ik, spline,[ \n]+ways,[ \n]+crowd, render")
+expect("an unknown component" "${err}" "no component wings, expected some of assets, gpu, ik, spline,[ \n]+ways,[ \n]+crowd,[ \n]+evolve,[ \n]+render")
 
 # What is seen of the libraries. objcopy leaves the variables of inline functions (u), of which a process has one each.
 foreach(library libskitter.so libskitter.a)

@@ -123,7 +123,8 @@ TEST(Relief, isHowFarMeshesAreFromTheGround) {
 }
 
 // A mesh is seen to differ from the ground by a quarter of a pixel, less what fog hides, unless its
-// triangles are small already.
+// triangles are small already. Next to the camera, where levels cannot follow each other as fast as that
+// would take, it is a little more.
 TEST(Patches, areAsFineAsIsSeen) {
   const Ground g = ground({});
   for (const uint32_t height : {360u, 720u, 2160u}) {
@@ -137,7 +138,7 @@ TEST(Patches, areAsFineAsIsSeen) {
       const float away = nearest(c, patch), depth = away * c.block.tile.w;
       const double pixels = deviations[patch.z] * std::exp(-depth * depth) / (away * c.block.eye.w);
       if (away < 0.95f * 0.5f * patch.z * g.field.spacingX / (8 * c.block.eye.w)) {  // the finer one's cells
-        EXPECT_LT(pixels, 1.25 / 4) << patch.z << " at " << away << " m";
+        EXPECT_LT(pixels, away < 2 ? 0.42 : 1.25 / 4) << patch.z << " at " << away << " m";
       }
       ++coarser;
     }
