@@ -73,6 +73,7 @@ void printCrowding(const Crowding& crowding, const Jams& jams) {
 }
 
 void printDamage(const DamageFigures& damage) {
+  if (damage.agents == 0) return printRow("damage", "nobody was hurt two seconds after the last loss");
   const std::string speed =
       damage.speedKept
           ? fmt::format(

@@ -133,7 +133,7 @@ TEST_F(Hurting, ARunSaysHowTheyGetOn) {
   EXPECT_EQ(damage.size(), 6u);
 
   // Nobody has been hurt for two seconds.
-  run({"170", "--json", file("run.json"), "--force"});
+  EXPECT_THAT(run({"170", "--json", file("run.json"), "--force"}), testing::HasSubstr("nobody was hurt"));
   const nlohmann::json early = json("run.json").at("damage");
   EXPECT_EQ(early.at("agents"), 0);
   for (const char* figure : {"speedKept", "counts", "unstable", "slip", "reachErrorP99"})

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "crowd/controllers/controllers.h"
@@ -78,7 +79,11 @@ std::vector<crowd::Stage> everyStage() {
   }
   const size_t count = stages.size();
   for (size_t i = 0; i < count; ++i)
-    if (stages[i].hurtCode) stages.emplace_back(stages[i]).code = *stages[i].hurtCode;
+    if (stages[i].hurtCode) {
+      crowd::Stage form = stages[i];
+      form.code = *form.hurtCode;
+      stages.push_back(std::move(form));
+    }
   return stages;
 }
 
