@@ -311,6 +311,7 @@ void Run::finish() {
         summary_.herds.push_back({h, crowd_->rig(h).name, herd.from.agents, crowd_->fidelity(h)});
     summary_.crowding = crowd_->crowding();
     summary_.foraging = foraging_.figures(*crowd_, options_.scene.dt);
+    summary_.reactions = reactionFigures(*crowd_);
     if (crowdingWatch_) summary_.jams = crowdingWatch_->jams();
     if (options_.sleep) summary_.sleeping = crowd_->sleeping();
     summary_.stateHash = crowd_->stateHash();

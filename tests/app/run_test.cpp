@@ -109,10 +109,11 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(files(), std::vector<std::string>{"run.json"});
   const nlohmann::json run = json("run.json");
-  EXPECT_EQ(keysOf(run), (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
-                                                "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity",
-                                                "crowding", "foraging", "herds", "sleeping", "stateHash",
-                                                "ticksWanted", "interrupted", "manifest", "resumedAt"}));
+  EXPECT_EQ(keysOf(run),
+            (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
+                                   "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity", "crowding",
+                                   "foraging", "reactions", "herds", "sleeping", "stateHash", "ticksWanted",
+                                   "interrupted", "manifest", "resumedAt"}));
   EXPECT_TRUE(run.at("foraging").empty()) << "nobody does";
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
   EXPECT_TRUE(run.at("resumedAt").is_null()) << "it began at the start";
