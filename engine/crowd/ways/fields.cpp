@@ -46,9 +46,7 @@ void WayFields::setGrid(CostGrid grid) {
   regions_ = regionsOf(grid_);
   if (!isAsLarge) makeRoom(std::max(room_, 1u));
   uploadCosts();
-  // In a grid without a passable cell nothing leads anywhere.
-  for (Field& field : fields_)
-    field.stops = stopsOf(grid_, regions_, field.target).value_or(Stops{.stop = field.target});
+  for (Field& field : fields_) field.stops = stopsOf(grid_, regions_, field.target);
   std::vector<size_t> all(fields_.size());
   std::iota(all.begin(), all.end(), size_t{0});
   solve(all);
@@ -57,9 +55,7 @@ void WayFields::setGrid(CostGrid grid) {
 void WayFields::add(std::span<const glm::vec2> targets, std::span<const glm::vec2> kept) {
   std::vector<size_t> fresh;
   for (const glm::vec2& target : targets) {
-    std::optional<Stops> stops = stopsOf(grid_, regions_, target);
-    if (!stops) continue;
-    Field field{target, std::move(*stops)};
+    Field field{target, stopsOf(grid_, regions_, target)};
     if (fields_.size() < shared::MOST_WAYS) {
       fresh.push_back(fields_.size());
       fields_.push_back(std::move(field));
@@ -84,7 +80,7 @@ void WayFields::add(std::span<const glm::vec2> targets, std::span<const glm::vec
 void WayFields::move(const glm::vec2& from, const glm::vec2& to) {
   const size_t field = indexOf(from);
   if (field == fields_.size()) return;
-  fields_[field] = {to, stopsOf(grid_, regions_, to).value_or(Stops{.stop = to})};
+  fields_[field] = {to, stopsOf(grid_, regions_, to)};
   solve({&field, 1});
 }
 

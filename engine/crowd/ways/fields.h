@@ -21,8 +21,8 @@ class WayFields {
 
   // All fields are solved anew.
   void setGrid(CostGrid grid);
-  // Solves fields of `targets`, of which none has one, where they are finite and room is for them: at most
-  // shared::MOST_WAYS goals less those in `kept`. Fields of goals that are not in `kept` may be dropped.
+  // Solves fields of `targets`, of which none has one and all are finite: at most shared::MOST_WAYS less
+  // those in `kept`. Fields of goals that are not in `kept` may be dropped.
   void add(std::span<const glm::vec2> targets, std::span<const glm::vec2> kept);
   // The field of a goal becomes that of another; where `from` has none, nothing happens.
   void move(const glm::vec2& from, const glm::vec2& to);

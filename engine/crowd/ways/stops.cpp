@@ -58,14 +58,14 @@ glm::dvec2 middleOf(const CostGrid& grid, size_t cell) {
          double{grid.cell} * (glm::dvec2(cell % grid.columns, cell / grid.columns) + 0.5);
 }
 
-std::optional<Stops> stopsOf(const CostGrid& grid, const Regions& regions, const glm::vec2& goal) {
+Stops stopsOf(const CostGrid& grid, const Regions& regions, const glm::vec2& goal) {
   if (goal == glm::vec2(shared::WAY_OUT)) {
     Stops out{.stop = goal};
     for (size_t cell = 0; cell < grid.cost.size(); ++cell)
       if (regions.of[cell] != Regions::none) out.cells.push_back({cell, 0});
     return out;
   }
-  if (regions.count == 0) return {};
+  if (regions.count == 0) return {.stop = goal};
   const glm::dvec2 target(goal);
   Stops stops{.stop = goal, .region = regions.of[cellAt(grid, goal)]};
   struct Nearest {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "skitter/ways.h"
@@ -27,9 +26,9 @@ struct Stops {
   glm::vec2 stop{0};                // the goal, or the nearest of the cells' middles
   uint32_t region = Regions::none;  // that the goal is in
 };
-// None where no cell is passable. `goal` is finite; that of those who flee, shared::WAY_OUT, has all passable
-// cells.
-std::optional<Stops> stopsOf(const CostGrid& grid, const Regions& regions, const glm::vec2& goal);
+// Without cells where none is passable. `goal` is finite; that of those who flee, shared::WAY_OUT, has all
+// passable cells.
+Stops stopsOf(const CostGrid& grid, const Regions& regions, const glm::vec2& goal);
 
 // Cells along the longer side of a large terrain: a field of them is solved in a fraction of a second on a
 // processor, and 16 of them fit the 128 MiB of a small binding.

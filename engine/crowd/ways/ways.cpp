@@ -157,16 +157,13 @@ void beginWays(Crowd::Impl& crowd, uint32_t k, bool isNew) {
     if (!isNew && isSeries(goal)) return true;  // those in use will follow
     return addGoal(crowd, spawnerOf(crowd, *of.herd, *of.run), goal, kind.series, targets);
   };
-  // A goal without a field is gone to straight, a series is not.
   Targets targets;
   for (const HerdRun& of : runs)
-    if (isSeries(of.herd->from.goal) &&
-        (!add(of, of.herd->from.goal, targets) || targets.size() > shared::MOST_WAYS))
+    if (!add(of, of.herd->from.goal, targets) || (isNew && targets.size() > shared::MOST_WAYS))
       throw inputError(
-          fmt::format("{}: herd {}: its goals in series, and those of herds like it, have more "
-                      "than {} places, expected at most as many",
+          fmt::format("{}: herd {}: its goal, and those of herds like it, are more than {} places that ways "
+                      "lead to, expected at most as many",
                       crowd.scene.name, of.number, shared::MOST_WAYS));
-  for (const HerdRun& of : runs) add(of, of.herd->from.goal, targets);
   for (const HerdRun& of : runs)
     eachEventGoal(crowd, of.number, [&](const Goal& goal) { add(of, goal, targets); });
   kind.ways->setPlaces(placesIn(kind.series));
@@ -193,8 +190,7 @@ void leadTo(Crowd::Impl& crowd, const Herd& herd, const SizeRun& run, std::span<
                       name(), shared::MOST_PLACES));
   }
   const auto isNew = [&](const glm::vec2& target) { return !kind.ways->has(target); };
-  const bool leadsNowhere = kind.ways->regions().count == 0;
-  if (table == kind.series && (leadsNowhere || std::ranges::none_of(targets, isNew))) return;
+  if (table == kind.series && std::ranges::none_of(targets, isNew)) return;
   Targets kept = targets;
   if (kind.ways->goals().size() + targets.size() > shared::MOST_WAYS) {
     crowd.context->waitIdle();
@@ -297,9 +293,10 @@ uint32_t Crowd::cannotReach(uint32_t herd) const {
     if (!of.presence.has(agent) || !isLed || goal[0] == shared::WAY_OUT || !ways.has({goal[0], goal[1]}))
       continue;
     const uint32_t region = ways.regions().of[crowd::cellAt(ways.grid(), crowd::placeOf(body))];
-    // An agent in an obstacle gets out of it, nobody knows where.
-    if (region == crowd::Regions::none) continue;
-    count += region != ways.stopsAt({goal[0], goal[1]}).region;
+    // An agent in an obstacle gets out of it, nobody knows where, as long as there is anything outside.
+    const bool leadsNowhere = ways.regions().count == 0;
+    if (region == crowd::Regions::none && !leadsNowhere) continue;
+    count += leadsNowhere || region != ways.stopsAt({goal[0], goal[1]}).region;
   }
   return count;
 }
