@@ -8,6 +8,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "app/commands.h"
@@ -87,7 +88,7 @@ class Run {
 
   void raiseObstacle();
   void watchCrowding();
-  void tellWhoCannotReach() const;
+  void tellWhoCannotReach(uint32_t herd, uint32_t count);
   void afterTick();
   void save();
   void restart(std::optional<Controller> controller);
@@ -118,6 +119,7 @@ class Run {
   StopDeadline::Leave leave_;  // completes the files
   std::optional<Obstacle> obstacle_;
   std::optional<CrowdingWatch> crowdingWatch_;
+  std::set<uint32_t> toldOf_;  // herds of which it was said that somebody cannot reach the goal
 };
 
 Run::Run(RunOptions options)
@@ -189,7 +191,7 @@ void Run::start() {
     crowd_.emplace(*device_, terrain_, scene_, crowdOptions);
     raiseObstacle();
   }
-  tellWhoCannotReach();
+  for (uint32_t h = 0; h < crowd_->herdCount(); ++h) tellWhoCannotReach(h, crowd_->cannotReach(h));
   foraging_ = ForageLog(*crowd_);
   watchCrowding();
   starting.reset();
@@ -219,15 +221,13 @@ void Run::watchCrowding() {
   if (options_.crowding) crowdingWatch_.emplace(*crowd_, options_.scene.dt);
 }
 
-// Once, as the run begins.
-void Run::tellWhoCannotReach() const {
-  for (uint32_t herd = 0; herd < crowd_->herdCount(); ++herd)
-    if (const uint32_t count = crowd_->cannotReach(herd); count > 0)
-      fmt::print(
-          stderr,
-          "skitter: herd {}: no way leads {} of {} agents to their goals; they stop at the nearest places "
-          "that one leads to\n",
-          herd, count, crowd_->agentCount(herd));
+// Once for each herd: as the run begins or, where it is so only then, as it ends.
+void Run::tellWhoCannotReach(uint32_t herd, uint32_t count) {
+  if (count == 0 || !toldOf_.insert(herd).second) return;
+  fmt::print(stderr,
+             "skitter: herd {}: no way leads {} of {} agents to their goals; they stop at the nearest places "
+             "that one leads to\n",
+             herd, count, crowd_->agentCount(herd));
 }
 
 void Run::afterTick() {
@@ -307,8 +307,12 @@ void Run::finish() {
     summary_.watchEvery = crowd_->watchEvery();
     summary_.fidelity = crowd_->fidelity();
     for (uint32_t h = 0; h < crowd_->herdCount(); ++h)
-      if (const crowd::Herd& herd = implOf(*crowd_).herds[h]; !herd.isGone())
-        summary_.herds.push_back({h, crowd_->rig(h).name, herd.from.agents, crowd_->fidelity(h)});
+      if (const crowd::Herd& herd = implOf(*crowd_).herds[h]; !herd.isGone()) {
+        const uint32_t cannotReach = crowd_->cannotReach(h);
+        tellWhoCannotReach(h, cannotReach);
+        summary_.herds.push_back(
+            {h, crowd_->rig(h).name, herd.from.agents, cannotReach, crowd_->fidelity(h)});
+      }
     summary_.crowding = crowd_->crowding();
     summary_.foraging = foraging_.figures(*crowd_, options_.scene.dt);
     if (crowdingWatch_) summary_.jams = crowdingWatch_->jams();

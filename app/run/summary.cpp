@@ -172,6 +172,7 @@ nlohmann::ordered_json Summary::json() const {
     perHerd.push_back({{"number", herd.number},
                        {"rig", herd.rig},
                        {"agents", herd.agents},
+                       {"cannotReach", herd.cannotReach},
                        {"fidelity", jsonOf(herd.fidelity)}});
   return {{"device", device},
           {"agents", agents},

@@ -23,6 +23,7 @@ struct HerdFigures {
   uint32_t number = 0;
   std::string rig;
   uint32_t agents = 0;
+  uint32_t cannotReach = 0;  // their goals, of these
   Fidelity fidelity;
 };
 

@@ -316,6 +316,11 @@ SKITTER_C skitter_result skitter_crowd_add(skitter_crowd* crowd, uint32_t herd, 
                                            const skitter_goal* goal, skitter_agent_id* id);
 SKITTER_C skitter_result skitter_crowd_remove(skitter_crowd* crowd, skitter_agent_id agent);
 
+/* `agents` becomes how many agents of a herd with ways have a goal that no way leads to: they stop at the
+ * nearest place that one leads to (docs/ways.md). Waits for the device. */
+SKITTER_C skitter_result skitter_crowd_cannot_reach(const skitter_crowd* crowd, uint32_t herd,
+                                                    uint32_t* agents);
+
 /* A threat of that number, 0 to 63, comes, moves or, with radius 0, goes: a disc about x, z, metres, that
  * agents of herds with ways keep off (docs/ways.md). */
 SKITTER_C skitter_result skitter_crowd_set_threat(skitter_crowd* crowd, uint32_t number,

@@ -125,6 +125,10 @@ skitter_result skitter_crowd_remove(skitter_crowd* crowd, skitter_agent_id agent
   return guarded([&] { crowdOf(crowd).remove(AgentId::ofBits(agent)); });
 }
 
+skitter_result skitter_crowd_cannot_reach(const skitter_crowd* crowd, uint32_t herd, uint32_t* agents) {
+  return c::tell(crowd, agents, "agents", [&](const Crowd& asked) { return asked.cannotReach(herd); });
+}
+
 skitter_result skitter_crowd_set_threat(skitter_crowd* crowd, uint32_t number, const float centre[2],
                                         float radius) {
   return guarded([&] {

@@ -165,6 +165,15 @@ void bindAgents(CrowdClass& bound) {
           },
           "agent"_a, "Removes the agent of that handle from a herd with a reserve.")
       .def(
+          "cannot_reach",
+          [](PythonCrowd& self, uint32_t herd) {
+            return self.told([&](const Crowd& crowd) { return crowd.cannotReach(herd); });
+          },
+          "herd"_a = 0,
+          "How many agents of a herd with ways have a goal that no way leads to: they stop at the nearest "
+          "place "
+          "that one leads to.")
+      .def(
           "set_threat",
           [](PythonCrowd& self, uint32_t number, const glm::vec2& centre, float radius) {
             self.told([&](Crowd& crowd) { crowd.setThreat(number, {centre, radius}); });

@@ -86,21 +86,35 @@ TEST_F(Running, ABottleneckIsPassed) {
 }
 
 TEST_F(Running, WhoCannotReachAGoalIsToldOnce) {
-  const auto heard =
-      [&](const char* obstacles) {
-        std::ofstream(file("way.json"))
-            << R"({"terrain": {"columns": 65, "rows": 65, "amplitude": 0}, "obstacles": [)" << obstacles
-            << R"(], "herds": [{"agents": 4, "ways": {},
-      "spawn": {"kind": "grid", "centre": [0, -5]}, "goal": {"kind": "point", "target": [0, 5]}}]})";
-        const Result result = skitter({"run", file("way.json"), "--headless", "--frames", "3"});
-        EXPECT_EQ(result.code, 0) << result.err;
-        return result.err;
-      };
+  struct Heard {
+    std::string said;
+    int counted = 0;  // in the JSON
+  };
+  const auto heard = [&](const std::string& obstacles, const std::string& events) {
+    write("way.json", R"({"terrain": {"columns": 65, "rows": 65, "amplitude": 0}, "obstacles": [)" +
+                          obstacles + R"(], "herds": [{"agents": 4, "ways": {},
+      "spawn": {"kind": "grid", "centre": [0, -5]}, "goal": {"kind": "point", "target": [0, 5]}}],
+      "events": [)" + events +
+                          "]}");
+    const Result result =
+        skitter({"run", file("way.json"), "--headless", "--frames", "3", "--json", file("run.json")});
+    EXPECT_EQ(result.code, 0) << result.err;
+    return Heard{result.err, json("run.json").at("herds").at(0).at("cannotReach").get<int>()};
+  };
   const std::string told = "herd 0: no way leads 4 of 4 agents to their goals";
-  const std::string walled = heard(R"({"capsule": {"from": [-16, 0], "to": [16, 0]}})");
-  EXPECT_NE(walled.find(told), std::string::npos) << walled;
-  EXPECT_EQ(walled.find(told), walled.rfind(told));
-  EXPECT_EQ(heard("").find("no way"), std::string::npos);
+  const std::string wall = R"({"capsule": {"from": [-16, 0], "to": [16, 0]}})",
+                    beside = R"({"capsule": {"from": [-16, 9], "to": [16, 9]}})",
+                    away = R"({"at": 0, "goal": {"kind": "point", "target": [0, 12]}})";
+  // From the beginning, and by what happens to them.
+  for (const Heard& each : {heard(wall, ""), heard(beside, away)}) {
+    EXPECT_NE(each.said.find(told), std::string::npos) << each.said;
+    EXPECT_EQ(each.said.find(told), each.said.rfind(told));
+    EXPECT_EQ(each.counted, 4);
+  }
+  for (const Heard& each : {heard("", ""), heard("", away)}) {
+    EXPECT_EQ(each.said.find("no way"), std::string::npos) << each.said;
+    EXPECT_EQ(each.counted, 0);
+  }
 }
 
 TEST_F(Running, JsonHasTheDocumentedFields) {
@@ -156,7 +170,10 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   EXPECT_EQ(run.at("watchEvery"), 1);
   EXPECT_EQ(run.at("fidelity").at("agentTicks"), 20 * 30);
   ASSERT_EQ(run.at("herds").size(), 1u);
+  EXPECT_EQ(keysOf(run.at("herds")[0]),
+            (std::set<std::string>{"number", "rig", "agents", "cannotReach", "fidelity"}));
   EXPECT_EQ(run.at("herds")[0].at("agents"), 20);
+  EXPECT_EQ(run.at("herds")[0].at("cannotReach"), 0);
   EXPECT_EQ(run.at("herds")[0].at("fidelity"), run.at("fidelity"));
   EXPECT_EQ(run.at("stateHash").get<std::string>().size(), 16u);
   for (const char* word : {"device", "agents", "median", "state hash", "slip"}) {

@@ -250,6 +250,7 @@ static void testErrors(void) {
   REFUSED(skitter_crowd_add(NULL, 0, &place, NULL, NULL), "crowd is NULL");
   REFUSED(skitter_crowd_remove(NULL, 0), "crowd is NULL");
   REFUSED(skitter_crowd_set_threat(NULL, 0, numbers, 1), "crowd is NULL");
+  REFUSED(skitter_crowd_cannot_reach(NULL, 0, &n), "crowd is NULL");
   REFUSED(skitter_crowd_add_herd(NULL, scene, 0, &herd), "crowd is NULL");
   REFUSED(skitter_crowd_remove_herd(NULL, herd), "crowd is NULL");
   REFUSED(skitter_crowd_herd_id(NULL, 0, &herd), "crowd is NULL");
@@ -644,6 +645,46 @@ static void testSteering(void) {
   crowd = makeCrowd(device, NULL);
   place.x = 0;
   REFUSED(skitter_crowd_add(crowd, 0, &place, NULL, NULL), "its reserve is 0");
+  OK(skitter_crowd_destroy(crowd));
+  OK(skitter_device_destroy(device));
+}
+
+/* Four who find their way; a wall over the whole ground is north of them. */
+static const char* const walled =
+    "{\"terrain\": {\"columns\": 65, \"rows\": 65, \"amplitude\": 0},"
+    " \"obstacles\": [{\"capsule\": {\"from\": [-40, 6], \"to\": [40, 6], \"radius\": 0.3}}],"
+    " \"herds\": [{\"agents\": 4, \"ways\": {}, \"spawn\": {\"kind\": \"grid\"},"
+    " \"goal\": {\"kind\": \"point\", \"target\": [0, 10]}}, {\"agents\": 1}]}";
+
+/* Goals that no way leads to, and goals that are none. */
+static void testWays(void) {
+  skitter_device* device = openDevice();
+  skitter_crowd* crowd = makeCrowdOf(walled, device, NULL);
+  skitter_goal goal = {0};
+  uint32_t agents = 9;
+
+  OK(skitter_crowd_cannot_reach(crowd, 0, &agents));
+  CHECK(agents == 4);
+  OK(skitter_crowd_cannot_reach(crowd, 1, &agents));
+  CHECK(agents == 0);
+  REFUSED(skitter_crowd_cannot_reach(crowd, 0, NULL), "agents is NULL");
+  REFUSED(skitter_crowd_cannot_reach(crowd, 2, &agents), "herd 2: expected one of the crowd's 2 herds");
+  goal.kind = SKITTER_GOAL_POINT;
+  goal.speed = 1;
+  goal.target[1] = -8;
+  OK(skitter_crowd_steer(crowd, 0, &goal));
+  OK(skitter_crowd_step(crowd, 1, dt));
+  OK(skitter_crowd_cannot_reach(crowd, 0, &agents));
+  CHECK(agents == 0);
+  goal.target[1] = NAN;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal), "herd 0: goal.target z is nan m, expected -4096 to 4096");
+  goal.kind = SKITTER_GOAL_VELOCITY;
+  goal.velocity[0] = NAN;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal), "herd 0: the length of goal.velocity is nan m/s");
+  goal.kind = SKITTER_GOAL_CROSS;
+  goal.speed = NAN;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal), "herd 0: goal.speed is nan m/s, expected 0 to 1000");
+
   OK(skitter_crowd_destroy(crowd));
   OK(skitter_device_destroy(device));
 }
@@ -1864,7 +1905,7 @@ int main(int argc, char** argv) {
                {"ground", testGround},     {"records", testRecords},
                {"readback", testReadback}, {"drawing", testDrawing},
                {"pictures", testPictures}, {"ik", testIk},
-               {"splines", testSplines}};
+               {"splines", testSplines},   {"ways", testWays}};
   size_t i;
   for (i = 0; argc == 2 && i < COUNT(tests); ++i) {
     if (strcmp(argv[1], tests[i].name) != 0) continue;

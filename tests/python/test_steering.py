@@ -87,6 +87,58 @@ def test_what_cannot_be_changes_nothing(device, standing):
     assert crowd.state_hash() == other.state_hash()
 
 
+# Four who find their way; a wall over the whole ground is north of them.
+WALLED = {
+    "terrain": {"columns": 65, "rows": 65, "amplitude": 0},
+    "obstacles": [{"capsule": {"from": [-40, 6], "to": [40, 6], "radius": 0.3}}],
+    "herds": [
+        {"agents": 4, "ways": {}, "spawn": {"kind": "grid"}, "goal": {"kind": "point", "target": [0, 10]}},
+        {"agents": 1},
+    ],
+}
+
+
+def test_who_cannot_reach_a_goal_is_counted(device):
+    crowd = skitter.Crowd(device, skitter.Scene.parse(WALLED))
+    assert (crowd.cannot_reach(), crowd.cannot_reach(1)) == (4, 0)
+    crowd.steer_to([[0, -8]] * 4)
+    crowd.step()
+    assert crowd.cannot_reach() == 0
+    with pytest.raises(skitter.InputError, match="herd 2: expected one of the crowd's 2 herds"):
+        crowd.cannot_reach(2)
+
+
+def test_goals_that_are_no_number_are_refused(device):
+    crowd = skitter.Crowd(device, skitter.Scene.parse(WALLED))
+    crowd.step()
+    before = crowd.state_hash()
+    nan = float("nan")
+    targets = np.zeros((4, 2))
+    targets[2, 1] = nan
+    with pytest.raises(skitter.InputError, match="herd 0, agent 2: goal.target z is nan m, expected -4096 to 4096"):
+        crowd.steer_to(targets)
+    with pytest.raises(skitter.InputError, match="the length of goal.velocity is nan m/s"):
+        crowd.steer_by(targets)
+    for kind, member, value, what in (
+        ("cross", "speed", nan, "goal.speed is nan m/s"),
+        ("point", "target", (nan, 0), "goal.target x is nan m"),
+        ("route", "places", [(0, 1), (0, nan)], "a goal.places z is nan m"),
+        ("roam", "radius", nan, "goal.radius is nan m, expected 0.01 to 4096"),
+        ("follow", "speed", nan, "goal.speed is nan m/s"),
+        ("flee", "speed", nan, "goal.speed is nan m/s"),
+    ):
+        wrong = skitter.Goal()
+        wrong.kind = kind
+        setattr(wrong, member, value)
+        with pytest.raises(skitter.InputError, match=what):
+            crowd.steer(wrong)
+        scene = skitter.Scene.parse(WALLED)
+        scene.herds[0].goal = wrong
+        with pytest.raises(skitter.InputError, match=what):
+            skitter.Crowd(device, scene)
+    assert crowd.state_hash() == before
+
+
 def test_agents_are_put_elsewhere(device, standing):
     crowd = skitter.Crowd(device, standing)
     crowd.teleport(crowd.agent_id(2), (3, -4), 1)
