@@ -1,8 +1,12 @@
 // Herds that find their way (docs/ways.md).
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "assets/files.h"
@@ -85,6 +89,108 @@ TEST_F(WayFieldsTest, AreThoseOfTheReference) {
     crowd::WayFields fields(context(), grid);
     fields.add(goals, {});
     for (const glm::vec2& goal : goals) expectAsReference(fields, goal);
+  }
+}
+
+// Ground with the obstacles and the creatures of a scene, and the goals that are tried on it.
+struct WayWorld {
+  const char* name;
+  Heightfield ground;
+  std::vector<Obstacle> obstacles;
+  std::vector<glm::vec2> goals;
+};
+std::vector<WayWorld> wayWorlds() {
+  const auto load = [](const char* file, float scale) {
+    return loadHeightfield(std::string(SKITTER_ROOT "/assets/terrain/") + file, {.scale = scale});
+  };
+  const Scene maze = loadScene(SKITTER_ROOT "/assets/scenes/maze.json");
+  return {{"jacksboro", load("jacksboro_403x344.png", 0.0067f), {}, {{-60, 40}, {30.2f, 20.1f}}},
+          {"everest", load("everest_513x513.png", 0.005426f), {}, {{-60, 40}, {50.2f, -70.1f}}},
+          {"maze", maze.loadTerrain(), maze.obstacles, {maze.herds[0].goal.target, {-3, -24}}}};
+}
+
+// Its cost grid by the reference. Where rounding decides whether a cell is passable, it is as in `grid`.
+reference::WayGrid referenceOf(const WayWorld& world, const CostGrid& grid, const Traveller& traveller) {
+  const Heightfield& ground = world.ground;
+  const reference::Heights heights{ground.heights.data(),         static_cast<int>(ground.columns),
+                                   static_cast<int>(ground.rows), double{ground.originX()},
+                                   double{ground.originZ()},      1 / double{ground.spacingX},
+                                   1 / double{ground.spacingZ}};
+  reference::WayObstacles obstacles;
+  for (const auto& [shape] : world.obstacles) {
+    if (const auto* disc = std::get_if<Disc>(&shape))
+      obstacles.discs.push_back({disc->centre, double{disc->radius}});
+    if (const auto* capsule = std::get_if<Capsule>(&shape))
+      obstacles.capsules.push_back({capsule->from, capsule->to, double{capsule->radius}});
+    if (const auto* polygon = std::get_if<ConvexPolygon>(&shape))
+      obstacles.polygons.push_back({{polygon->corners.begin(), polygon->corners.end()}});
+  }
+  reference::WayGrid made = reference::wayGrid(heights, obstacles,
+                                               {.legLength = double{traveller.legLength},
+                                                .footprint = double{traveller.footprint},
+                                                .edgeMargin = double{traveller.margin},
+                                                .climb = double{traveller.ways.climb},
+                                                .steepest = double{traveller.ways.steepest},
+                                                .step = double{traveller.ways.step}});
+  EXPECT_EQ(made.cells(), grid.cost.size());
+  for (size_t at = 0; at < made.cells(); ++at) {
+    if (made.passable(at) == std::isfinite(grid.cost[at])) continue;
+    // Places of 128 m in float32 on slopes of 4, over half a cell.
+    EXPECT_LT(made.margin[at], 1e-3) << world.name << ", cell " << at;
+    made.cost[at] = double{grid.cost[at]};
+  }
+  return made;
+}
+
+// How far the times of a field are from those of fast marching in double precision, as shares of these: of
+// the cells from which a way leads to the goal, ten cells and more from it.
+struct FieldErrors {
+  double mean = 0, worst = 0;
+  size_t cells = 0;
+};
+FieldErrors errorsOf(const crowd::WayFields& fields, const reference::WayGrid& grid, const glm::vec2& goal) {
+  const std::vector<double> expected =
+      reference::wayTimes(grid, reference::wayStarts(grid, goal), double{shared::WAY_INSIDE_COST});
+  const std::vector<float> times = fields.times(goal);
+  const uint32_t region = fields.stopsAt(goal).region;
+  FieldErrors errors;
+  for (size_t at = 0; at < times.size(); ++at) {
+    if (fields.regions().of[at] != region ||
+        glm::distance(grid.middle(at), glm::dvec2(goal)) < 10 * grid.cell)
+      continue;
+    const double error = std::abs(double{times[at]} - expected[at]) / expected[at];
+    errors.mean += error;
+    errors.worst = std::max(errors.worst, error);
+    ++errors.cells;
+  }
+  errors.mean /= static_cast<double>(errors.cells);
+  return errors;
+}
+
+// The costs, stops and times of the reference follow from the same heights and from nothing else.
+TEST_F(WayFieldsTest, AreThoseOfFastMarchingOnRealGroundAndInAMaze) {
+  const Traveller spider{.legLength = 1, .footprint = crowd::footprintRadius(spiderRig()), .margin = 2};
+  for (const WayWorld& world : wayWorlds()) {
+    const CostGrid grid = costGrid(world.ground, world.obstacles, spider);
+    const reference::WayGrid expected = referenceOf(world, grid, spider);
+    crowd::WayFields fields(context(), grid);
+    fields.add(world.goals, {});
+    for (const glm::vec2& goal : world.goals) {
+      SCOPED_TRACE(testing::Message() << world.name << ", goal " << goal.x << ", " << goal.y);
+      const FieldErrors errors = errorsOf(fields, expected, goal);
+      EXPECT_GT(errors.cells, grid.cost.size() / 2);
+      EXPECT_LT(errors.mean, 0.01);
+      EXPECT_LT(errors.worst, 0.03);
+      fmt::print("{}: {} cells, {:.2g} in the mean, {:.2g} at worst\n", world.name, errors.cells, errors.mean,
+                 errors.worst);
+    }
+    // Fields that know of obstacles but not of slopes are told apart.
+    CostGrid flat = grid;
+    for (float& cost : flat.cost) cost = std::isfinite(cost) ? 1 : cost;
+    fields.setGrid(flat);
+    const FieldErrors errors = errorsOf(fields, expected, world.goals[0]);
+    EXPECT_GT(errors.mean, 0.01) << world.name;
+    EXPECT_GT(errors.worst, 0.03) << world.name;
   }
 }
 
