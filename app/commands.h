@@ -21,6 +21,7 @@ using Command = std::function<int()>;
 // clang-format off
 #define SKITTER_COMMANDS(COMMAND) \
   SKITTER_WHERE_BENCH(COMMAND(Bench)) \
+  COMMAND(Colony) \
   COMMAND(Fields) \
   COMMAND(Ik) \
   COMMAND(Info) \

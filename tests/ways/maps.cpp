@@ -6,24 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
+
+#include "app/colony/threat_map.h"
 
 namespace skitter::test {
 namespace {
 
 constexpr float wall = std::numeric_limits<float>::infinity();
-
-// A linear congruential generator of its own (Knuth's MMIX): the same maps with every standard library.
-class Dice {
- public:
-  explicit Dice(uint64_t seed) : state_(seed) {}
-  double between(double least, double most) {
-    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
-    return least + (most - least) * static_cast<double>(state_ >> 11) * 0x1p-53;
-  }
-
- private:
-  uint64_t state_;
-};
 
 uint32_t fixedShareOf(float share, double unit) {
   return static_cast<uint32_t>(std::floor(static_cast<double>(share) * unit + 0.5));
@@ -67,39 +57,11 @@ ColonyCase drawnCase(const std::string& name, const std::string& picture) {
 }
 
 ColonyCase threatCase(uint32_t side, uint64_t seed) {
-  Dice dice(seed);
-  ColonyCase each{.name = fmt::format("threats {} of side {}", seed, side),
-                  .grid = {.columns = side, .rows = side, .cell = 1, .origin = {0, 0}, .cost = {}},
-                  .nest = {side * 6 / 100, side / 2},
-                  .goal = {side * 94 / 100, side / 2}};
-  std::vector<double> cost(size_t{side} * side, 1);
-  const auto forEachCell = [&](const auto& change) {
-    for (uint32_t row = 0; row < side; ++row)
-      for (uint32_t column = 0; column < side; ++column)
-        change(cost[size_t{row} * side + column], column, row);
-  };
-  for (int threat = 0; threat < 12; ++threat) {
-    const double x = dice.between(0, side), z = dice.between(0, side);
-    const double width = dice.between(0.04, 0.1) * side, height = dice.between(2, 10);
-    forEachCell([&](double& at, double column, double row) {
-      const double dx = column - x, dz = row - z;
-      at += height * std::exp(-(dx * dx + dz * dz) / (2 * width * width));
-    });
-  }
-  for (int n = 0; n < 10; ++n) {
-    const double x = dice.between(0.15, 0.85) * side, z = dice.between(0.1, 0.9) * side;
-    double width = dice.between(0.01, 0.04) * side, depth = dice.between(0.02, 0.14) * side;
-    if (dice.between(0, 1) < 0.5) std::swap(width, depth);
-    forEachCell([&](double& at, double column, double row) {
-      if (std::abs(column - x) < width && std::abs(row - z) < depth) at = wall;
-    });
-  }
-  for (const glm::uvec2 end : {each.nest, each.goal})
-    forEachCell([&](double& at, double column, double row) {
-      if (std::hypot(column - end.x, row - end.y) < 4) at = 1;
-    });
-  for (const double value : cost) each.grid.cost.push_back(static_cast<float>(value));
-  return each;
+  app::ThreatMap map = app::threatMap(side, seed);
+  return {.name = fmt::format("threats {} of side {}", seed, side),
+          .grid = std::move(map.grid),
+          .nest = map.nest,
+          .goal = map.goal};
 }
 
 reference::Colony referenceOf(const ColonyCase& each) {

@@ -18,8 +18,7 @@ struct ColonyCase {
 };
 ColonyCase drawnCase(const std::string& name, const std::string& picture);
 
-// A square map with twelve threats, hills of cost up to 10 that may add up, and ten walls, from the middle
-// of its left to the middle of its right (docs/colony.md).
+// app::threatMap.
 ColonyCase threatCase(uint32_t side, uint64_t seed);
 
 reference::Colony referenceOf(const ColonyCase&);
