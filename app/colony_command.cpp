@@ -47,8 +47,9 @@ struct ColonyOptions {
 // A colony's search, beside what Dijkstra's algorithm finds on the same graph.
 struct ColonyRun {
   uint64_t map = 0, seed = 0;
-  std::optional<uint64_t> shortest, length;  // 1/512 of a cell of flat ground; none: there is no way
-  uint32_t iteration = 0;                    // that found the path
+  std::optional<uint64_t> shortest = {},
+                          length = {};  // 1/512 of a cell of flat ground; none: there is no way
+  uint32_t iteration = 0;               // that found the path
   double makeMilliseconds = 0, searchMilliseconds = 0;
 
   // None where no way leads to the goal. Infinite where one does that no scout has found.

@@ -262,16 +262,28 @@ SKITTER_C skitter_result skitter_crowd_destroy(skitter_crowd* crowd);
  * herd's and an agent that is not there are SKITTER_ERROR_INPUT; then nothing is changed. */
 
 typedef enum skitter_goal_kind {
-  SKITTER_GOAL_CROSS = 0,   /* to the far side of the ground and back, for ever */
-  SKITTER_GOAL_POINT = 1,   /* to `target`, to stand there */
-  SKITTER_GOAL_NONE = 2,    /* nowhere */
-  SKITTER_GOAL_VELOCITY = 3 /* by `velocity` */
+  SKITTER_GOAL_CROSS = 0,    /* to the far side of the ground and back, for ever */
+  SKITTER_GOAL_POINT = 1,    /* to `target`, to stand there */
+  SKITTER_GOAL_NONE = 2,     /* nowhere */
+  SKITTER_GOAL_VELOCITY = 3, /* by `velocity` */
+  /* Only of herds with ways (docs/ways.md): */
+  SKITTER_GOAL_ROUTE = 4,  /* from one of `places` to the next, once or in a loop */
+  SKITTER_GOAL_ROAM = 5,   /* from place to place within `radius` of `target`, for ever */
+  SKITTER_GOAL_FOLLOW = 6, /* to where a herd or one of its agents is */
+  SKITTER_GOAL_FLEE = 7    /* out of threats and obstacles */
 } skitter_goal_kind;
 typedef struct skitter_goal {
   skitter_goal_kind kind;
-  float target[2];   /* x, z, metres */
-  float speed;       /* metres per second, 0 to 1000, of kinds CROSS and POINT */
-  float velocity[2]; /* x, z, metres per second, at most 1000 long */
+  float target[2];      /* x, z, metres, of kinds POINT and ROAM */
+  float speed;          /* metres per second, 0 to 1000, of all kinds but NONE and VELOCITY */
+  float velocity[2];    /* x, z, metres per second, at most 1000 long, of kind VELOCITY */
+  const float* places;  /* x, z of each, metres, of kind ROUTE */
+  uint32_t place_count; /* 1 to 16 */
+  int loop;             /* of kind ROUTE: whether the first place follows the last one */
+  float radius;         /* metres, 0.01 to 4096, of kind ROAM */
+  uint32_t herd;        /* of kind FOLLOW */
+  int follow_agent;     /* 0: to the middle of that herd */
+  uint32_t agent;       /* else to the agent in this place of it */
 } skitter_goal;
 
 /* A position and a heading: where an agent is put, its feet on the ground around. */

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "bindings/c/handles.h"
 #include "bindings/common/herd_reader.h"
@@ -15,15 +17,36 @@ static_assert(SKITTER_NO_AGENT == AgentId().bits());
 static_assert(SKITTER_GOAL_CROSS == static_cast<int>(Goal::Kind::cross) &&
               SKITTER_GOAL_POINT == static_cast<int>(Goal::Kind::point) &&
               SKITTER_GOAL_NONE == static_cast<int>(Goal::Kind::none) &&
-              SKITTER_GOAL_VELOCITY == static_cast<int>(Goal::Kind::velocity));
+              SKITTER_GOAL_VELOCITY == static_cast<int>(Goal::Kind::velocity) &&
+              SKITTER_GOAL_ROUTE == static_cast<int>(Goal::Kind::route) &&
+              SKITTER_GOAL_ROAM == static_cast<int>(Goal::Kind::roam) &&
+              SKITTER_GOAL_FOLLOW == static_cast<int>(Goal::Kind::follow) &&
+              SKITTER_GOAL_FLEE == static_cast<int>(Goal::Kind::flee));
+
+// Only a route has places. A count that cannot be is not read by.
+std::vector<glm::vec2> placesOf(const skitter_goal& goal) {
+  if (goal.kind != SKITTER_GOAL_ROUTE) return {};
+  if (goal.place_count == 0 || goal.place_count > Goal::maxPlaces)
+    throw inputError(
+        fmt::format("goal.place_count is {}, expected 1 to {}", goal.place_count, Goal::maxPlaces));
+  const auto numbers = listOf(goal.places, size_t{2} * goal.place_count, "goal.places");
+  std::vector<glm::vec2> places;
+  for (size_t i = 0; i < numbers.size(); i += 2) places.emplace_back(numbers[i], numbers[i + 1]);
+  return places;
+}
 
 Goal goalOf(const skitter_goal& goal) {
-  if (const int kind = static_cast<int>(goal.kind); kind < SKITTER_GOAL_CROSS || kind > SKITTER_GOAL_VELOCITY)
+  if (const int kind = static_cast<int>(goal.kind); kind < SKITTER_GOAL_CROSS || kind > SKITTER_GOAL_FLEE)
     throw inputError(fmt::format("goal.kind is {}, expected a skitter_goal_kind", kind));
   return {.kind = static_cast<Goal::Kind>(goal.kind),
           .target = {goal.target[0], goal.target[1]},
           .speed = goal.speed,
-          .velocity = {goal.velocity[0], goal.velocity[1]}};
+          .velocity = {goal.velocity[0], goal.velocity[1]},
+          .places = placesOf(goal),
+          .loop = goal.loop != 0,
+          .radius = goal.radius,
+          .leader = goal.herd,
+          .agent = goal.follow_agent != 0 ? std::optional(goal.agent) : std::nullopt};
 }
 
 Place placeOf(const skitter_place& place) { return {{place.x, place.z}, place.heading}; }

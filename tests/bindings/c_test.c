@@ -623,8 +623,10 @@ static void testSteering(void) {
   REFUSED(skitter_crowd_steer(crowd, 1, &goal), "herd 1: expected one of the crowd's 1 herds");
   goals[0].velocity[0] = 1001;
   REFUSED(skitter_crowd_steer(crowd, 0, &goals[0]), "the length of goal.velocity");
-  goals[0].kind = (skitter_goal_kind)4;
-  REFUSED(skitter_crowd_steer(crowd, 0, &goals[0]), "goal.kind is 4, expected a skitter_goal_kind");
+  goals[0].kind = (skitter_goal_kind)8;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goals[0]), "goal.kind is 8, expected a skitter_goal_kind");
+  goals[0].kind = SKITTER_GOAL_FLEE;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goals[0]), "expected a herd with ways");
   OK(skitter_crowd_steer_agents(crowd, NULL, NULL, 0));
 
   OK(skitter_crowd_steer(crowd, 0, &goal));
@@ -649,14 +651,106 @@ static void testSteering(void) {
   OK(skitter_device_destroy(device));
 }
 
-/* Four who find their way; a wall over the whole ground is north of them. */
+/* Four who find their way, and one who stands; a wall over the whole ground is north of them. */
 static const char* const walled =
     "{\"terrain\": {\"columns\": 65, \"rows\": 65, \"amplitude\": 0},"
     " \"obstacles\": [{\"capsule\": {\"from\": [-40, 6], \"to\": [40, 6], \"radius\": 0.3}}],"
     " \"herds\": [{\"agents\": 4, \"ways\": {}, \"spawn\": {\"kind\": \"grid\"},"
-    " \"goal\": {\"kind\": \"point\", \"target\": [0, 10]}}, {\"agents\": 1}]}";
+    " \"goal\": {\"kind\": \"point\", \"target\": [0, 10]}},"
+    " {\"agents\": 1, \"spawn\": {\"kind\": \"grid\", \"centre\": [6, -2]}, \"goal\": {\"kind\": "
+    "\"none\"}}]}";
 
-/* Goals that no way leads to, and goals that are none. */
+/* The farthest that one of four agents is from a place. */
+static double farthestFrom(const skitter_crowd* crowd, double x, double z) {
+  double places[4 * 3], farthest = 0;
+  int i;
+  OK(skitter_crowd_positions(crowd, 0, places, 4));
+  for (i = 0; i < 4; ++i) farthest = fmax(farthest, hypot(places[3 * i] - x, places[3 * i + 2] - z));
+  return farthest;
+}
+
+static void testRefusedSeries(skitter_crowd* crowd) {
+  static const float places[6] = {0, 4, -5, 3, NAN, 1};
+  skitter_goal goal = {0};
+  goal.kind = SKITTER_GOAL_ROUTE;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal), "goal.place_count is 0, expected 1 to 16");
+  goal.place_count = 17;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal), "goal.place_count is 17, expected 1 to 16");
+  goal.place_count = 3;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal), "goal.places is NULL");
+  goal.places = places;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal), "a goal.places x is nan m, expected -4096 to 4096");
+  goal.kind = SKITTER_GOAL_ROAM;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal), "goal.radius is 0 m, expected 0.01 to 4096");
+  goal.kind = SKITTER_GOAL_FOLLOW;
+  goal.herd = 2;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal), "herd 2: expected one of the crowd's 2 herds");
+  goal.herd = 1;
+  goal.follow_agent = 1;
+  goal.agent = 1;
+  REFUSED(skitter_crowd_steer(crowd, 0, &goal),
+          "goal.agent is 1, expected less than 1, the places of herd 1");
+}
+
+/* Goals from place to place, while the crowd runs. */
+static void testSeries(skitter_crowd* crowd) {
+  const float places[4] = {0, 4, -5, 3}, here[2] = {-5, 3};
+  skitter_goal goal = {0};
+  double before[4 * 3], after[4 * 3];
+  int i, on = 0;
+
+  goal.kind = SKITTER_GOAL_ROUTE;
+  goal.speed = 2;
+  goal.places = places;
+  goal.place_count = 2;
+  OK(skitter_crowd_steer(crowd, 0, &goal));
+  OK(skitter_crowd_step(crowd, 600, dt));
+  CHECK(farthestFrom(crowd, -5, 3) < 1);
+  /* In a loop nobody stands. */
+  goal.loop = 1;
+  OK(skitter_crowd_steer(crowd, 0, &goal));
+  OK(skitter_crowd_step(crowd, 60, dt));
+  OK(skitter_crowd_positions(crowd, 0, before, 4));
+  OK(skitter_crowd_step(crowd, 30, dt));
+  OK(skitter_crowd_positions(crowd, 0, after, 4));
+  for (i = 0; i < 4; ++i)
+    on += hypot(after[3 * i] - before[3 * i], after[3 * i + 2] - before[3 * i + 2]) > 0.2;
+  CHECK(on >= 2);
+
+  goal.kind = SKITTER_GOAL_ROAM;
+  goal.target[0] = 3;
+  goal.target[1] = -4;
+  goal.radius = 3;
+  OK(skitter_crowd_steer(crowd, 0, &goal));
+  OK(skitter_crowd_step(crowd, 600, dt));
+  CHECK(farthestFrom(crowd, 3, -4) < 3 + 2);
+
+  /* The middle of herd 1, and its only agent, which is there. */
+  for (i = 0; i < 2; ++i) {
+    goal.kind = SKITTER_GOAL_FOLLOW;
+    goal.herd = 1;
+    goal.follow_agent = i;
+    goal.agent = 0;
+    OK(skitter_crowd_steer(crowd, 0, &goal));
+    OK(skitter_crowd_step(crowd, 900, dt));
+    CHECK(farthestFrom(crowd, 6, -2) < 1.5);
+    goal.kind = SKITTER_GOAL_POINT;
+    goal.target[0] = here[0];
+    goal.target[1] = here[1];
+    OK(skitter_crowd_steer(crowd, 0, &goal));
+    OK(skitter_crowd_step(crowd, 900, dt));
+    CHECK(farthestFrom(crowd, here[0], here[1]) < 1);
+  }
+
+  goal.kind = SKITTER_GOAL_FLEE;
+  OK(skitter_crowd_steer(crowd, 0, &goal));
+  OK(skitter_crowd_set_threat(crowd, 0, here, 2));
+  OK(skitter_crowd_step(crowd, 300, dt));
+  OK(skitter_crowd_positions(crowd, 0, after, 4));
+  for (i = 0; i < 4; ++i) CHECK(hypot(after[3 * i] - here[0], after[3 * i + 2] - here[1]) > 2);
+}
+
+/* Goals that no way leads to, goals that are none, and goals in series. */
 static void testWays(void) {
   skitter_device* device = openDevice();
   skitter_crowd* crowd = makeCrowdOf(walled, device, NULL);
@@ -685,6 +779,8 @@ static void testWays(void) {
   goal.speed = NAN;
   REFUSED(skitter_crowd_steer(crowd, 0, &goal), "herd 0: goal.speed is nan m/s, expected 0 to 1000");
 
+  testRefusedSeries(crowd);
+  testSeries(crowd);
   OK(skitter_crowd_destroy(crowd));
   OK(skitter_device_destroy(device));
 }

@@ -329,6 +329,41 @@ TEST_F(PublicCrowd, RefusesMoreGoalsThanWaysLeadTo) {
   EXPECT_EQ(crowd.cannotReach(0), 0u);
 }
 
+// The farthest of the agents of herd 0 from a place.
+double farthestFrom(const Crowd& crowd, const glm::dvec2& place, uint32_t agents) {
+  double farthest = 0;
+  for (uint32_t i = 0; i < agents; ++i) {
+    const glm::dvec3 at = bodyIn(crowd, 0, i).position;
+    farthest = std::max(farthest, std::hypot(at.x - place.x, at.z - place.y));
+  }
+  return farthest;
+}
+
+TEST_F(PublicCrowd, GoesFromPlaceToPlace) {
+  Scene scene = walledOff();
+  scene.herds.push_back(standingScene(1).herds[0]);
+  scene.herds[1].spawn.centre = {6, -2};
+  Crowd crowd(device(), flatGround(), scene);
+  walk(device(), crowd, 1);
+  crowd.steer(0, Goal{.kind = Goal::Kind::route, .speed = 2, .places = {{0, 4}, {-5, 3}}});
+  walk(device(), crowd, 600);
+  EXPECT_LT(farthestFrom(crowd, {-5, 3}, 4), 1);
+  crowd.steer(0, Goal{.kind = Goal::Kind::roam, .target = {3, -4}, .speed = 2, .radius = 3});
+  walk(device(), crowd, 600);
+  EXPECT_LT(farthestFrom(crowd, {3, -4}, 4), 3 + 2);
+  crowd.steer(0, Goal{.kind = Goal::Kind::follow, .speed = 2, .leader = 1});
+  walk(device(), crowd, 900);
+  EXPECT_LT(farthestFrom(crowd, {6, -2}, 4), 1.5);
+  crowd.steer(0, Goal{.kind = Goal::Kind::flee, .speed = 2});
+  crowd.setThreat(0, {.centre = {6, -2}, .radius = 2});
+  walk(device(), crowd, 300);
+  for (uint32_t i = 0; i < 4; ++i)
+    EXPECT_GT(std::hypot(bodyIn(crowd, 0, i).position.x - 6, bodyIn(crowd, 0, i).position.z + 2), 2) << i;
+  expectRefused("goal.places are 0, expected 1 to 16",
+                [&] { crowd.steer(0, Goal{.kind = Goal::Kind::route}); });
+  expectRefused("expected a herd with ways", [&] { crowd.steer(1, Goal{.kind = Goal::Kind::flee}); });
+}
+
 TEST_F(PublicCrowd, LeavesThreats) {
   Scene scene = standingScene(1);
   scene.herds[0].ways = Ways{};

@@ -87,15 +87,76 @@ def test_what_cannot_be_changes_nothing(device, standing):
     assert crowd.state_hash() == other.state_hash()
 
 
-# Four who find their way; a wall over the whole ground is north of them.
+# Four who find their way, and one who stands; a wall over the whole ground is north of them.
 WALLED = {
     "terrain": {"columns": 65, "rows": 65, "amplitude": 0},
     "obstacles": [{"capsule": {"from": [-40, 6], "to": [40, 6], "radius": 0.3}}],
     "herds": [
         {"agents": 4, "ways": {}, "spawn": {"kind": "grid"}, "goal": {"kind": "point", "target": [0, 10]}},
-        {"agents": 1},
+        {"agents": 1, "spawn": {"kind": "grid", "centre": [6, -2]}, "goal": {"kind": "none"}},
     ],
 }
+
+
+def series(kind, **members):
+    goal = skitter.Goal()
+    goal.kind, goal.speed = kind, 2
+    for name, value in members.items():
+        setattr(goal, name, value)
+    return goal
+
+
+def farthest(crowd, place):
+    """How far the farthest of herd 0 is from a place."""
+    return np.linalg.norm(crowd.positions()[:, [0, 2]] - place, axis=1).max()
+
+
+def test_goals_in_series_are_set_while_the_crowd_runs(device):
+    crowd = skitter.Crowd(device, skitter.Scene.parse(WALLED))
+    crowd.step()
+    crowd.steer(series("route", places=[(0, 4), (-5, 3)]))
+    crowd.step(600)
+    assert farthest(crowd, (-5, 3)) < 1
+    # In a loop nobody stands.
+    crowd.steer(series("route", places=[(0, 4), (-5, 3)], loop=True))
+    crowd.step(60)
+    before = crowd.positions()
+    crowd.step(30)
+    assert (np.linalg.norm(crowd.positions() - before, axis=1) > 0.2).sum() >= 2
+    crowd.steer(series("roam", target=(3, -4), radius=3))
+    crowd.step(600)
+    assert farthest(crowd, (3, -4)) < 3 + 2
+    for agent in (None, 0):
+        crowd.steer(series("follow", herd=1, agent=agent))
+        crowd.step(900)
+        assert farthest(crowd, (6, -2)) < 1.5
+        crowd.steer(series("point", target=(-5, 3)))
+        crowd.step(900)
+        assert farthest(crowd, (-5, 3)) < 1
+    # Some of them have one of their own.
+    ids = crowd.agent_ids()
+    crowd.steer(series("flee"), agents=ids[:2])
+    crowd.set_threat(0, (-5, 3), 2)
+    crowd.step(300)
+    assert np.linalg.norm(crowd.positions()[:2, [0, 2]] - (-5, 3), axis=1).min() > 2
+    crowd.steer(series("follow", herd=1), agents=ids[2:])
+    crowd.step(900)
+    assert np.linalg.norm(crowd.positions()[2:4, [0, 2]] - (6, -2), axis=1).max() < 1.5
+
+
+def test_goals_in_series_that_cannot_be_are_refused(device):
+    crowd = skitter.Crowd(device, skitter.Scene.parse(WALLED))
+    for goal, what in (
+        (series("route"), "goal.places are 0, expected 1 to 16"),
+        (series("route", places=[(0, 0)] * 17), "goal.places are 17, expected 1 to 16"),
+        (series("roam", radius=0), "goal.radius is 0 m, expected 0.01 to 4096"),
+        (series("follow", herd=2), "herd 2"),
+        (series("follow", herd=1, agent=1), "goal.agent is 1, expected less than 1, the places of herd 1"),
+    ):
+        with pytest.raises(skitter.InputError, match=what):
+            crowd.steer(goal)
+    with pytest.raises(skitter.InputError, match="expected a herd with ways"):
+        crowd.steer(series("flee"), herd=1)
 
 
 def test_who_cannot_reach_a_goal_is_counted(device):
