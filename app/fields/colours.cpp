@@ -36,6 +36,11 @@ glm::vec3 timeColour(float share) {
   return ofOklch(0.93f - 0.65f * t, 0.09f + 0.2f * (t - 0.5f) * (t - 0.5f), 105 + 190 * t);
 }
 
+glm::vec3 trailColour(float share) {
+  const float t = std::clamp(share, 0.0f, 1.0f);
+  return ofOklch(0.95f - 0.6f * t, 0.02f + 0.11f * std::sqrt(t), 155);
+}
+
 glm::vec3 faded(const glm::vec3& colour, float left) {
   return glm::mix(glm::vec3(glm::dot(colour, {0.30f, 0.59f, 0.11f})), colour, left);
 }

@@ -17,7 +17,7 @@ constexpr uint32_t leastMapSide = 420;     // of its picture, for the legend
 constexpr uint32_t mapLeft = 36, mapTop = 92, belowMap = 78, legendWidth = 250;
 constexpr glm::vec3 paperColour(1), inkColour(0.13f, 0.14f, 0.17f), quietColour(0.42f, 0.44f, 0.48f);
 constexpr glm::vec3 blockedColour(0.44f, 0.46f, 0.50f), rockColour(0.19f, 0.20f, 0.23f),
-    signalColour(0.90f, 0.16f, 0.22f);
+    signalColour(0.90f, 0.16f, 0.22f), wayColour(1.0f, 0.72f, 0.30f), foodColour(0.10f, 0.42f, 0.86f);
 constexpr float arrowEvery = 34, arrowLength = 15;  // pixels
 constexpr size_t mostDrawnWays = 12, mostDrawnStarts = 4000;
 
@@ -96,11 +96,19 @@ class MapPicture {
       }
   }
 
-  void drawObstacles() {
+  // What is drawn by the call stays on the map.
+  template <class Draw>
+  void drawOnMap(const Draw& drawAll) {
     drawing_.confine(mapLeft, mapTop, columns_, rows_);
-    for (const Obstacle& obstacle : ground_.obstacles)
-      std::visit([&](const auto& shape) { draw(shape); }, obstacle.shape);
+    drawAll();
     drawing_.confine();
+  }
+
+  void drawObstacles() {
+    drawOnMap([&] {
+      for (const Obstacle& obstacle : ground_.obstacles)
+        std::visit([&](const auto& shape) { draw(shape); }, obstacle.shape);
+    });
     frame();
   }
 
@@ -238,21 +246,44 @@ void drawFlow(MapPicture& picture, const MapGround& ground, const MapGoal& goal)
     }
 }
 
-void drawWays(MapPicture& picture, const MapGround& ground, const MapGoal& goal) {
-  const size_t starts = goal.starts.size(), ways = std::min(starts, mostDrawnWays);
-  for (size_t k = 0; k < ways; ++k) {
-    const std::vector<glm::vec2> way = wayFrom(ground, goal, goal.starts[k * starts / ways]);
-    for (const float thickness : {4.2f, 2.2f})
-      for (size_t i = 1; i < way.size(); ++i)
-        picture.drawing().line(picture.pixelOf(way[i - 1]), picture.pixelOf(way[i]), thickness,
-                               thickness > 3 ? inkColour : glm::vec3(1.0f, 0.72f, 0.30f));
-  }
-  const size_t every = std::max<size_t>(1, starts / mostDrawnStarts);
-  for (size_t i = 0; i < starts; i += every)
-    if (const glm::vec2 at = picture.pixelOf(goal.starts[i]); picture.isOn(at)) {
+void drawWay(MapPicture& picture, std::span<const glm::vec2> way) {
+  for (const float thickness : {4.2f, 2.2f})
+    for (size_t i = 1; i < way.size(); ++i)
+      picture.drawing().line(picture.pixelOf(way[i - 1]), picture.pixelOf(way[i]), thickness,
+                             thickness > 3 ? inkColour : wayColour);
+}
+
+void drawAgents(MapPicture& picture, std::span<const glm::vec2> agents) {
+  const size_t every = std::max<size_t>(1, agents.size() / mostDrawnStarts);
+  for (size_t i = 0; i < agents.size(); i += every)
+    if (const glm::vec2 at = picture.pixelOf(agents[i]); picture.isOn(at)) {
       picture.drawing().disc(at, 2.6f, paperColour);
       picture.drawing().disc(at, 1.7f, inkColour);
     }
+}
+
+void drawWays(MapPicture& picture, const MapGround& ground, const MapGoal& goal) {
+  const size_t starts = goal.starts.size(), ways = std::min(starts, mostDrawnWays);
+  for (size_t k = 0; k < ways; ++k) drawWay(picture, wayFrom(ground, goal, goal.starts[k * starts / ways]));
+  drawAgents(picture, goal.starts);
+}
+
+void explainWay(MapPicture& picture, const std::string& text) {
+  picture.explain(text, [&](const glm::vec2& at) {
+    picture.drawing().line(at - glm::vec2(10, 0), at + glm::vec2(10, 0), 4.2f, inkColour);
+    picture.drawing().line(at - glm::vec2(10, 0), at + glm::vec2(10, 0), 2.2f, wayColour);
+  });
+}
+
+void explainAgent(MapPicture& picture) {
+  picture.explain("agent", [&](const glm::vec2& at) { picture.drawing().disc(at, 2.2f, inkColour); });
+}
+
+// Nests and food are rings, no smaller than they can be seen.
+void drawRing(MapPicture& picture, const Disc& disc, const glm::vec3& colour) {
+  const float radius = std::max(5.0f, disc.radius * picture.scale());
+  picture.drawing().ring(picture.pixelOf(disc.centre), radius, 4.5f, paperColour);
+  picture.drawing().ring(picture.pixelOf(disc.centre), radius, 2.5f, colour);
 }
 
 void drawGoal(Drawing& drawing, const glm::vec2& at) {
@@ -307,6 +338,19 @@ TimeFigures figuresOf(const MapGround& ground, const MapGoal& goal) {
   if (reached == 0) return figures;
   figures.reached = static_cast<double>(reached) / static_cast<double>(passable);
   figures.mean = sum / static_cast<double>(reached);
+  return figures;
+}
+
+TrailFigures figuresOf(const MapGround& ground, const MapTrail& trail) {
+  TrailFigures figures;
+  size_t marked = 0, passable = 0;
+  for (size_t cell = 0; cell < trail.values.size(); ++cell) {
+    passable += isPassable(ground.grid, cell);
+    marked += isPassable(ground.grid, cell) && trail.values[cell] > 0;
+    figures.sum += double{trail.values[cell]};
+    figures.most = std::max(figures.most, double{trail.values[cell]});
+  }
+  if (passable > 0) figures.marked = static_cast<double>(marked) / static_cast<double>(passable);
   return figures;
 }
 
@@ -370,15 +414,42 @@ Drawing drawTimes(const MapGround& ground, const MapGoal& goal) {
   picture.explain("goal", [&](const glm::vec2& at) { drawGoal(drawing, at); });
   if (goal.stop != goal.goal) picture.explain("stop", [&](const glm::vec2& at) { drawStop(drawing, at); });
   if (!goal.starts.empty()) {
-    picture.explain("agent", [&](const glm::vec2& at) { drawing.disc(at, 2.2f, inkColour); });
-    picture.explain("way of an agent", [&](const glm::vec2& at) {
-      drawing.line(at - glm::vec2(10, 0), at + glm::vec2(10, 0), 4.2f, inkColour);
-      drawing.line(at - glm::vec2(10, 0), at + glm::vec2(10, 0), 2.2f, {1.0f, 0.72f, 0.30f});
-    });
+    explainAgent(picture);
+    explainWay(picture, "way of an agent");
   }
   picture.explainGround();
   picture.explain("no way to the goal", [&](const glm::vec2& at) { picture.swatch(at, glm::vec3(0.72f)); });
   return drawing;
+}
+
+// A tenth of the most is seen, too: colours go by the root of the share.
+Drawing drawTrail(const MapGround& ground, const MapTrail& trail) {
+  const double most = std::max(figuresOf(ground, trail).most, 1e-3);
+  const auto colourOf = [](float share) { return trailColour(std::sqrt(share)); };
+  MapPicture picture(ground);
+  picture.fill([&](const glm::vec2& place) {
+    const size_t cell = mapCellOf(ground.grid, place);
+    return isPassable(ground.grid, cell) ? colourOf(static_cast<float>(double{trail.values[cell]} / most))
+                                         : blockedColour;
+  });
+  picture.drawObstacles();
+  picture.drawOnMap([&] {
+    for (const Disc& food : trail.food) drawRing(picture, food, foodColour);
+    for (const Disc& nest : trail.nests) drawRing(picture, nest, signalColour);
+  });
+  drawWay(picture, trail.path);
+  drawAgents(picture, trail.agents);
+
+  picture.explainColours(trail.what, 0, most, niceBelow(most / 4), colourOf);
+  const auto explainRing = [&](const char* text, const glm::vec3& colour) {
+    picture.explain(text, [&](const glm::vec2& at) { picture.drawing().ring(at, 8, 2.5f, colour); });
+  };
+  if (!trail.nests.empty()) explainRing("nest", signalColour);
+  if (!trail.food.empty()) explainRing("food", foodColour);
+  if (!trail.agents.empty()) explainAgent(picture);
+  if (!trail.path.empty()) explainWay(picture, "best path of the scouts");
+  picture.explainGround();
+  return picture.drawing();
 }
 
 }  // namespace skitter::app

@@ -29,6 +29,21 @@ struct MapGoal {
   std::vector<glm::vec2> starts;  // where those agents are
 };
 
+// Pheromone, and those who go by it: foragers, or scouts who look for one path.
+struct MapTrail {
+  std::string what;               // of what the values are, for the legend
+  std::span<const float> values;  // of the cells, 0 or more
+  std::vector<Disc> nests = {}, food = {};
+  std::vector<glm::vec2> agents = {};
+  std::vector<glm::vec2> path = {};  // the best one of scouts
+};
+
+struct TrailFigures {
+  double marked = 0;         // share of the passable cells that have some
+  double most = 0, sum = 0;  // of all cells
+};
+TrailFigures figuresOf(const MapGround& ground, const MapTrail& trail);
+
 struct MapFigures {
   double passable = 0;                // share of cells
   double costMean = 1, costMost = 1;  // of these
@@ -43,6 +58,7 @@ TimeFigures figuresOf(const MapGround& ground, const MapGoal& goal);
 
 Drawing drawCosts(const MapGround& ground);
 Drawing drawTimes(const MapGround& ground, const MapGoal& goal);
+Drawing drawTrail(const MapGround& ground, const MapTrail& trail);
 
 // The way down the times from a place, as far as it goes: to the goal or where a region ends.
 std::vector<glm::vec2> wayFrom(const MapGround& ground, const MapGoal& goal, glm::vec2 place);

@@ -90,8 +90,81 @@ TEST_F(Fields, AreDrawnForEachKindAndGoal) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
+// Twenty who carry food over 7 m of level ground, and a herd that comes after 2 s.
+constexpr const char* foragingScene = R"({
+  "terrain": {"kind": "noise", "columns": 65, "rows": 65, "amplitude": 0},
+  "obstacles": [{"disc": {"centre": [8, 8], "radius": 2}}],
+  "herds": [
+    {"agents": 20, "spawn": {"kind": "grid", "centre": [0, -4], "spacing": 0.6}, "goal": {"speed": 3},
+     "forage": {"nest": {"centre": [0, -4], "radius": 1.5}, "food": [{"centre": [0, 3], "radius": 3}],
+                "cell": 1, "rest": 0.5}}
+  ],
+  "events": [{"at": 2, "addHerd": {"agents": 3, "ways": {}, "spawn": {"kind": "grid", "centre": [-8, -8]},
+                                   "goal": {"kind": "point", "target": [-8, 8]}}}]})";
+
+TEST_F(Fields, HavePheromoneAtATime) {
+  write("foraging.json", foragingScene);
+  const auto drawnAt = [&](const char* seconds) {
+    const Result result =
+        skitter({"fields", file("foraging.json"), "--out", file("out"), "--at", seconds, "--quiet"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    return json("out/fields.json");
+  };
+  const nlohmann::json begun = drawnAt("0");
+  EXPECT_EQ(files(), (std::vector<std::string>{"foraging.json", "out/.skitter-files", "out/fields.json",
+                                               "out/herd0_trail.png", "out/index.html"}));
+  EXPECT_EQ(begun.at("tick"), 0);
+  EXPECT_TRUE(begun.at("grids").empty());
+  ASSERT_EQ(begun.at("trails").size(), 1u);
+  EXPECT_EQ(begun.at("trails")[0].at("unitsMost"), 0);
+  EXPECT_EQ(begun.at("trails")[0].at("agents"), 20);
+
+  const nlohmann::json later = drawnAt("12");
+  EXPECT_EQ(files(), (std::vector<std::string>{"foraging.json", "out/.skitter-files", "out/fields.json",
+                                               "out/herd0_trail.png", "out/herd1_cost.png",
+                                               "out/herd1_goal0.png", "out/index.html"}));
+  EXPECT_EQ(later.at("tick"), 720);
+  EXPECT_NEAR(later.at("seconds").get<double>(), 12, 1e-9);
+  EXPECT_EQ(later.at("grids").at(0).at("goals").at(0).at("agents"), 3);
+  EXPECT_TRUE(later.at("grids")[0].at("goals")[0].at("scouts").is_null()) << "nobody asked for them";
+  const nlohmann::json& trail = later.at("trails").at(0);
+  EXPECT_EQ(trail.at("herds"), std::vector<int>{0});
+  EXPECT_GT(trail.at("taken").at(0), 0);
+  EXPECT_GT(trail.at("marked"), 0);
+  EXPECT_LT(trail.at("marked"), 0.5);
+  // A load's worth in a cell, less what has evaporated.
+  EXPECT_GT(trail.at("unitsMost"), 9);
+  EXPECT_GE(trail.at("unitsSum"), trail.at("unitsMost"));
+  // 32 m are 1,040 pixels, and the map begins at (36, 92): the nest's ring at (1.5, -4).
+  const std::array<int, 3> nest = Png(file("out/herd0_trail.png")).at(36 + 569, 92 + 390);
+  EXPECT_GT(nest[0], 200);
+  EXPECT_LT(nest[1], 100);
+}
+
+TEST_F(Fields, HaveTheTrailsOfScouts) {
+  write("walled.json", walledScene);
+  const Result result = skitter({"fields", file("walled.json"), "--out", file("out"), "--scouts", "20"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const nlohmann::json goals = json("out/fields.json").at("grids").at(0).at("goals");
+  const nlohmann::json &open = goals.at(0).at("scouts"), &walled = goals.at(1).at("scouts");
+  EXPECT_EQ(open.at("iterations"), 20);
+  EXPECT_EQ(open.at("picture"), "herd0_goal0_scouts.png");
+  // From (-1, -9) round the end of the wall at (6, 0), 0.3 m wide, to (0, 7): not straight, and not much
+  // longer than the shortest way, of 11.4 and 9.2 m and what the slopes add.
+  EXPECT_GT(open.at("length"), 11.4 + 9.2);
+  EXPECT_LT(open.at("length"), 1.8 * (11.4 + 9.2));
+  EXPECT_GE(open.at("iteration"), 1);
+  EXPECT_LE(open.at("iteration"), 20);
+  EXPECT_TRUE(std::filesystem::exists(file("out/herd0_goal0_scouts.png")));
+  // They go to the stop beside the disc.
+  EXPECT_EQ(walled.at("picture"), "herd0_goal1_scouts.png");
+}
+
 TEST_F(Fields, RefuseWhatHasNone) {
   expectRefusal(skitter({"fields", "--out", file("out")}), 2, {"no herd has ways", "\"ways\": {}"});
+  expectRefusal(skitter({"fields", "--out", file("out"), "--at", "-1"}), 2, {"--at", "-1"});
+  expectRefusal(skitter({"fields", "--out", file("out"), "--scouts", "0"}), 2, {"--scouts", "0"});
   write("walled.json", walledScene);
   std::filesystem::create_directory(file("out"));
   write("out/mine.txt", "the user's");
@@ -101,7 +174,7 @@ TEST_F(Fields, RefuseWhatHasNone) {
 
 TEST(FieldColours, GoFromLightToDark) {
   const auto lightness = [](const glm::vec3& c) { return glm::dot(c, {0.30f, 0.59f, 0.11f}); };
-  for (const auto colourOf : {app::costColour, app::timeColour})
+  for (const auto colourOf : {app::costColour, app::timeColour, app::trailColour})
     for (int i = 0; i < 100; ++i) {
       const glm::vec3 lighter = colourOf(0.01f * static_cast<float>(i)),
                       darker = colourOf(0.01f * static_cast<float>(i + 1));
@@ -180,6 +253,36 @@ TEST(FieldMap, TimesAreOfTheMiddlesOfCells) {
   const std::vector<glm::vec2> way = app::wayFrom(ground, goal, {-7.5f, 0});
   EXPECT_EQ(way.back(), corner);
   for (const glm::vec2& place : way) EXPECT_NEAR(place.y, 0, 1e-3);
+}
+
+// A cell of 20 is 52 pixels wide, and the map begins at (36, 92).
+TEST(FieldMap, TrailsAreDarkWhereMostIs) {
+  const Heightfield flat{
+      .name = "flat", .columns = 2, .rows = 2, .spacingX = 20, .spacingZ = 20, .heights = {0, 0, 0, 0}};
+  CostGrid grid{
+      .columns = 20, .rows = 20, .cell = 1, .origin = {-10, -10}, .cost = std::vector<float>(400, 1)};
+  grid.cost[3] = INFINITY;
+  std::vector<float> units(400, 0);
+  units[7 * 20 + 12] = 80;
+  units[9 * 20 + 2] = 20;
+  const app::MapGround ground{flat, {}, grid, "", ""};
+  const app::MapTrail trail{.what = "units", .values = units, .nests = {{.centre = {0, 0}, .radius = 1}}};
+  const Drawing drawing = app::drawTrail(ground, trail);
+  const auto expectAt = [&](uint32_t column, uint32_t row, const glm::vec3& colour) {
+    const glm::vec3 found = drawing.at(36 + 52 * column + 26, 92 + 52 * row + 26);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], colour[i], 1e-5) << column << ", " << row;
+  };
+  expectAt(12, 7, app::trailColour(1));
+  expectAt(2, 9, app::trailColour(0.5f));  // the root of a quarter
+  expectAt(15, 15, app::trailColour(0));
+  EXPECT_NE(drawing.at(36 + 52 * 3 + 26, 92 + 26), drawing.at(36 + 52 * 4 + 26, 92 + 26));
+  // 1 m right of the middle.
+  EXPECT_GT(drawing.at(36 + 520 + 52, 92 + 520).x, 0.8f);
+  EXPECT_LT(drawing.at(36 + 520 + 52, 92 + 520).y, 0.3f);
+  const app::TrailFigures figures = app::figuresOf(ground, trail);
+  EXPECT_EQ(figures.most, 80);
+  EXPECT_EQ(figures.sum, 100);
+  EXPECT_NEAR(figures.marked, 2.0 / 399, 1e-12);
 }
 
 // Arrows are 34 pixels apart on a map that begins at (36, 92). Their heads are where times fall.
