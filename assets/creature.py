@@ -17,6 +17,7 @@ def dot(a, b): return sum(x * y for x, y in zip(a, b))
 def cross(a, b): return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 def unit(a): return scale(a, 1.0 / math.sqrt(dot(a, a)))
 def mix(a, b, t): return tuple(x + t * (y - x) for x, y in zip(a, b))
+def along(a, normal): return sub(a, scale(normal, dot(a, normal)))
 def smooth(t): t = min(1.0, max(0.0, t)); return t * t * (3 - 2 * t)
 
 
@@ -80,6 +81,31 @@ class Mesh:
                 angle = math.acos(max(-1.0, min(1.0, dot(u, v))))
                 sums[same[triangle[k]]] = add(sums[same[triangle[k]]], scale(face, angle))
         return [unit(sums[v]) for v in same]
+
+    def tangents(self):
+        """The image's right on the surface, weighted by angles as normals are, and the side of its top (glTF 2.0, section
+        3.7.2.1). Where a part's image is one point, some direction along the surface."""
+        normals = self.normals()
+        rights, tops = ([(0.0, 0.0, 0.0)] * len(self.positions) for _ in range(2))
+        for triangle in self.triangles:
+            p, uv = [self.positions[v] for v in triangle], [self.uvs[v] for v in triangle]
+            a, b = sub(p[1], p[0]), sub(p[2], p[0])
+            s, t = sub(uv[1], uv[0]), sub(uv[2], uv[0])
+            area = s[0] * t[1] - t[0] * s[1]
+            if area == 0: continue
+            right = scale(sub(scale(a, t[1]), scale(b, s[1])), 1 / area)
+            top = scale(sub(scale(a, t[0]), scale(b, s[0])), 1 / area)
+            for k, v in enumerate(triangle):
+                ways = unit(sub(p[(k + 1) % 3], p[k])), unit(sub(p[(k + 2) % 3], p[k]))
+                angle = math.acos(max(-1.0, min(1.0, dot(*ways))))
+                rights[v] = add(rights[v], scale(unit(along(right, normals[v])), angle))
+                tops[v] = add(tops[v], scale(unit(along(top, normals[v])), angle))
+        result = []
+        for normal, right, top in zip(normals, rights, tops):
+            if right == (0.0, 0.0, 0.0): right = (1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 else (0.0, 1.0, 0.0)
+            right = unit(along(right, normal))
+            result.append(right + (-1.0 if dot(cross(normal, right), top) < 0 else 1.0,))
+        return result
 
 
 class Joint:
@@ -205,7 +231,7 @@ def write_textured(path, name, parts, images, joints, extras=None, clips=()):
     def floats(rows):
         return b"".join(struct.pack(f"<{len(r)}f", *rounded(r, 6)) for r in rows)
 
-    def primitive(mesh, material):
+    def primitive(mesh, material, tangents):
         count = len(mesh.positions)
         # Bounds are of what is stored, in single precision.
         stored = [struct.unpack("<3f", struct.pack("<3f", *rounded(p, 6))) for p in mesh.positions]
@@ -213,6 +239,8 @@ def write_textured(path, name, parts, images, joints, extras=None, clips=()):
         attributes = {
             "POSITION": accessor(floats(mesh.positions), 5126, "VEC3", count, 34962, bounds=bounds),
             "NORMAL": accessor(floats(mesh.normals()), 5126, "VEC3", count, 34962)}
+        if tangents:
+            attributes["TANGENT"] = accessor(floats(mesh.tangents()), 5126, "VEC4", count, 34962)
         if mesh.textured:
             attributes["TEXCOORD_0"] = accessor(floats(mesh.uvs), 5126, "VEC2", count, 34962)
         else:
@@ -233,7 +261,7 @@ def write_textured(path, name, parts, images, joints, extras=None, clips=()):
         binary.extend(data)
         return {"bufferView": len(views) - 1, "mimeType": "image/png"}
 
-    primitives = [primitive(mesh, material) for material, (mesh, _) in enumerate(parts)]
+    primitives = [primitive(mesh, index, "normalTexture" in material) for index, (mesh, material) in enumerate(parts)]
     nodes = [{"name": name, "mesh": 0, "skin": 0}]
     for joint in joints:
         offset = sub(joint.position, joints[joint.parent].position) if joint.parent is not None else joint.position
