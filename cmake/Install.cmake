@@ -17,7 +17,7 @@ foreach(kind shared static)
       COMPONENT development)
   endif()
 endforeach()
-install(DIRECTORY engine/include/skitter ${PROJECT_BINARY_DIR}/include/skitter DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+install(DIRECTORY include/skitter ${PROJECT_BINARY_DIR}/include/skitter DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   COMPONENT development FILES_MATCHING PATTERN *.h)
 
 get_property(components GLOBAL PROPERTY SKITTER_COMPONENTS)

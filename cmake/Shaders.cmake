@@ -31,7 +31,7 @@ function(skitter_add_shader target source name)
   list(TRANSFORM ARGN PREPEND -D OUTPUT_VARIABLE defines)
   # --quiet would also silence warnings, so the file name that glslang prints is what a clean compile says.
   add_custom_command(OUTPUT ${dir}/${name}.raw.spv
-    COMMAND ${SKITTER_GLSLANG} -V --target-env vulkan1.3 -I${shaders} -I${shaders}/../engine/include ${defines}
+    COMMAND ${SKITTER_GLSLANG} -V --target-env vulkan1.3 -I${shaders} -I${shaders}/../include ${defines}
             --depfile ${dir}/${name}.d -o ${dir}/${name}.raw.spv ${source}
     DEPENDS ${source} DEPFILE ${dir}/${name}.d COMMENT "GLSL ${name}" VERBATIM)
   add_custom_command(OUTPUT ${dir}/${name}.spv

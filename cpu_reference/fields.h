@@ -3,7 +3,7 @@
 // The fields of the records that stages exchange, once: FIELD(type, name, initial, place, roundings).
 //   type       of the reference's member; it says how many floats of the record there are
 //   initial    the member's value in a record that no stage has written
-//   place      its first float in the record (engine/include/skitter/records.h)
+//   place      its first float in the record (include/skitter/records.h)
 //   roundings  how far replay lets the engine be off, in units of `roundoff` of the value: as often as a
 //              float rounds on the way from other records, 0 where it must be the same; `own` where the
 //              check of its stage knows a tolerance

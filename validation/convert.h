@@ -10,7 +10,7 @@
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
 
-// Between the float records of engine/include/skitter/records.h and the reference's structs. An `agent` or
+// Between the float records of include/skitter/records.h and the reference's structs. An `agent` or
 // `leg` index counts within the herd; a leg is agent * legs + leg of the agent.
 namespace skitter::validation {
 

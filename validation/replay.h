@@ -29,7 +29,7 @@ struct HerdFacts {
   const Rig& rig;
   const Heightfield& terrain;
   shared::Parameters parameters;
-  const std::vector<float>& rigRecords;  // engine/include/skitter/records.h
+  const std::vector<float>& rigRecords;  // include/skitter/records.h
   crowd::IkPlan ik{};
   Controller controller = Controller::adaptive;
   crowd::ClipRecords clips = {};  // where clips are played

@@ -10,7 +10,7 @@
 namespace skitter::cpu_crowd {
 
 // The herd's state in rows of F, a row a number: with Lanes a block is as many agents as a register holds
-// floats, with float it is one. Rows have the meaning and the units of engine/include/skitter/records.h. They
+// floats, with float it is one. Rows have the meaning and the units of include/skitter/records.h. They
 // are floats throughout, so that an agent can be taken out of its block and put back.
 
 template <class F>

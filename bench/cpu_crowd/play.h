@@ -11,7 +11,7 @@ struct Played {
   F clip, time, rate, frame, fraction;
 };
 
-// play, as in engine/include/skitter/records.h
+// play, as in include/skitter/records.h
 template <class F>
 struct Play {
   Played<F> to, from;

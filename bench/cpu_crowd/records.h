@@ -5,7 +5,7 @@
 #include "skitter/crowd.h"
 #include "skitter/records.h"
 
-// One agent's records in the device's layout (engine/include/skitter/records.h), to and from the herd's own.
+// One agent's records in the device's layout (include/skitter/records.h), to and from the herd's own.
 namespace skitter::cpu_crowd {
 
 inline float* recordAt(std::vector<float>& buffer, size_t index, int stride) {

@@ -7,7 +7,7 @@
 
 namespace skitter::crowd {
 
-// The clips that a herd plays, as the stages read them (engine/include/skitter/records.h).
+// The clips that a herd plays, as the stages read them (include/skitter/records.h).
 struct ClipRecords {
   int clips = 0, joints = 0, frames = 0;  // frames of the longest clip
   int standing = 0;  // the clip that an agent begins with: the first that stands, else the first

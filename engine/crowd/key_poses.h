@@ -11,7 +11,7 @@ namespace skitter::crowd {
 struct KeyPoses {
   int keys = 0;
   float stride = 0;            // metres a cycle
-  std::vector<float> records;  // engine/include/skitter/records.h, key
+  std::vector<float> records;  // include/skitter/records.h, key
 };
 
 // The key poses of the clips that are named or, without names, of all clips. Throws Error(input) that names

@@ -12,7 +12,7 @@
 
 namespace skitter::crowd {
 
-// So many agents and those that their last block has room for (engine/include/skitter/records.h).
+// So many agents and those that their last block has room for (include/skitter/records.h).
 inline uint32_t wholeBlocks(uint32_t agents) {
   return (agents + shared::BLOCK - 1) / shared::BLOCK * shared::BLOCK;
 }

@@ -6,7 +6,7 @@
 
 namespace skitter::crowd {
 
-// The rig as the stages read it: per leg rigStride(rig.maxBones()) vec4 (engine/include/skitter/records.h).
+// The rig as the stages read it: per leg rigStride(rig.maxBones()) vec4 (include/skitter/records.h).
 std::vector<float> rigRecords(const Rig& rig);
 
 }  // namespace skitter::crowd

@@ -8,7 +8,7 @@
 
 #include "ik/skeleton.h"
 
-// A chain as the shaders read it: engine/include/skitter/records.h (rig, bone) and shaders/shared/ik_batch.h.
+// A chain as the shaders read it: include/skitter/records.h (rig, bone) and shaders/shared/ik_batch.h.
 namespace skitter::ik {
 
 // Points as records: xyz, 0.

@@ -1,4 +1,4 @@
-"""The names of the controllers (engine/include/skitter/controller.h)."""
+"""The names of the controllers (include/skitter/controller.h)."""
 import pathlib
 import re
 

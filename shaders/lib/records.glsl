@@ -1,6 +1,6 @@
 #ifndef RECORDS_GLSL
 #define RECORDS_GLSL
-// The records of engine/include/skitter/records.h, unpacked.
+// The records of include/skitter/records.h, unpacked.
 
 struct Body {
   vec3 local;         // x and z within the tile, world y

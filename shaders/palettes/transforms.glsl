@@ -1,4 +1,4 @@
-// A transform as the host reads it (engine/include/skitter/palettes.h).
+// A transform as the host reads it (include/skitter/palettes.h).
 #include "lib/load4.glsl"
 #include "lib/math.glsl"
 #include "palettes/transforms.h"

@@ -13,7 +13,7 @@ layout(location = 2) in vec3 nearAt;
 layout(location = 3) in vec3 farAt;
 layout(location = 0) out vec4 outColour;
 layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
-// The host knows of each patch whether it needs them (engine/render/terrain.cpp): a software device pays for
+// The host knows of each patch whether it needs them (render/terrain.cpp): a software device pays for
 // detail that fades to nothing as for any other.
 layout(constant_id = CONSTANT_DETAIL) const bool DETAIL = true;
 layout(constant_id = CONSTANT_SHADED) const bool SHADED = true;

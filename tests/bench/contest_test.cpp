@@ -82,7 +82,7 @@ TEST_F(ContestTest, EverybodyIsCheckedAndTimed) {
   }
 }
 
-// Bytes of swing by engine/include/skitter/records.h: the body, eight steps and arcs in, eight feet out.
+// Bytes of swing by include/skitter/records.h: the body, eight steps and arcs in, eight feet out.
 TEST_F(ContestTest, BytesAreThoseOfTheRecords) {
   CrowdOptions options = unmeasured();
   options.fuse = false;

@@ -61,7 +61,7 @@ void expectFrames(const Rig& rig, double tolerance) {
   }
 }
 
-// The other numbers, as engine/include/skitter/records.h lists them; a leg shorter than the longest is
+// The other numbers, as include/skitter/records.h lists them; a leg shorter than the longest is
 // padded.
 TEST(RigRecords, HoldWhatTheRigSays) {
   constexpr size_t stride = 3 + 4 * 8;

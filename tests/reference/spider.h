@@ -12,7 +12,7 @@
 namespace skitter::test {
 
 Rig spider();
-// Its records as in engine/include/skitter/records.h, with `padding` zero-length bones after each leg's own.
+// Its records as in include/skitter/records.h, with `padding` zero-length bones after each leg's own.
 std::vector<float> rigRecordsOf(const Rig& rig, int padding = 0);
 reference::Creature spiderCreature();
 

@@ -5,14 +5,14 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # From the bottom to the top. A file may include what is in its own folder or in one before it.
-FOLDERS = ["engine/include", "shaders", "engine/base", "engine/gpu", "engine/assets", "engine/ik", "engine/spline", "engine/ways",
-           "engine/crowd", "engine/evolve", "engine/render", "cpu_reference", "validation", "bench", "experiments", "bindings", "app"]
+FOLDERS = ["include", "shaders", "engine/base", "engine/gpu", "engine/assets", "engine/ik", "engine/spline", "engine/ways",
+           "engine/crowd", "engine/evolve", "render", "cpu_reference", "validation", "bench", "experiments", "bindings", "app"]
 # Within these the same holds of their own folders; "" is the folder itself.
 INNER = {
     "engine/assets": ["files", "materials", "models", "rigs", "clips", "heights", "scenes"],
     "cpu_reference": ["", "ik", "spline", "clips", "ways", "stages", "evolve"],
 }
-INCLUDE_ROOTS = ["", "engine", "engine/include", "shaders"]
+INCLUDE_ROOTS = ["", "engine", "include", "shaders"]
 
 
 def files():

@@ -1,6 +1,6 @@
 """Every public function is called by a test that sees the public headers alone.
 
-The functions of engine/include/skitter/X.h are called in tests/public/X_test.cpp, those of bindings/c/skitter.h in
+The functions of include/skitter/X.h are called in tests/public/X_test.cpp, those of bindings/c/skitter.h in
 tests/bindings/c_test.c. tests/public/symbols_test.py tells overloads apart, of a build.
 """
 import pathlib
@@ -8,7 +8,7 @@ import re
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-HEADERS = sorted((ROOT / "engine/include/skitter").glob("*.h*"))
+HEADERS = sorted((ROOT / "include/skitter").glob("*.h*"))
 C_HEADER = ROOT / "bindings/c/skitter.h"
 C_TEST = ROOT / "tests/bindings/c_test.c"
 TESTS = ROOT / "tests/public"

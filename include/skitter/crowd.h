@@ -29,7 +29,7 @@ struct State;  // skitter/state.h
 
 // Another shader for a stage: a changed copy of shaders/stages/<stage>.comp, compiled once for each load
 // path, of which the device takes one, with the defines that engine/crowd/CMakeLists.txt has for it:
-//   options="-V --target-env vulkan1.3 -Ishaders -Iengine/include"
+//   options="-V --target-env vulkan1.3 -Ishaders -Iinclude"
 //   glslangValidator $options -DLOAD4_TEXEL=1 changed.comp -o texel.spv
 //   glslangValidator $options -DLOAD4_TEXEL=0 changed.comp -o storage.spv
 // It keeps the bindings, push constants and specialisation constants. The bytes are read while the crowd is
@@ -124,7 +124,7 @@ struct HerdState : ForRecords<std::vector<float>> {
 };
 
 // The touchdowns of the last tick on the device, for shaders of the caller's: FOOTFALL_STRIDE vec4 each
-// (engine/include/skitter/records.h), min(count, room) of them in any order. Equal herds share buffers, and
+// (include/skitter/records.h), min(count, room) of them in any order. Equal herds share buffers, and
 // events number agents through all of them; the sizes of a herd (Herd::sizes) have buffers of their own.
 // Owned by the crowd, rewritten by each recorded tick; both buffers can be read from as storage buffers.
 struct FootfallBuffer {

@@ -66,7 +66,7 @@ struct AgentLeg {
 };
 
 // Goal records of a run of a herd's agents on the device, for shaders of the caller's, which may write them:
-// GOAL_STRIDE vec4 per agent (engine/include/skitter/records.h), that of agent firstAgent + i beginning with
+// GOAL_STRIDE vec4 per agent (include/skitter/records.h), that of agent firstAgent + i beginning with
 // vec4 GOAL_STRIDE * (first + i). Equal herds share buffers. Owned by the crowd.
 struct GoalBuffer {
   VkBuffer goals = VK_NULL_HANDLE;      // a storage buffer; binds from its beginning
