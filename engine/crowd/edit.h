@@ -14,6 +14,11 @@ namespace skitter::crowd {
 // the host needs to outlive the call.
 class HeightEdits {
  public:
+  // Of the terrain's samples.
+  struct Rectangle {
+    uint32_t x, z, columns, rows;
+  };
+
   HeightEdits() = default;
   explicit HeightEdits(const gpu::Context& context);
 
@@ -21,6 +26,7 @@ class HeightEdits {
     pending_.push_back({x0, z0, columns, rows});
   }
   bool empty() const { return pending_.empty(); }
+  const std::vector<Rectangle>& pending() const { return pending_; }
   // Of kMostSamples floats: for whatever else a tick's command buffer carries, too.
   const gpu::Buffer& staging() const { return staging_; }
   // Copies the pending rectangles from `terrain` to the image, which is in state `between` before and after.
@@ -28,9 +34,6 @@ class HeightEdits {
               gpu::ImageState between);
 
  private:
-  struct Rectangle {
-    uint32_t x, z, columns, rows;
-  };
   std::vector<Rectangle> pending_;
   std::vector<float> packed_;  // rows of a rectangle, close together
   gpu::Buffer staging_;

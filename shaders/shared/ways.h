@@ -28,7 +28,7 @@ WAY WAY_TIMES = WAY_PLACES + MOST_PLACES;
 // float per cell: cost * cell; where impassable less than 0, and its time follows from that
 WAY BINDING_WAY_COST = 0;
 WAY BINDING_WAY_TIME = 1;   // float per cell, field after field: time; WAY_FAR where none is known yet
-WAY BINDING_WAY_STATE = 2;  // uint per field: 1 while a round changes something
+WAY BINDING_WAY_STATE = 2;  // uint per field: 1 while a round lets a time fall
 WAY BINDING_WAY_OUT = 3;    // BINDING_WAY
 
 // Invocations that share a diagonal: as many as every device has in a work group.
@@ -50,12 +50,14 @@ const float WAY_FAR = 1e30;
 struct WayConstants {
 #ifdef __cplusplus
   uint32_t columns, rows;
-  uint32_t first;   // field that the first work group solves
+  uint32_t first;   // field that the first work group solves, or that is gathered
   uint32_t inside;  // 1: impassable cells, once passable ones are solved; 0: these
+  uint32_t from;    // the first cell that is gathered
 #else
   uint columns, rows;
   uint first;
   uint inside;
+  uint from;
 #endif
 };
 

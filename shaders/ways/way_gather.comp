@@ -9,7 +9,7 @@ layout(set = 0, binding = BINDING_WAY_OUT, std430) writeonly buffer WayOutBlock 
 
 void main() {
   int columns = int(way.columns), rows = int(way.rows), cells = columns * rows;
-  int cell = int(gl_GlobalInvocationID.x);
+  int cell = int(way.from) + int(gl_GlobalInvocationID.x);
   if (cell >= cells) return;
   int column = cell % columns, row = cell / columns, first = int(way.first) * cells;
   int right = min(column + 1, columns - 1), above = min(row + 1, rows - 1);

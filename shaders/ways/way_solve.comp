@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared/ways.h"
-#include "lib/eikonal.glsl"
+#include "shared/eikonal.h"
 // A few rounds of fast sweeping (docs/ways.md); a work group solves a field. The cells of a diagonal do not depend
 // on each other.
 layout(local_size_x = WAY_GROUP) in;
@@ -9,9 +9,6 @@ layout(push_constant) uniform WayBlock { WayConstants way; };
 layout(set = 0, binding = BINDING_WAY_COST, std430) readonly buffer CostBlock { float costs[]; };
 layout(set = 0, binding = BINDING_WAY_TIME, std430) coherent buffer TimeBlock { float times[]; };
 layout(set = 0, binding = BINDING_WAY_STATE, std430) buffer StateBlock { uint states[]; };
-
-// A fall by less does not ask for another round.
-const float SETTLED = 1e-5;
 
 shared uint changed;
 
@@ -23,10 +20,11 @@ void update(int column, int row, int field) {
   int at = field * columns * rows + cell;
   float left = column > 0 ? times[at - 1] : WAY_FAR, right = column + 1 < columns ? times[at + 1] : WAY_FAR;
   float below = row > 0 ? times[at - columns] : WAY_FAR, above = row + 1 < rows ? times[at + columns] : WAY_FAR;
-  float before = times[at], time = eikonal(min(left, right), min(below, above), abs(h));
-  if (time >= before) return;
+  float time = eikonal(min(left, right), min(below, above), abs(h));
+  // Beyond WAY_FAR, too, where nothing leads to.
+  if (!(time < times[at])) return;
   times[at] = time;
-  if (before - time > SETTLED * before) atomicOr(changed, 1u);
+  atomicOr(changed, 1u);
 }
 
 // From one corner, which the signs say, to the other.

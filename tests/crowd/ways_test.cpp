@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <random>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,6 +16,8 @@
 #include "crowd/radius.h"
 #include "crowd/simulation.h"
 #include "crowd/ways/fields.h"
+#include "gpu/transfer.h"
+#include "shared/eikonal.h"
 #include "skitter/error.h"
 #include "skitter/state.h"
 #include "validation/convert.h"
@@ -205,6 +208,102 @@ TEST_F(WayFieldsTest, AreTheSameBitsWhateverIsSolvedBeside) {
   EXPECT_NE(alone.times(goal), among.times(goal));
   among.setGrid(maze(61, 83));
   EXPECT_EQ(alone.times(goal), among.times(goal));
+}
+
+// The times at random places, of cells of all costs, are those of the equation but for a unit or two of a
+// cell and the rounding of float32. None falls where a time beside the cell is later, by however little, and
+// each is later than the times that it depends on.
+TEST(Eikonal, GrowsWithTheTimesBesideTheCell) {
+  std::mt19937 random(7);
+  const auto draw = [&](double least, double most) {
+    return static_cast<float>(std::uniform_real_distribution<double>(least, most)(random));
+  };
+  const auto later = [](float time) { return std::nextafter(time, kImpassable); };
+  for (int i = 0; i < 200000; ++i) {
+    const float h = draw(0.3, 1) * std::exp(draw(0, 4)), a = draw(0, 1) * std::exp(draw(-4, 10));
+    const float b = std::max(0.0f, a + draw(-1.1, 1.1) * h);
+    const double apart = std::abs(double{a} - double{b}), near = double{std::min(a, b)};
+    const double expected =
+        apart >= double{h}
+            ? near + double{h}
+            : 0.5 * (double{a} + double{b} + std::sqrt(2 * double{h} * double{h} - apart * apart));
+    const float time = shared::eikonal(a, b, h);
+    ASSERT_NEAR(time, expected, 4 * 0x1p-18 * double{h} + 0x1p-23 * expected) << a << ", " << b << ", " << h;
+    ASSERT_EQ(time, shared::eikonal(b, a, h));
+    ASSERT_GE(shared::eikonal(later(a), b, h), time) << a << ", " << b << ", " << h;
+    ASSERT_GE(shared::eikonal(a, later(b), h), time) << a << ", " << b << ", " << h;
+    ASSERT_GT(time, std::min(a, b)) << h;
+    // It does not depend on a time that is not before it.
+    const float far = std::max(a, b);
+    if (far >= time) {
+      ASSERT_EQ(shared::eikonal(std::min(a, b), shared::WAY_FAR, h), time) << a << ", " << b << ", " << h;
+    }
+  }
+  EXPECT_EQ(shared::eikonal(shared::WAY_FAR, shared::WAY_FAR, 0.5f), shared::WAY_FAR);
+}
+
+// Discs of another cost come, move and go, in the way of some goals and aside of others.
+void changeSomewhere(std::mt19937& random, CostGrid& grid) {
+  const auto below = [&](uint32_t count) { return random() % count; };
+  const auto column = static_cast<double>(below(grid.columns)), row = static_cast<double>(below(grid.rows));
+  const double radius = 1 + below(5);
+  const std::vector<float> costs = {kImpassable, 1, 1.3f, 2.5f};
+  const float cost = costs[below(4)];
+  for (size_t at = 0; at < grid.cost.size(); ++at)
+    if (std::hypot(static_cast<double>(at % grid.columns) - column,
+                   static_cast<double>(at / grid.columns) - row) < radius)
+      grid.cost[at] = cost;
+}
+
+std::vector<float> wayRecordsOf(const crowd::WayFields& fields, const gpu::Context& context) {
+  return gpu::download<float>(context, fields.records());
+}
+
+// Of those who flee, too.
+TEST_F(WayFieldsTest, FollowChangesToTheBitsOfSolvingAnew) {
+  const std::vector<glm::vec2> goals = {{0.1f, 0.2f}, {-4, 6}, {1000, -1000}, glm::vec2(shared::WAY_OUT)};
+  std::mt19937 random(3);
+  uint32_t updated = 0;
+  for (CostGrid grid : {level(40, 31), maze(45, 50), hillside(61, 47), wallWithGap(64, 64)}) {
+    crowd::WayFields fields(context(), grid);
+    fields.add(goals, {});
+    for (int step = 0; step < 12; ++step) {
+      SCOPED_TRACE(testing::Message() << grid.columns << " x " << grid.rows << ", step " << step);
+      const uint32_t solved = fields.solved(), revision = fields.revision();
+      changeSomewhere(random, grid);
+      fields.setGrid(grid);
+      updated += static_cast<uint32_t>(goals.size()) - (fields.solved() - solved);
+      EXPECT_NE(fields.revision(), revision);
+      crowd::WayFields anew(context(), grid);
+      anew.add(goals, {});
+      for (const glm::vec2& goal : goals) ASSERT_EQ(fields.times(goal), anew.times(goal)) << goal.x;
+      ASSERT_EQ(wayRecordsOf(fields, context()), wayRecordsOf(anew, context()));
+      for (const glm::vec2& goal : goals)
+        if (goal.x != shared::WAY_OUT) expectAsReference(fields, goal);
+    }
+  }
+  // Half of them at least did not need to be solved, and those of the beginning were.
+  EXPECT_GT(updated, 2u * 12 * goals.size());
+  EXPECT_LT(updated, 4u * 12 * goals.size());
+}
+
+// What changes far behind an agent is no business of its field; what changes at the goal is.
+TEST_F(WayFieldsTest, AreSolvedAnewWhereTooMuchChanges) {
+  CostGrid grid = level(64, 64);
+  crowd::WayFields fields(context(), grid);
+  const glm::vec2 goal(-15.9f, 0.1f);
+  fields.add(std::vector<glm::vec2>{goal}, {});
+  EXPECT_EQ(fields.solved(), 1u);
+  grid.cost[32 * 64 + 60] = kImpassable;
+  fields.setGrid(grid);
+  EXPECT_EQ(fields.solved(), 1u);
+  for (uint32_t row = 1; row < 64; ++row) grid.cost[row * 64 + 3] = kImpassable;
+  fields.setGrid(grid);
+  EXPECT_EQ(fields.solved(), 2u);
+  expectAsReference(fields, goal);
+  fields.setGrid(level(32, 64));
+  EXPECT_EQ(fields.solved(), 3u);
+  expectAsReference(fields, goal);
 }
 
 TEST_F(WayFieldsTest, LeaveWhatNobodyUses) {
@@ -410,6 +509,31 @@ TEST_P(WaysReplayTest, TheReferenceFollowsGoalsAndEdits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, WaysReplayTest, bothLoadPaths(), loadPathName);
+
+// In the middle, in two corners, along an edge, and of one sample.
+TEST_F(WaysTest, EditsMakeOnlyTheCostsAroundThemAnew) {
+  Scene scene = walledScene(1);
+  scene.obstacles.push_back({Disc{.centre = {-20, 20}, .radius = 3}});
+  Heightfield ground = smallRollingGround();
+  ground.spacingZ = 0.7f;
+  Crowd crowd(device(), ground, scene);
+  const crowd::Kind& kind = implOf(crowd).kindOf(0);
+  const Traveller traveller{.legLength = kind.rig.legLength,
+                            .footprint = crowd::footprintRadius(kind.rig),
+                            .margin = kind.parameters.edgeMargin,
+                            .ways = *scene.herds[0].ways};
+  struct Edit {
+    uint32_t x, z, columns, rows;
+  };
+  for (const auto& [x, z, columns, rows] :
+       {Edit{30, 30, 4, 3}, Edit{0, 0, 9, 9}, Edit{60, 58, 5, 7}, Edit{0, 20, 65, 1}, Edit{17, 11, 1, 1}}) {
+    const CostGrid before = kind.ground;
+    crowd.editHeights(x, z, columns, rows, std::vector<float>(size_t{columns} * rows, 3.0f));
+    simulate(device(), crowd, 1);
+    EXPECT_NE(kind.ground, before) << x << ", " << z;
+    EXPECT_EQ(kind.ground, costGrid(crowd.terrain(), scene.obstacles, traveller)) << x << ", " << z;
+  }
+}
 
 TEST_F(WaysTest, EditsMakeFieldsAnew) {
   Crowd crowd(device(), flatGround(), walledScene(4));

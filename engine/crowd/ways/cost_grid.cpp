@@ -1,3 +1,5 @@
+#include "crowd/ways/cost_grid.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +17,7 @@ namespace skitter {
 namespace {
 
 constexpr float impassable = std::numeric_limits<float>::infinity();
+
 void checkTraveller(const Traveller& traveller) {
   const auto expect = [](const char* key, float value) {
     if (!(std::isfinite(value) && value >= 0))
@@ -94,20 +97,22 @@ double grownBy(const CostGrid& grid, const Traveller& traveller) {
   return std::max(double{traveller.footprint}, double{grid.cell} / std::sqrt(2.0));
 }
 
-void blockAround(CostGrid& grid, const Obstacle& obstacle, double grown) {
+void blockAround(CostGrid& grid, const Obstacle& obstacle, double grown, const crowd::CellRange& within) {
   const auto [least, most] = crowd::boundsOf(obstacle);
   const double cell = double{grid.cell};
   const glm::dvec2 origin(grid.origin);
-  const uint32_t firstColumn = cellFrom(least.x - grown, origin.x, cell, grid.columns);
-  const uint32_t lastColumn = cellFrom(most.x + grown + cell, origin.x, cell, grid.columns - 1);
-  const uint32_t firstRow = cellFrom(least.y - grown, origin.y, cell, grid.rows);
-  const uint32_t lastRow = cellFrom(most.y + grown + cell, origin.y, cell, grid.rows - 1);
-  for (uint32_t row = firstRow; row <= lastRow; ++row)
-    for (uint32_t column = firstColumn; column <= lastColumn; ++column) {
-      const size_t index = size_t{row} * grid.columns + column;
+  const uint32_t column = cellFrom(least.x - grown, origin.x, cell, within.endColumn);
+  const uint32_t endColumn = cellFrom(most.x + grown + 2 * cell, origin.x, cell, within.endColumn);
+  const uint32_t row = cellFrom(least.y - grown, origin.y, cell, within.endRow);
+  const uint32_t endRow = cellFrom(most.y + grown + 2 * cell, origin.y, cell, within.endRow);
+  for (uint32_t z = std::max(row, within.row); z < endRow; ++z)
+    for (uint32_t x = std::max(column, within.column); x < endColumn; ++x) {
+      const size_t index = size_t{z} * grid.columns + x;
       if (crowd::distanceTo(obstacle, crowd::middleOf(grid, index)) < grown) grid.cost[index] = impassable;
     }
 }
+
+crowd::CellRange allOf(const CostGrid& grid) { return {0, 0, grid.columns, grid.rows}; }
 
 }  // namespace
 
@@ -118,15 +123,7 @@ CostGrid costGrid(const Heightfield& terrain, std::span<const Obstacle> obstacle
   for (size_t i = 0; i < obstacles.size(); ++i)
     scenes::checkObstacle(obstacles[i], fmt::format("obstacles[{}]", i));
   CostGrid grid = emptyGrid(terrain, traveller);
-  const double cell = double{grid.cell};
-  const glm::dvec2 inner = 0.5 * glm::dvec2(terrain.extentX(), terrain.extentZ()) - double{traveller.margin};
-  for (size_t index = 0; index < grid.cost.size(); ++index) {
-    const glm::dvec2 middle = crowd::middleOf(grid, index);
-    const bool inside = std::abs(middle.x) <= inner.x && std::abs(middle.y) <= inner.y;
-    grid.cost[index] =
-        inside ? costOfGround(heightsAround(terrain, middle, cell), cell, traveller) : impassable;
-  }
-  for (const Obstacle& obstacle : obstacles) blockAround(grid, obstacle, grownBy(grid, traveller));
+  crowd::renewCosts(grid, terrain, obstacles, traveller, allOf(grid));
   return grid;
 }
 
@@ -136,7 +133,45 @@ void keepOff(CostGrid& grid, std::span<const Threat> threats, const Traveller& t
   checkTraveller(traveller);
   for (size_t i = 0; i < threats.size(); ++i) scenes::checkThreat(threats[i], fmt::format("threats[{}]", i));
   for (const auto& [centre, radius] : threats)
-    if (radius > 0) blockAround(grid, {Disc{centre, radius}}, grownBy(grid, traveller) + double{grid.cell});
+    if (radius > 0)
+      blockAround(grid, {Disc{centre, radius}}, grownBy(grid, traveller) + double{grid.cell}, allOf(grid));
 }
+
+namespace crowd {
+
+// A height between samples follows from those on either side.
+CellRange cellsOver(const CostGrid& grid, const Heightfield& terrain, const HeightEdits::Rectangle& samples) {
+  const double cell = double{grid.cell};
+  // A cell beyond what follows from the heights half a cell around its middle, for rounding.
+  const auto first = [&](uint32_t sample, float spacing, uint32_t count) {
+    const double from = (static_cast<double>(sample) - 1) * double{spacing};
+    return static_cast<uint32_t>(std::clamp(std::floor(from / cell) - 2, 0.0, static_cast<double>(count)));
+  };
+  const auto end = [&](uint32_t sample, float spacing, uint32_t count) {
+    const double to = static_cast<double>(sample) * double{spacing};
+    return static_cast<uint32_t>(std::clamp(std::ceil(to / cell) + 2, 0.0, static_cast<double>(count)));
+  };
+  return {.column = first(samples.x, terrain.spacingX, grid.columns),
+          .row = first(samples.z, terrain.spacingZ, grid.rows),
+          .endColumn = end(samples.x + samples.columns, terrain.spacingX, grid.columns),
+          .endRow = end(samples.z + samples.rows, terrain.spacingZ, grid.rows)};
+}
+
+void renewCosts(CostGrid& grid, const Heightfield& terrain, std::span<const Obstacle> obstacles,
+                const Traveller& traveller, const CellRange& cells) {
+  const double cell = double{grid.cell};
+  const glm::dvec2 inner = 0.5 * glm::dvec2(terrain.extentX(), terrain.extentZ()) - double{traveller.margin};
+  for (uint32_t row = cells.row; row < cells.endRow; ++row)
+    for (uint32_t column = cells.column; column < cells.endColumn; ++column) {
+      const size_t index = size_t{row} * grid.columns + column;
+      const glm::dvec2 middle = middleOf(grid, index);
+      const bool inside = std::abs(middle.x) <= inner.x && std::abs(middle.y) <= inner.y;
+      grid.cost[index] =
+          inside ? costOfGround(heightsAround(terrain, middle, cell), cell, traveller) : impassable;
+    }
+  for (const Obstacle& obstacle : obstacles) blockAround(grid, obstacle, grownBy(grid, traveller), cells);
+}
+
+}  // namespace crowd
 
 }  // namespace skitter

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -41,15 +40,51 @@ WayFields::WayFields(const gpu::Context& context, CostGrid grid) : context_(&con
 }
 
 void WayFields::setGrid(CostGrid grid) {
-  const bool isAsLarge = grid.cost.size() == grid_.cost.size();
+  const bool isAlike = grid.columns == grid_.columns && grid.rows == grid_.rows;
+  const std::vector<float> crossings = std::exchange(crossings_, crossingsOf(grid));
   grid_ = std::move(grid);
   regions_ = regionsOf(grid_);
-  if (!isAsLarge) makeRoom(std::max(room_, 1u));
-  uploadCosts();
-  for (Field& field : fields_) field.stops = stopsOf(grid_, regions_, field.target);
-  std::vector<size_t> all(fields_.size());
-  std::iota(all.begin(), all.end(), size_t{0});
-  solve(all);
+  if (!isAlike) makeRoom(std::max(room_, 1u));
+  gpu::upload(*context_, costs_, crossings_);
+  std::vector<size_t> changed, anew;
+  std::vector<float> before;
+  for (size_t cell = 0; isAlike && cell < crossings_.size(); ++cell) {
+    if (crossings[cell] == crossings_[cell]) continue;
+    changed.push_back(cell);
+    before.push_back(crossings[cell]);
+  }
+  // Updates go over the fields one after the other, and solving goes over all of them at once.
+  size_t left = cells() / 2;
+  for (size_t k = 0; k < fields_.size(); ++k) {
+    Stops stops = stopsOf(grid_, regions_, fields_[k].target);
+    const FieldChange change{.columns = grid_.columns,
+                             .rows = grid_.rows,
+                             .crossings = crossings_,
+                             .changed = changed,
+                             .before = before,
+                             .stopsBefore = fields_[k].stops,
+                             .stops = stops};
+    std::optional<size_t> done;
+    if (isAlike && changed.size() < left) done = update(k, change, left);
+    if (!done) anew.push_back(k);
+    left = done ? left - *done : 0;
+    fields_[k].stops = std::move(stops);
+  }
+  solve(anew);
+}
+
+std::optional<size_t> WayFields::update(size_t field, const FieldChange& change, size_t most) const {
+  std::vector<float> updated = times(fields_[field].target);
+  const std::optional<FieldUpdate> done = updateField(change, most, updated);
+  if (!done) return {};
+  if (done->cells == 0) return 0;
+  const size_t first = size_t{done->firstRow} * grid_.columns, count = size_t{done->rows} * grid_.columns;
+  gpu::uploadBytes(*context_, times_, std::as_bytes(std::span(updated).subspan(first, count)),
+                   (field * cells() + first) * sizeof(float));
+  // Records have the times of the row beyond, too.
+  const uint32_t below = done->firstRow > 0 ? 1 : 0;
+  gather({&field, 1}, done->firstRow - below, done->rows + below);
+  return done->cells;
 }
 
 void WayFields::add(std::span<const glm::vec2> targets, std::span<const glm::vec2> kept) {
@@ -70,7 +105,7 @@ void WayFields::add(std::span<const glm::vec2> targets, std::span<const glm::vec
   }
   if (fields_.size() > room_) {
     makeRoom(std::bit_ceil(static_cast<uint32_t>(fields_.size())));
-    uploadCosts();
+    gpu::upload(*context_, costs_, crossings_);
     fresh.resize(fields_.size());
     std::iota(fresh.begin(), fresh.end(), size_t{0});
   }
@@ -111,13 +146,6 @@ size_t WayFields::indexOf(const glm::vec2& target) const {
   return static_cast<size_t>(std::ranges::find(fields_, target, &Field::target) - fields_.begin());
 }
 
-shared::WayConstants WayFields::constantsOf(size_t first, bool inside) const {
-  return {.columns = grid_.columns,
-          .rows = grid_.rows,
-          .first = static_cast<uint32_t>(first),
-          .inside = inside ? 1u : 0u};
-}
-
 void WayFields::makeRoom(uint32_t fields) {
   using namespace shared;
   const gpu::Context& context = *context_;
@@ -131,12 +159,6 @@ void WayFields::makeRoom(uint32_t fields) {
   solveBindings_ = solve_.bind(
       context, {{BINDING_WAY_COST, &costs_}, {BINDING_WAY_TIME, &times_}, {BINDING_WAY_STATE, &states_}});
   gatherBindings_ = gather_.bind(context, {{BINDING_WAY_TIME, &times_}, {BINDING_WAY_OUT, &records_}});
-}
-
-void WayFields::uploadCosts() const {
-  std::vector<float> costs = grid_.cost;
-  for (float& cost : costs) cost = grid_.cell * (std::isfinite(cost) ? cost : -shared::WAY_INSIDE_COST);
-  gpu::upload(*context_, costs_, costs);
 }
 
 void WayFields::uploadHeads() const {
@@ -153,31 +175,43 @@ void WayFields::uploadHeads() const {
 void WayFields::solve(std::span<const size_t> fields) {
   const gpu::Context& context = *context_;
   ++revision_;
+  solved_ += static_cast<uint32_t>(fields.size());
   for (const size_t field : fields) {
     std::vector<float> times(cells(), shared::WAY_FAR);
     for (const auto& [cell, time] : fields_[field].stops.cells) times[cell] = time;
     gpu::uploadBytes(context, times_, std::as_bytes(std::span(times)), field * times.size() * sizeof(float));
   }
-  for (const bool inside : {false, true}) {
+  for (const uint32_t inside : {0u, 1u}) {
+    const shared::WayConstants constants{
+        .columns = grid_.columns, .rows = grid_.rows, .first = 0, .inside = inside, .from = 0};
     std::vector<uint32_t> states(shared::MOST_WAYS, 0);
     for (const size_t field : fields) states[field] = 1;
     gpu::upload(context, states_, states);
     while (std::ranges::find(states, 1u) != states.end()) {
       gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
-        solve_.dispatch(cmd, solveBindings_, gpu::bytesOf(constantsOf(0, inside)),
-                        static_cast<uint32_t>(fields_.size()));
+        solve_.dispatch(cmd, solveBindings_, gpu::bytesOf(constants), static_cast<uint32_t>(fields_.size()));
         gpu::allToAll(cmd);
       });
       states = gpu::download<uint32_t>(context, states_);
     }
   }
-  gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
-    for (const size_t field : fields)
-      gather_.dispatch(cmd, gatherBindings_, gpu::bytesOf(constantsOf(field, false)),
-                       gpu::groupsFor(static_cast<uint32_t>(cells()), shared::WAY_GROUP));
+  gather(fields, 0, grid_.rows);
+  uploadHeads();
+}
+
+void WayFields::gather(std::span<const size_t> fields, uint32_t firstRow, uint32_t rows) const {
+  gpu::submitAndWait(*context_, [&](vk::CommandBuffer cmd) {
+    for (const size_t field : fields) {
+      const shared::WayConstants constants{.columns = grid_.columns,
+                                           .rows = grid_.rows,
+                                           .first = static_cast<uint32_t>(field),
+                                           .inside = 0,
+                                           .from = firstRow * grid_.columns};
+      gather_.dispatch(cmd, gatherBindings_, gpu::bytesOf(constants),
+                       gpu::groupsFor(rows * grid_.columns, shared::WAY_GROUP));
+    }
     gpu::allToAll(cmd);
   });
-  uploadHeads();
 }
 
 }  // namespace skitter::crowd

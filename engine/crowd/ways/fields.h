@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "crowd/ways/field_update.h"
 #include "crowd/ways/stops.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
@@ -19,7 +21,7 @@ class WayFields {
   // Without goals.
   WayFields(const gpu::Context& context, CostGrid grid);
 
-  // All fields are solved anew.
+  // Fields follow where costs have changed; where that is too much, they are solved anew, with the same bits.
   void setGrid(CostGrid grid);
   // Solves fields of `targets`, of which none has one and all are finite: at most shared::MOST_WAYS less
   // those in `kept`. Fields of goals that are not in `kept` may be dropped.
@@ -42,6 +44,8 @@ class WayFields {
   // Counts changes of any kind.
   uint32_t revision() const { return revision_; }
   uint32_t moves() const { return moves_; }
+  // Counts fields that were solved, and not updated.
+  uint32_t solved() const { return solved_; }
   // Times at the middles of the cells, of a goal that has a field.
   std::vector<float> times(const glm::vec2& target) const;
 
@@ -52,18 +56,20 @@ class WayFields {
   };
   size_t cells() const { return grid_.cost.size(); }
   size_t indexOf(const glm::vec2& target) const;
-  shared::WayConstants constantsOf(size_t first, bool inside) const;
   void makeRoom(uint32_t fields);
-  void uploadCosts() const;
   void uploadHeads() const;
+  // How many of its times were looked at anew; none where that would be more than `most`.
+  std::optional<size_t> update(size_t field, const FieldChange& change, size_t most) const;
   void solve(std::span<const size_t> fields);
+  void gather(std::span<const size_t> fields, uint32_t firstRow, uint32_t rows) const;
 
   const gpu::Context* context_;
   CostGrid grid_;
   Regions regions_;
   std::vector<Field> fields_;
   std::vector<glm::vec4> places_;  // as WAY_PLACES
-  uint32_t room_ = 0, revision_ = 0, moves_ = 0;
+  std::vector<float> crossings_;   // of the grid's cells
+  uint32_t room_ = 0, revision_ = 0, moves_ = 0, solved_ = 0;
   gpu::Buffer costs_, times_, states_, records_;
   gpu::Kernel solve_, gather_;
   gpu::Bindings solveBindings_, gatherBindings_;

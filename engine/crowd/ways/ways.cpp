@@ -13,6 +13,7 @@
 #include "crowd/radius.h"
 #include "crowd/readback.h"
 #include "crowd/spawn.h"
+#include "crowd/ways/cost_grid.h"
 #include "crowd/ways/look.h"
 #include "gpu/context.h"
 #include "gpu/transfer.h"
@@ -38,6 +39,13 @@ Traveller travellerOf(const Kind& kind) {
 
 CostGrid groundFor(const Crowd::Impl& crowd, const Kind& kind) {
   return costGrid(crowd.terrain, crowd.scene.obstacles, travellerOf(kind));
+}
+
+// The kind's ground where heights wait to be edited.
+void renewGround(const Crowd::Impl& crowd, Kind& kind) {
+  for (const HeightEdits::Rectangle& samples : crowd.edits.pending())
+    renewCosts(kind.ground, crowd.terrain, crowd.scene.obstacles, travellerOf(kind),
+               cellsOver(kind.ground, crowd.terrain, samples));
 }
 
 CostGrid gridFor(const Crowd::Impl& crowd, const Kind& kind) {
@@ -225,7 +233,7 @@ void renewGrids(Crowd::Impl& crowd) {
   if (!edited && !threatened) return;
   for (Kind& kind : crowd.kinds) {
     if (!kind.ways) continue;
-    if (edited) kind.ground = groundFor(crowd, kind);
+    if (edited) renewGround(crowd, kind);
     CostGrid grid = gridFor(crowd, kind);
     if (grid == kind.ways->grid()) continue;
     changeWays(crowd, kind, [&](WayFields& ways) { ways.setGrid(std::move(grid)); });
