@@ -193,7 +193,7 @@ class FieldReport {
           {"regions", fmt::format("{}", view.kind.ways->regions().count)},
           {"cost, mean", fmt::format("{:.3f}", figures.costMean)},
           {"cost, most", fmt::format("{:.3f}", figures.costMost)}}});
-    const Ways& ways = *view.kind.wayNeeds;
+    const Ways& ways = view.kind.wayfaring->ways;
     nlohmann::ordered_json goals = nlohmann::ordered_json::array();
     for (const glm::vec2& goal : view.kind.ways->goals())
       goals.push_back(add(view, ground, goal, goals.size()));

@@ -141,10 +141,8 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   crowd::setParameters(crowd, crowd::usualDt, kind);
   kind.reserves = from.reserve > 0;
   kind.avoids = from.avoid;
-  if (!from.forage) kind.wayNeeds = from.ways;
+  if (from.ways || from.forage) kind.wayfaring = crowd::Wayfaring{from.ways.value_or(Ways{}), from.forage};
   kind.threat = from.threat;
-  kind.forageNeeds = from.forage;
-  kind.forageGround = from.ways.value_or(Ways{});
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
   kind.hurts = from.hurt;
@@ -153,8 +151,8 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   if (amongWalls) kind.wallBuffer = crowd::makeWalls(crowd, kind);
   for (const Stage& stage : crowd::stagesOf(kind.controller, asked,
                                             {.avoids = kind.avoids,
-                                            .findsWays = kind.wayNeeds.has_value(),
-                                            .forages = kind.forageNeeds.has_value(),
+                                            .findsWays = kind.findsWay(),
+                                            .forages = kind.forages(),
                                             .amongWalls = amongWalls,
                                             .hurts = kind.hurts}))
     kind.stages.push_back({stage});
@@ -648,19 +646,25 @@ std::vector<MemoryUse> Crowd::memoryUse(uint32_t herdIndex) const {
   std::vector<MemoryUse> uses;
   for (const crowd::SizeRun& run : impl_->herdAt(herdIndex).runs) {
     const crowd::Kind& kind = impl_->kinds[run.kind];
-    for (const crowd::PageBuffer& each : crowd::pageBuffers(*impl_, kind)) {
-      uint64_t bytes = 0;
-      for (const Page& page : kind.pages) bytes += each.in(page).size();
+    const auto add = [&](const char* name, uint64_t bytes) {
       // What agents before the run's end take, less what those before its beginning do: all shares are the
       // whole.
       const auto upTo = [&](uint64_t agents) { return kind.agents > 0 ? bytes * agents / kind.agents : 0; };
       const uint64_t share = upTo(run.firstAgent + run.agents) - upTo(run.firstAgent);
-      const auto same = std::ranges::find(uses, each.name, &MemoryUse::name);
+      const auto same = std::ranges::find(uses, name, &MemoryUse::name);
       if (same == uses.end())
-        uses.push_back({each.name, share});
+        uses.push_back({name, share});
       else
         same->bytes += share;
+    };
+    for (const crowd::PageBuffer& each : crowd::pageBuffers(*impl_, kind)) {
+      uint64_t bytes = 0;
+      for (const Page& page : kind.pages) bytes += each.in(page).size();
+      add(each.name, bytes);
     }
+    if (kind.wallBuffer) add("walls", kind.wallBuffer.size());
+    if (kind.ways) add("ways", kind.ways->memoryBytes());
+    if (kind.trails) add("trails", kind.trails->memoryBytes());
   }
   return uses;
 }

@@ -57,7 +57,7 @@ shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, co
           static_cast<float>(tick),
           page.firstAgent,
           1,
-          isForaging ? ForageNumbers::leaveOf(*kind.forageNeeds, double{crowd.dt}) : 0,
+          isForaging ? ForageNumbers::leaveOf(*kind.wayfaring->forage, double{crowd.dt}) : 0,
           page.footfallRoom,
           !crowd.options.sleep || watchesGround(crowd) ? std::numeric_limits<float>::infinity()
                                                        : kind.parameters.sleepTime};

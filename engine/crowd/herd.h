@@ -52,19 +52,23 @@ struct Page : ForRecords<gpu::Buffer> {
   std::vector<gpu::Bindings> bindings;  // one a stage
 };
 
+// How the agents of a kind go over the ground that they know: to goals or, where they forage, by pheromone.
+struct Wayfaring {
+  Ways ways;                          // what is passable to them
+  std::optional<Forage> forage = {};  // where they forage
+};
+
 // What equal herds have in common, and their agents of one size: herd after herd in the same pages, so that a
 // tick's dispatches do not grow with their number.
 struct Kind {
-  std::vector<uint64_t> firstAgents;  // the first agent of each of its herds
-  uint64_t agents = 0;                // places for them
-  bool reserves = false;              // places may be empty
-  bool avoids = false;                // stages after avoid go by its velocity
-  std::optional<Ways> wayNeeds;       // where its herds find their way
-  std::optional<Forage> forageNeeds;  // where its herds forage
-  Ways forageGround;                  // what is passable to foragers
-  int herdSteps = 0;                  // 2 to their power is at least the number of herds in a page
-  float size = 1;                     // of its creatures, times the rig that was loaded
-  Rig rig;                            // of that size
+  std::vector<uint64_t> firstAgents;   // the first agent of each of its herds
+  uint64_t agents = 0;                 // places for them
+  bool reserves = false;               // places may be empty
+  bool avoids = false;                 // stages after avoid go by its velocity
+  std::optional<Wayfaring> wayfaring;  // where its herds find their way or forage
+  int herdSteps = 0;                   // 2 to their power is at least the number of herds in a page
+  float size = 1;                      // of its creatures, times the rig that was loaded
+  Rig rig;                             // of that size
   Controller controller = Controller::adaptive;
   int legs = 0, bones = 0, groups = 0;  // bones of the longest chain
   IkPlan ik{};
@@ -100,6 +104,8 @@ struct Kind {
   const Regait& regaitOf(const LegPattern& pattern);
   // The `hurt` record of an agent, as the host has said.
   std::vector<float> hurtRecordOf(uint32_t agent);
+  bool findsWay() const { return wayfaring && !wayfaring->forage; }
+  bool forages() const { return wayfaring && wayfaring->forage; }
   // Whether stages from body to pose pass over some: sleepers, or empty places.
   bool rests(const CrowdOptions& options) const { return options.sleep || reserves; }
 };

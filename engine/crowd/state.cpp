@@ -613,8 +613,8 @@ void checkState(const Impl& crowd, const State& state) {
   for (size_t k = 0; k < crowd.kinds.size(); ++k)
     for (const StateChunk& chunk : head.kinds[k].chunks) checkChunk(crowd, crowd.kinds[k], chunk, name);
   for (size_t k = 0; k < crowd.kinds.size(); ++k)
-    if (crowd.kinds[k].forageNeeds && std::ranges::find(head.kinds[k].chunks, StateChunk::trail,
-                                                        &StateChunk::name) == head.kinds[k].chunks.end())
+    if (crowd.kinds[k].forages() && std::ranges::find(head.kinds[k].chunks, StateChunk::trail,
+                                                      &StateChunk::name) == head.kinds[k].chunks.end())
       throw inputError(
           fmt::format("{}: has no trail of herds of rig {}, which forage", name, crowd.kinds[k].rig.name));
   for (const Record record : lackingIn(crowd, head))

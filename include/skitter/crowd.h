@@ -149,8 +149,9 @@ struct Crowding {
   std::optional<double> pairs = {};        // that overlap, for each agent and tick
 };
 
-// Device memory of one kind of records, of all of a herd's agents: its share of the pages, where equal herds
-// have them in common.
+// Device memory of one kind of records, of all of a herd's agents: its share, where equal herds have them in
+// common. "walls", "ways" and "trails" are of the kind: obstacles of a herd that avoids, fields of one that
+// finds its way, the trail of one that forages.
 struct MemoryUse {
   std::string name;
   uint64_t bytes = 0;
@@ -301,7 +302,7 @@ class SKITTER_API Crowd {
   uint32_t watchEvery() const;   // the fidelity figures are of one agent of this many at a time
   uint64_t agentCount() const;   // who is there, as the host has said
   uint64_t capacity() const;     // places for agents, empty ones among them
-  uint64_t memoryBytes() const;  // device memory of all records, without the grid of avoid
+  uint64_t memoryBytes() const;  // device memory of all of memoryUse(), without the grid of avoid
   std::vector<MemoryUse> memoryUse(uint32_t herd) const;
   // At the first of the herd's sizes, and at that of an agent, which is `size` times the rig as loaded. Throw
   // Error(input) where the herd has no such place.

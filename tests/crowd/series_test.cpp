@@ -1,12 +1,14 @@
 // Goals from place to place (docs/ways.md#goals-in-series).
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <vector>
 
 #include "assets/files.h"
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
+#include "crowd/ways/look.h"
 #include "crowd/ways/series.h"
 #include "shared/ways.h"
 #include "skitter/error.h"
@@ -172,6 +174,42 @@ TEST_F(SeriesTest, FollowersOfOneAgentComeToIt) {
   crowd.steer({&away, 1});
   simulate(device(), crowd, 900);
   EXPECT_LT(farthestOf(crowd, {10, -9}), 2);
+}
+
+// In herds of several sizes and pages, and where the host has just said where somebody is.
+TEST_F(SeriesTest, ALeaderIsWhereItsRecordSaysOrTheHost) {
+  Scene scene = chase();
+  scene.herds[1].agents = 21;
+  scene.herds[1].reserve = 2;
+  scene.herds[1].sizes = {1, 0.5f};
+  Crowd crowd(device(), flatGround(), scene, {.pageAgents = 8});
+  simulate(device(), crowd, 40);
+  const auto placeOf = [&](std::optional<uint32_t> agent) {
+    Goal goal = following(1);
+    goal.agent = agent;
+    return crowd::leaderOf(implOf(crowd), goal);
+  };
+  const HerdState state = crowd.download(1);
+  glm::dvec2 sum(0);
+  uint32_t present = 0;
+  for (uint32_t agent = 0; agent < crowd.places(1); ++agent) {
+    const std::optional<glm::vec2> place = placeOf(agent);
+    const bool isThere = state.body[size_t{agent} * 4 * shared::BODY_STRIDE + 7] == 0;
+    ASSERT_EQ(place.has_value(), isThere) << agent;
+    if (!isThere) continue;
+    const glm::dvec3 at = positionOf(state, agent);
+    EXPECT_EQ(*place, glm::vec2(at.x, at.z)) << agent;
+    sum += glm::dvec2(at.x, at.z);
+    ++present;
+  }
+  EXPECT_EQ(present, 21u);
+  EXPECT_LT(glm::distance(placeOf({}).value(), glm::vec2(sum / 21.0)), 1e-5);
+  EXPECT_FALSE(placeOf(23));
+  const AgentId told = crowd.agentId(1, 3);
+  crowd.teleport(told, {{-7, 5}, 0});
+  EXPECT_EQ(placeOf(3), glm::vec2(-7, 5));
+  crowd.remove(told);
+  EXPECT_FALSE(placeOf(3));
 }
 
 TEST_F(SeriesTest, WhoFleesStandsUntilAThreatComes) {

@@ -466,6 +466,40 @@ TEST_F(WaysTest, ACrowdOfAStateGoesOnAsBefore) {
   EXPECT_EQ(crowd.stateHash(), again.stateHash());
 }
 
+// Each of a kind's buffers once, however its herds share it.
+TEST_F(WaysTest, MemoryOfWallsFieldsAndTrailsIsCounted) {
+  Scene scene = walledScene(5);
+  scene.herds[0].avoid = true;
+  scene.herds.push_back(scene.herds[0]);
+  scene.herds[1].agents = 12;
+  scene.herds.push_back(sceneOf(3).herds[0]);
+  scene.herds.push_back(sceneOf(4).herds[0]);
+  scene.herds[3].forage = Forage{};
+  const Crowd crowd(device(), flatGround(), scene);
+  const auto bytesOf = [&](uint32_t herd, const char* name) {
+    uint64_t bytes = 0;
+    for (const MemoryUse& use : crowd.memoryUse(herd))
+      if (use.name == name) bytes += use.bytes;
+    return bytes;
+  };
+  const crowd::Kind &finding = implOf(crowd).kindOf(0), &foraging = implOf(crowd).kindOf(3);
+  ASSERT_EQ(&finding, &implOf(crowd).kindOf(1));
+  EXPECT_EQ(bytesOf(0, "walls") + bytesOf(1, "walls"), finding.wallBuffer.size());
+  EXPECT_EQ(bytesOf(0, "ways") + bytesOf(1, "ways"), finding.ways->memoryBytes());
+  EXPECT_GT(bytesOf(0, "walls"), 0u);
+  EXPECT_GT(bytesOf(1, "ways"), bytesOf(0, "ways"));
+  // 128 x 128 cells: a cost, a time and a record of one field.
+  EXPECT_GE(finding.ways->memoryBytes(), 128u * 128 * (4 + 20));
+  EXPECT_EQ(bytesOf(3, "trails"), foraging.trails->memoryBytes());
+  EXPECT_GT(bytesOf(3, "trails"), 0u);
+  for (const char* name : {"walls", "ways", "trails"}) EXPECT_EQ(bytesOf(2, name), 0u) << name;
+  EXPECT_EQ(bytesOf(0, "trails") + bytesOf(3, "ways") + bytesOf(3, "walls"), 0u);
+  uint64_t all = 0;
+  for (uint32_t herd = 0; herd < 4; ++herd)
+    for (const MemoryUse& use : crowd.memoryUse(herd)) all += use.bytes;
+  EXPECT_EQ(all, crowd.memoryBytes());
+}
+
 TEST_F(WaysTest, GoalsAreRefusedWhereFieldsAreTooMany) {
   Crowd crowd(device(), flatGround(), walledScene(20));
   const auto goalOf = [](uint32_t i) {

@@ -44,6 +44,7 @@ class WayFields {
   // Counts changes of any kind.
   uint32_t revision() const { return revision_; }
   uint32_t moves() const { return moves_; }
+  uint64_t memoryBytes() const { return costs_.size() + times_.size() + states_.size() + records_.size(); }
   // Counts fields that were solved, and not updated.
   uint32_t solved() const { return solved_; }
   // Times at the middles of the cells, of a goal that has a field.

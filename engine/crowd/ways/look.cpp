@@ -23,7 +23,7 @@ namespace {
 constexpr double lookSeconds = 0.25;
 
 struct SeenAgent {
-  uint32_t agent, kind;
+  uint32_t kind;
   glm::vec2 place;
 };
 
@@ -35,23 +35,36 @@ std::map<uint32_t, glm::vec2> toldPlaces(const Kind& kind) {
   return told;
 }
 
+constexpr std::array bodyAlone = {Record::body};
+
 // The agents that are there, as the next tick begins with them.
 std::vector<SeenAgent> agentsIn(const Crowd::Impl& crowd, uint32_t number) {
-  constexpr std::array records = {Record::body};
   std::vector<SeenAgent> seen;
   const Herd& herd = crowd.herds[number];
-  const HerdState state = downloadRecords(crowd, number, records);
+  const HerdState state = downloadRecords(crowd, number, bodyAlone);
   for (const SizeRun& run : herd.runs) {
     const std::map<uint32_t, glm::vec2> told = toldPlaces(crowd.kinds[run.kind]);
     for (uint32_t agent = run.firstOfHerd; agent < run.firstOfHerd + run.agents; ++agent) {
       if (!herd.presence.has(agent)) continue;
       const auto moved = told.find(run.ofKind(agent));
-      seen.push_back({agent, run.kind,
-                      moved != told.end() ? moved->second
-                                          : placeOf(&state.body[size_t{agent} * 4 * shared::BODY_STRIDE])});
+      seen.push_back({run.kind, moved != told.end()
+                                    ? moved->second
+                                    : placeOf(&state.body[size_t{agent} * 4 * shared::BODY_STRIDE])});
     }
   }
   return seen;
+}
+
+// Where one agent will stand as the next tick begins, by its own record alone.
+std::optional<glm::vec2> agentAt(const Crowd::Impl& crowd, uint32_t number, uint32_t agent) {
+  const Herd& herd = crowd.herds[number];
+  if (agent >= herd.agents || !herd.presence.has(agent)) return {};
+  const SizeRun& run = herd.runOf(agent);
+  for (const AgentChange& change : crowd.kinds[run.kind].changes.all())
+    if (change.agent == run.ofKind(agent) && change.stands) return change.stands->position;
+  // Of as many agents as there are from one to the next, the first is the only one.
+  const HerdState state = downloadRecords(crowd, number, bodyAlone, {.first = agent, .stride = herd.agents});
+  return placeOf(state.body.data());
 }
 
 bool hasAgents(const Crowd::Impl& crowd, uint32_t number) {
@@ -104,15 +117,12 @@ bool threatsHaveMoved(Crowd::Impl& crowd) {
 std::optional<glm::vec2> leaderOf(const Crowd::Impl& crowd, const Goal& goal) {
   if (!hasAgents(crowd, goal.leader)) return {};
   crowd.context->waitIdle();
+  if (goal.agent) return agentAt(crowd, goal.leader, *goal.agent);
+  const std::vector<SeenAgent> all = agentsIn(crowd, goal.leader);
+  if (all.empty()) return {};
   glm::dvec2 sum(0);
-  size_t count = 0;
-  for (const SeenAgent& each : agentsIn(crowd, goal.leader)) {
-    if (goal.agent && *goal.agent != each.agent) continue;
-    sum += each.place;
-    ++count;
-  }
-  if (count == 0) return {};
-  return glm::vec2(sum / static_cast<double>(count));
+  for (const SeenAgent& each : all) sum += each.place;
+  return glm::vec2(sum / static_cast<double>(all.size()));
 }
 
 glm::vec2 placeOf(const float* body) {

@@ -73,8 +73,8 @@ CostGrid trailGridFor(const Crowd::Impl& crowd, const Kind& kind) {
       {.legLength = kind.rig.legLength,
        .footprint = footprintRadius(kind.rig),
        .margin = kind.parameters.edgeMargin,
-       .ways = kind.forageGround,
-       .cell = Trails::cellOf(*kind.forageNeeds, std::max(terrain.extentX(), terrain.extentZ()))});
+       .ways = kind.wayfaring->ways,
+       .cell = Trails::cellOf(*kind.wayfaring->forage, std::max(terrain.extentX(), terrain.extentZ()))});
 }
 
 }  // namespace
@@ -180,8 +180,8 @@ std::vector<uint32_t> Trails::trailWords() const { return gpu::download<uint32_t
 
 void beginTrails(Crowd::Impl& crowd, uint32_t k) {
   Kind& kind = crowd.kinds[k];
-  if (!kind.forageNeeds) return;
-  kind.trails = std::make_unique<Trails>(*crowd.context, *kind.forageNeeds,
+  if (!kind.forages()) return;
+  kind.trails = std::make_unique<Trails>(*crowd.context, *kind.wayfaring->forage,
                                          base::SplitMix64::draw(crowd.seed, uint64_t{k} + 1),
                                          trailGridFor(crowd, kind));
 }
@@ -204,7 +204,7 @@ void renewTrails(Crowd::Impl& crowd) {
 }
 
 uint64_t bytesOfTrail(const Crowd::Impl& crowd, const Kind& kind) {
-  if (!kind.forageNeeds) return 0;
+  if (!kind.forages()) return 0;
   return (shared::TRAIL_CELLS + trailGridFor(crowd, kind).cost.size()) * sizeof(uint32_t);
 }
 

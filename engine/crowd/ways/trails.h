@@ -51,6 +51,7 @@ class Trails {
   const gpu::Buffer& ground() const { return ground_; }  // BINDING_FORAGE_GROUND
   const gpu::Buffer& trail() const { return trail_; }    // BINDING_TRAIL
   uint64_t bytes() const { return trail_.size(); }
+  uint64_t memoryBytes() const { return ground_.size() + trail_.size(); }
   // The ground, and the trail as the last tick left it. They wait for the device.
   std::vector<uint32_t> groundWords() const;
   std::vector<uint32_t> trailWords() const;

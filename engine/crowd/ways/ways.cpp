@@ -34,7 +34,7 @@ Traveller travellerOf(const Kind& kind) {
   return {.legLength = kind.rig.legLength,
           .footprint = footprintRadius(kind.rig),
           .margin = kind.parameters.edgeMargin,
-          .ways = *kind.wayNeeds};
+          .ways = kind.wayfaring->ways};
 }
 
 CostGrid groundFor(const Crowd::Impl& crowd, const Kind& kind) {
@@ -157,7 +157,7 @@ Targets fitting(const WayFields& ways, const Targets& targets, const Targets& ke
 
 void beginWays(Crowd::Impl& crowd, uint32_t k, bool isNew) {
   Kind& kind = crowd.kinds[k];
-  if (!kind.wayNeeds) return;
+  if (!kind.findsWay()) return;
   kind.ground = groundFor(crowd, kind);
   kind.ways = std::make_unique<WayFields>(*crowd.context, gridFor(crowd, kind));
   const std::vector<HerdRun> runs = runsOf(crowd, k);
