@@ -86,6 +86,41 @@ TEST_F(ThreatsTest, AreLeftByThoseInsideAndNotEnteredByOthers) {
   EXPECT_GT(nearestTo(crowd, threat), 0);
 }
 
+// How many agents want to go the wrong way: from outside into the threat, from the outer half of it not out.
+size_t goingWrong(const Crowd& crowd, const Threat& threat) {
+  const HerdState state = crowd.download(0);
+  const double radius = double{threat.radius};
+  size_t wrong = 0;
+  for (size_t i = 0; i < state.agents; ++i) {
+    const glm::dvec3 at = positionOf(state, i);
+    const float* steer = &state.steer[i * 4 * shared::STEER_STRIDE];
+    const glm::dvec2 away(at.x - double{threat.centre.x}, at.z - double{threat.centre.y}),
+        wanted(steer[0], steer[1]);
+    const double apart = glm::length(away),
+                 outward = glm::dot(away, wanted) / std::max(glm::length(wanted), 1e-9);
+    if (apart > radius)
+      wrong += outward < 0 && apart * apart - outward * outward < radius * radius;
+    else
+      wrong += apart > radius / 2 && outward < 0.5 * apart;
+  }
+  return wrong;
+}
+
+// The threat is not straight between agents and their goal: to the left and to the right of it are equally
+// long ways for nobody.
+TEST_F(ThreatsTest, ThatComeHaveAllRoutedAnewWithinASecond) {
+  Crowd crowd(device(), flatGround(), northward(49));
+  simulate(device(), crowd, 60);
+  const Threat threat{.centre = {0.4f, -4.5f}, .radius = 2.5f};
+  EXPECT_GT(goingWrong(crowd, threat), 49u / 2) << "it is dropped on their path";
+  crowd.setThreat(0, threat);
+  simulate(device(), crowd, 59);
+  for (int tick = 60; tick < 120; ++tick) {
+    simulate(device(), crowd, 1);
+    EXPECT_EQ(goingWrong(crowd, threat), 0u) << "tick " << tick;
+  }
+}
+
 TEST_F(ThreatsTest, GoAgain) {
   Scene scene = northward(4);
   Crowd never(device(), flatGround(), scene);
