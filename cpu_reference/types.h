@@ -39,6 +39,10 @@ struct Tuning {
   double clipFade = 0, clipIdle = 0, clipHysteresis = 0, clipRateMost = 0, plantStray = 0, plantKeep = 0;
   double poseWalk = 0, springFrequency = 0, springDamping = 0;
   double approachError = 0, restPull = 0, pullError = 0, ikTolerance = 0;
+  double fallTime = 0, slideFriction = 0, lieTime = 0, riseTime = 0;
+  double gravity = 0, disturbTime = 0, slipMiss = 0, steadySpeed = 0, tumbleRate = 0, tumbleDamping = 0;
+  double lieAngle = 0, tiltMost = 0, uprightTilt = 0, restSpeed = 0, restRate = 0, wallSlope = 0;
+  double wallLeast = 0, foldTime = 0, foldAside = 0, foldBelow = 0;
   double deadZone = 0, skateSpeed = 0, limitDeadZone = 0, jerkTicks = 24, jerkPath = 0;
 };
 

@@ -26,7 +26,7 @@ constexpr int settleIterations = 6;
 class Frame {
  public:
   // Most stages that a tick may have, for timers.
-  static constexpr uint32_t mostStages = 19;
+  static constexpr uint32_t mostStages = 20;
 
   Frame(const Crowd::Impl& crowd, std::span<const Kind> kinds, uint64_t tick, vk::CommandBuffer cmd)
       : crowd_(crowd), kinds_(kinds), tick_(tick), cmd_(cmd) {}

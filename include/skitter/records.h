@@ -279,6 +279,28 @@ SKITTER_INLINE int packedBone(float packed, int leg) {
   return SKITTER_INT(SKITTER_UINT(packed) >> SKITTER_UINT(4 * (leg % HURT_BONES_LEGS))) % HURT_BONES;
 }
 
+// push, per agent of a herd with reactions, written by the host alone (Crowd::push).
+//   [0] change of the velocity x, z (m/s), unused, the tick in which it counts
+SKITTER_CONST int PUSH_STRIDE = 1;
+
+// reaction, per agent of a herd with reactions, written by react (docs/stages/react.md).
+//   [0] phase (REACTION_), seconds in it, seconds for which a fall may still begin, seconds for which the
+//       capture point has been out of reach; in a fall instead of these 1 where the hull touches the ground
+//   [1] velocity beside that of the walk x, z, and in a fall all of it; upward velocity in a fall (m/s);
+//       how much lower than it walks the body is while it rises (m)
+//   [2] direction of the fall x, z (unit), tilt (rad), its rate (rad/s)
+//   [3] up axis of the ground below a fall x, y, z; share to which its legs are folded
+//   [4] falls, how often it has stood again, seconds since this fall began, seconds of those before
+SKITTER_CONST int REACTION_STRIDE = 5;
+SKITTER_CONST float REACTION_STEADY = 0.0;
+SKITTER_CONST float REACTION_STUMBLING = 1.0;
+SKITTER_CONST float REACTION_FALLING = 2.0;
+SKITTER_CONST float REACTION_LYING = 3.0;
+SKITTER_CONST float REACTION_RIGHTING = 4.0;
+SKITTER_CONST float REACTION_RISING = 5.0;
+// Below so many legs that carry a creature lies on its belly, and cannot fall.
+SKITTER_CONST int FEWEST_THAT_FALL = 3;
+
 // rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE per bone (zero-length bones pad short
 // legs).
 //   leg  [0] root x, y, z (model), reach (m)
@@ -382,7 +404,10 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
   RECORD(METRIC, metric, 40, agent,   METRIC_STRIDE,                   bound,      false, false) \
   RECORD(WATCH,  watch,  42, watched, watchStride(legs),               bound,      false, false) \
   RECORD(FLIGHT, flight, 44, leg,     FLIGHT_STRIDE,                   bound,      false, false) \
-  RECORD(HURT,   hurt,   50, agent,   hurtStride(legs),                bound,      true,  true)
+  RECORD(HURT,   hurt,   50, agent,   hurtStride(legs),                bound,      true,  true) \
+  RECORD(REACTION, reaction, 52, agent, REACTION_STRIDE,               bound,      false, true) \
+  /* It counts in the tick that it names alone. */ \
+  RECORD(PUSH,   push,   54, agent,   PUSH_STRIDE,                     bound,      false, false)
 // clang-format on
 
 #ifdef __cplusplus

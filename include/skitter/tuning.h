@@ -193,7 +193,19 @@
       "less: poses soften; more: the keys show") \
   ROW(X, UNIFORM, _, key-poses, springDamping, number, 0.70710678, 0.1, 0.95, \
       "damping of the springs; 1 is critical", \
-      "less: joints swing past their poses")
+      "less: joints swing past their poses") \
+  ROW(X, UNIFORM, _, react, fallTime, seconds, 0.1, 0.02, 1, \
+      "time for which no leg reaches the capture point before a fall begins", \
+      "less: a leg that lands a moment later does not count; more: the body glides before it falls") \
+  ROW(X, UNIFORM, _, react, slideFriction, number, 0.6, 0.1, 2, \
+      "friction of a fallen body on the ground, a share of its weight", \
+      "less: it slides down every slope, and does not come to rest; more: it stops in one jerk") \
+  ROW(X, UNIFORM, _, react, lieTime, seconds, 0.5, 0, 60, \
+      "time for which a fallen body lies at rest before it rises", \
+      "less: it bounces up; more: it lies as if dead") \
+  ROW(X, UNIFORM, _, react, riseTime, seconds, 0.5, 0.1, 5, \
+      "time in which the body rises once its feet stand", \
+      "less: it jumps up; more: it walks on its belly")
 
 // Pairs in order. ROW(X, less, more, apart, why): `more` must exceed `less` by at least `apart`.
 #define SKITTER_TUNING_ORDER(ROW, X) \

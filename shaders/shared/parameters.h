@@ -28,6 +28,22 @@ namespace skitter::shared {
   FIXED(X, UNIFORM, _, skateSpeed, legLengthsPerSecond, 0.1, "horizontal speed above which a planted foot skates") \
   FIXED(X, UNIFORM, _, limitDeadZone, radians, 1e-4, \
         "beyond a limit that does not count; a clamped direction is within 1e-6") \
+  FIXED(X, UNIFORM, _, gravity, number, 9.81, "m/s^2") \
+  FIXED(X, UNIFORM, _, disturbTime, seconds, 1, "after a disturbance a fall may begin for so long") \
+  FIXED(X, UNIFORM, _, slipMiss, reaches, 0.05, "a planted foot that misses by more slips") \
+  FIXED(X, UNIFORM, _, steadySpeed, legLengthsPerSecond, 1e-3, "a slower rest of a push is none") \
+  FIXED(X, UNIFORM, _, tumbleRate, radiansPerSecond, 9, "of the spring that tips a fallen body over: in 0.3 s") \
+  FIXED(X, UNIFORM, _, tumbleDamping, number, 0.6, "of that spring; 1 is critical") \
+  FIXED(X, UNIFORM, _, lieAngle, radians, 1.2, "tilt at which it comes to rest; sin and cos are of a Cayley turn") \
+  FIXED(X, UNIFORM, _, tiltMost, radians, 1.5, "largest tilt") \
+  FIXED(X, UNIFORM, _, uprightTilt, radians, 0.05, "below it a body that rights itself is upright") \
+  FIXED(X, UNIFORM, _, restSpeed, legLengthsPerSecond, 0.1, "a fallen body that is slower is at rest") \
+  FIXED(X, UNIFORM, _, restRate, radiansPerSecond, 1, "a fallen body that tips slower is at rest") \
+  FIXED(X, UNIFORM, _, wallSlope, number, 4, "ground that rises more steeply stops a fallen body") \
+  FIXED(X, UNIFORM, _, wallLeast, legLengths, 1e-3, "and rises by more than that in a tick") \
+  FIXED(X, UNIFORM, _, foldTime, seconds, 0.3, "in which legs fold in a fall") \
+  FIXED(X, UNIFORM, _, foldAside, number, 0.6, "where a folded foot is, level: a share of the way from root to home") \
+  FIXED(X, UNIFORM, _, foldBelow, number, 0.25, "and below the root, likewise") \
   FIXED(X, UNIFORM, _, jerkPath, legLengths, 0.05, "a window with a shorter path does not count")
 
 // Given by the rig, the terrain, the herd and the tick: GIVEN(X, place, number, name, what)

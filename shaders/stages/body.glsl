@@ -6,9 +6,30 @@
 #include "stages/ground.glsl"
 #include "stages/hurt.glsl"
 
+#ifdef REACTS
+// A body that does not stand on its legs goes as react has it.
+Body looseBody(Body body, Reaction r) {
+  mat3 frame = tippedFrame(r.ground, body.heading, r.way, r.tilt);
+  vec4 orientation = quaternionFromColumns(frame[0], frame[1], frame[2]);
+  body.orientation = dot(orientation, body.orientation) < 0.0 ? -orientation : orientation;
+  body.local += vec3(r.velocity.x, r.sink, r.velocity.y) * parameters.dt;
+  vec2 crossed = floor(body.local.xz / TILE_SIZE);
+  body.tile += crossed;
+  body.local.xz -= crossed * TILE_SIZE;
+  body.speed = body.turnRate = body.still = body.surfaceSpeed = 0.0;
+  body.follow = parameters.followLeast;
+  return body;
+}
+#endif
+
 // `body` is the agent's, `velocity` what it is steered to.
 Body makeBody(int agent, Body body, vec2 velocity) {
   float dt = parameters.dt;
+#ifdef REACTS
+  Body old = body;
+  Reaction reaction = LOAD_REACTION(agent);
+  velocity *= reaction.phase == REACTION_RISING ? 0.0 : 1.0;
+#endif
 #ifdef HURT
   Hurt hurt = hurtOf(agent);
   velocity *= hurt.speed;
@@ -57,12 +78,18 @@ Body makeBody(int agent, Body body, vec2 velocity) {
   body.speed += clamp(speed - body.speed, -parameters.braking * dt, parameters.acceleration * dt);
   body.speed = min(body.speed, speedToEdge(parameters, body.local, body.tile, body.heading));
   vec2 moved = body.heading * (body.speed * dt);
+#ifdef REACTS
+  moved += reaction.velocity * dt;
+#endif
 
   vec3 plane = fitPlane(parameters, sums, points);
   vec2 slope = plane.xy;
   float planeHeight = body.local.y + plane.z + dot(slope, moved);
 #ifdef HURT
   planeHeight -= hurt.shift.y;  // the body is so much lower
+#endif
+#ifdef REACTS
+  planeHeight -= reaction.drop;
 #endif
 
 #ifdef BLIND
@@ -96,6 +123,10 @@ Body makeBody(int agent, Body body, vec2 velocity) {
   bool still = commanded < 1e-2 * l && body.speed < 1e-2 * l && abs(body.turnRate) < 1e-2;
   body.still = still ? body.still + dt : 0.0;
   body.follow = follow;
+#ifdef REACTS
+  body.still = reaction.phase == REACTION_STEADY ? body.still : 0.0;
+  if (isLoose(reaction)) body = looseBody(old, reaction);
+#endif
 
   int at = agent * BODY_STRIDE;
   STORE4_TWO(bodiesOut, at, vec4(body.local, packedTile(body.tile.x, body.tile.y)), vec4(body.heading, body.speed, 0.0));

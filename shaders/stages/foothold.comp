@@ -148,7 +148,7 @@ void main() {
   uint both = uint(LOAD4(gaits, agent * GAIT_STRIDE).y) & uint(LOAD4(gaits, agent * GAIT_STRIDE).z);
   bool rises = (both >> leg & 1u) != 0u;
   reaim = reaim && !rises;
-  home.xyz += hurtOf(agent).shift;
+  home.xyz += hurtNow(agent, body.orientation).shift;
   freshTicks = slowTicks(freshTicks, HURT_LEG(agent, leg).w);
 #endif
   float flown = thisTick - 1.0 - old.firstTick;

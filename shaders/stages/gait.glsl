@@ -20,7 +20,7 @@ float above(vec3 point, Body body) {
 
 void makeGait(int agent, Body body) {
 #ifdef HURT
-  Hurt hurt = hurtOf(agent);
+  Hurt hurt = hurtNow(agent, body.orientation);
   Stride stride = strideOfHurt(parameters, body, agent, hurt);
   float groups = hurt.groups;
   // A leg that carries again hangs in the air, and comes down by a step.
@@ -69,6 +69,9 @@ void makeGait(int agent, Body body) {
                   LOAD_MISS(agent, leg) > parameters.errorLift;
       bool far = off > liftShare2;
       bool open = REACH != 0 || windowOpen(parameters, phase, home.w, order.x, stride, groups);
+#ifdef REACTS
+      open = open || hurt.stumbles;
+#endif
       wants |= !settled && open && (far || must || s.lastResort) ? 1u << leg : 0u;
       // Who stands still steps only off ground that moves.
       must = moved || (!settled && (must || (REACH != 0 && far)));

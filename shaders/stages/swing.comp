@@ -5,6 +5,9 @@
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_STEP, steps);
 LOAD4_BUFFER(BINDING_ARC, arcs);
+#ifdef REACTS
+LOAD4_BUFFER(BINDING_RIG, rig);
+#endif
 STORE4_BUFFER(BINDING_FOOT_OUT, feetOut);
 #include "stages/swing.glsl"
 
