@@ -43,6 +43,23 @@ inline constexpr int own = -1;
   FIELD(double,     cycle,             0,                      5,  own) \
   FIELD(uint32_t,   air,               0,                      6,  0)    /* in the air before any lifts */
 
+#define SKITTER_REACTION_FIELDS(FIELD) \
+  FIELD(double,     clock,             0,                      1,  own)  /* s in its phase */ \
+  FIELD(double,     disturbed,         0,                      2,  own)  /* s for which a fall may begin */ \
+  FIELD(double,     over,              0,                      3,  own)  /* s out of reach; fallen: 1 on the ground */ \
+  FIELD(glm::dvec2, velocity,          glm::dvec2(0),          4,  own)  /* v */ \
+  FIELD(double,     sink,              0,                      6,  own)  /* w, upward */ \
+  FIELD(double,     drop,              0,                      7,  own) \
+  FIELD(glm::dvec2, way,               glm::dvec2(0),          8,  own)  /* f */ \
+  FIELD(double,     tilt,              0,                      10, own)  /* theta */ \
+  FIELD(double,     tiltRate,          0,                      11, own) \
+  FIELD(glm::dvec3, ground,            glm::dvec3(0),          12, own)  /* n */ \
+  FIELD(double,     fold,              0,                      15, own) \
+  FIELD(double,     falls,             0,                      16, 0) \
+  FIELD(double,     stands,            0,                      17, 0) \
+  FIELD(double,     down,              0,                      18, own)  /* s since this fall began */ \
+  FIELD(double,     downBefore,        0,                      19, own)  /* s of those before */
+
 /* Positions are local to the tile in x and z, world in y. */
 #define SKITTER_STEP_FIELDS(FIELD) \
   FIELD(glm::dvec3, landing,           glm::dvec3(0),          0,  own) \

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <optional>
 #include <vector>
 
 #include "cpu_reference/fields.h"
@@ -73,10 +74,23 @@ struct Limb {
   std::vector<BoneRest> bones;
   // These differ for a leg that is hurt (cpu_reference/stages/hurt.h).
   bool carries = true, lost = false;
+  bool folds = false;      // of a fallen agent: it does not carry, and is solved all the same
   size_t left = SIZE_MAX;  // bones from the root on that it has left
   double slowness = 1;     // how many times as long as others its step lasts
 
   double stepTicks(double duration) const { return std::floor(slowness * duration + 0.5); }
+};
+
+enum class ReactionPhase { steady, stumbling, falling, lying, righting, rising };
+
+#define REFERENCE_MEMBER(type, name, initial, place, roundings) type name = initial;
+struct Reaction {
+  SKITTER_REACTION_FIELDS(REFERENCE_MEMBER)
+  ReactionPhase phase = ReactionPhase::steady;
+
+  bool isFallen() const { return phase >= ReactionPhase::falling && phase <= ReactionPhase::righting; }
+  // It does not stand on its legs, not even as it begins to rise.
+  bool isLoose() const { return isFallen() || (phase == ReactionPhase::rising && clock == 0); }
 };
 
 struct Creature {
@@ -85,6 +99,12 @@ struct Creature {
   // Where legs are hurt: how far its homes are from the rig's, model space, and its share of the speed.
   glm::dvec3 shift{0};
   double speed = 1;
+  // Where it reacts (cpu_reference/stages/react.h).
+  std::optional<Reaction> reaction = {};
+
+  // What a push adds to how fast the feet must go.
+  double hurry() const { return reaction && !reaction->isFallen() ? glm::length(reaction->velocity) : 0; }
+  bool stumbles() const { return reaction && reaction->phase == ReactionPhase::stumbling; }
 
   double slowest() const {
     double most = 1;
@@ -95,7 +115,6 @@ struct Creature {
 
 enum class GoalKind { none, point, cross, velocity, series };
 
-#define REFERENCE_MEMBER(type, name, initial, place, roundings) type name = initial;
 struct Goal {
   SKITTER_GOAL_FIELDS(REFERENCE_MEMBER)
   GoalKind kind = GoalKind::none;

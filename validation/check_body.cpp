@@ -1,4 +1,5 @@
 #include "cpu_reference/stages/body.h"
+#include "cpu_reference/stages/react.h"
 #include "cpu_reference/stages/tolerances.h"
 #include "skitter/records.h"
 #include "validation/checks.h"
@@ -65,10 +66,50 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
   return sample;
 }
 
+// A body that goes as its reaction says: numbers of that record, in sums, and a rotation that they make.
+Sample compareLoose(const Setting& setting, const Moment& moment, const reference::AgentBody& previous) {
+  const reference::Reaction& reaction = *setting.creature.reaction;
+  const reference::AgentBody expected = reference::looseBody(setting.tuning, previous, reaction);
+  const reference::AgentBody got = bodyOf(moment.after, moment.agent);
+  const double dt = setting.tuning.dt, unit = setting.tuning.legLength;
+  Sample sample;
+  sample.finite("body", records(moment.after.body, moment.agent, shared::BODY_STRIDE));
+  const glm::dvec2 apart{(expected.tileX - got.tileX) * reference::tileSize + expected.localX - got.localX,
+                         (expected.tileZ - got.tileZ) * reference::tileSize + expected.localZ - got.localZ};
+  sample.compare(
+      "position / leg length", glm::length(apart) / unit,
+      (3 * tolerance::local + 2 * tolerance::roundoff * dt * glm::length(reaction.velocity)) / unit,
+      {expected.tileX, expected.localX, expected.tileZ, expected.localZ},
+      {got.tileX, got.localX, got.tileZ, got.localZ});
+  sample.compare("height / leg length", std::abs(expected.y - got.y) / unit,
+                 4 * tolerance::roundoff * (std::abs(previous.y) + std::abs(reaction.sink) * dt) / unit,
+                 {expected.y, 0, 0, 0}, {got.y, 0, 0, 0});
+  // As in tolerance::react, of an exact axis and tilt.
+  const glm::dquat &q = expected.orientation, &r = got.orientation;
+  sample.compare("orientation", difference(q, r),
+                 (48 + 32 / std::max(reaction.ground.y, 1e-3)) * tolerance::roundoff, {q.x, q.y, q.z, q.w},
+                 {r.x, r.y, r.z, r.w});
+  sample.compare("orientation's sign", std::max(0.0, -glm::dot(r, previous.orientation)),
+                 64 * tolerance::roundoff, {q.x, q.y, q.z, q.w}, {r.x, r.y, r.z, r.w});
+  sample.same("heading x", previous.heading.x, got.heading.x);
+  sample.same("heading z", previous.heading.y, got.heading.y);
+  sample.same("speed", 0, got.speed);
+  sample.same("turn rate", 0, got.turnRate);
+  sample.same("still time", 0, got.still);
+  sample.same("surface speed", 0, got.surfaceSpeed);
+  sample.compare("follow factor", std::abs(setting.tuning.followLeast - got.follow), tolerance::roundoff,
+                 {setting.tuning.followLeast, 0, 0, 0}, {got.follow, 0, 0, 0});
+  return sample;
+}
+
 }  // namespace
 
 void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::AgentBody previous = bodyOf(moment.before, moment.agent);
+  if (setting.creature.reaction && setting.creature.reaction->isLoose()) {
+    judge.add(moment.n, moment.number(), -1, compareLoose(setting, moment, previous));
+    return;
+  }
   const glm::dvec2 desired = velocityOf(moment.after, moment.agent);
   std::vector<reference::Step> steps;
   const size_t legs = static_cast<size_t>(setting.legs);

@@ -66,7 +66,8 @@ GaitVerdict compare(const Setting& setting, const Moment& moment, const referenc
   const reference::Gait got = gaitOf(moment.after, moment.agent);
   const reference::Gait& expected = result.gait;
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
-  const double forecast = setting.tuning.legLength + (body.surfaceSpeed + 1) * expected.cycle;
+  const double forecast =
+      setting.tuning.legLength + (body.surfaceSpeed + 1) * expected.cycle + setting.creature.hurry();
   auto bound = tolerance::gait(setting.tuning, expected, setting.creature.groups, forecast);
   if (moment.after.watched) bound.ground = groundBound(setting, moment, body);
   const double settleBound = 4 * tolerance::roundoff * (1 + setting.tuning.settleTime);

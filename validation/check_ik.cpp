@@ -211,7 +211,7 @@ void checkIk(const Setting& setting, const Moment& moment, Judge& judge) {
   for (size_t l = 0; l < static_cast<size_t>(setting.legs); ++l) {
     const size_t leg = moment.agent * static_cast<size_t>(setting.legs) + l;
     const reference::Limb& limb = setting.creature.limbs[l];
-    if (!limb.carries) {
+    if (!limb.carries && !limb.folds) {
       judge.add(moment.n, moment.number(), static_cast<int>(l), compareHeld(setting, moment, l, limb));
       continue;
     }

@@ -8,6 +8,7 @@ namespace skitter::validation {
 using StageCheck = void(const Setting& setting, const Moment& moment, Judge& judge);
 StageCheck checkNavigate;
 StageCheck checkAvoid;
+StageCheck checkReact;
 StageCheck checkBody, checkBlindBody;
 StageCheck checkClip;
 StageCheck checkGait, checkLoopGait, checkKeyPoseGait;
@@ -29,6 +30,7 @@ const std::vector<Controller> blind = {loop, clip, planted, Controller::keyPoses
 const std::vector<Check> checks = {
     {StageId::navigate, every, checkNavigate},
     {StageId::avoid, every, checkAvoid},
+    {StageId::react, {adaptive}, checkReact, {Record::reaction}},
     {StageId::body, {adaptive}, checkBody, {Record::body}},
     {StageId::body, blind, checkBlindBody, {Record::body}},
     {StageId::clip, {clip, planted}, checkClip, {Record::play}},
@@ -69,6 +71,8 @@ bool isLeftOut(StageId stage, const HerdState& before, const HerdState& after) {
   switch (stage) {
     case StageId::avoid:
       return after.avoid.empty();
+    case StageId::react:
+      return after.reaction.empty();
     case StageId::swing:
       return after.foot.empty();
     case StageId::pose:

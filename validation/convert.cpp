@@ -141,6 +141,32 @@ reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs) {
   return hurt;
 }
 
+reference::Reaction reactionOf(const HerdState& state, size_t agent) {
+  const float* record = recordAt(state.reaction, agent, shared::REACTION_STRIDE);
+  reference::Reaction to;
+  SKITTER_REACTION_FIELDS(READ)
+  using enum reference::ReactionPhase;
+  to.phase = record[0] == shared::REACTION_STUMBLING  ? stumbling
+             : record[0] == shared::REACTION_FALLING  ? falling
+             : record[0] == shared::REACTION_LYING    ? lying
+             : record[0] == shared::REACTION_RIGHTING ? righting
+             : record[0] == shared::REACTION_RISING   ? rising
+                                                      : steady;
+  return to;
+}
+
+void putReaction(HerdState& state, size_t agent, const reference::Reaction& from) {
+  float* record = clearedAt(state.reaction, agent, shared::REACTION_STRIDE);
+  SKITTER_REACTION_FIELDS(WRITE)
+  record[0] = static_cast<float>(from.phase);
+}
+
+std::optional<glm::dvec2> pushOf(const HerdState& state, size_t agent, uint64_t n) {
+  const float* record = recordAt(state.push, agent, shared::PUSH_STRIDE);
+  if (record[3] != static_cast<float>(n)) return {};
+  return glm::dvec2(record[0], record[1]);
+}
+
 reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones) {
   reference::KeyPoses result;
   result.stride = poses.stride;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/measure.h"
+#include "cpu_reference/stages/react.h"
 #include "cpu_reference/stages/swing_key_poses.h"
 #include "cpu_reference/types.h"
 #include "crowd/key_poses.h"
@@ -22,6 +24,9 @@ reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones
 
 // The state is a herd's that can be hurt.
 reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs);
+// The state is a herd's with reactions. What the host has pushed the agent with for tick n, if anything.
+reference::Reaction reactionOf(const HerdState& state, size_t agent);
+std::optional<glm::dvec2> pushOf(const HerdState& state, size_t agent, uint64_t n);
 
 reference::Goal goalOf(const HerdState& state, size_t agent);
 // Navigate's velocity, and whether it lets the agent sleep.
@@ -50,6 +55,7 @@ reference::Watched watchedOf(const HerdState& state, size_t slot, int legs);
 void putGoal(HerdState& state, size_t agent, const reference::Goal& goal);
 void putSteer(HerdState& state, size_t agent, const glm::dvec2& desired, bool asleep);
 void putBody(HerdState& state, size_t agent, const reference::AgentBody& body);
+void putReaction(HerdState& state, size_t agent, const reference::Reaction& reaction);
 void putGait(HerdState& state, size_t agent, const reference::Gait& gait);
 void putStep(HerdState& state, size_t leg, const reference::Step& step);
 void putFoot(HerdState& state, size_t leg, const reference::Foot& foot);

@@ -37,6 +37,10 @@ void compareFields(const reference::Gait& expected, const reference::Gait& got, 
   SKITTER_GAIT_FIELDS(COMPARE)
 }
 
+void compareFields(const reference::Reaction& expected, const reference::Reaction& got, Sample& sample) {
+  SKITTER_REACTION_FIELDS(COMPARE)
+}
+
 void compareFields(const reference::Step& expected, const reference::Step& got, Sample& sample) {
   SKITTER_STEP_FIELDS(COMPARE)
   SKITTER_ARC_FIELDS(COMPARE)

@@ -10,6 +10,7 @@ namespace skitter::validation {
 // Compares every field that has no tolerance of its own.
 void compareFields(const reference::Goal& expected, const reference::Goal& got, Sample& sample);
 void compareFields(const reference::AgentBody& expected, const reference::AgentBody& got, Sample& sample);
+void compareFields(const reference::Reaction& expected, const reference::Reaction& got, Sample& sample);
 void compareFields(const reference::Gait& expected, const reference::Gait& got, Sample& sample);
 void compareFields(const reference::Step& expected, const reference::Step& got, Sample& sample);
 void compareFields(const reference::Foot& expected, const reference::Foot& got, Sample& sample);

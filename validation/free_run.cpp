@@ -17,6 +17,7 @@
 #include "cpu_reference/stages/navigate.h"
 #include "cpu_reference/stages/pose.h"
 #include "cpu_reference/stages/pose_clip.h"
+#include "cpu_reference/stages/react.h"
 #include "cpu_reference/stages/swing.h"
 #include "cpu_reference/stages/swing_clip.h"
 #include "cpu_reference/stages/swing_loop.h"
@@ -34,7 +35,7 @@ class Walk {
   Walk(const Setting& setting, uint64_t tick, size_t agent, HerdState& state)
       : setting_(setting),
         tuning_(setting.tuning),
-        creature_(setting.creature),
+        ownCreature_(setting.creature),
         tick_(tick),
         n_(static_cast<double>(tick)),
         agent_(agent),
@@ -62,22 +63,46 @@ class Walk {
     const uint32_t idleBefore = gait().idle;
     const std::vector<reference::Step> before = stepsBefore();
     const std::vector<double> misses = missesBefore();
-    putBody(state_, agent_,
-            reference::body(tuning_, setting_.heights, creature_, body(), desiredOf(state_, agent_), before,
-                            misses, n_, gait().phase)
-                .body);
+    const bool reacts = !state_.reaction.empty();
     const reference::WatchedGround ground = state_.watched ? &setting_.heights : nullptr;
+    if (reacts) {
+      putReaction(state_, agent_,
+                  reference::react(tuning_, setting_.heights, creature_, body(), reactionOf(state_, agent_),
+                                   before, misses, n_, pushOf(state_, agent_, tick_), ground, idleBefore)
+                      .reaction);
+      ownCreature_ = reactingCreature(body());
+    }
+    const bool loose = reacts && creature_.reaction->isLoose();
+    if (loose) putBody(state_, agent_, reference::looseBody(tuning_, body(), *creature_.reaction));
+    if (!loose)
+      putBody(state_, agent_,
+              reference::body(tuning_, setting_.heights, creature_, body(), desiredOf(state_, agent_), before,
+                              misses, n_, gait().phase)
+                  .body);
+    if (reacts) ownCreature_ = reactingCreature(body());  // whose homes are ahead of the new body
     putGait(
         state_, agent_,
         reference::gait(tuning_, creature_, body(), gait().phase, before, misses, n_, {}, ground, idleBefore)
             .gait);
     for (size_t l = 0; l < legs_; ++l) {
       step(l, before[l]);
-      putFoot(state_, leg(l),
-              limb(l).carries ? reference::swing(stepOf(state_, leg(l)), body(), n_) : reference::idleFoot());
+      putFoot(state_, leg(l), footOfStep(l));
       solve(l);
     }
     pose();
+  }
+
+  reference::Creature reactingCreature(const reference::AgentBody& at) const {
+    return reference::reactingCreature(tuning_, setting_.creature, reactionOf(state_, agent_),
+                                       at.orientation);
+  }
+
+  reference::Foot footOfStep(size_t l) const {
+    if (!limb(l).carries && !limb(l).folds) return reference::idleFoot();
+    const reference::Foot foot = reference::swing(stepOf(state_, leg(l)), body(), n_);
+    if (!limb(l).folds) return foot;
+    return reference::foldedFoot(tuning_, setting_.heights, limb(l).root, limb(l).home - creature_.shift,
+                                 body(), foot, creature_.reaction->fold);
   }
 
   void loop() {
@@ -177,7 +202,7 @@ class Walk {
     return reference::heldLeg(limb(l), body(), chainOf(state_, leg(l), setting_.bones));
   }
   void solve(size_t l) {
-    if (!limb(l).carries) return putChain(state_, leg(l), setting_.bones, held(l));
+    if (!limb(l).carries && !limb(l).folds) return putChain(state_, leg(l), setting_.bones, held(l));
     const reference::Chain chain = reference::ik(tuning_, limb(l), body(), footOf(state_, leg(l)),
                                                  chainOf(state_, leg(l), setting_.bones), setting_.ik);
     putChain(state_, leg(l), setting_.bones, chain);
@@ -233,7 +258,8 @@ class Walk {
 
   const Setting& setting_;
   const reference::Tuning& tuning_;
-  const reference::Creature& creature_;
+  reference::Creature ownCreature_;  // as react leaves it
+  const reference::Creature& creature_ = ownCreature_;
   uint64_t tick_;
   double n_;
   size_t agent_, legs_;
@@ -253,7 +279,7 @@ void FreeRun::tick(bool watched) {
   ++state_.tick;
   state_.watched = watched;
   for (size_t agent = 0; agent < state_.agents; ++agent) {
-    if (!state_.hurt.empty()) setCreature(setting_, state_, agent, ofAgent_);
+    if (!state_.hurt.empty()) setCreature(setting_, state_, agent, false, ofAgent_);
     walkAgent(state_.hurt.empty() ? setting_ : *ofAgent_, state_.tick, agent, state_);
   }
 }

@@ -104,14 +104,18 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   return setting;
 }
 
-void setCreature(const Setting& herd, const HerdState& state, size_t agent, std::optional<Setting>& ofAgent) {
+void setCreature(const Setting& herd, const HerdState& state, size_t agent, bool reacts,
+                 std::optional<Setting>& ofAgent) {
   if (!ofAgent) ofAgent = herd;
   ofAgent->creature = reference::hurtCreature(herd.creature, hurtOf(state, agent, herd.legs));
+  if (reacts && !state.reaction.empty())
+    ofAgent->creature = reference::reactingCreature(herd.tuning, ofAgent->creature, reactionOf(state, agent),
+                                                    bodyOf(state, agent).orientation);
 }
 
-const Setting& Replay::settingFor(const HerdState& after, size_t agent) {
+const Setting& Replay::settingFor(const HerdState& after, size_t agent, crowd::StageId stage) {
   if (after.hurt.empty()) return setting_;
-  setCreature(setting_, after, agent, ofAgent_);
+  setCreature(setting_, after, agent, stage != crowd::StageId::react, ofAgent_);
   return *ofAgent_;
 }
 
@@ -150,7 +154,8 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
         checkKept(setting_, moment, Record::metric, judges_[c]);
         continue;
       }
-      if (!asleep || check.writes.empty()) check.check(settingFor(after, agent), moment, judges_[c]);
+      if (!asleep || check.writes.empty())
+        check.check(settingFor(after, agent, check.stage), moment, judges_[c]);
       for (const Record record : check.writes)
         if (asleep) checkKept(setting_, moment, record, judges_[c]);
     }

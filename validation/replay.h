@@ -65,8 +65,9 @@ struct Setting {
 };
 
 // Gives `ofAgent`, which is made of `herd` where there is none, the creature that an agent of a herd is that
-// can be hurt.
-void setCreature(const Setting& herd, const HerdState& state, size_t agent, std::optional<Setting>& ofAgent);
+// can be hurt; with `reacts` as stages after react have it, where the herd has reactions.
+void setCreature(const Setting& herd, const HerdState& state, size_t agent, bool reacts,
+                 std::optional<Setting>& ofAgent);
 
 // `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit
 // the rig.
@@ -122,7 +123,7 @@ class Replay {
 
  private:
   // With the creature that the agent is, where its legs can be hurt.
-  const Setting& settingFor(const HerdState& after, size_t agent);
+  const Setting& settingFor(const HerdState& after, size_t agent, crowd::StageId stage);
 
   Heightfield terrain_;
   Setting setting_;

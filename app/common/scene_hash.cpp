@@ -95,7 +95,7 @@ void add(Hash& hash, const Forage& forage) {
 
 void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt] = herd;
+               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt, reactions] = herd;
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
@@ -139,6 +139,7 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
     if (rig != "spider" && std::filesystem::exists(gaitsOf(rig), ignored))
       hash.add(fileHashes.hashOf(gaitsOf(rig)));
   }
+  if (reactions) hash.add("reactions");
   for (const TuningInfo& info : allTunings)
     if (tuning.*info.member != info.usual) {
       hash.add(info.name);
@@ -277,6 +278,13 @@ void add(Hash& hash, const LegChange& change) {
   hash.add(leg);
   hash.add(nameOf(state));
   hash.add(uint64_t{bone.value_or(UINT32_MAX)});
+}
+
+void add(Hash& hash, const Push& push) {
+  const auto& [herd, agents, share, velocity] = push;
+  add(hash, "push", herd, agents);
+  hash.add(share.value_or(-1));
+  hash.add(velocity);
 }
 
 // Most events name no file.

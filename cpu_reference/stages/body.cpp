@@ -57,7 +57,7 @@ glm::dvec2 waysToEdges(const Tuning& tuning, const AgentBody& body) {
   return ways;
 }
 
-void walk(const Tuning& tuning, const glm::dvec2& desired, BodyResult& result) {
+void walk(const Tuning& tuning, const glm::dvec2& desired, const glm::dvec2& pushed, BodyResult& result) {
   AgentBody& body = result.body;
   result.wantedSpeed = glm::length(desired);
   const glm::dvec2 w = result.wantedSpeed > 1e-4 * tuning.legLength ? glm::normalize(desired) : body.heading;
@@ -65,8 +65,8 @@ void walk(const Tuning& tuning, const glm::dvec2& desired, BodyResult& result) {
   body.speed += std::clamp(wanted - body.speed, -tuning.braking * tuning.dt, tuning.acceleration * tuning.dt);
   result.ways = waysToEdges(tuning, body);
   body.speed = std::min(body.speed, stoppingSpeed(tuning, std::min(result.ways.x, result.ways.y)));
-  body.localX += body.speed * body.heading.x * tuning.dt;
-  body.localZ += body.speed * body.heading.y * tuning.dt;
+  body.localX += (body.speed * body.heading.x + pushed.x) * tuning.dt;
+  body.localZ += (body.speed * body.heading.y + pushed.y) * tuning.dt;
   const double overX = std::floor(body.localX / tileSize), overZ = std::floor(body.localZ / tileSize);
   body.tileX += overX;
   body.tileZ += overZ;
@@ -149,11 +149,11 @@ glm::dvec3 leaningNormal(const Tuning& tuning, const SupportPlane& plane, const 
 
 // From the follow factor on. `points` are relative to the previous body.
 void move(const Tuning& tuning, const Heights& heights, const AgentBody& previous, const glm::dvec2& desired,
-          std::vector<glm::dvec3> points, double phase, double drop, const BodyChoices& choices,
-          BodyResult& result) {
+          std::vector<glm::dvec3> points, double phase, double drop, const glm::dvec2& pushed,
+          const BodyChoices& choices, BodyResult& result) {
   AgentBody& next = result.body;
   turn(tuning, desired, choices, result);
-  walk(tuning, desired, result);
+  walk(tuning, desired, pushed, result);
   const glm::dvec3 way((next.tileX - previous.tileX) * tileSize + next.localX - previous.localX, 0,
                        (next.tileZ - previous.tileZ) * tileSize + next.localZ - previous.localZ);
   for (glm::dvec3& point : points) point -= way;
@@ -167,7 +167,8 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
   next.orientation = glm::quat_cast(glm::dmat3(glm::cross(up, forward), up, forward));
   if (glm::dot(next.orientation, previous.orientation) < 0) next.orientation = -next.orientation;
 
-  const double predicted = previous.y + (plane.b * h.x + plane.c * h.y) * next.speed * tuning.dt;
+  const glm::dvec2 moves = next.speed * h + pushed;
+  const double predicted = previous.y + (plane.b * moves.x + plane.c * moves.y) * tuning.dt;
   const double breath =
       std::pow(4 * phase * (1 - phase), 2) * std::min(1.0, previous.still / tuning.settleTime);
   double wanted = previous.y + plane.height - drop + tuning.breathHeight * breath;
@@ -199,7 +200,8 @@ double stoppingSpeed(const Tuning& tuning, double way) {
 BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
                 const AgentBody& previous, const glm::dvec2& wish, std::span<const Step> steps,
                 std::span<const double> misses, double tick, double phase, const BodyChoices& choices) {
-  const glm::dvec2 desired = creature.speed * wish;
+  const Reaction reaction = creature.reaction.value_or(Reaction{});
+  const glm::dvec2 desired = (reaction.phase == ReactionPhase::rising ? 0 : creature.speed) * wish;
   BodyResult result;
   result.body = previous;
   double follow = 1;
@@ -213,7 +215,11 @@ BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& cr
   }
   result.body.follow = std::max(choices.follow.value_or(follow), tuning.followLeast);
   move(tuning, heights, previous, desired, groundPoints(creature, previous, steps, tick), phase,
-       creature.shift.y, choices, result);
+       creature.shift.y + reaction.drop, reaction.velocity, choices, result);
+  if (reaction.phase != ReactionPhase::steady) {
+    result.body.still = 0;
+    result.stillMargin = std::numeric_limits<double>::infinity();
+  }
   return result;
 }
 
@@ -225,7 +231,7 @@ BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creatur
   Tuning upright = tuning;
   upright.leanGain = upright.leanLevel = upright.breathHeight = 0;
   move(upright, heights, previous, creature.speed * desired, groundBelowHomes(heights, creature, previous), 0,
-       creature.shift.y, choices, result);
+       creature.shift.y, {0, 0}, choices, result);
   return result;
 }
 

@@ -105,9 +105,10 @@ void findWindow(const Tuning& tuning, const Creature& creature, const Limb& limb
   const double spread = tuning.lagShare * (1 / groups - swingTime / gait.cycle);
   double since = gait.phase - limb.group / groups - spread * limb.lag;
   since = (since - std::floor(since)) * groups;
-  leg.open = tuning.reachTriggered || since < tuning.windowOpen;
+  const bool always = tuning.reachTriggered || creature.stumbles();
+  leg.open = always || since < tuning.windowOpen;
   leg.windowMargin = std::min({since, std::abs(since - tuning.windowOpen), groups - since});
-  if (tuning.reachTriggered) leg.windowMargin = never;
+  if (always) leg.windowMargin = never;
 }
 
 // A leg that decides nothing.
@@ -130,9 +131,9 @@ glm::dvec3 predictedRoot(const Limb& limb, const AgentBody& body, double seconds
 }
 
 Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
-                const std::optional<double>& duration, double slowest) {
+                const std::optional<double>& duration, double slowest, double hurry) {
   Stride stride;
-  const double pace = body.pace(tuning);
+  const double pace = body.pace(tuning) + hurry;
   const double unrounded = tuning.swingStill / (1 + pace / tuning.swingSpeed) / tuning.dt + 0.5;
   stride.duration = duration.value_or(std::max(3.0, std::floor(unrounded)));
   stride.durationMargin = std::abs(unrounded - std::round(unrounded));
@@ -152,7 +153,8 @@ GaitResult gait(const Tuning& tuning, const Creature& creature, const AgentBody&
   GaitResult result;
   Gait& next = result.gait;
 
-  const Stride stride = strideOf(tuning, creature.groups, body, choices.duration, creature.slowest());
+  const Stride stride =
+      strideOf(tuning, creature.groups, body, choices.duration, creature.slowest(), creature.hurry());
   next.halfStride = stride.half;
   next.duration = stride.duration;
   next.cycle = stride.cycle;

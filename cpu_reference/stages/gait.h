@@ -29,9 +29,9 @@ struct Stride {
   double half = 0, duration = 0, swingTime = 0, cycle = 0;
   double durationMargin = 0;  // ticks, of the rounding of D
 };
-// `duration`, if any, is D instead of the rule's; `slowest` is Creature::slowest.
+// `duration`, if any, is D instead of the rule's; `slowest` is Creature::slowest, `hurry` Creature::hurry.
 Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
-                const std::optional<double>& duration = {}, double slowest = 1);
+                const std::optional<double>& duration = {}, double slowest = 1, double hurry = 0);
 
 struct GaitResult {
   Gait gait;

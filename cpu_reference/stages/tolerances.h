@@ -9,6 +9,7 @@
 #include "cpu_reference/stages/body.h"
 #include "cpu_reference/stages/foothold.h"
 #include "cpu_reference/stages/gait.h"
+#include "cpu_reference/stages/react.h"
 #include "cpu_reference/types.h"
 #include "cpu_reference/ways/way.h"
 
@@ -143,7 +144,8 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
   const double fastest = stoppingSpeed(t, std::min(most.x, most.y));
   if (slowest <= next.speed + bound.speed)
     bound.speed = std::max(bound.speed, fastest - slowest + 12 * roundoff * fastest);
-  bound.position = 3 * local + t.dt * (bound.speed + next.speed * bound.heading);
+  const double pushed = creature.reaction ? glm::length(creature.reaction->velocity) : 0;
+  bound.position = 3 * local + t.dt * (bound.speed + next.speed * bound.heading + 4 * roundoff * pushed);
 
   // (b, c) = M^-1 (Sxy, Szy): errors of the points through M^-1 (at most 1 / least eigenvalue), roundings of
   // the sums, and of the determinant in Cramer's rule (the condition number of M).
@@ -188,8 +190,60 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
     belly = std::max(belly, height(relief, extent, bound.position + q_error) + q_error);
   }
   bound.height = t.heightBlend * (std::max(planeHeight, belly) + 24 * roundoff * t.breathHeight) +
-                 t.dt * (next.speed * bound.slope + slope * bound.speed) + 6 * roundoff * std::abs(next.y) +
-                 4 * roundoff;
+                 t.dt * ((next.speed + pushed) * bound.slope + slope * bound.speed) +
+                 6 * roundoff * std::abs(next.y) + 4 * roundoff;
+  return bound;
+}
+
+// A reaction and the body that it moves. Numbers of the records are exact.
+struct ReactBounds {
+  double time, velocity, way, tilt, tiltRate, ground, frame, floor, reach;
+};
+inline ReactBounds react(const Tuning& t, const Heights& heights, double extent, const AgentBody& body,
+                         const Reaction& before, const ReactResult& result) {
+  ReactBounds bound{};
+  const Reaction& next = result.reaction;
+  // Sums and products of a few times; no clock is above a day.
+  bound.time = 8 * roundoff * (1 + next.clock + next.down + next.downBefore);
+  const double fastest =
+      body.speed + std::max(glm::length(before.velocity), glm::length(next.velocity)) + t.gravity * t.dt;
+  // T_c is a quotient under a root, and a push fades by another quotient.
+  bound.velocity = 24 * roundoff * fastest;
+  // Where the body is held back at the edge, its place is seen over a tick.
+  const glm::dvec2 extents{t.halfExtentX, t.halfExtentZ};
+  const glm::dvec2 ahead = glm::abs(body.world()) + fastest * t.dt;
+  if (ahead.x >= extents.x || ahead.y >= extents.y) bound.velocity += 4 * roundoff * extent / t.dt;
+  const bool begins = next.isFallen() && !before.isFallen();
+  bound.way = 16 * roundoff;
+  if (begins) bound.way += 2 * bound.velocity / std::max(glm::length(next.velocity), t.steadySpeed);
+  // A rate and a tilt by five operations each.
+  bound.tiltRate = 16 * roundoff *
+                   (std::abs(before.tiltRate) + std::abs(next.tiltRate) +
+                    t.dt * t.tumbleRate * t.tumbleRate * t.tiltMost + 1);
+  if (begins) bound.tiltRate += 2 * bound.velocity / t.bodyHeight;
+  bound.tilt = t.dt * bound.tiltRate + 4 * roundoff;
+  // Where legs reach to: a home and the centre are rotated once, and xi is a product.
+  bound.reach = rotated(2 * t.legLength) + 24 * roundoff * fastest + 8 * roundoff * t.legLength;
+  if (!next.isFallen() && !next.isLoose()) return bound;
+
+  double lookUp = 0;
+  const double horizontal = rotated(t.bodyHeight + t.bodyRadius) + t.dt * bound.velocity;
+  for (size_t i = 0; i < result.lookups; ++i)
+    lookUp = std::max(lookUp, height(reliefNear(heights, result.looked[i].x, result.looked[i].y), extent,
+                                     horizontal + 2 * roundoff * extent));
+  // Two differences of heights over the hull's length, normalised.
+  bound.ground = t.tiltBlend * (2 * lookUp / t.bodyRadius + 8 * roundoff) + 16 * roundoff;
+  bound.velocity += t.dt * t.gravity * 4 * bound.ground;
+  // F divides by n.y; the turn has a dozen operations.
+  bound.frame = 2 * (bound.ground + bound.way) / std::max(next.ground.y, 1e-3) + bound.tilt + 40 * roundoff;
+  const double arm = (t.bodyHeight + t.bodyRadius) * bound.frame;
+  double steepest = 0;
+  for (size_t i = 0; i < result.lookups; ++i) {
+    const Relief relief = reliefNear(heights, result.looked[i].x, result.looked[i].y);
+    steepest = std::max(steepest, relief.slopeX + relief.slopeZ);
+  }
+  bound.floor = lookUp + (1 + steepest) * (arm + t.dt * bound.velocity) + 8 * roundoff * std::abs(body.y) +
+                8 * roundoff * (t.bodyHeight + t.bodyRadius);
   return bound;
 }
 

@@ -1,6 +1,7 @@
 #include "crowd/changes.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <map>
 #include <span>
@@ -98,7 +99,8 @@ class Standing {
     for (const PageBuffer& each : pageBuffers(crowd, kind)) {
       if (!each.record || !keeps(kind, crowd.options, *each.record)) continue;
       // The host says these by themselves.
-      if (*each.record == Record::goal || *each.record == Record::hurt) continue;
+      if (*each.record == Record::goal || *each.record == Record::hurt || *each.record == Record::push)
+        continue;
       const RecordInfo info = infoOf(*each.record);
       // What every tick makes anew can stay, and what measure has summed up shall.
       if (!info.spawned && !isHashed(*each.record, kind.controller) && *each.record != Record::flight)
@@ -186,14 +188,23 @@ void list(const Kind& kind, const Page& page, std::span<const uint32_t> agents, 
   writes.add(page.counters, sizeof(uint32_t) * shared::COUNTER_IK_LISTED, std::span(&listed, 1));
 }
 
-// The agent's legs; who does not begin anew stirs, for a sleeper would not see it.
+// The agent's legs.
 void writeLegs(const AgentChange& change, const Page& page, uint32_t agent, Kind& kind, Writes& writes) {
   const std::vector<float> record = kind.hurtRecordOf(change.agent);
   writes.add(page.hurt, uint64_t{agent} * record.size() * sizeof(float), record);
+}
+
+// Who does not begin anew stirs: a sleeper would not see what happens to it.
+void stir(const Page& page, uint32_t agent, Writes& writes) {
   constexpr uint64_t still = 13;  // the float of a body record
   constexpr float stirs = 0;
-  if (!change.stands)
-    writes.add(page.body, uint64_t{agent} * sizeof(BodyRecord) + still * sizeof(float), std::span(&stirs, 1));
+  writes.add(page.body, uint64_t{agent} * sizeof(BodyRecord) + still * sizeof(float), std::span(&stirs, 1));
+}
+
+// For that tick.
+void writePush(const glm::vec2& push, const Page& page, uint32_t agent, uint64_t tick, Writes& writes) {
+  const std::array record = {push.x, push.y, 0.0f, static_cast<float>(tick)};
+  writes.add(page.push, uint64_t{agent} * sizeof record, record);
 }
 
 struct Stood {
@@ -242,6 +253,8 @@ void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
         writes.add(page->goal, goal + 4 * sizeof(float), std::span(change.record).subspan(4, 1));
       if (change.leaves) writes.add(page->body, uint64_t{agent} * sizeof(BodyRecord), absentBody());
       if (change.hurt) writeLegs(change, *page, agent, kind, writes);
+      if (change.push) writePush(*change.push, *page, agent, crowd.tick, writes);
+      if ((change.hurt || change.push) && !change.stands) stir(*page, agent, writes);
       if (!change.stands) continue;
       while (change.agent >= of->run->firstAgent + of->run->agents) ++of;
       standing.write(spawnerOf(crowd, *of->herd, *of->run), change.agent - of->run->firstAgent,

@@ -21,6 +21,7 @@ struct AgentChange {
   bool hurt = false;                                    // its legs are as Kind::damages has them
   std::array<float, 4 * shared::GOAL_STRIDE> record{};  // the goal's
   std::optional<Place> stands{};                        // anew, there
+  std::optional<glm::vec2> push{};                      // m/s, in the next tick
 };
 
 // Those of a kind's agents that wait for the next tick, each agent once. Nothing is kept for a kind whose

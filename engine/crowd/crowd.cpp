@@ -145,7 +145,8 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   kind.threat = from.threat;
   CrowdOptions asked = crowd.options;
   asked.sleep = kind.rests(asked);
-  kind.hurts = from.hurt;
+  kind.reacts = from.reactions;
+  kind.hurts = from.hurt || kind.reacts;
   if (kind.hurts) kind.wholeRecord = crowd::hurtRecord({}, kind.regaitOf({}));
   const bool amongWalls = kind.avoids && !crowd.scene.obstacles.empty();
   if (amongWalls) kind.wallBuffer = crowd::makeWalls(crowd, kind);
@@ -154,7 +155,8 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
                                             .findsWays = kind.findsWay(),
                                             .forages = kind.forages(),
                                             .amongWalls = amongWalls,
-                                            .hurts = kind.hurts}))
+                                            .hurts = kind.hurts,
+                                            .reacts = kind.reacts}))
     kind.stages.push_back({stage});
   return kind;
 }
@@ -563,6 +565,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   }
   run(avoid, written);
   run(wake, counted);
+  run(react, written);
   run(body, written);
   run({navigate, body, gait}, counted);
   run({body, gait}, counted);

@@ -137,14 +137,28 @@ const Rig* knownRig(const skitter::Herd& herd, const Where& at) {
   return nullptr;
 }
 
-void check(const LegChange& change, const Where& at) {
-  const skitter::Herd& herd = herdOf("herd", change.herd, at);
-  const auto name = [&] { return at.event; };
-  expectHurts([&] { return fmt::format("{}: herd {}", at.event, change.herd); }, herd.hurt);
+// Agents, or a share of them.
+template <class Change>
+void checkWhom(const Change& change, const skitter::Herd& herd, const Where& at) {
   checkAgents("agents", change.agents, 0, herd, at);
   if (change.share && !change.agents.empty())
     throw inputError(fmt::format("{} has agents and a share, expected one of them", at.event));
-  if (change.share) expectWithin(name, "the share", double{*change.share}, 0, 1, "of the agents");
+  if (change.share)
+    expectWithin([&] { return at.event; }, "the share", double{*change.share}, 0, 1, "of the agents");
+}
+
+void check(const Push& push, const Where& at) {
+  const skitter::Herd& herd = herdOf("herd", push.herd, at);
+  expectReacts([&] { return fmt::format("{}: herd {}", at.event, push.herd); }, herd.reactions);
+  checkWhom(push, herd, at);
+  expectPush([&] { return at.event; }, push.velocity);
+}
+
+void check(const LegChange& change, const Where& at) {
+  const skitter::Herd& herd = herdOf("herd", change.herd, at);
+  const auto name = [&] { return at.event; };
+  expectHurts([&] { return fmt::format("{}: herd {}", at.event, change.herd); }, herd.hurt || herd.reactions);
+  checkWhom(change, herd, at);
   if (const Rig* rig = knownRig(herd, at)) legOf(name, *rig, change);
 }
 

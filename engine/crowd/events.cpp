@@ -90,11 +90,16 @@ class Rehearsal {
   }
   void play(const LegChange& change, const std::string& name) {
     const skitter::Herd& herd = herdAt(change.herd, name);
-    expectHurts([&] { return fmt::format("{}: herd {}", name, change.herd); }, herd.hurt);
+    expectHurts([&] { return fmt::format("{}: herd {}", name, change.herd); }, herd.hurt || herd.reactions);
     const auto coming = rigs_.find(change.herd);
     legOf([&] { return name; }, coming != rigs_.end() ? *coming->second : crowd_.kindOf(change.herd).rig,
           change);
     for (const uint32_t agent : change.agents) expectSomebody(change.herd, agent, name);
+  }
+  void play(const Push& push, const std::string& name) {
+    expectReacts([&] { return fmt::format("{}: herd {}", name, push.herd); },
+                 herdAt(push.herd, name).reactions);
+    for (const uint32_t agent : push.agents) expectSomebody(push.herd, agent, name);
   }
   void play(const Teleport& teleport, const std::string& name) {
     for (const Teleport::Move& move : teleport.moves) expectSomebody(teleport.herd, move.agent, name);
@@ -217,13 +222,20 @@ class Happening {
       legs.push_back({crowd_.agentId(change.herd, agent), leg, change.state, change.bone});
     crowd_.hurt(legs);
   }
+  void operator()(const Push& push) const {
+    std::vector<AgentPush> pushes;
+    for (const uint32_t agent : meantBy(push))
+      pushes.push_back({crowd_.agentId(push.herd, agent), push.velocity});
+    crowd_.push(pushes);
+  }
   void operator()(const HerdAddition&) const { addComing(implOf(crowd_), number_); }
   void operator()(const HerdRemoval& removal) const { crowd_.removeHerd(crowd_.herdId(removal.herd)); }
   void operator()(const ThreatChange& change) const { crowd_.setThreat(change.number, change.threat); }
 
  private:
   // Those of whom it speaks: named, drawn by the seed, or all who are there.
-  std::vector<uint32_t> meantBy(const LegChange& change) const {
+  template <class Change>
+  std::vector<uint32_t> meantBy(const Change& change) const {
     if (!change.agents.empty()) return change.agents;
     const Herd& herd = implOf(crowd_).herds[change.herd];
     std::vector<uint32_t> meant;
@@ -272,6 +284,7 @@ bool namesAgents(const Event& event) {
   if (const auto* change = std::get_if<GoalChange>(&event.what)) return !change->agents.empty();
   if (const auto* change = std::get_if<SpeedChange>(&event.what)) return !change->agents.empty();
   if (const auto* change = std::get_if<LegChange>(&event.what)) return !change->agents.empty();
+  if (const auto* push = std::get_if<Push>(&event.what)) return !push->agents.empty();
   return std::holds_alternative<Teleport>(event.what) || std::holds_alternative<Removal>(event.what);
 }
 

@@ -82,6 +82,7 @@ struct Kind {
   bool reachTriggered = false;           // legs step when out of reach, without a rhythm
   bool tinted = false;                   // some herd of it has a colour or a tint of its own
   bool hurts = false;                    // legs of its agents can be hurt
+  bool reacts = false;                   // its agents have reactions
   std::vector<float> wholeRecord;        // where it hurts: the `hurt` record of an agent whose legs are whole
   std::map<uint32_t, Damage> damages;    // of its agents, those that are hurt, as the host has said
   std::map<LegPattern, Regait> regaits;  // those that were asked for

@@ -17,9 +17,9 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt] = herd;
+               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt, reactions] = herd;
   return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways,
-                                 threat, forage, hurt),
+                                 threat, forage, hurt, reactions),
                         std::tuple(reserve > 0));
 }
 
@@ -44,8 +44,9 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
   if (kinds.firstHerds.size() > mostKinds)
     throw inputError(fmt::format(
         "{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning, "
-        "avoid, ways, threat, forage, hurt or size, expected at most {}: each of them, and each size of one, "
-        "has pipelines of its own; equal herds share them, whatever their agents, spawn and goal",
+        "avoid, ways, threat, forage, hurt, reactions or size, expected at most {}: each of them, and each "
+        "size "
+        "of one, has pipelines of its own; equal herds share them, whatever their agents, spawn and goal",
         scene.name, kinds.firstHerds.size(), mostKinds));
   return kinds;
 }
@@ -61,6 +62,15 @@ void checkHurt(const skitter::Herd& herd, const std::string& what) {
   if (herd.solver != Solver::activeSet)
     throw inputError(fmt::format("{}.solver is {}, expected {}: its legs can be hurt", what,
                                  nameOf(herd.solver), nameOf(Solver::activeSet)));
+}
+
+void checkReactions(const skitter::Herd& herd, const std::string& what) {
+  if (herd.controller != Controller::adaptive)
+    throw inputError(fmt::format("{}.controller is {}, expected adaptive: it has reactions", what,
+                                 nameOf(herd.controller)));
+  if (herd.solver != Solver::activeSet)
+    throw inputError(fmt::format("{}.solver is {}, expected {}: it has reactions", what, nameOf(herd.solver),
+                                 nameOf(Solver::activeSet)));
 }
 
 // The ranges of a scene file.
@@ -127,6 +137,7 @@ void checkHerd(const skitter::Herd& herd, const std::string& what) {
   using skitter::Herd;
   checkTuning(herd.tuning, what + ".tuning");
   if (herd.hurt) checkHurt(herd, what);
+  if (herd.reactions) checkReactions(herd, what);
   if (herd.sizes.size() > Herd::maxSizes)
     throw inputError(
         fmt::format("{}.sizes are {}, expected at most {}", what, herd.sizes.size(), Herd::maxSizes));

@@ -176,6 +176,21 @@ HerdState Crowd::download(uint32_t herd, const AgentSample& sample) const {
   return stateOf(*impl_, crowd::partsOf(*impl_, herd), sample);
 }
 
+std::vector<Reaction> Crowd::reactions(uint32_t herd) const {
+  constexpr std::array records = {Record::reaction};
+  const HerdState state = crowd::downloadRecords(*impl_, herd, records);
+  std::vector<Reaction> all(state.agents);
+  for (size_t agent = 0; agent < all.size() && !state.reaction.empty(); ++agent) {
+    const float* record = state.reaction.data() + agent * 4 * shared::REACTION_STRIDE;
+    all[agent] = {.phase = static_cast<ReactionPhase>(record[0]),
+                  .falls = static_cast<uint32_t>(record[16]),
+                  .stands = static_cast<uint32_t>(record[17]),
+                  .down = record[18],
+                  .downBefore = record[19]};
+  }
+  return all;
+}
+
 std::vector<Footfall> Crowd::footfalls(uint32_t herd) const {
   return footfallsOf(*impl_, crowd::partsOf(*impl_, herd));
 }

@@ -13,10 +13,12 @@
 namespace skitter::crowd {
 namespace {
 
-bool isAskedFor(StageId stage, const CrowdOptions& options, bool avoids) {
+bool isAskedFor(StageId stage, const CrowdOptions& options, const StageForms& forms) {
   switch (stage) {
     case StageId::avoid:
-      return avoids;
+      return forms.avoids;
+    case StageId::react:
+      return forms.reacts;
     case StageId::wake:
       return options.sleep;
     case StageId::pose:
@@ -45,10 +47,14 @@ void fuse(const CrowdOptions& options, const Stage& fused, std::vector<Stage>& s
   stages.erase(row.begin() + 1, row.end());
 }
 
-void takeHurtForm(Stage& stage) {
+void takeHurtForm(Stage& stage, bool reacts) {
   stage.code = *stage.hurtCode;
   stage.bindings.push_back({shared::BINDING_HURT, gpu::BindingKind::load4});
   stage.bindings.insert(stage.bindings.end(), stage.hurtBindings.begin(), stage.hurtBindings.end());
+  if (!reacts || !stage.reactCode) return;
+  stage.code = *stage.reactCode;
+  stage.bindings.push_back({shared::BINDING_REACTION, gpu::BindingKind::load4});
+  stage.bindings.insert(stage.bindings.end(), stage.reactBindings.begin(), stage.reactBindings.end());
 }
 
 void addParameters(const shared::Parameters& parameters, gpu::KernelInfo& info) {
@@ -68,7 +74,7 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
   std::vector<Stage> stages = of.all(options);
   std::erase_if(stages, [&](const Stage& stage) {
     return std::ranges::any_of(
-        allStages, [&](StageId id) { return stage.makes.has(id) && !isAskedFor(id, options, forms.avoids); });
+        allStages, [&](StageId id) { return stage.makes.has(id) && !isAskedFor(id, options, forms); });
   });
   if (options.fuse && of.fused != nullptr)
     for (const Stage& fused : of.fused())
@@ -79,7 +85,7 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
   if (forms.forages) std::ranges::replace_if(stages, isOf(StageId::navigate), forageNavigateStage());
   if (forms.amongWalls) std::ranges::replace_if(stages, isOf(StageId::avoid), wallAvoidStage());
   for (Stage& stage : stages)
-    if (forms.hurts && stage.hurtCode) takeHurtForm(stage);
+    if (forms.hurts && stage.hurtCode) takeHurtForm(stage, forms.reacts);
   for (Stage& stage : stages)
     if (stage.isOfTheAwake()) stage.bindings.push_back({shared::BINDING_AWAKE, gpu::BindingKind::load4});
   return stages;
@@ -88,6 +94,12 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
 Stage withHurt(Stage stage, const gpu::ShaderCode& code, std::vector<gpu::BindingDecl> more) {
   stage.hurtCode = code;
   stage.hurtBindings = std::move(more);
+  return stage;
+}
+
+Stage withReact(Stage stage, const gpu::ShaderCode& code, std::vector<gpu::BindingDecl> more) {
+  stage.reactCode = code;
+  stage.reactBindings = std::move(more);
   return stage;
 }
 

@@ -43,6 +43,10 @@ struct Stage {
   // In herds that can be hurt: its form, and what that binds beside BINDING_HURT.
   std::optional<gpu::ShaderCode> hurtCode = {};
   std::vector<gpu::BindingDecl> hurtBindings = {};
+  // In herds with reactions, which can be hurt, too: a form in place of that, and what it binds beside that
+  // one and BINDING_REACTION.
+  std::optional<gpu::ShaderCode> reactCode = {};
+  std::vector<gpu::BindingDecl> reactBindings = {};
 
   // Whether it passes over those who sleep.
   bool isOfTheAwake() const { return over == Over::agents || over == Over::legs || over == Over::joints; }
@@ -64,6 +68,7 @@ struct StageForms {
   bool forages = false;     // goes by trails
   bool amongWalls = false;  // avoids, and there are obstacles
   bool hurts = false;       // can be hurt
+  bool reacts = false;      // has reactions, and can be hurt
 };
 // A controller's stages, in order, less those that make what nobody asked for.
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, const StageForms& forms = {});
@@ -75,6 +80,8 @@ void makeKernels(const StageNeeds& needs, ReadyStage& stage);
 //
 // The stage, with its form for herds that can be hurt.
 Stage withHurt(Stage stage, const gpu::ShaderCode& code, std::vector<gpu::BindingDecl> more = {});
+// The stage, which has a form for herds that can be hurt, with one for herds with reactions.
+Stage withReact(Stage stage, const gpu::ShaderCode& code, std::vector<gpu::BindingDecl> more = {});
 // A second kernel, for what the first dispatch lists and leaves out.
 void addListed(StageKernels& kernels);
 // The numbers with which the rig's records of legs begin.

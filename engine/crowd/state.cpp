@@ -254,8 +254,9 @@ void giveGenerations(Impl& crowd, uint32_t kind, std::span<const uint32_t> all) 
 
 std::vector<StateChange> changesOf(const Kind& kind) {
   std::vector<StateChange> all;
-  for (const auto& [agent, goal, speed, leaves, hurt, record, stands] : kind.changes.all()) {
-    all.push_back({agent, goal, speed, leaves, record, {}, {}});
+  for (const auto& [agent, goal, speed, leaves, hurt, record, stands, push] : kind.changes.all()) {
+    all.push_back({agent, goal, speed, leaves, record, {}, {}, {}});
+    if (push) all.back().push = {push->x, push->y};
     if (stands) all.back().stands = {stands->position.x, stands->position.y, stands->heading};
     if (!hurt) continue;
     const auto damage = kind.damages.find(agent);
@@ -266,10 +267,11 @@ std::vector<StateChange> changesOf(const Kind& kind) {
 }
 
 void giveChanges(const std::vector<StateChange>& all, Kind& kind) {
-  for (const auto& [agent, goal, speed, leaves, record, stands, hurt] : all) {
+  for (const auto& [agent, goal, speed, leaves, record, stands, hurt, push] : all) {
     if (agent >= kind.agents) continue;
     AgentChange& change = kind.changes.of(agent, kind.agents);
-    change = {agent, goal, speed, leaves, kind.hurts && hurt.size() == Damage::floats, record, {}};
+    change = {agent, goal, speed, leaves, kind.hurts && hurt.size() == Damage::floats, record, {}, {}};
+    if (kind.reacts && push.size() == 2) change.push = glm::vec2(push[0], push[1]);
     if (stands.size() == 3) change.stands = Place{{stands[0], stands[1]}, stands[2]};
   }
 }

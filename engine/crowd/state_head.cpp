@@ -31,7 +31,7 @@ void eachKey(StateChunk& chunk, const Visit& visit) {
 }
 template <class Visit>
 void eachKey(StateChange& change, const Visit& visit) {
-  auto& [agent, goal, speed, leaves, record, stands, hurt] = change;
+  auto& [agent, goal, speed, leaves, record, stands, hurt, push] = change;
   visit("agent", agent);
   visit("goal", goal);
   visit("speed", speed);
@@ -40,6 +40,8 @@ void eachKey(StateChange& change, const Visit& visit) {
   visit("stands", stands);
   IfAny legs{hurt};
   visit("hurt", legs);
+  IfAny pushes{push};
+  visit("push", pushes);
 }
 template <class Visit>
 void eachKey(StateKind& kind, const Visit& visit) {

@@ -32,6 +32,7 @@ struct StateChange {
   std::array<float, 4 * shared::GOAL_STRIDE> record{};
   std::vector<float> stands;  // x, z, heading; empty: where it is
   std::vector<float> hurt;    // Damage::values; empty: its legs are as before
+  std::vector<float> push;    // x, z; empty: none
 };
 
 struct StateKind {

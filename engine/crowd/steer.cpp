@@ -16,7 +16,7 @@ namespace skitter {
 namespace {
 
 using crowd::AgentChange, crowd::SizeRun, crowd::expectGoal, crowd::expectHurts, crowd::expectLeg,
-    crowd::expectPlace, crowd::expectSpeed;
+    crowd::expectPlace, crowd::expectPush, crowd::expectReacts, crowd::expectSpeed;
 
 std::string nameOf(uint32_t herd) { return fmt::format("herd {}", herd); }
 std::string nameOf(uint32_t herd, uint32_t agent) { return fmt::format("herd {}, agent {}", herd, agent); }
@@ -222,6 +222,24 @@ LegState Crowd::legState(AgentId id, uint32_t leg) const {
   return hurt == kind.damages.end() ? LegState::whole : hurt->second.of(leg);
 }
 
+void Crowd::push(std::span<const AgentPush> pushes) {
+  for (const auto& [id, velocity] : pushes) {
+    expectSomebody(*impl_, id);
+    const auto name = [&] { return nameOf(id.herd(), id.agent()); };
+    expectReacts(name, impl_->kindOf(id.herd(), id.agent()).reacts);
+    expectPush(name, velocity);
+  }
+  for (const auto& [id, velocity] : pushes) {
+    AgentChange& change = changeOf(*impl_, impl_->herds[id.herd()].runOf(id.agent()), id.agent());
+    change.push = change.push.value_or(glm::vec2(0)) + velocity;
+  }
+}
+
+void Crowd::push(AgentId agent, const glm::vec2& velocity) {
+  const AgentPush one{agent, velocity};
+  push(std::span(&one, 1));
+}
+
 std::vector<GoalBuffer> Crowd::goalBuffers(uint32_t herd) const {
   std::vector<GoalBuffer> buffers;
   for (const crowd::Part& part : crowd::partsOf(*impl_, herd))
@@ -271,6 +289,7 @@ AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
   crowd::Kind& kind = impl_->kinds[run.kind];
   kind.damages.erase(run.ofKind(*empty));
   change.hurt = kind.hurts;
+  change.push = {};
   return agentId(number, *empty);
 }
 

@@ -113,6 +113,17 @@ void expectLeg(const Name& name, const Rig& rig, uint32_t leg, std::optional<uin
                                  bones, rig.legs[leg].name));
 }
 
+template <class Name>
+void expectReacts(const Name& name, bool reacts) {
+  if (!reacts)
+    throw inputError(fmt::format("{}: reactions is false, expected a herd with reactions", name()));
+}
+
+template <class Name>
+void expectPush(const Name& name, const glm::vec2& velocity) {
+  expectWithin(name, "the length of the push", double{glm::length(velocity)}, 0, double{Push::most}, "m/s");
+}
+
 // The number of the leg of that name.
 template <class Name>
 uint32_t legNamed(const Name& name, const Rig& rig, const std::string& leg) {

@@ -188,11 +188,11 @@ class SKITTER_API Crowd {
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, fragment, compute and transfer work recorded after it. Each recorded tick must be submitted
   // once, in order. What Scene::events has for that time happens first, as if the caller had called
-  // editHeights, steer, setSpeed, teleport, add, remove, hurt, addHerd, removeHerd or setThreat just before;
-  // no file is read for that. A tick before which a herd comes or goes takes the queue's lock, allocates,
-  // submits and waits for the device, and is recorded when all that was recorded before it is submitted; one
-  // for which fields are computed anew does so, too, and allocates nothing. The buffers of a herd that goes
-  // are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
+  // editHeights, steer, setSpeed, teleport, add, remove, hurt, push, addHerd, removeHerd or setThreat just
+  // before; no file is read for that. A tick before which a herd comes or goes takes the queue's lock,
+  // allocates, submits and waits for the device, and is recorded when all that was recorded before it is
+  // submitted; one for which fields are computed anew does so, too, and allocates nothing. The buffers of a
+  // herd that goes are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
   // Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an adaptive
   // herd, below 22 microseconds; and where an event cannot happen, because a herd or an agent is not there or
   // no place is left: then none of the tick's events has, and the tick can be recorded again. Throws
@@ -271,6 +271,16 @@ class SKITTER_API Crowd {
   void heal(AgentId agent);  // all its legs are whole
   // As the host has said. Throws Error(input) for a handle of nobody, and for a leg that the rig lacks.
   LegState legState(AgentId agent, uint32_t leg) const;
+
+  // Pushes, for herds with reactions (Herd::reactions, docs/reactions.md). Several of one agent before the
+  // next recorded tick add up. A pushed agent wakes.
+  //
+  // Throws Error(input) where a herd has no reactions, and for a push that is not finite or too strong.
+  void push(std::span<const AgentPush> pushes);
+  void push(AgentId agent, const glm::vec2& velocity);
+  // Who fell and who stands again: one of each place of the herd, as the last tick left it; steady in a herd
+  // without reactions. Waits for the device.
+  std::vector<Reaction> reactions(uint32_t herd) const;
 
   // Herds that come and go, between ticks. Both calls make or free device memory at once, submit and wait
   // under the queue's lock. Herd::rig is relative to the working directory.

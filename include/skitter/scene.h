@@ -106,6 +106,9 @@ struct Herd {
   // Whether legs of its agents can be hurt (Crowd::hurt): such a herd has a record more per agent, and
   // pipelines of its own. Of controllers adaptive, loop and planted, with the solver activeSet.
   bool hurt = false;
+  // Whether its agents stumble, fall and get up (Crowd::push, docs/reactions.md). Their legs can be hurt
+  // then, too. Of controller adaptive, with the solver activeSet.
+  bool reactions = false;
 
   bool operator==(const Herd&) const = default;
 };
@@ -224,6 +227,18 @@ struct LegChange {
   bool operator==(const LegChange&) const = default;
 };
 
+// A push of some agents of a herd with reactions, as Crowd::push has it.
+struct Push {
+  static constexpr float most = 100;  // metres per second
+
+  uint32_t herd = 0;
+  std::vector<uint32_t> agents = {};  // empty: all who are there, or a share of them
+  std::optional<float> share = {};    // 0 to 1: each is drawn by the seed; without `agents`
+  glm::vec2 velocity{0};              // x, z, metres per second, added to the velocity; at most `most` long
+
+  bool operator==(const Push&) const = default;
+};
+
 // A herd that comes, as Crowd::addHerd has it: it gets the lowest number that no herd has. Its rig and clips
 // are read when the crowd is made.
 struct HerdAddition {
@@ -254,7 +269,7 @@ struct Event {
 
   float at = 0;  // seconds
   std::variant<Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition,
-               HerdRemoval, ThreatChange, LegChange>
+               HerdRemoval, ThreatChange, LegChange, Push>
       what;
 
   bool operator==(const Event&) const = default;

@@ -2,6 +2,8 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -63,6 +65,26 @@ struct AgentLeg {
   // The first bone that a lost leg has lost, counted from the root; none: the second, so that the first is
   // left as a stump, or the only one.
   std::optional<uint32_t> bone = {};
+};
+
+// A push: an impulse over the agent's mass, which is a change of its velocity.
+struct AgentPush {
+  AgentId agent;
+  glm::vec2 velocity{0};  // x, z, metres per second, at most Push::most long
+};
+
+// What an agent of a herd with reactions does (docs/reactions.md).
+enum class ReactionPhase { steady, stumbling, falling, lying, righting, rising };
+constexpr const char* nameOf(ReactionPhase phase) {
+  constexpr std::array names = {"steady", "stumbling", "falling", "lying", "righting", "rising"};
+  return names[static_cast<size_t>(phase)];
+}
+struct Reaction {
+  ReactionPhase phase = ReactionPhase::steady;
+  // Since the agent came. It fell where there are more falls than before, and stands again likewise.
+  uint32_t falls = 0, stands = 0;
+  float down = 0;        // seconds since this fall began; 0 for who stands
+  float downBefore = 0;  // seconds of all those falls from which it stood again
 };
 
 // Goal records of a run of a herd's agents on the device, for shaders of the caller's, which may write them:

@@ -95,7 +95,7 @@ void stand(inout Reaction r, int agent, Body body, mat3 frame, Legs legs, vec3 s
     r.drop = max(0.0, r.drop - share * dt * height / parameters.riseTime);
     r.down += dt;
   }
-  if (r.over >= parameters.fallTime - 0.5 * dt) {
+  if (r.over > 0.0 && r.over >= parameters.fallTime - 0.5 * dt) {
     beginFall(r, body, frame[1], velocity);
     return;
   }

@@ -200,7 +200,7 @@ void checkKeys(const Obstacle& obstacle, const std::string& file, const std::str
 template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
   auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-         avoid, ways, threat, forage, phase, colour, tint, hurt] = herd;
+         avoid, ways, threat, forage, phase, colour, tint, hurt, reactions] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -222,6 +222,7 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.colour("colour", colour);
   fields.key("tint", tint, 0, 1);
   fields.flag("hurt", hurt);
+  fields.flag("reactions", reactions);
 }
 
 template <class Fields>
@@ -385,11 +386,20 @@ void keysOf(Fields& fields, const char* key, LegChange& change) {
 }
 
 template <class Fields>
+void keysOf(Fields& fields, const char* key, Push& push) {
+  auto& [herd, agents, share, velocity] = push;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+  fields.key("share", share, 0, 1);
+  fields.key(key, velocity, double{Push::most});
+}
+
+template <class Fields>
 void keysOf(Fields& fields, Event& event) {
   auto& [at, what] = event;
   fields.key("at", at, 0, Event::maxTime);
   fields.oneOf({"mound", "edit", "goal", "speed", "teleport", "add", "remove", "addHerd", "removeHerd",
-                "threat", "leg"},
+                "threat", "leg", "push"},
                what);
 }
 void checkKeys(const Event& event, const std::string& file, const std::string& path) {
@@ -400,10 +410,14 @@ void checkKeys(const Event& event, const std::string& file, const std::string& p
   if (const auto* teleport = std::get_if<Teleport>(&event.what)) expectSome("teleport", teleport->moves);
   if (const auto* addition = std::get_if<Addition>(&event.what)) expectSome("add", addition->arrivals);
   if (const auto* removal = std::get_if<Removal>(&event.what)) expectSome("remove", removal->agents);
-  const auto* change = std::get_if<LegChange>(&event.what);
-  if (change && change->leg.empty()) throw inputError(fmt::format("{}: {}.leg is missing", file, path));
-  if (change && change->share && !change->agents.empty())
-    throw inputError(fmt::format("{}: {} has agents and a share, expected one of them", file, path));
+  const auto* leg = std::get_if<LegChange>(&event.what);
+  if (leg && leg->leg.empty()) throw inputError(fmt::format("{}: {}.leg is missing", file, path));
+  const auto expectOne = [&](const auto* change) {
+    if (change && change->share && !change->agents.empty())
+      throw inputError(fmt::format("{}: {} has agents and a share, expected one of them", file, path));
+  };
+  expectOne(leg);
+  expectOne(std::get_if<Push>(&event.what));
 }
 
 template <class Fields>

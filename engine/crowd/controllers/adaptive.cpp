@@ -31,9 +31,9 @@ void checkTick(const Kind& kind, float dt) {
 const ControllerStages adaptiveController = {
     .all =
         [](const CrowdOptions&) {
-          return std::vector{navigateStage(), avoidStage(),    wakeStage(),    bodyStage(),
-                             gaitStage(),     footholdStage(), swingStage(),   ikStage(),
-                             poseStage(),     measureStage(),  footfallStage()};
+          return std::vector{navigateStage(), avoidStage(), wakeStage(),     reactStage(),
+                             bodyStage(),     gaitStage(),  footholdStage(), swingStage(),
+                             ikStage(),       poseStage(),  measureStage(),  footfallStage()};
         },
     .fused =
         [] {

@@ -4,6 +4,8 @@
 #include "embedded/body_gait_comp_texel.h"
 #include "embedded/body_gait_hurt_comp_storage.h"
 #include "embedded/body_gait_hurt_comp_texel.h"
+#include "embedded/body_gait_react_comp_storage.h"
+#include "embedded/body_gait_react_comp_texel.h"
 #include "embedded/gait_comp_storage.h"
 #include "embedded/gait_comp_texel.h"
 #include "embedded/gait_hurt_comp_storage.h"
@@ -14,6 +16,8 @@
 #include "embedded/gait_loop_comp_texel.h"
 #include "embedded/gait_loop_hurt_comp_storage.h"
 #include "embedded/gait_loop_hurt_comp_texel.h"
+#include "embedded/gait_react_comp_storage.h"
+#include "embedded/gait_react_comp_texel.h"
 #include "embedded/navigate_body_gait_comp_storage.h"
 #include "embedded/navigate_body_gait_comp_texel.h"
 #include "embedded/navigate_body_gait_hurt_comp_storage.h"
@@ -35,43 +39,45 @@ void specialiseGait(const StageNeeds& needs, StageKernels& kernels) {
 Stage gaitStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return withHurt(Stage{StageId::gait,
-                        {embedded::gait_comp_texel(), embedded::gait_comp_storage()},
-                        {{BINDING_PARAMETERS, uniform},
-                         {BINDING_HEIGHTS, heights},
-                         {BINDING_BODY, load4},
-                         {BINDING_STEP, load4},
-                         {BINDING_ARC, load4},
-                         {BINDING_MISS, load4},
-                         {BINDING_GAIT, load4},
-                         {BINDING_GAIT_OUT, store},
-                         {BINDING_LIST, store},
-                         {BINDING_COUNTERS, store}},
-                        Stage::Over::agents,
-                        specialiseGait},
-                  {embedded::gait_hurt_comp_texel(), embedded::gait_hurt_comp_storage()});
+  return withReact(withHurt(Stage{StageId::gait,
+                                  {embedded::gait_comp_texel(), embedded::gait_comp_storage()},
+                                  {{BINDING_PARAMETERS, uniform},
+                                   {BINDING_HEIGHTS, heights},
+                                   {BINDING_BODY, load4},
+                                   {BINDING_STEP, load4},
+                                   {BINDING_ARC, load4},
+                                   {BINDING_MISS, load4},
+                                   {BINDING_GAIT, load4},
+                                   {BINDING_GAIT_OUT, store},
+                                   {BINDING_LIST, store},
+                                   {BINDING_COUNTERS, store}},
+                                  Stage::Over::agents,
+                                  specialiseGait},
+                            {embedded::gait_hurt_comp_texel(), embedded::gait_hurt_comp_storage()}),
+                   {embedded::gait_react_comp_texel(), embedded::gait_react_comp_storage()});
 }
 
 Stage bodyAndGaitStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return withHurt(Stage{{StageId::body, StageId::gait},
-                        {embedded::body_gait_comp_texel(), embedded::body_gait_comp_storage()},
-                        {{BINDING_PARAMETERS, uniform},
-                         {BINDING_HEIGHTS, heights},
-                         {BINDING_STEER, load4},
-                         {BINDING_STEP, load4},
-                         {BINDING_ARC, load4},
-                         {BINDING_MISS, load4},
-                         {BINDING_BODY, load4},
-                         {BINDING_BODY_OUT, store},
-                         {BINDING_GAIT, load4},
-                         {BINDING_GAIT_OUT, store},
-                         {BINDING_LIST, store},
-                         {BINDING_COUNTERS, store}},
-                        Stage::Over::agents,
-                        specialiseGait},
-                  {embedded::body_gait_hurt_comp_texel(), embedded::body_gait_hurt_comp_storage()});
+  return withReact(withHurt(Stage{{StageId::body, StageId::gait},
+                                  {embedded::body_gait_comp_texel(), embedded::body_gait_comp_storage()},
+                                  {{BINDING_PARAMETERS, uniform},
+                                   {BINDING_HEIGHTS, heights},
+                                   {BINDING_STEER, load4},
+                                   {BINDING_STEP, load4},
+                                   {BINDING_ARC, load4},
+                                   {BINDING_MISS, load4},
+                                   {BINDING_BODY, load4},
+                                   {BINDING_BODY_OUT, store},
+                                   {BINDING_GAIT, load4},
+                                   {BINDING_GAIT_OUT, store},
+                                   {BINDING_LIST, store},
+                                   {BINDING_COUNTERS, store}},
+                                  Stage::Over::agents,
+                                  specialiseGait},
+                            {embedded::body_gait_hurt_comp_texel(), embedded::body_gait_hurt_comp_storage()}),
+                   {embedded::body_gait_react_comp_texel(), embedded::body_gait_react_comp_storage()});
 }
 
 Stage navigateBodyAndGaitStage() {

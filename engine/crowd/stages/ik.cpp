@@ -18,6 +18,8 @@
 #include "embedded/swing_ik_compared_comp_texel.h"
 #include "embedded/swing_ik_hurt_comp_storage.h"
 #include "embedded/swing_ik_hurt_comp_texel.h"
+#include "embedded/swing_ik_react_comp_storage.h"
+#include "embedded/swing_ik_react_comp_texel.h"
 #include "gpu/context.h"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
@@ -103,24 +105,26 @@ Stage ikStage() {
 Stage swingAndIkStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return withHurt(Stage{{StageId::swing, StageId::ik},
-                        {embedded::swing_ik_comp_texel(), embedded::swing_ik_comp_storage()},
-                        {{BINDING_PARAMETERS, uniform},
-                         {BINDING_RIG, load4},
-                         {BINDING_BODY, load4},
-                         {BINDING_STEP, load4},
-                         {BINDING_ARC, load4},
-                         {BINDING_FOOT_OUT, store},
-                         {BINDING_CHAIN, load4},
-                         {BINDING_CHAIN_OUT, store},
-                         {BINDING_MISS_OUT, store},
-                         {BINDING_TIP_OUT, store},
-                         {BINDING_LIST, store},
-                         {BINDING_COUNTERS, store}},
-                        Stage::Over::legs,
-                        specialiseSwingAndIk,
-                        COUNTER_IK_DISPATCH_X},
-                  {embedded::swing_ik_hurt_comp_texel(), embedded::swing_ik_hurt_comp_storage()});
+  return withReact(withHurt(Stage{{StageId::swing, StageId::ik},
+                                  {embedded::swing_ik_comp_texel(), embedded::swing_ik_comp_storage()},
+                                  {{BINDING_PARAMETERS, uniform},
+                                   {BINDING_RIG, load4},
+                                   {BINDING_BODY, load4},
+                                   {BINDING_STEP, load4},
+                                   {BINDING_ARC, load4},
+                                   {BINDING_FOOT_OUT, store},
+                                   {BINDING_CHAIN, load4},
+                                   {BINDING_CHAIN_OUT, store},
+                                   {BINDING_MISS_OUT, store},
+                                   {BINDING_TIP_OUT, store},
+                                   {BINDING_LIST, store},
+                                   {BINDING_COUNTERS, store}},
+                                  Stage::Over::legs,
+                                  specialiseSwingAndIk,
+                                  COUNTER_IK_DISPATCH_X},
+                            {embedded::swing_ik_hurt_comp_texel(), embedded::swing_ik_hurt_comp_storage()}),
+                   {embedded::swing_ik_react_comp_texel(), embedded::swing_ik_react_comp_storage()},
+                   {{BINDING_HEIGHTS, heights}});
 }
 
 Stage plantedIkStage() {

@@ -15,6 +15,8 @@
 #include "embedded/swing_planted_comp_texel.h"
 #include "embedded/swing_planted_hurt_comp_storage.h"
 #include "embedded/swing_planted_hurt_comp_texel.h"
+#include "embedded/swing_react_comp_storage.h"
+#include "embedded/swing_react_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -29,15 +31,17 @@ void addFeet(const StageNeeds& needs, StageKernels& kernels) {
 Stage swingStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return withHurt(Stage{StageId::swing,
-                        {embedded::swing_comp_texel(), embedded::swing_comp_storage()},
-                        {{BINDING_PARAMETERS, uniform},
-                         {BINDING_BODY, load4},
-                         {BINDING_STEP, load4},
-                         {BINDING_ARC, load4},
-                         {BINDING_FOOT_OUT, store}},
-                        Stage::Over::legs},
-                  {embedded::swing_hurt_comp_texel(), embedded::swing_hurt_comp_storage()});
+  return withReact(withHurt(Stage{StageId::swing,
+                                  {embedded::swing_comp_texel(), embedded::swing_comp_storage()},
+                                  {{BINDING_PARAMETERS, uniform},
+                                   {BINDING_BODY, load4},
+                                   {BINDING_STEP, load4},
+                                   {BINDING_ARC, load4},
+                                   {BINDING_FOOT_OUT, store}},
+                                  Stage::Over::legs},
+                            {embedded::swing_hurt_comp_texel(), embedded::swing_hurt_comp_storage()}),
+                   {embedded::swing_react_comp_texel(), embedded::swing_react_comp_storage()},
+                   {{BINDING_RIG, load4}, {BINDING_HEIGHTS, heights}});
 }
 
 Stage loopSwingStage() {
