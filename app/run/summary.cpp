@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "crowd/herd.h"
+
 namespace skitter::app {
 namespace {
 
@@ -97,6 +99,17 @@ nlohmann::ordered_json jsonOf(const Crowding& crowding, const Jams& jams) {
           {"droppedNeighbours", orNull(crowding.droppedNeighbours)}};
 }
 
+nlohmann::ordered_json jsonOf(const std::vector<ReactionFigures>& herds) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const ReactionFigures& herd : herds)
+    all.push_back({{"herd", herd.herd},
+                   {"falls", herd.falls},
+                   {"stands", herd.stands},
+                   {"down", herd.down},
+                   {"standUpSeconds", orNull(herd.standUpSeconds())}});
+  return all;
+}
+
 void printMemory(const std::vector<MemoryUse>& memory, uint64_t agents) {
   const double each = 1 / static_cast<double>(std::max<uint64_t>(agents, 1));
   uint64_t all = 0;
@@ -139,6 +152,27 @@ nlohmann::ordered_json jsonOf(const Fidelity& f) {
 
 }  // namespace
 
+std::optional<double> ReactionFigures::standUpSeconds() const {
+  if (stands == 0) return {};
+  return seconds / static_cast<double>(stands);
+}
+
+std::vector<ReactionFigures> reactionFigures(const Crowd& crowd) {
+  std::vector<ReactionFigures> all;
+  const Crowd::Impl& impl = implOf(crowd);
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    if (impl.herds[h].isGone() || !impl.herds[h].from.reactions) continue;
+    ReactionFigures& herd = all.emplace_back(ReactionFigures{.herd = h});
+    for (const Reaction& each : crowd.reactions(h)) {
+      herd.falls += each.falls;
+      herd.stands += each.stands;
+      herd.down += each.phase >= ReactionPhase::falling;
+      herd.seconds += double{each.downBefore};
+    }
+  }
+  return all;
+}
+
 void Summary::print() const {
   printRow("device", device);
   printRow("terrain", filledVoids > 0 ? fmt::format("{}, voids filled: {}", terrain, filledVoids) : terrain);
@@ -167,6 +201,10 @@ void Summary::print() const {
   for (const ForageFigures& herd : foraging)
     printRow("foraging", fmt::format("herd {}: {} loads carried home, {} returns without one", herd.herd,
                                      herd.done.brought, herd.done.empty));
+  for (const ReactionFigures& herd : reactions)
+    printRow("reactions",
+             fmt::format("herd {}: {} falls, {} stood again after {:.2f} s, {} are down", herd.herd,
+                         herd.falls, herd.stands, herd.standUpSeconds().value_or(0), herd.down));
   for (size_t i = 0; i < herds.size() && herds.size() > 1; ++i) {
     fmt::print("herd {}: {}, {} agents\n", herds[i].number, herds[i].rig, herds[i].agents);
     printFidelity(herds[i].fidelity, watchEvery);
@@ -204,6 +242,7 @@ nlohmann::ordered_json Summary::json() const {
           {"crowding", jsonOf(crowding, jams)},
           {"foraging", jsonOf(foraging)},
           {"damage", damage ? jsonOf(*damage) : nlohmann::ordered_json(nullptr)},
+          {"reactions", jsonOf(reactions)},
           {"herds", perHerd},
           {"stateHash", fmt::format("{:016x}", stateHash)}};
 }

@@ -28,6 +28,18 @@ struct HerdFigures {
   Fidelity fidelity;
 };
 
+// Of a herd with reactions, since its agents came.
+struct ReactionFigures {
+  uint32_t herd = 0;
+  uint64_t falls = 0, stands = 0;  // of all its agents
+  uint64_t down = 0;               // agents that are fallen or rise, at the end
+  double seconds = 0;              // of all falls from which somebody stands again
+
+  // From the beginning of a fall to standing, a mean.
+  std::optional<double> standUpSeconds() const;
+};
+std::vector<ReactionFigures> reactionFigures(const Crowd& crowd);
+
 // What a run came to: printed for people and written for programs.
 struct Summary {
   std::string device;
@@ -44,7 +56,8 @@ struct Summary {
   Fidelity fidelity;               // of all herds
   std::vector<HerdFigures> herds;  // that are there at the end
   Crowding crowding;
-  std::vector<ForageFigures> foraging;  // of the herds that forage
+  std::vector<ForageFigures> foraging;     // of the herds that forage
+  std::vector<ReactionFigures> reactions;  // of the herds with reactions
   Jams jams;
   std::optional<DamageFigures> damage;  // where events hurt legs, and it was asked for
   std::optional<uint64_t> sleeping;     // agents at the end; none where they may not

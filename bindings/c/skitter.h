@@ -321,6 +321,28 @@ SKITTER_C skitter_result skitter_crowd_set_speed_agents(skitter_crowd* crowd, co
 SKITTER_C skitter_result skitter_crowd_teleport(skitter_crowd* crowd, const skitter_agent_id* agents,
                                                 const skitter_place* places, size_t count);
 
+/* Pushes agents of herds with reactions (docs/reactions.md): changes of velocity x, z, m/s, two numbers per
+ * agent, each at most 100 m/s long. Several of one agent before a tick add up. */
+SKITTER_C skitter_result skitter_crowd_push(skitter_crowd* crowd, const skitter_agent_id* agents,
+                                            const float* velocities, size_t count);
+typedef enum skitter_reaction_phase {
+  SKITTER_REACTION_STEADY = 0,
+  SKITTER_REACTION_STUMBLING = 1,
+  SKITTER_REACTION_FALLING = 2,
+  SKITTER_REACTION_LYING = 3,
+  SKITTER_REACTION_RIGHTING = 4,
+  SKITTER_REACTION_RISING = 5
+} skitter_reaction_phase;
+typedef struct skitter_reaction {
+  skitter_reaction_phase phase;
+  uint32_t falls, stands;  /* since the agent came: how often it fell, and stood again */
+  float down, down_before; /* seconds since this fall began, and of those before it */
+} skitter_reaction;
+/* What the last tick left, one of each place of the herd; steady where it has no reactions. Waits for the
+ * device. There is room for `room` of them. */
+SKITTER_C skitter_result skitter_crowd_reactions(const skitter_crowd* crowd, uint32_t herd,
+                                                 skitter_reaction* reactions, size_t room);
+
 /* Adds an agent to a herd with a reserve, in its lowest empty place, which says how large it is, and removes
  * one from such a herd. `goal`: NULL: the herd's. `id` may be NULL. No empty place and no reserve are
  * SKITTER_ERROR_INPUT. */

@@ -35,6 +35,10 @@ std::vector<glm::vec2> placesOf(const skitter_goal& goal) {
   return places;
 }
 
+static_assert(SKITTER_REACTION_STEADY == static_cast<int>(ReactionPhase::steady) &&
+              SKITTER_REACTION_FALLING == static_cast<int>(ReactionPhase::falling) &&
+              SKITTER_REACTION_RISING == static_cast<int>(ReactionPhase::rising));
+
 Goal goalOf(const skitter_goal& goal) {
   if (const int kind = static_cast<int>(goal.kind); kind < SKITTER_GOAL_CROSS || kind > SKITTER_GOAL_FLEE)
     throw inputError(fmt::format("goal.kind is {}, expected a skitter_goal_kind", kind));
@@ -146,6 +150,34 @@ skitter_result skitter_crowd_teleport(skitter_crowd* crowd, const skitter_agent_
                                       const skitter_place* places, size_t count) {
   return guarded(
       [&] { crowdOf(crowd).teleport(eachOf<AgentPlace>(agents, places, count, "places", placeOf)); });
+}
+
+skitter_result skitter_crowd_push(skitter_crowd* crowd, const skitter_agent_id* agents,
+                                  const float* velocities, size_t count) {
+  return guarded([&] {
+    Crowd& pushed = crowdOf(crowd);
+    const auto ids = listOf(agents, count, "agents");
+    const auto from = listOf(velocities, 2 * count, "velocities");
+    std::vector<AgentPush> pushes;
+    for (size_t i = 0; i < count; ++i)
+      pushes.push_back({AgentId::ofBits(ids[i]), {from[2 * i], from[2 * i + 1]}});
+    pushed.push(pushes);
+  });
+}
+
+skitter_result skitter_crowd_reactions(const skitter_crowd* crowd, uint32_t herd, skitter_reaction* reactions,
+                                       size_t room) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(reactions, "reactions");
+    c::checkRoom("reactions", room, asked.places(herd));
+    for (const Reaction& each : asked.reactions(herd))
+      *reactions++ = {.phase = static_cast<skitter_reaction_phase>(each.phase),
+                      .falls = each.falls,
+                      .stands = each.stands,
+                      .down = each.down,
+                      .down_before = each.downBefore};
+  });
 }
 
 skitter_result skitter_crowd_add(skitter_crowd* crowd, uint32_t herd, const skitter_place* place,

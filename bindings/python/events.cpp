@@ -183,6 +183,20 @@ void bindLegs(py::module_& module) {
   defineTuple(change, "agents", &LegChange::agents, agentsText);
 }
 
+void bindPushes(py::module_& module) {
+  py::class_<Push> push(module, "Push", "A push of some agents, of a herd with reactions.");
+  push.def(py::init([](const glm::vec2& velocity, uint32_t herd, Places agents, std::optional<float> share) {
+             return Push{.herd = herd, .agents = std::move(agents), .share = share, .velocity = velocity};
+           }),
+           "velocity"_a, "herd"_a = 0, "agents"_a = Places{}, "share"_a = py::none())
+      .def_readwrite("herd", &Push::herd, herdText)
+      .def_readwrite("velocity", &Push::velocity,
+                     "x and z, metres per second, at most 100 long: what is added to the velocity.")
+      .def_readwrite("share", &Push::share,
+                     "Each agent is drawn with this chance, 0 to 1; None: all of `agents`.");
+  defineTuple(push, "agents", &Push::agents, agentsText);
+}
+
 // Takes the object for a `Kind` if it is one.
 template <typename Kind>
 bool takes(const py::object& object, What& what) {
@@ -218,7 +232,7 @@ std::vector<Event> eventsIn(const py::list& events) {
     if (!isTaken(event.what, one.what))
       fail(".what", event.what,
            "a Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition, "
-           "HerdRemoval, ThreatChange or LegChange");
+           "HerdRemoval, ThreatChange, LegChange or Push");
     made.push_back(std::move(one));
   }
   return made;
@@ -230,6 +244,7 @@ void bindEvents(py::module_& module) {
   bindComing(module);
   bindThreats(module);
   bindLegs(module);
+  bindPushes(module);
   py::class_<PythonEvent, std::shared_ptr<PythonEvent>>(
       module, "Event", "What happens to a crowd while it runs, at a time (docs/scene.md).")
       .def(py::init([](float at, py::object what) {
@@ -240,7 +255,7 @@ void bindEvents(py::module_& module) {
                      "Seconds from the start: before the first tick that ends then or later.")
       .def_readwrite("what", &PythonEvent::what,
                      "A Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, "
-                     "HerdAddition, HerdRemoval, ThreatChange or LegChange.")
+                     "HerdAddition, HerdRemoval, ThreatChange, LegChange or Push.")
       .def("__repr__", [](const PythonEvent& self) {
         return fmt::format("<skitter.Event at {} s: {}>", self.at,
                            py::type::of(self.what).attr("__name__").cast<std::string>());

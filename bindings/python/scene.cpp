@@ -132,6 +132,7 @@ void bindHerd(py::module_& module) {
       .def_readwrite("tint", &Herd::tint,
                      "How much agents differ in colour, 0 to 1; None: half, by their numbers.")
       .def_readwrite("hurt", &Herd::hurt, "Whether legs of its agents can be hurt.")
+      .def_readwrite("reactions", &Herd::reactions, "Whether its agents stumble, fall and get up.")
       .def("__repr__", [](const Herd& self) {
         return fmt::format("<skitter.Herd of {} agents, {}, {}>", self.agents, self.rig,
                            nameOf(self.controller));

@@ -209,6 +209,7 @@ class Herd:
     colour: Optional[Sequence[float]]
     tint: Optional[float]
     hurt: bool
+    reactions: bool
     def __init__(self, agents: int = 1000) -> None: ...
 
 class TerrainNoise:
@@ -400,6 +401,21 @@ class LegChange:
         bone: Optional[int] = None,
     ) -> None: ...
 
+class Push:
+    """A push of some agents, of a herd with reactions."""
+
+    herd: int
+    velocity: Sequence[float]
+    agents: Sequence[int]
+    share: Optional[float]
+    def __init__(
+        self,
+        velocity: Sequence[float],
+        herd: int = 0,
+        agents: Sequence[int] = (),
+        share: Optional[float] = None,
+    ) -> None: ...
+
 class HerdAddition:
     """A herd that comes; it gets the lowest number that is free."""
 
@@ -432,6 +448,7 @@ _What = Union[
     HerdRemoval,
     ThreatChange,
     LegChange,
+    Push,
 ]
 
 class Event:
@@ -535,6 +552,8 @@ class Crowd:
     def agent_id(self, agent: int, herd: int = 0) -> int: ...
     def agent_ids(self, herd: int = 0) -> npt.NDArray[np.uint64]: ...
     def has(self, agent: int) -> bool: ...
+    def push(self, agents: _Agents, velocities: _Floats) -> None: ...
+    def reactions(self, herd: int = 0) -> List[Dict[str, Any]]: ...
     def teleport(self, agents: _Agents, positions: _Floats, headings: _Floats = 0) -> None: ...
     def add(
         self, position: Sequence[float], heading: float = 0, herd: int = 0, goal: Optional[Goal] = None

@@ -138,6 +138,28 @@ std::string legState(PythonCrowd& self, uint64_t agent, const LegOf& leg) {
   return self.told([&](const Crowd& crowd) { return nameOf(crowd.legState(id, legOf(crowd, id, leg))); });
 }
 
+void push(PythonCrowd& self, const Ids& agents, const Floats& velocities) {
+  const std::vector<glm::vec2> by = pairsOf(velocities, "velocities");
+  expectOneEach(by.size(), "velocities", agents);
+  const auto pushes = givenTo<AgentPush>(agents, [&](size_t i) { return by[i]; });
+  self.told([&](Crowd& crowd) { crowd.push(pushes); });
+}
+
+py::list reactions(PythonCrowd& self, uint32_t herd) {
+  const std::vector<Reaction> all = self.told([&](const Crowd& crowd) { return crowd.reactions(herd); });
+  py::list made;
+  for (const Reaction& each : all) {
+    py::dict one;
+    one["phase"] = nameOf(each.phase);
+    one["falls"] = each.falls;
+    one["stands"] = each.stands;
+    one["down"] = each.down;
+    one["down_before"] = each.downBefore;
+    made.append(one);
+  }
+  return made;
+}
+
 uint64_t add(PythonCrowd& self, const glm::vec2& position, float heading, uint32_t herd,
              const std::optional<Goal>& goal) {
   const Place place{position, heading};
@@ -191,6 +213,13 @@ void bindAgents(CrowdClass& bound) {
             return self.told([&](const Crowd& crowd) { return crowd.has(AgentId::ofBits(agent)); });
           },
           "agent"_a, "Whether the agent of that handle is there.")
+      .def("push", &push, "agents"_a, "velocities"_a,
+           "Adds to the velocities of agents of herds with reactions: x and z in metres per second, shape "
+           "(n, 2), "
+           "one per handle, in the next tick.")
+      .def("reactions", &reactions, "herd"_a = 0,
+           "Who fell and who stands again, one dict per place: phase, falls, stands, down and down_before "
+           "(seconds). Waits for the device.")
       .def("teleport", &teleport, "agents"_a, "positions"_a, "headings"_a = 0.0f,
            "Puts the agents of one or more handles at x and z, metres, with their feet on the ground and "
            "without speed; `headings` as headings(), one for all or one each. Goals stay.")

@@ -126,7 +126,7 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   EXPECT_EQ(keysOf(run),
             (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
                                    "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity", "crowding",
-                                   "foraging", "damage", "herds", "sleeping", "stateHash", "ticksWanted",
+                                   "foraging", "damage", "reactions", "herds", "sleeping", "stateHash", "ticksWanted",
                                    "interrupted", "manifest", "resumedAt"}));
   EXPECT_TRUE(run.at("foraging").empty()) << "nobody does";
   EXPECT_TRUE(run.at("damage").is_null()) << "nobody is hurt";

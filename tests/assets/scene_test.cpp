@@ -134,7 +134,9 @@ TEST(Scene, EventsOfEveryKind) {
     {"at": 7, "removeHerd": 3},
     {"at": 8, "herd": 1, "agents": [2], "leg": "L3"},
     {"at": 9, "share": 0.25, "leg": "R2", "state": "lame"},
-    {"at": 9, "leg": "R1", "state": "lost", "bone": 3}
+    {"at": 9, "leg": "R1", "state": "lost", "bone": 3},
+    {"at": 10, "herd": 1, "agents": [2], "push": [1, -2]},
+    {"at": 11, "share": 0.5, "push": [0, 3]}
   ]})",
                                  "events.json", "folder");
   const Goal none{.kind = Goal::Kind::none}, point{.kind = Goal::Kind::point, .target = {5, 6}};
@@ -156,6 +158,8 @@ TEST(Scene, EventsOfEveryKind) {
       {8, LegChange{.herd = 1, .agents = {2}, .leg = "L3"}},
       {9, LegChange{.share = 0.25f, .leg = "R2", .state = LegState::lame}},
       {9, LegChange{.leg = "R1", .bone = 3}},
+      {10, Push{.herd = 1, .agents = {2}, .velocity = {1, -2}}},
+      {11, Push{.share = 0.5f, .velocity = {0, 3}}},
   };
   ASSERT_EQ(scene.events.size(), expected.size());
   for (size_t e = 0; e < expected.size(); ++e) EXPECT_TRUE(scene.events[e] == expected[e]) << e;
@@ -579,7 +583,7 @@ class RandomScenes {
   Herd herd() {
     Herd made;
     auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-           avoid, ways, threat, forage, phase, colour, tint, hurt] = made;
+           avoid, ways, threat, forage, phase, colour, tint, hurt, reactions] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -608,6 +612,7 @@ class RandomScenes {
     if (coin()) colour = {real(0, 1), real(0, 1), real(0, 1)};
     maybe(tint, 0, 1);
     hurt = coin();
+    reactions = coin();
     return made;
   }
   Forage forage() {
@@ -646,7 +651,7 @@ class RandomScenes {
     return made;
   }
   decltype(Event::what) happening() {
-    switch (whole(0, 10)) {
+    switch (whole(0, 11)) {
       case 0:
         return mound();
       case 1:
@@ -712,6 +717,17 @@ class RandomScenes {
         return made;
       }
       case 9: {
+        Push made;
+        auto& [herd, agents, share, velocity] = made;
+        herd = someHerd();
+        if (coin())
+          maybe(share, 0, 1);
+        else
+          agents = numbers(0);
+        velocity = {real(-10, 10), real(-10, 10)};
+        return made;
+      }
+      case 10: {
         HerdRemoval made;
         auto& [herd] = made;
         herd = someHerd();

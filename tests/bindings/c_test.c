@@ -597,6 +597,18 @@ static void testThreats(skitter_crowd* crowd) {
   REFUSED(skitter_crowd_set_threat(crowd, 0, NULL, 1), "centre is NULL");
 }
 
+static void testPushes(skitter_crowd* crowd, const skitter_agent_id* ids) {
+  const float velocity[2] = {1, 0};
+  skitter_reaction reactions[6];
+  int i;
+  REFUSED(skitter_crowd_push(crowd, ids, velocity, 1), "reactions is false, expected a herd with reactions");
+  REFUSED(skitter_crowd_push(crowd, NULL, velocity, 1), "agents is NULL");
+  REFUSED(skitter_crowd_push(crowd, ids, NULL, 1), "velocities is NULL");
+  REFUSED(skitter_crowd_reactions(crowd, 0, NULL, 6), "reactions is NULL");
+  OK(skitter_crowd_reactions(crowd, 0, reactions, 6));
+  for (i = 0; i < 6; ++i) CHECK(reactions[i].phase == SKITTER_REACTION_STEADY && reactions[i].falls == 0);
+}
+
 static void testComingAndGoing(skitter_crowd* crowd) {
   skitter_place place = {5, -5, 1};
   skitter_goal goal = {0};
@@ -697,6 +709,7 @@ static void testSteering(void) {
   OK(skitter_crowd_steer(crowd, 0, &goal));
   testSpeeds(crowd, ids);
   testThreats(crowd);
+  testPushes(crowd, ids);
 
   OK(skitter_crowd_teleport(crowd, ids + 2, &place, 1));
   OK(skitter_crowd_step(crowd, 1, dt));

@@ -79,26 +79,24 @@ std::vector<crowd::Stage> everyStage() {
   }
   const size_t count = stages.size();
   for (size_t i = 0; i < count; ++i)
-    if (stages[i].hurtCode) {
-      crowd::Stage form = stages[i];
-      form.code = *form.hurtCode;
-      stages.push_back(std::move(form));
-    }
+    for (const auto& code : {stages[i].hurtCode, stages[i].reactCode})
+      if (code) stages.emplace_back(stages[i]).code = *code;
   return stages;
 }
 
-std::vector<std::string> namesOf(Controller controller, bool fuse, bool sleep, bool avoids = false) {
+std::vector<std::string> namesOf(Controller controller, bool fuse, bool sleep, bool avoids = false,
+                                 bool reacts = false) {
   CrowdOptions options = everything(fuse);
   options.sleep = sleep;
   std::vector<std::string> names;
-  for (const crowd::Stage& stage : crowd::stagesOf(controller, options, {.avoids = avoids}))
+  for (const crowd::Stage& stage : crowd::stagesOf(controller, options, {.avoids = avoids, .reacts = reacts}))
     names.push_back(stage.makes.name());
   return names;
 }
 
 TEST(Stages, AreThoseOfTheirPage) {
   for (const Controller controller : allControllers)
-    EXPECT_EQ(namesOf(controller, false, true, true), stagesOnThePage({nameOf(controller)}))
+    EXPECT_EQ(namesOf(controller, false, true, true, true), stagesOnThePage({nameOf(controller)}))
         << nameOf(controller);
 }
 
@@ -116,6 +114,9 @@ TEST(Stages, AreMadeAtOnceWhereTheyStandInARow) {
   // Or avoid.
   EXPECT_THAT(namesOf(Controller::adaptive, true, false, true),
               IsSupersetOf({"navigate", "avoid", "body+gait", "swing+ik"}));
+  // react comes before body.
+  EXPECT_THAT(namesOf(Controller::adaptive, true, false, false, true),
+              IsSupersetOf({"navigate", "react", "body+gait", "swing+ik"}));
   CrowdOptions options = everything(true);
   options.shaders = {{.stage = "ik", .texel = {}, .storage = {}}};
   EXPECT_THAT(crowd::stagesOf(Controller::adaptive, options),
@@ -126,7 +127,8 @@ TEST(Records, ReplayHoldsAllThatAStageWrites) {
   for (const Controller controller : allControllers) {
     const std::vector<validation::CheckedStage> checked = validation::checkedStages(controller);
     auto next = checked.begin();
-    for (const crowd::Stage& stage : crowd::stagesOf(controller, everything(false), {.avoids = true})) {
+    for (const crowd::Stage& stage :
+         crowd::stagesOf(controller, everything(false), {.avoids = true, .reacts = true})) {
       if (stage.makes == crowd::StageId::wake) continue;
       SCOPED_TRACE(std::string(nameOf(controller)) + ", " + stage.makes.name());
       ASSERT_NE(next, checked.end());

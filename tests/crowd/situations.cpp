@@ -335,6 +335,53 @@ Results losingLegs(Device& device, Controller controller, const CrowdOptions& op
   return replay.results();
 }
 
+// Pushes of every strength and to every side, ground that is gone under some, and a leg that others lose;
+// some are pushed again as they lie or rise.
+Results gettingPushed(Device& device, Controller controller, const CrowdOptions& options) {
+  constexpr uint32_t agents = 24;
+  const Heightfield ground = rollingGround();
+  Scene scene = sceneOf(agents, 1, 1, controller);
+  scene.herds[0].reactions = true;
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 40);
+  validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
+  const auto run = [&](int ticks) {
+    crowd::applyChanges(implOf(crowd));
+    HerdState before = crowd.download(0);
+    for (int i = 0; i < ticks; ++i) {
+      simulate(device, crowd, 1);
+      HerdState after = crowd.download(0);
+      replay.tick(crowd.tick(), before, after);
+      before = std::move(after);
+    }
+  };
+  const auto pushAll = [&](float strongest, uint32_t every) {
+    for (uint32_t agent = 0; agent < agents; agent += every) {
+      const float angle = 2.4f * static_cast<float>(agent);
+      const float speed = strongest * static_cast<float>(agent) / agents;
+      crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
+    }
+  };
+  pushAll(14, 1);
+  run(30);
+  pushAll(9, 5);
+  for (uint32_t agent = 0; agent < agents; agent += 4) crowd.hurt(crowd.agentId(0, agent), agent % 8);
+  run(50);
+  // A dent of 0.6 m under a part of them.
+  const Heightfield& now = crowd.terrain();
+  const uint32_t x = now.columns / 2 - 8, z = now.rows / 2 - 8;
+  std::vector<float> heights;
+  for (uint32_t row = z; row < z + 16; ++row)
+    for (uint32_t column = x; column < x + 16; ++column)
+      heights.push_back(now.heights[size_t{row} * now.columns + column] - 0.6f);
+  crowd.editHeights(x, z, 16, 16, heights);
+  replay.edit(x, z, 16, 16, heights);
+  run(40);
+  pushAll(11, 3);
+  run(150);
+  return replay.results();
+}
+
 }  // namespace
 
 const std::vector<Situation>& situations() {
@@ -357,6 +404,7 @@ const std::vector<Situation>& situations() {
       {"changingGaits", {Controller::clip, Controller::planted}, changingGaits},
       {"foldingBack", {Controller::clip}, foldingBack},
       {"beyondTheLimits", {Controller::planted}, beyondTheLimits},
+      {"gettingPushed", {Controller::adaptive}, gettingPushed},
       {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs},
   };
   return all;

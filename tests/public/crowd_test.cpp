@@ -421,6 +421,25 @@ TEST_F(PublicCrowd, HurtsLegsAndHealsThem) {
   EXPECT_EQ(crowd.stateHash(), before);
 }
 
+TEST_F(PublicCrowd, WhoIsPushedFallsAndStandsAgain) {
+  Scene scene = standingScene(4);
+  scene.herds[0].reactions = true;
+  Crowd crowd(device(), flatGround(), scene);
+  const AgentPush strong{crowd.agentId(0, 1), {20, 0}};
+  crowd.push({&strong, 1});
+  crowd.push(crowd.agentId(0, 2), {0.2f, 0});
+  walk(device(), crowd, 20);
+  EXPECT_EQ(crowd.reactions(0)[0].phase, ReactionPhase::steady);
+  EXPECT_EQ(crowd.reactions(0)[1].phase, ReactionPhase::falling);
+  EXPECT_EQ(crowd.reactions(0)[2].falls, 0u);
+  walk(device(), crowd, 280);
+  EXPECT_EQ(crowd.reactions(0)[1].stands, 1u);
+  EXPECT_GT(crowd.reactions(0)[1].downBefore, 0.5f);
+  expectRefused("the length of the push is 200 m/s, expected 0 to 100", [&] {
+    crowd.push(crowd.agentId(0, 2), {200, 0});
+  });
+}
+
 // Two of four in one place, the others far from anybody.
 TEST_F(PublicCrowd, MeasuresHowFarAgentsOverlap) {
   Crowd crowd(device(), flatGround(), standingScene(4), {.crowding = true});

@@ -21,6 +21,11 @@ TEST(PublicAgentId, IsOfNobodyWhereItsNumbersDoNotFit) {
   EXPECT_EQ(AgentId(0, 0, 1 << 30), AgentId());
 }
 
+TEST(PublicReactionPhase, HasAName) {
+  EXPECT_STREQ(nameOf(ReactionPhase::steady), "steady");
+  EXPECT_STREQ(nameOf(ReactionPhase::rising), "rising");
+}
+
 TEST(PublicHerdId, IsOfNoHerdByDefault) {
   EXPECT_EQ(HerdId(), (HerdId{UINT32_MAX, 0}));
   EXPECT_NE((HerdId{1, 0}), (HerdId{1, 2}));
