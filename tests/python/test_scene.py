@@ -178,6 +178,18 @@ def every_kind_of_event():
     ]
 
 
+def test_pushes_are_events(scene):
+    scene.herds[0].reactions = True
+    scene.events = [skitter.Event(1, skitter.Push((2, -1), share=0.5)), skitter.Event(2, skitter.Push((0, 3), 0, [4]))]
+    written = json.loads(scene.to_json())
+    assert written["herds"][0]["reactions"] is True
+    assert written["events"][0] == {"at": 1, "herd": 0, "share": 0.5, "push": [2, -1]}
+    again = skitter.Scene.parse(scene.to_json())
+    assert again.herds[0].reactions
+    assert [event.what.velocity for event in again.events] == [(2, -1), (0, 3)]
+    assert again.events[1].what.agents == (4,)
+
+
 def test_goals_in_series_are_as_in_scene_files(scene):
     herd = scene.herds[0]
     herd.ways = skitter.Ways()
