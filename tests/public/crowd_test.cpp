@@ -425,7 +425,7 @@ TEST_F(PublicCrowd, WhoIsPushedFallsAndStandsAgain) {
   Scene scene = standingScene(4);
   scene.herds[0].reactions = true;
   Crowd crowd(device(), flatGround(), scene);
-  const AgentPush strong{crowd.agentId(0, 1), {20, 0}};
+  const AgentPush strong{crowd.agentId(0, 1), {12, 0}};
   crowd.push({&strong, 1});
   crowd.push(crowd.agentId(0, 2), {0.2f, 0});
   walk(device(), crowd, 20);
