@@ -149,9 +149,10 @@ TEST_F(ReactTest, OthersHaveNeitherRecordsNorOtherBits) {
   EXPECT_TRUE(crowd.buffers(1, Record::reaction).empty());
   EXPECT_TRUE(crowd.buffers(1, Record::push).empty());
   const HerdState ours = crowd.download(1), theirs = plain.download(1);
-  for (const Record record : allRecords)
-    if (record != Record::watch)
-      EXPECT_TRUE(sameBits(ours.of(record), theirs.of(record))) << static_cast<int>(record);
+  for (const Record record : allRecords) {
+    if (record == Record::watch) continue;
+    EXPECT_TRUE(sameBits(ours.of(record), theirs.of(record))) << static_cast<int>(record);
+  }
   for (const Reaction& each : crowd.reactions(1)) EXPECT_EQ(each.phase, ReactionPhase::steady);
 }
 

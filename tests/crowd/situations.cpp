@@ -366,19 +366,33 @@ Results gettingPushed(Device& device, Controller controller, const CrowdOptions&
   run(30);
   pushAll(9, 5);
   for (uint32_t agent = 0; agent < agents; agent += 4) crowd.hurt(crowd.agentId(0, agent), agent % 8);
-  run(50);
-  // A dent of 0.6 m under a part of them.
-  const Heightfield& now = crowd.terrain();
-  const uint32_t x = now.columns / 2 - 8, z = now.rows / 2 - 8;
-  std::vector<float> heights;
-  for (uint32_t row = z; row < z + 16; ++row)
-    for (uint32_t column = x; column < x + 16; ++column)
-      heights.push_back(now.heights[size_t{row} * now.columns + column] - 0.6f);
-  crowd.editHeights(x, z, 16, 16, heights);
-  replay.edit(x, z, 16, 16, heights);
   run(40);
-  pushAll(11, 3);
-  run(150);
+  // A dent of 0.6 m in front of every other agent.
+  const Heightfield& now = crowd.terrain();
+  const HerdState standing = crowd.download(0);
+  for (uint32_t agent = 0; agent < agents; agent += 2) {
+    const glm::dvec3 at = positionOf(standing, agent);
+    const auto x = static_cast<uint32_t>((at.x - now.originX()) / now.spacingX);
+    const auto z = static_cast<uint32_t>((at.z - now.originZ()) / now.spacingZ) + 1;
+    std::vector<float> heights;
+    for (uint32_t row = z; row < z + 2; ++row)
+      for (uint32_t column = x; column < x + 2; ++column)
+        heights.push_back(now.heights[size_t{row} * now.columns + column] - 0.6f);
+    crowd.editHeights(x, z, 2, 2, heights);
+    replay.edit(x, z, 2, 2, heights);
+  }
+  run(30);
+  std::vector<bool> again(agents);
+  for (int i = 0; i < 8; ++i) {
+    const std::vector<Reaction> all = crowd.reactions(0);
+    for (uint32_t agent = 1; agent < agents; agent += 2) {
+      if (all[agent].phase != ReactionPhase::rising || again[agent]) continue;
+      crowd.push(crowd.agentId(0, agent), {0, 12});
+      again[agent] = true;
+    }
+    run(12);
+  }
+  run(120);
   return replay.results();
 }
 
