@@ -26,11 +26,11 @@ Scene herdsToRead() {
   scene.herds[3].controller = Controller::loop;
   return scene;
 }
-const CrowdOptions options{.measure = false, .pageAgents = 24};
+const CrowdOptions inPages{.measure = false, .pageAgents = 24};
 
 TEST_F(ReadbackTest, HoldsTheBodiesOfItsTick) {
-  Crowd crowd(device(), rollingGround(), herdsToRead(), options);
-  Crowd same(device(), rollingGround(), herdsToRead(), options);
+  Crowd crowd(device(), rollingGround(), herdsToRead(), inPages);
+  Crowd same(device(), rollingGround(), herdsToRead(), inPages);
   Readback readback(device(), crowd);
   EXPECT_FALSE(readback.latest());
   std::vector<std::vector<std::vector<float>>> history(1);  // by tick and herd
@@ -70,7 +70,7 @@ TEST_F(ReadbackTest, HoldsTheBodiesOfItsTick) {
 
 // What is on its way is waited for by nobody.
 TEST_F(ReadbackTest, SkipsTicksWhenEverySlotIsOnItsWay) {
-  Crowd crowd(device(), rollingGround(), sceneOf(9), options);
+  Crowd crowd(device(), rollingGround(), sceneOf(9), inPages);
   Readback readback(device(), crowd, {.slots = 3});
   gpu::CommandRing ring(context(), 2);
   const vk::CommandBuffer cmd = ring.begin();
@@ -99,7 +99,7 @@ TEST_F(ReadbackTest, SkipsTicksWhenEverySlotIsOnItsWay) {
 
 TEST_F(ReadbackTest, ReadsTheHerdsThatAreNamed) {
   const Scene scene = herdsToRead();
-  Crowd crowd(device(), rollingGround(), scene, options);
+  Crowd crowd(device(), rollingGround(), scene, inPages);
   Readback readback(device(), crowd, {.herds = {3, 0}});
   gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
     crowd.record(cmd, kTick);
@@ -132,7 +132,7 @@ TEST_F(ReadbackTest, ReadsTheHerdsThatAreNamed) {
 }
 
 TEST_F(ReadbackTest, RefusesWhatCannotBe) {
-  Crowd crowd(device(), rollingGround(), herdsToRead(), options);
+  Crowd crowd(device(), rollingGround(), herdsToRead(), inPages);
   const auto expectRefused = [&](const ReadbackOptions& wanted, const std::string& message) {
     try {
       Readback(device(), crowd, wanted);
@@ -149,7 +149,7 @@ TEST_F(ReadbackTest, RefusesWhatCannotBe) {
 TEST_F(ReadbackTest, OfAHerdThatIsGoneIsRefused) {
   Scene scene = herdsToRead();
   scene.events = {{2 * kTick, HerdRemoval{3}}};
-  Crowd crowd(device(), rollingGround(), scene, options);
+  Crowd crowd(device(), rollingGround(), scene, inPages);
   Readback all(device(), crowd), first(device(), crowd, {.herds = {0}});
   const auto tick = [&](Readback& readback) -> std::string {
     std::string fault = "taken";
@@ -179,7 +179,7 @@ TEST_F(ReadbackTest, OfAHerdThatIsGoneIsRefused) {
 
 // From straight above each agent, from aside, and where nobody is.
 TEST_F(ReadbackTest, PicksTheAgentUnderTheRay) {
-  Crowd crowd(device(), rollingGround(), herdsToRead(), options);
+  Crowd crowd(device(), rollingGround(), herdsToRead(), inPages);
   Readback readback(device(), crowd);
   for (int i = 0; i < 20; ++i)
     gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
@@ -225,7 +225,7 @@ TEST_F(ReadbackTest, PicksTheAgentUnderTheRay) {
 
 TEST_F(ReadbackTest, PicksNobodyWhereNobodyIs) {
   // In an empty place.
-  Crowd one(device(), flatGround(), sceneOf(1), options);
+  Crowd one(device(), flatGround(), sceneOf(1), inPages);
   Readback readback(device(), one);
   const RecordBuffer bodies = one.buffers(0, Record::body).at(0);
   gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
@@ -240,7 +240,7 @@ TEST_F(ReadbackTest, PicksNobodyWhereNobodyIs) {
   EXPECT_FALSE(readback.latest()->bounds(0));
   EXPECT_FALSE(one.nearest({0, 0, 0}));
   // In a herd without agents.
-  const Crowd crowd(device(), rollingGround(), sceneOf(0), options);
+  const Crowd crowd(device(), rollingGround(), sceneOf(0), inPages);
   EXPECT_FALSE(crowd.pick({{0, 50, 0}, {0, -1, 0}}));
   EXPECT_FALSE(crowd.nearest({0, 0, 0}));
 }
