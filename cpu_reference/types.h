@@ -96,7 +96,7 @@ struct Reaction {
 struct Creature {
   std::vector<Limb> limbs;
   int groups = 0;
-  // Where legs are hurt: how far its homes are from the rig's, model space, and its share of the speed.
+  // Where legs are hurt or it reacts: how far its homes are from the rig's, model space, and its share of the speed.
   glm::dvec3 shift{0};
   double speed = 1;
   // Where it reacts (cpu_reference/stages/react.h).

@@ -292,16 +292,18 @@ Creature reactingCreature(const Tuning& tuning, const Creature& hurt, const Reac
                           const glm::dquat& orientation) {
   Creature creature = hurt;
   creature.reaction = reaction;
-  const glm::dvec3 ahead =
-      glm::conjugate(orientation) * glm::dvec3(reaction.velocity.x, 0, reaction.velocity.y);
-  for (Limb& limb : creature.limbs) {
-    if (!reaction.isFallen()) {
-      limb.home += pendulumTime(tuning) * glm::dvec3(ahead.x, 0, ahead.z);
-      continue;
+  if (reaction.isFallen()) {
+    for (Limb& limb : creature.limbs) {
+      limb.folds = limb.carries;
+      limb.carries = false;
     }
-    limb.folds = limb.carries;
-    limb.carries = false;
+    return creature;
   }
+  const glm::dvec3 velocity =
+      glm::conjugate(orientation) * glm::dvec3(reaction.velocity.x, 0, reaction.velocity.y);
+  const glm::dvec3 ahead = pendulumTime(tuning) * glm::dvec3(velocity.x, 0, velocity.z);
+  creature.shift += ahead;
+  for (Limb& limb : creature.limbs) limb.home += ahead;
   return creature;
 }
 
