@@ -11,6 +11,13 @@ namespace {
 
 namespace tolerance = reference::tolerance;
 
+// Where there are levels of rate, the device makes the blend of 1, 2, 4 or 8 ticks. What a tick keeps is
+// rounded once, which its power has `span` times; that is a product of log2(span) roundings, and 1 less it is
+// another.
+double blendError(const Moment& moment) {
+  return moment.after.rate.empty() ? 0 : 2 * static_cast<double>(moment.span) * tolerance::roundoff;
+}
+
 // Cosine to straight backward below which either way round is right.
 constexpr double eitherWay = 16 * tolerance::roundoff;
 
@@ -115,15 +122,16 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
   const size_t legs = static_cast<size_t>(setting.legs);
   std::vector<double> misses;
   for (size_t l = 0; l < legs; ++l) {
-    steps.push_back(stepOf(moment.before, moment.agent * legs + l));
-    misses.push_back(missOf(moment.before, moment.agent, l, setting.legs, moment.n - 1));
+    steps.push_back(moment.stepOf(moment.before, moment.agent * legs + l));
+    misses.push_back(missOf(moment.before, moment.agent, l, setting.legs, moment.n - moment.span));
   }
   const double phase = gaitOf(moment.before, moment.agent).phase;
   const auto run = [&](const reference::BodyChoices& choices) {
     return reference::body(setting.tuning, setting.heights, setting.creature, previous, desired, steps,
-                           misses, static_cast<double>(moment.n), phase, choices);
+                           misses, moment.now(), phase, choices);
   };
-  const auto inputs = tolerance::feltGround(setting.tuning, setting.creature, previous);
+  auto inputs = tolerance::feltGround(setting.tuning, setting.creature, previous);
+  inputs.blend = blendError(moment);
   const reference::BodyResult result = run({});
   const Sample sample = compare(setting, moment, previous, inputs, result);
   if (sample.passes()) return judge.add(moment.n, moment.number(), -1, sample);
@@ -155,7 +163,8 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
 void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::AgentBody previous = bodyOf(moment.before, moment.agent);
   const glm::dvec2 desired = velocityOf(moment.after, moment.agent);
-  const auto inputs = tolerance::blindGround(setting.heights, setting.extent, setting.creature, previous);
+  auto inputs = tolerance::blindGround(setting.heights, setting.extent, setting.creature, previous);
+  inputs.blend = blendError(moment);
   const auto run = [&](int turnSign) {
     return reference::blindBody(setting.tuning, setting.heights, setting.creature, previous, desired,
                                 {.follow = {}, .turnSign = turnSign});

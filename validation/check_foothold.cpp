@@ -29,8 +29,8 @@ struct Case {
   std::optional<glm::dvec3> hanging;  // where its foot is, of a leg that lifts without having carried
 
   reference::FootholdResult run(const reference::FootholdChoices& choices) const {
-    return reference::foothold(setting.tuning, setting.heights, limb, body, gait, before, lifts,
-                               static_cast<double>(moment.n), choices, hanging);
+    return reference::foothold(setting.tuning, setting.heights, limb, body, gait, before, lifts, moment.now(),
+                               choices, hanging);
   }
 };
 
@@ -232,8 +232,16 @@ void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge) {
     const bool lifts = (gait.lift >> l & 1u) != 0, reaims = (gait.reaim >> l & 1u) != 0;
     if (lifts || reaims) {
       const reference::Limb& limb = setting.creature.limbs[l];
-      Case c{setting, moment, limb, leg, body, gait, stepOf(moment.before, leg), stepOf(moment.after, leg),
-             lifts,   {}};
+      Case c{setting,
+             moment,
+             limb,
+             leg,
+             body,
+             gait,
+             moment.stepOf(moment.before, leg),
+             moment.stepOf(moment.after, leg),
+             lifts,
+             {}};
       if (lifts && reaims)
         c.hanging = reference::heldLeg(limb, body, chainOf(moment.before, leg, setting.bones)).tip;
       checkLeg(c, l, judge);

@@ -119,14 +119,13 @@ void checkGait(const Setting& setting, const Moment& moment, Judge& judge) {
   const size_t legs = static_cast<size_t>(setting.legs);
   std::vector<double> misses;
   for (size_t l = 0; l < legs; ++l) {
-    steps.push_back(stepOf(moment.before, moment.agent * legs + l));
-    misses.push_back(missOf(moment.before, moment.agent, l, setting.legs, moment.n - 1));
+    steps.push_back(moment.stepOf(moment.before, moment.agent * legs + l));
+    misses.push_back(missOf(moment.before, moment.agent, l, setting.legs, moment.n - moment.span));
   }
   const uint32_t idleBefore = gaitOf(moment.before, moment.agent).idle;
   const auto run = [&](const reference::GaitChoices& choices) {
-    return reference::gait(setting.tuning, setting.creature, body, phase, steps, misses,
-                           static_cast<double>(moment.n), choices,
-                           moment.after.watched ? &setting.heights : nullptr, idleBefore);
+    return reference::gait(setting.tuning, setting.creature, body, phase, steps, misses, moment.now(),
+                           choices, moment.after.watched ? &setting.heights : nullptr, idleBefore);
   };
   const reference::GaitResult result = run({});
   const GaitVerdict verdict = compare(setting, moment, result);

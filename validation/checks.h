@@ -12,6 +12,10 @@ struct Moment {
   const HerdState& after;
   size_t agent;  // of those that the states hold
   const Surroundings& around;
+  uint64_t span = 1;  // ticks since the agent's last one; more than 1 only where there are levels of rate
+  // Times in ticks of the agent's own: n, and of a step.
+  double now() const { return static_cast<double>(n) / static_cast<double>(span); }
+  reference::Step stepOf(const HerdState& state, size_t leg) const;
   // Among all whom these are a sample of.
   size_t number() const { return after.sample.first + agent * after.sample.stride; }
 };

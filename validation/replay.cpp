@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/split_mix.h"
+#include "cpu_reference/stages/rate.h"
 #include "crowd/controller.h"
 #include "crowd/record.h"
 #include "shared/ik_batch.h"
@@ -45,6 +46,16 @@ void expectSizes(const Setting& setting, const HerdState& state) {
     throw inputError("watch records: found " + std::to_string(state.watch.size()) + " floats, " +
                      std::to_string(floats) + " an agent that is watched, and agent " + std::to_string(last) +
                      " is not among them");
+}
+
+// Whether the device had the agent tick in tick n, and how many ticks that one was. Lockstep holds against
+// the reference whose turn it is.
+bool isTurnOf(uint64_t n, const HerdState& after, size_t agent) {
+  return after.rate.empty() || after.rate[4 * shared::RATE_STRIDE * agent + 2] == static_cast<float>(n);
+}
+uint64_t spanOf(const HerdState& after, size_t agent) {
+  if (after.rate.empty()) return 1;
+  return uint64_t{1} << static_cast<int>(after.rate[4 * shared::RATE_STRIDE * agent + 1]);
 }
 
 }  // namespace
@@ -113,7 +124,19 @@ void setCreature(const Setting& herd, const HerdState& state, size_t agent, bool
                                                     bodyOf(state, agent).orientation);
 }
 
-const Setting& Replay::settingFor(const HerdState& after, size_t agent, crowd::StageId stage) {
+reference::Step Moment::stepOf(const HerdState& state, size_t leg) const {
+  reference::Step step = validation::stepOf(state, leg);
+  step.firstTick /= static_cast<double>(span);
+  step.duration /= static_cast<double>(span);
+  return step;
+}
+
+const Setting& Replay::settingFor(const HerdState& after, size_t agent, crowd::StageId stage, uint64_t span) {
+  if (span > 1) {
+    const auto [found, isNew] = over_.try_emplace(span, setting_);
+    if (isNew) found->second.tuning = reference::overTicks(setting_.tuning, static_cast<int>(span));
+    return found->second;
+  }
   if (after.hurt.empty()) return setting_;
   setCreature(setting_, after, agent, stage != crowd::StageId::react, ofAgent_);
   return *ofAgent_;
@@ -147,15 +170,23 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
     if (check.stage == crowd::StageId::navigate && setting_.forage)
       checkTrail(setting_, n, before, after, judges_[c]);
     for (size_t agent = 0; agent < before.agents; ++agent) {
-      const Moment moment{n, before, after, agent, around};
-      const bool asleep = asleepOf(after, agent);
+      const bool isOver = check.stage != crowd::StageId::measure;  // the agents' own ticks; measure has all
+      const uint64_t span = isOver ? spanOf(after, agent) : 1;
+      const Moment moment{n, before, after, agent, around, span};
+      const bool hasTurn = !isOver || isTurnOf(n, after, agent);
+      const bool asleep = asleepOf(after, agent) || !hasTurn;
+      if (!hasTurn && check.stage == crowd::StageId::navigate) {
+        for (const Record record : {Record::goal, Record::steer})
+          checkKept(setting_, moment, record, judges_[c]);
+        continue;
+      }
       // Nobody is there: measure adds nothing.
       if (check.stage == crowd::StageId::measure && bodyOf(after, agent).absent) {
         checkKept(setting_, moment, Record::metric, judges_[c]);
         continue;
       }
       if (!asleep || check.writes.empty())
-        check.check(settingFor(after, agent, check.stage), moment, judges_[c]);
+        check.check(settingFor(after, agent, check.stage, span), moment, judges_[c]);
       for (const Record record : check.writes)
         if (asleep) checkKept(setting_, moment, record, judges_[c]);
     }

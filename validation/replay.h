@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -83,8 +84,9 @@ HerdState sampled(const HerdState& whole, const AgentSample& sample);
 // Lock-step replay: of two consecutive states of a herd, every stage of the reference starts from exactly
 // what that stage of the engine started from and its result is held against what the engine wrote. Records
 // that a stage itself or a later one writes come from `before`, those of earlier stages from `after`. For an
-// agent that sleeps, as the device has it, the stages from body to pose compute nothing: what they write must
-// be what it was before, and only what is not counts as a sample; what is was kept.
+// agent that sleeps, as the device has it, or whose turn it is not, the stages from body to pose compute
+// nothing: what they write must be what it was before, and only what is not counts as a sample; what is was
+// kept.
 class Replay {
  public:
   // Copies what it needs. Of the controller's stages those in `only` are compared; empty: all. Throws
@@ -123,11 +125,12 @@ class Replay {
 
  private:
   // With the creature that the agent is, where its legs can be hurt.
-  const Setting& settingFor(const HerdState& after, size_t agent, crowd::StageId stage);
+  const Setting& settingFor(const HerdState& after, size_t agent, crowd::StageId stage, uint64_t span);
 
   Heightfield terrain_;
   Setting setting_;
   std::optional<Setting> ofAgent_;  // made of setting_ where there is none
+  std::map<uint64_t, Setting> over_;  // of agents that tick in every so many-th tick
   std::vector<crowd::StageId> only_;
   std::vector<Judge> judges_;
   bool waysAreNew_ = true;     // no tick has compared them

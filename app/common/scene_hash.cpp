@@ -304,13 +304,19 @@ void add(Hash& hash, FileHashes& fileHashes, const Event& event) {
 uint64_t sceneHash(const Scene& scene, const Heightfield& terrain) {
   Hash hash;
   FileHashes fileHashes;
-  const auto& [name, source, herds, camera, events, obstacles, threats, seed] = scene;
+  const auto& [name, source, herds, camera, events, obstacles, threats, levels, seed] = scene;
   hash.add(seed);
   hash.add(uint64_t{herds.size()});
   for (const Herd& herd : herds) add(hash, fileHashes, herd);
   for (const Event& event : events) add(hash, fileHashes, event);
   for (const auto& [shape] : obstacles) std::visit([&](const auto& each) { add(hash, each); }, shape);
   for (const Threat& threat : threats) add(hash, threat);
+  if (levels) {
+    const auto& [distances, most] = *levels;
+    hash.add("levels");
+    for (const float each : distances) hash.add(each);
+    for (const uint32_t each : most) hash.add(uint64_t{each});
+  }
   hash.add(uint64_t{terrain.columns});
   hash.add(terrain.spacingX);
   hash.add(terrain.spacingZ);

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "base/clock.h"
+#include "crowd/herd.h"
+#include "skitter/renderer.h"
 
 namespace skitter::app {
 
@@ -15,6 +17,11 @@ void addStages(std::vector<StageTime>& sums, const std::vector<StageTime>& times
     else
       same->milliseconds += time.milliseconds;
   }
+}
+
+void lookAt(const Scene& scene, Crowd& crowd, double dt) {
+  if (implOf(crowd).rates)
+    crowd.lookFrom(viewOf(scene, crowd, static_cast<double>(crowd.tick() + 1) * dt).eye);
 }
 
 void runTick(gpu::CommandRing& ring, Crowd& crowd, float dt, TickTimes& times) {

@@ -5,6 +5,7 @@
 
 #include "gpu/submit.h"
 #include "skitter/crowd.h"
+#include "skitter/scene.h"
 
 namespace skitter::app {
 
@@ -18,6 +19,9 @@ struct TickTimes {
 
 // Adds what one tick or picture took, stage by stage, to the sums of those before it.
 void addStages(std::vector<StageTime>& sums, const std::vector<StageTime>& times);
+
+// Where there are levels of rate, they go by the scene's camera as it is after the next tick.
+void lookAt(const Scene& scene, Crowd& crowd, double dt);
 
 // Runs one tick to its end and adds its times.
 void runTick(gpu::CommandRing& ring, Crowd& crowd, float dt, TickTimes& times);

@@ -45,6 +45,7 @@ void Offscreen::run(uint64_t ticks, const std::function<void()>& afterTick, Summ
   while (crowd_.tick() < ticks && !stopRequested()) {
     {
       const StopDeadline deadline(std::ref(leave_));
+      lookAt(scene_, crowd_, options_.scene.dt);
       runTick(ring_, crowd_, static_cast<float>(options_.scene.dt), summary.times);
     }
     afterTick();

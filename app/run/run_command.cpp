@@ -340,6 +340,7 @@ void Run::finish() {
     summary_.reactions = reactionFigures(*crowd_);
     if (crowdingWatch_) summary_.jams = crowdingWatch_->jams();
     if (damageWatch_) summary_.damage = damageWatch_->figures();
+    summary_.levels = crowd_->levels();
     if (options_.sleep) summary_.sleeping = crowd_->sleeping();
     summary_.stateHash = crowd_->stateHash();
     summary_.memory = memoryOf(*crowd_);

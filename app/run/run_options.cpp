@@ -146,6 +146,7 @@ Files RunOptions::files(const OutTarget& target, const Scene& of) const {
   all.writes("--footfalls", footfalls);
   all.writes("--json", json);
   all.reads("--resume", resume);
+  if (levels != "default") all.reads("--levels", levels);
   all.replaces("--save", save, resume);
   return all;
 }
@@ -164,6 +165,7 @@ CrowdOptions RunOptions::crowdOptions(const OutTarget& target, bool inWindow) co
   crowd.watchEvery = watchEvery;
   crowd.sleep = sleep;
   crowd.crowding = crowding;
+  if (!levels.empty()) crowd.levels = loadLevels(levels);
   crowd.pageAgents = pageAgents;
   crowd.feet = !trace.empty() || inWindow || crowding;
   if (!footfalls.empty()) crowd.footfalls = UINT32_MAX;  // all that can be
@@ -225,6 +227,11 @@ void RunOptions::addTo(CLI::App& command) {
   command.add_flag(
       "--sleep", sleep,
       "pass over agents that have stood still for seconds, until their goal or the ground moves");
+  command
+      .add_option("--levels", levels,
+                  "who is far from the camera ticks every second, fourth or eighth time: within the usual "
+                  "distances and numbers, or those of a JSON file [those of the scene, else none]")
+      ->type_name("default|FILE");
   command.add_flag("--crowding", crowding,
                    "measure how agents share the ground: overlaps, jams, crossings of legs, flow; looks at "
                    "all of them ten times a second");

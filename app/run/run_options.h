@@ -29,6 +29,7 @@ struct RunOptions {
   Size size{1280, 720};
   std::string view, out, json, trace, footfalls;
   std::string save, resume;           // state files
+  std::string levels;                 // of rate: "default", a file, or those of the scene
   std::optional<uint64_t> saveEvery;  // frames
   uint32_t pageAgents = 0;
   bool poses = false, unmeasured = false;

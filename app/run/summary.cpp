@@ -110,6 +110,25 @@ nlohmann::ordered_json jsonOf(const std::vector<ReactionFigures>& herds) {
   return all;
 }
 
+void printLevels(const std::vector<LevelFigures>& levels) {
+  for (const LevelFigures& level : levels)
+    printRow(level.rate == 1 ? "levels" : "",
+             fmt::format("every {} {}: {} agents, {} agent-ticks{}", level.rate,
+                         level.rate == 1 ? "tick" : "ticks", level.agents, level.agentTicks,
+                         level.slip ? fmt::format(", slip {:.3f} % of leg length a stance", 100 * *level.slip)
+                                    : std::string()));
+}
+
+nlohmann::ordered_json jsonOf(const std::vector<LevelFigures>& levels) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const LevelFigures& level : levels)
+    all.push_back({{"rate", level.rate},
+                   {"agents", level.agents},
+                   {"agentTicks", level.agentTicks},
+                   {"slip", orNull(level.slip)}});
+  return all;
+}
+
 void printMemory(const std::vector<MemoryUse>& memory, uint64_t agents) {
   const double each = 1 / static_cast<double>(std::max<uint64_t>(agents, 1));
   uint64_t all = 0;
@@ -197,6 +216,7 @@ void Summary::print() const {
   }
   printFidelity(fidelity, watchEvery);
   printCrowding(crowding, jams);
+  printLevels(levels);
   if (damage) printDamage(*damage);
   for (const ForageFigures& herd : foraging)
     printRow("foraging", fmt::format("herd {}: {} loads carried home, {} returns without one", herd.herd,
@@ -243,6 +263,7 @@ nlohmann::ordered_json Summary::json() const {
           {"foraging", jsonOf(foraging)},
           {"damage", damage ? jsonOf(*damage) : nlohmann::ordered_json(nullptr)},
           {"reactions", jsonOf(reactions)},
+          {"levels", jsonOf(levels)},
           {"herds", perHerd},
           {"stateHash", fmt::format("{:016x}", stateHash)}};
 }

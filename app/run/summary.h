@@ -59,6 +59,7 @@ struct Summary {
   std::vector<ForageFigures> foraging;     // of the herds that forage
   std::vector<ReactionFigures> reactions;  // of the herds with reactions
   Jams jams;
+  std::vector<LevelFigures> levels;     // where there are levels of rate
   std::optional<DamageFigures> damage;  // where events hurt legs, and it was asked for
   std::optional<uint64_t> sleeping;     // agents at the end; none where they may not
   uint64_t stateHash = 0;

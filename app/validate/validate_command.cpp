@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -37,7 +38,7 @@ constexpr double longestTimeout = 1e6;  // seconds
 struct ValidateOptions {
   SceneOptions scene;
   uint64_t frames = defaultFrames;
-  std::string json, junit;
+  std::string json, junit, levels;
   std::vector<crowd::StageId> stages;  // that are compared; none: all
   std::optional<double> timeout;       // seconds
   bool apart = false, edits = false, freeRun = false, quiet = false, sleep = false;
@@ -115,6 +116,28 @@ struct Validation {
   }
 };
 
+// Where there are levels of rate: a camera that rises from the ground beyond all of them and comes down
+// again, so that every rate and every change of it is compared.
+class LevelSweep {
+ public:
+  static std::optional<LevelSweep> of(const Crowd& crowd) {
+    const auto& rates = implOf(crowd).rates;
+    if (!rates) return {};
+    return LevelSweep(double{rates->levels.distances.back()});
+  }
+  // Its height grows and falls by the same share a tick.
+  glm::vec3 cameraAt(uint64_t tick) const {
+    const double share = 1 - std::abs(1 - 2 * static_cast<double>(tick % period) / period);
+    return {0, static_cast<float>(std::pow(2 * farthest_ + 1, share)), 0};
+  }
+
+ private:
+  explicit LevelSweep(double farthest) : farthest_(farthest) {}
+
+  static constexpr uint64_t period = 120;  // ticks
+  double farthest_;                        // metres
+};
+
 Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
   const ValidateOptions& options = validation.options;
   const Scene& scene = validation.scene;
@@ -131,6 +154,7 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
     edits.emplace(crowd.terrain(), scene.seed, options.scene.dt);
     outcome.edits = 0;
   }
+  const std::optional<LevelSweep> sweep = LevelSweep::of(crowd);
   Progress progress("ticks", options.frames, options.quiet);
   while (crowd.tick() < options.frames && !stopRequested()) {
     States untold;
@@ -143,6 +167,7 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
         ++*outcome.edits;
       }
     }
+    if (sweep) crowd.lookFrom(sweep->cameraAt(crowd.tick() + 1));
     runTick(ring, crowd, dt, times);
     const std::vector<HerdState>& after = lockstep.end();
     if (freeRuns) freeRuns->tick(after);
@@ -164,7 +189,9 @@ Outcome validateOn(const std::string& name, Validation& validation, Files& files
   if (!name.empty()) request.device = name;
   Device device = Device::create(request);
   CrowdOptions crowdOptions;
-  crowdOptions.footfalls = UINT32_MAX;  // all that can be
+  if (!options.levels.empty()) crowdOptions.levels = loadLevels(options.levels);
+  // All that can be.
+  if (!crowdOptions.levels && !validation.scene.levels) crowdOptions.footfalls = UINT32_MAX;
   crowdOptions.sleep = options.sleep;
   crowdOptions.fuse = !options.apart;
   crowdOptions.pageAgents = options.pageAgents;
@@ -186,6 +213,9 @@ Scene sceneOf(SceneOptions options) {
 }
 
 void refuseFreeRunOf(const ValidateOptions& options, const Scene& scene) {
+  if (options.freeRun && (scene.levels || !options.levels.empty()))
+    throw inputError(
+        "--free-run with levels of rate, expected only one of them: the reference has no camera");
   for (size_t h = 0; options.freeRun && h < scene.herds.size(); ++h)
     if (scene.herds[h].forage)
       throw inputError(
@@ -205,6 +235,7 @@ int validate(const ValidateOptions& options) {
   Files files;
   files.writes("--json", options.json);
   files.writes("--junit", options.junit);
+  if (options.levels != "default") files.reads("--levels", options.levels);
   const Scene scene = sceneOf(options.scene);
   options.scene.declare(files, scene);
   files.check();
@@ -284,6 +315,11 @@ void addValidate(CLI::App& app, Command& chosen) {
   command->add_flag("--free-run", options->freeRun,
                     "also walk every herd by the reference alone, and say what share stays together");
   command->add_flag("--sleep", options->sleep, "let agents that have stood still for seconds sleep");
+  command
+      ->add_option("--levels", options->levels,
+                   "let blocks tick at rates of their own, as skitter run does; the camera rises beyond all "
+                   "distances and comes down again every 120 ticks [those of the scene, else none]")
+      ->type_name("default|FILE");
   command->add_flag("--apart", options->apart,
                     "dispatch every stage by itself, also those that are faster when fused");
   command

@@ -234,6 +234,7 @@ void Viewer::advance() {
       break;
     {
       const StopDeadline deadline(std::ref(run_.leave));
+      run_.crowd.lookFrom(camera_.view(run_.crowd.terrain()).eye);
       runTick(ring_, run_.crowd, run_.dt, times_);
     }
     run_.afterTick();

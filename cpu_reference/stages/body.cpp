@@ -179,6 +179,7 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
     wanted = std::max(wanted, ground + tuning.bellyClearance - q.y);
   }
   next.y = glm::mix(predicted, wanted, tuning.heightBlend);
+  result.rise = std::abs(wanted - predicted);
 
   next.surfaceSpeed = next.speed / std::hypot(forward.x, forward.z);
   const double pace = 1e-2 * tuning.legLength;

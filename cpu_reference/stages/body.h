@@ -31,6 +31,7 @@ struct BodyResult {
   double turnMargin = 0;  // |c| where its sign chose the way round (d <= 0), infinite elsewhere
   SupportPlane plane;
   double wantedSpeed = 0;  // |v|
+  double rise = 0;         // |y_want - y_pred|
   glm::dvec2 ways{0};      // m left along the new heading to the terrain's edges in x and z
   bool isStill = false;
   double stillMargin = 0;  // nearest of the three thresholds of standing still, as a share of it

@@ -85,9 +85,10 @@ inline double foot(const Step& step, const AgentBody& body, bool planted) {
 // Distance of a foot from its root or home.
 inline double footDistance(double length) { return relative + rotated(length); }
 
-// What the body's bounds begin with: of follow, and of the points that its plane goes through.
+// What the body's bounds begin with: of follow, of the points that its plane goes through, and of the blends
+// of height and tilt.
 struct BodyInputs {
-  double follow = 0, horizontal = 0, vertical = 0;
+  double follow = 0, horizontal = 0, vertical = 0, blend = 0;
 };
 // The legs' ground points, which are records, and follow of them: a stretch divided by the narrow band
 // between slowing and stopping.
@@ -169,7 +170,8 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
   // The lean into a turn: s omega times its gain.
   const double lean = t.leanGain * (next.speed * bound.turnRate + std::abs(next.turnRate) * bound.speed) +
                       8 * roundoff * t.leanMost + t.leanMost * bound.heading;
-  const double up = t.tiltBlend * (bound.slope + lean) + 16 * roundoff;
+  // Unit vectors are at most 2 apart.
+  const double up = t.tiltBlend * (bound.slope + lean) + 16 * roundoff + 2 * inputs.blend;
   // F = (h.x, -(N . h) / N.y, h.z): a steep body amplifies by 1 / N.y.
   const double upY = (next.orientation * glm::dvec3(0, 1, 0)).y;
   const double forward = 2 * (up + bound.heading) / upY + 8 * roundoff;
@@ -191,7 +193,7 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
   }
   bound.height = t.heightBlend * (std::max(planeHeight, belly) + 24 * roundoff * t.breathHeight) +
                  t.dt * ((next.speed + pushed) * bound.slope + slope * bound.speed) +
-                 6 * roundoff * std::abs(next.y) + 4 * roundoff;
+                 6 * roundoff * std::abs(next.y) + 4 * roundoff + inputs.blend * result.rise;
   return bound;
 }
 

@@ -98,8 +98,9 @@ class Standing {
   explicit Standing(const Crowd::Impl& crowd, const Kind& kind) : crowd_(crowd), kind_(kind) {
     for (const PageBuffer& each : pageBuffers(crowd, kind)) {
       if (!each.record || !keeps(kind, crowd.options, *each.record)) continue;
-      // The host says these by themselves.
-      if (*each.record == Record::goal || *each.record == Record::hurt || *each.record == Record::push)
+      // The host says these by themselves, and a block has one rate.
+      if (*each.record == Record::goal || *each.record == Record::hurt || *each.record == Record::push ||
+          *each.record == Record::rate)
         continue;
       const RecordInfo info = infoOf(*each.record);
       // What every tick makes anew can stay, and what measure has summed up shall.

@@ -21,6 +21,7 @@
 #include "crowd/grid.h"
 #include "crowd/herd.h"
 #include "crowd/kinds.h"
+#include "crowd/levels.h"
 #include "crowd/page.h"
 #include "crowd/readback.h"
 #include "crowd/rig_records.h"
@@ -223,6 +224,11 @@ std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, con
   gpu::uploadImage(context, crowd.heights, terrain.heights, gpu::sampledOn(context));
   crowd.edits = crowd::HeightEdits(context);
   crowd.events = scene.events;
+  if (!options.levels) crowd.options.levels = scene.levels;
+  if (crowd.options.levels) {
+    crowd::expectLevelled(crowd.options, scene);
+    crowd.rates.emplace(context, *crowd.options.levels);
+  }
   if (options.timestamps) crowd.timer = gpu::StageTimer(context, crowd::Frame::mostStages);
   crowd.watchEvery = crowd::watchEvery(options, places);
   return made;
@@ -363,6 +369,9 @@ Rig restoredRig(const crowd::Herd& herd, uint32_t number, const std::vector<Rig>
 std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
   if (!state.source)
     throw inputError("a state that no file or bytes were read for, expected one of loadState()");
+  if (state.options.levels)
+    throw inputError(
+        "levels of rate for a crowd that is made of a state, expected none: rates are not saved");
   auto made = beginCrowd(device, state.terrain, state.scene, state.options, state.scene.capacity());
   Impl& crowd = *made;
   crowd::restoreHerds(crowd, state);
@@ -501,6 +510,7 @@ void setTick(Crowd::Impl& crowd, float dt) {
     throw inputError("dt changed from " + std::to_string(crowd.dt) + " to " + std::to_string(dt) +
                      ": steps are timed in ticks, so a crowd keeps its first dt");
   for (const Kind& kind : crowd.kinds) checkTick(kind, dt);
+  if (crowd.rates) expectLevelledTick(dt);
   for (const auto& [event, kinds] : crowd.coming)
     for (const Kind& kind : kinds) checkTick(kind, dt);
   crowd.dt = dt;
@@ -536,6 +546,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   gpu::computeToTransfer(cmd);
   crowd::clearLists(crowd.kinds, cmd);
   crowd::clearAwake(crowd, crowd.kinds, cmd);
+  if (crowd.rates) crowd.rates->clear(tick, cmd);
   if (!crowd.edits.empty())
     crowd.edits.record(cmd, crowd.terrain, crowd.heights, gpu::sampledOn(*crowd.context));
   crowd::recordChanges(crowd, cmd);
@@ -558,13 +569,15 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
     crowd.grid->record(crowd, cmd);
     crowd.agentTicks += crowd.agentsInTick;
   }
+  const bool inTurns = crowd.rates.has_value();
+  if (inTurns) run(wake, counted);
   run(navigate, written);
   if (crowd::forages(crowd)) {
     crowd.timer.next(cmd, last = "trails");
     crowd::recordTrails(crowd, cmd);
   }
   run(avoid, written);
-  run(wake, counted);
+  if (!inTurns) run(wake, counted);
   run(react, written);
   run(body, written);
   run({navigate, body, gait}, counted);
@@ -585,6 +598,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
 
 HerdId Crowd::addHerd(const Herd& from) {
   Impl& crowd = *impl_;
+  if (crowd.rates) crowd::expectLevelled(from, "a new herd");
   const Rig loaded = rigFor(from);
   crowd::expectItsHerds([] { return "a new herd"; }, from.goal, from,
                         [&](uint32_t leader) -> const Herd& { return crowd.presentHerdAt(leader).from; });

@@ -8,6 +8,7 @@
 #include "crowd/page.h"
 #include "gpu/context.h"
 #include "gpu/transfer.h"
+#include "shared/levels.h"
 #include "skitter/crowd.h"
 
 namespace skitter {
@@ -142,6 +143,32 @@ Fidelity figuresOf(const Crowd::Impl& crowd, uint32_t first, uint32_t end) {
 }
 
 }  // namespace
+
+std::vector<LevelFigures> Crowd::levels() const {
+  if (!impl_->rates) return {};
+  using namespace shared;
+  impl_->context->waitIdle();
+  std::vector<LevelFigures> all(Levels::count);
+  const std::vector<uint32_t> words = gpu::download<uint32_t>(*impl_->context, impl_->rates->words);
+  for (size_t k = 0; k < all.size(); ++k) {
+    all[k].rate = 1u << k;
+    all[k].agents = words[LEVELS_AGENTS + k];
+    all[k].agentTicks = uint64_t{words[LEVELS_TICKS + 2 * k + 1]} << 32 | words[LEVELS_TICKS + 2 * k];
+  }
+  std::vector<Sums> sums(Levels::count, Sums(false));
+  for (uint32_t h = 0; h < herdCount(); ++h)
+    for (const crowd::Part& part : crowd::partsOf(*impl_, h)) {
+      const std::vector<float> rates = gpu::download<float>(*impl_->context, part.page->rate);
+      size_t at = 4 * RATE_STRIDE * size_t{part.first};
+      eachAgent(*impl_, part, [&](std::span<const float, kFloats> m) {
+        sums[static_cast<size_t>(rates[at])].add(m, *part.kind);
+        at += 4 * RATE_STRIDE;
+      });
+    }
+  for (size_t k = 0; k < all.size(); ++k)
+    if (const Fidelity figures = sums[k].figures(); figures.stances > 0) all[k].slip = figures.slip;
+  return all;
+}
 
 Fidelity Crowd::fidelity() const { return figuresOf(*impl_, 0, herdCount()); }
 

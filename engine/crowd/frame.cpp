@@ -51,6 +51,7 @@ shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, co
     const Watch watch = watchAt(tick, crowd.watchEvery, page);
     return {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0, 0};
   }
+  if (over == Stage::Over::blocks && crowd.rates) return crowd.rates->constantsOf(crowd, page, tick);
   if (over == Stage::Over::crowd) return crowd.grid->constantsOf(crowd, kind, page);
   const bool isForaging = over == Stage::Over::everyone && kind.trails != nullptr;
   return {page.agents,

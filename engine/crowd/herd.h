@@ -15,6 +15,7 @@
 #include "crowd/damage.h"
 #include "crowd/edit.h"
 #include "crowd/key_poses.h"
+#include "crowd/levels.h"
 #include "crowd/regait.h"
 #include "crowd/size_run.h"
 #include "crowd/stage.h"
@@ -107,8 +108,8 @@ struct Kind {
   std::vector<float> hurtRecordOf(uint32_t agent);
   bool findsWay() const { return wayfaring && !wayfaring->forage; }
   bool forages() const { return wayfaring && wayfaring->forage; }
-  // Whether stages from body to pose pass over some: sleepers, or empty places.
-  bool rests(const CrowdOptions& options) const { return options.sleep || reserves; }
+  // Whether stages from body to pose pass over some: sleepers, empty places, or blocks whose turn it is not.
+  bool rests(const CrowdOptions& options) const { return options.sleep || reserves || options.levels; }
 };
 
 // Who is in a herd's places, as the host has said.
@@ -209,6 +210,7 @@ struct Crowd::Impl {
   uint64_t agentTicks = 0;    // and in all since the crowd was made, where crowding is measured
   float dt = 0;               // of the first tick; 0 before it
   gpu::StageTimer timer;
+  std::optional<crowd::RateLevels> rates;  // where there are levels of them
   Scene scene;                  // that it was made of
   bool rigsAreCallers = false;  // not those that the scene names
 

@@ -74,6 +74,8 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Kind& kind, const Page& p
       return {binding, &kind.trails->trail()};
     case BINDING_WALL:
       return {binding, &kind.wallBuffer};
+    case BINDING_LEVELS:
+      return {binding, &crowd.rates->words};
     case BINDING_CROWDING:
       return {binding, &crowd.grid->crowding};
     default:
@@ -245,6 +247,8 @@ uint32_t agentsPerPage(const Crowd::Impl& crowd, const Kind& kind) {
       throw deviceError(context.report().name + ": a binding reaches " + std::to_string(limit) +
                         " bytes, one agent's " + buffer.name + " needs " + std::to_string(buffer.bytes));
   }
+  // Blocks have numbers throughout a kind, however it is paged.
+  if (crowd.options.levels) agents = std::max<uint64_t>(agents / BLOCK, 1) * BLOCK;
   return static_cast<uint32_t>(agents);
 }
 

@@ -57,6 +57,14 @@ void takeHurtForm(Stage& stage, bool reacts) {
   stage.bindings.insert(stage.bindings.end(), stage.reactBindings.begin(), stage.reactBindings.end());
 }
 
+// Whose turn it is, is known before the first stage, which only they have.
+void takeLevelForms(std::vector<Stage>& stages) {
+  std::erase_if(stages, [](const Stage& stage) { return stage.makes == StageId::wake; });
+  std::ranges::replace_if(
+      stages, [](const Stage& stage) { return stage.makes == StageId::navigate; }, levelNavigateStage());
+  stages.insert(stages.begin(), levelWakeStage());
+}
+
 void addParameters(const shared::Parameters& parameters, gpu::KernelInfo& info) {
 #define ADD_KNOWN(i, name) info.constants.emplace_back(shared::CONSTANT_PARAMETERS + (i), parameters.name);
   KNOWN_PARAMETERS(ADD_KNOWN)
@@ -76,6 +84,7 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
     return std::ranges::any_of(
         allStages, [&](StageId id) { return stage.makes.has(id) && !isAskedFor(id, options, forms); });
   });
+  if (options.levels) takeLevelForms(stages);
   if (options.fuse && of.fused != nullptr)
     for (const Stage& fused : of.fused())
       if ((!forms.findsWays && !forms.forages) || !fused.makes.has(StageId::navigate))
@@ -133,6 +142,9 @@ StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs) {
     kernels.first.constants.emplace_back(
         CONSTANT_SLEEP, traitsOf(kind.controller).breathes ? SLEEP_BREATHED_OUT : SLEEP_STILL);
   if (kind.reserves) kernels.first.constants.emplace_back(CONSTANT_RESERVE, true);
+  // Others read no list, and go by the crowd's ticks.
+  if (needs.options.levels && (stage.isOfTheAwake() || stage.over == Stage::Over::listed))
+    kernels.first.constants.emplace_back(CONSTANT_LEVELS, true);
   if (of.specialise != nullptr) of.specialise(kind, kernels.first);
   if (stage.specialise != nullptr) stage.specialise(needs, kernels);
   for (const StageShader& given : needs.options.shaders) {

@@ -26,9 +26,9 @@ struct StageNeeds {
 
 // One compute shader: the stages that it makes, the records that it binds, and what it runs over.
 struct Stage {
-  // agents, legs, joints (of the clips' palette): of those that are awake; listed: the legs that begin a
-  // step, counted on the device; watched: agents whom measure looks at; crowd: everyone, who sees the whole
-  // crowd in its grid.
+  // agents, legs, joints (of the clips' palette): of those that are awake, or whose turn it is; listed: the
+  // legs that begin a step, counted on the device; watched: agents whom measure looks at; crowd: everyone,
+  // who sees the whole crowd in its grid.
   enum class Over { everyone, crowd, everyLeg, blocks, agents, legs, joints, listed, watched };
 
   StageSet makes;
@@ -98,6 +98,8 @@ Stage wallAvoidStage();
 Stage blindBodyStage();
 Stage bodyAndGaitStage();
 Stage navigateBodyAndGaitStage();
+Stage levelNavigateStage();
+Stage levelWakeStage();
 Stage loopGaitStage();
 Stage keyPoseGaitStage();
 Stage loopSwingStage();

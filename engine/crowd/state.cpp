@@ -651,7 +651,16 @@ void restore(Impl& crowd, const State& state) {
 
 }  // namespace crowd
 
+namespace {
+
+void expectUnlevelled(const Crowd::Impl& crowd) {
+  if (crowd.rates) throw inputError("a crowd with levels of rate cannot be saved");
+}
+
+}  // namespace
+
 void Crowd::save(const std::filesystem::path& file, const std::string& note) const {
+  expectUnlevelled(*impl_);
   PartialFile out(file);
   crowd::save(*impl_, note, [&](std::span<const std::byte> bytes) { out.write(bytes); });
   out.sync();
@@ -659,6 +668,7 @@ void Crowd::save(const std::filesystem::path& file, const std::string& note) con
 }
 
 std::vector<std::byte> Crowd::saveToMemory(const std::string& note) const {
+  expectUnlevelled(*impl_);
   std::vector<std::byte> state;
   state.reserve(stateBytes());
   crowd::save(*impl_, note, [&](std::span<const std::byte> bytes) {

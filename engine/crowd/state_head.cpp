@@ -103,7 +103,7 @@ void eachKey(StateSeries& series, const Visit& visit) {
 template <class Visit>
 void eachKey(CrowdOptions& options, const Visit& visit) {
   auto& [pose, measure, watchEvery, feet, footfalls, sleep, crowding, fuse, timestamps, pageAgents, shaders,
-         rigs] = options;
+         rigs, levels] = options;
   visit("pose", pose);
   visit("measure", measure);
   visit("watchEvery", watchEvery);
@@ -112,7 +112,7 @@ void eachKey(CrowdOptions& options, const Visit& visit) {
   visit("sleep", sleep);
   visit("fuse", fuse);
   // The counts of crowding are not saved. timestamps and pageAgents are the device's matter, and shaders
-  // are experiments. A program that made rigs has them.
+  // are experiments. A program that made rigs has them. A crowd with levels cannot be saved.
 }
 template <class Visit>
 void eachKey(Heightfield& terrain, const Visit& visit) {

@@ -17,6 +17,7 @@
 #include "skitter/export.h"
 #include "skitter/forage.h"
 #include "skitter/heightfield.h"
+#include "skitter/levels.h"
 #include "skitter/picking.h"
 #include "skitter/records.h"
 #include "skitter/rig.h"
@@ -60,6 +61,10 @@ struct CrowdOptions {
   // Of a state: one for each herd, by number, that the crowd began with; herds that came later have their
   // files'.
   std::vector<Rig> rigs = {};
+  // Who is far from the camera (Crowd::lookFrom) ticks less often (docs/levels.md). Only for herds of
+  // controllers adaptive and loop that have no reserve, do not avoid, find no ways, do not forage, cannot be
+  // hurt and have no reactions; without sleep and footfalls, and not for a crowd that is made of a state.
+  std::optional<Levels> levels = {};
 };
 
 // How well agents moved in the ticks in which they were watched (docs/stages/measure.md defines each).
@@ -173,7 +178,7 @@ class SKITTER_API Crowd {
   // a goal out of its range, more than 100 herds that differ and sizes of these, legs of an adaptive herd
   // above 100 m, a terrain that cannot be or reaches beyond 4 km from the origin, an event that names nobody,
   // or a herd that cannot come or go) and, before any agent is made, Error(device) when memory does not
-  // suffice (as DeviceLimits::availableBytes, but now).
+  // suffice (as DeviceLimits::availableBytes, but now). Likewise for what levels of rate are not made for.
   Crowd(Device& device, const Heightfield& terrain, const Scene& scene, const CrowdOptions& options = {});
   // As it was when it was saved; on another device and in other pages, too: every record has the bits that it
   // had. What the state's options ask for and the state lacks (poses, feet, footfalls) follows from it.
@@ -209,6 +214,13 @@ class SKITTER_API Crowd {
   // Heightfield::edit does.
   void editHeights(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows, std::span<const float> heights);
   const Heightfield& terrain() const;  // as edited
+
+  // Where the camera is from the next recorded tick on, world metres: rates depend on it, where there are
+  // levels of them (CrowdOptions::levels), and nothing else does. Before the first call everybody has full
+  // rate. Throws Error(input) for a position that is not finite.
+  void lookFrom(const glm::vec3& camera);
+  // One of each level, full rate first; empty without levels. Waits for the device.
+  std::vector<LevelFigures> levels() const;
 
   // Steering (docs/steering.md). What the host says takes effect in the next recorded tick, which carries it
   // in its command buffer: the data may go at once, nothing waits, and of several calls for one agent the
@@ -302,7 +314,7 @@ class SKITTER_API Crowd {
   // Writes a state, with which a run can go on later (skitter/state.h). Waits for the device. The file takes
   // its name once it is whole and on the disk; until then an older one stays. `note` is JSON of the
   // caller's own, which comes back with the state. Throws Error(input) that names the file, or the value of
-  // the scene or the note that cannot be written.
+  // the scene or the note that cannot be written, or where there are levels of rate.
   void save(const std::filesystem::path& file, const std::string& note = {}) const;
   std::vector<std::byte> saveToMemory(const std::string& note = {}) const;
   uint64_t stateBytes() const;  // about what a state takes, without the note

@@ -126,7 +126,8 @@ SKITTER_CONST int SLEEP_STILL = 1;
 SKITTER_CONST int SLEEP_BREATHED_OUT = 2;
 
 // awake, per block of agents of whom somebody is awake, in any order, zeros after the last; written by wake.
-//   [0] block, mask of its agents that are awake, unused, unused
+//   [0] block, mask of its agents that are awake, ticks since its last one (where there are levels of rate),
+//       unused
 SKITTER_CONST int AWAKE_STRIDE = 1;
 
 // body, per agent, written by body.
@@ -139,7 +140,8 @@ SKITTER_CONST int BODY_STRIDE = 4;
 SKITTER_CONST float ABSENT_HEIGHT = -1e6;
 
 // gait, per agent, written by gait.
-//   [0] phase phi in [0,1), lift mask, re-aim mask, step duration (ticks)
+//   [0] phase phi in [0,1), lift mask, re-aim mask, step duration (ticks; where there are levels of rate, own
+//       ticks: docs/levels.md)
 //   [1] half stride a (m), cycle C (s), masks of legs in the air before lifting, of legs that do not carry
 SKITTER_CONST int GAIT_STRIDE = 2;
 
@@ -301,6 +303,13 @@ SKITTER_CONST float REACTION_RISING = 5.0;
 // Below so many legs that carry a creature lies on its belly, and cannot fall.
 SKITTER_CONST int FEWEST_THAT_FALL = 3;
 
+// rate, per agent where there are levels of rate, written by wake (docs/levels.md). All agents of a block have
+// the same.
+//   [0] level at which it goes on from its last tick, level of that tick, that tick, unused
+SKITTER_CONST int RATE_STRIDE = 1;
+// An agent of level k ticks in every 2^k-th tick.
+SKITTER_CONST int RATE_LEVELS = 4;
+
 // rig, per leg, constant: RIG_LEG_STRIDE vec4, then RIG_BONE_STRIDE per bone (zero-length bones pad short
 // legs).
 //   leg  [0] root x, y, z (model), reach (m)
@@ -407,7 +416,8 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
   RECORD(HURT,   hurt,   50, agent,   hurtStride(legs),                bound,      true,  true) \
   RECORD(REACTION, reaction, 52, agent, REACTION_STRIDE,               bound,      false, true) \
   /* It counts in the tick that it names alone. */ \
-  RECORD(PUSH,   push,   54, agent,   PUSH_STRIDE,                     bound,      false, false)
+  RECORD(PUSH,   push,   54, agent,   PUSH_STRIDE,                     bound,      false, false) \
+  RECORD(RATE,   rate,   56, agent,   RATE_STRIDE,                     bound,      false, true)
 // clang-format on
 
 #ifdef __cplusplus

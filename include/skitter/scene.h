@@ -14,6 +14,7 @@
 #include "skitter/forage.h"
 #include "skitter/heightfield.h"
 #include "skitter/leg_state.h"
+#include "skitter/levels.h"
 #include "skitter/solver.h"
 #include "skitter/tuning.h"
 #include "skitter/ways.h"
@@ -287,6 +288,7 @@ struct SKITTER_API Scene {
   std::vector<Event> events;        // by time; Crowd::record lets them happen
   std::vector<Obstacle> obstacles;  // herds with ways go around them, those that avoid keep clear of them
   std::vector<Threat> threats;      // and around these; Crowd::setThreat names them by their index
+  std::optional<Levels> levels = {};  // of rate, where CrowdOptions::levels does not say others
   uint64_t seed = 1;
 
   Heightfield loadTerrain() const;  // throws Error(input)

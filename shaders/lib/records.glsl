@@ -34,7 +34,8 @@ Step unpackStep(vec4 a, vec4 b) {
 }
 
 // Reads the buffer `steps`.
-#define LOAD_STEP(leg) unpackStep(LOAD4(steps, (leg) * STEP_STRIDE), LOAD4(steps, (leg) * STEP_STRIDE + 1))
+#define LOAD_STEP(leg) \
+  inOwnTicks(unpackStep(LOAD4(steps, (leg) * STEP_STRIDE), LOAD4(steps, (leg) * STEP_STRIDE + 1)))
 
 float stepProgress(Step s, float tick) { return clamp((tick - s.firstTick) / s.ticks, 0.0, 1.0); }
 
@@ -55,13 +56,13 @@ struct Arc {
 // Reads the buffer `arcs`.
 #define LOAD_ARC(leg) Arc(LOAD4(arcs, (leg) * ARC_STRIDE).xyz, LOAD4(arcs, (leg) * ARC_STRIDE + 1).xyz)
 
-// A leg's miss in the tick before, of a pair of legs' record.
-float missTold(vec4 pairs, int leg, float tick) {
+// A leg's miss in the tick before, which is `last`, of a pair of legs' record.
+float missTold(vec4 pairs, int leg, float last) {
   vec2 told = leg % 2 == 0 ? pairs.xy : pairs.zw;
-  return told.y == tick - 1.0 ? told.x : 0.0;
+  return told.y == last ? told.x : 0.0;
 }
 // Reads the buffer `misses`.
-#define LOAD_MISS(agent, leg) missTold(LOAD4(misses, (agent) * missStride(LEGS) + (leg) / 2), leg, thisTick)
+#define LOAD_MISS(agent, leg) missTold(LOAD4(misses, (agent) * missStride(LEGS) + (leg) / 2), leg, lastTick())
 
 vec2 worldOf(vec3 local, vec2 tile) { return tile * TILE_SIZE + local.xz; }
 

@@ -29,7 +29,8 @@ SKITTER_RECORDS(BIND)
 #undef BIND
 // A page's own, for its stages only.
 //
-// Legs that begin a step: uint, leg record * 2 + (1 if aimed anew). Later in the tick, legs that ik's first
+// Legs that begin a step: uint, leg record * 2 + (1 if aimed anew); where there are levels of rate, + LIST_LEVEL *
+// the level of this tick. Later in the tick, legs that ik's first
 // dispatch leaves: uint, leg record. For controllers that play clips, agents that fade: uint.
 BINDING BINDING_LIST = 60;
 BINDING BINDING_COUNTERS = 61;
@@ -54,6 +55,9 @@ BINDING BINDING_WALL = 73;
 BINDING BINDING_FORAGE_GROUND = 71;
 BINDING BINDING_TRAIL = 72;
 
+// Levels of rate (shared/levels.h).
+BINDING BINDING_LEVELS = 74;
+
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
 BINDING CONSTANT_BONES = 1;
@@ -72,6 +76,7 @@ BINDING CONSTANT_WATCH = 24;    // gait looks at the ground under every foot: th
 BINDING CONSTANT_SLEEP = 25;    // SLEEP_
 BINDING CONSTANT_FEET = 26;     // tips are written, and feet where no other stage needs them
 BINDING CONSTANT_RESERVE = 29;  // whether places may be empty
+BINDING CONSTANT_LEVELS = 30;   // whether blocks tick at rates of their own (docs/levels.md)
 BINDING CONSTANT_HERD_STEPS = 28;  // 2 to their power is at least the number of herds in a page
 // From here on the numbers with which the rig's records of legs begin, 4 * RIG_LEG_STRIDE a leg.
 BINDING CONSTANT_RIG_LEGS = 100;
@@ -98,6 +103,8 @@ struct TickConstants {
   uint32_t room;
   // navigate: seconds of standing after which an agent may sleep in this tick; in herds that forage `watched`
   // is 2^32 times the chance to leave the nest.
+  // wake with levels of rate: `every`, `watched`, `room` are the camera's x, y, z (quarter metres, signed);
+  // `sleepTime` is a sum of LEVELS_ flags (shared/levels.h).
   // avoid: `first` is the number in the crowd of the page's first agent, `every` are the grid's buckets,
   // `watched` those in a row, `room` is how far agents look (quanta), `sleepTime` metres per quantum.
   float sleepTime;

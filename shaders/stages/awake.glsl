@@ -1,4 +1,5 @@
-// Whom the stages from body to pose run over: everybody, or where agents may sleep the blocks that `wake` listed.
+// Whom the stages from body to pose run over: everybody, or where agents may sleep, or blocks have rates of their own,
+// the blocks that `wake` listed.
 #ifndef AWAKE_GLSL
 #define AWAKE_GLSL
 #include "stages/stage.glsl"
@@ -11,6 +12,7 @@ int agentAt(int place) {
   if (SLEEP == SLEEP_NEVER) return place < int(constants.count) ? place : -1;
   vec4 block = LOAD4(awake, place / BLOCK);
   int lane = place % BLOCK;
+  tickOver(LEVELS ? max(block.z, 1.0) : 1.0);
   return (uint(block.y) >> lane & 1u) != 0u ? int(block.x) * BLOCK + lane : -1;
 }
 

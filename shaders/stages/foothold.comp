@@ -133,6 +133,10 @@ void main() {
   if (listed >= counters[COUNTER_LISTED]) return;
   int record = int(list[listed] >> 1);
   bool reaim = (list[listed] & 1u) != 0u;
+  if (LEVELS) {
+    record &= (LIST_LEVEL >> 1) - 1;
+    tickOver(float(1u << (list[listed] / uint(LIST_LEVEL))));
+  }
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
 
   int rigAt = leg * rigStride(BONES);
@@ -188,7 +192,8 @@ void main() {
   vec3 lift = shortestLift(search, p0, p1, reaim, m0, parameters.stepHeight * (reaim ? 1.0 - u : 1.0));
   m0 = reaim ? m0 : lift;
 
-  STORE4_TWO(stepsOut, record * STEP_STRIDE, vec4(p1 + body.local, thisTick - 1.0),
-             vec4(p0 + body.local, packedTicks(lastResort ? -ticks : ticks, stepTile(body.tile.x, body.tile.y))));
+  float lasts = (lastResort ? -ticks : ticks) * tickSpan;
+  STORE4_TWO(stepsOut, record * STEP_STRIDE, vec4(p1 + body.local, lastTick()),
+             vec4(p0 + body.local, packedTicks(lasts, stepTile(body.tile.x, body.tile.y))));
   STORE4_TWO(arcsOut, record * ARC_STRIDE, vec4(lift, 0.0), vec4(m0, 0.0));
 }

@@ -128,7 +128,8 @@ void makeGait(int agent, Body body) {
     atomicMax(counters[COUNTER_DISPATCH_X], (next + bitCount(begin) + WORK_GROUP - 1u) / WORK_GROUP);
     for (; begin != 0u; begin &= begin - 1u) {
       int leg = findLSB(begin);
-      list[next] = uint(legRecord(agent, leg, LEGS)) * 2u + ((reaim >> leg) & 1u);
+      uint entry = uint(legRecord(agent, leg, LEGS)) * 2u + ((reaim >> leg) & 1u);
+      list[next] = LEVELS ? entry + uint(LIST_LEVEL) * uint(findMSB(uint(tickSpan))) : entry;
       ++next;
     }
   }

@@ -57,7 +57,7 @@ void main() {
     }
   } else {
     solveWhole(limb, agent, aim, pose);
-    STORE2(missesOut, missPair(agent, leg, LEGS), vec2(missOf(foot, aim.error), thisTick));
+    STORE2(missesOut, missPair(agent, leg, LEGS), vec2(missOf(foot, aim.error), crowdTick));
   }
   storeSolved(record, orientation, root, pose, aim.error);
 }

@@ -1,6 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef LISTED
+#include "stages/awake.glsl"
+#else
 #include "stages/stage.glsl"
+layout(constant_id = CONSTANT_SLEEP) const int SLEEP = SLEEP_NEVER;
+#endif
 
 LOAD4_BUFFER(BINDING_GOAL, goals);
 STORE4_BUFFER(BINDING_GOAL_OUT, goalsOut);
@@ -20,7 +25,6 @@ layout(set = 0, binding = BINDING_TRAIL, std430) readonly buffer TrailBlock { ui
 #endif
 #include "stages/navigate.glsl"
 #include "stages/absent.glsl"
-layout(constant_id = CONSTANT_SLEEP) const int SLEEP = SLEEP_NEVER;
 
 // Nothing of it changes any more but by a goal or by the ground.
 bool asleep(int agent, vec2 velocity) {
@@ -32,8 +36,13 @@ bool asleep(int agent, vec2 velocity) {
 }
 
 void main() {
+#ifdef LISTED
+  int agent = agentAt(int(gl_GlobalInvocationID.x));
+  if (agent < 0) return;
+#else
   int agent = int(gl_GlobalInvocationID.x);
   if (agent >= int(constants.count)) return;
+#endif
   if (absent(agent)) {
     STORE4(steersOut, agent, vec4(0.0, 0.0, 1.0, 0.0));
 #ifdef FORAGES

@@ -3,6 +3,7 @@
 #include "shared/bindings.h"
 #include "skitter/records.h"
 #include "shared/parameters.h"
+#include "shared/levels.h"
 #include "lib/math.glsl"
 #include "lib/records.glsl"
 
@@ -13,7 +14,21 @@ layout(constant_id = CONSTANT_GROUPS) const int GROUPS = 2;
 
 layout(push_constant) uniform TickBlock { TickConstants constants; };
 // Read at once, before any branch: below one, a device that masks lanes gathers what is uniform lane by lane.
-float thisTick = constants.tick;
+float crowdTick = constants.tick;
+// Where there are levels of rate, times are in ticks of the agent's own, each of `tickSpan` ticks of the crowd, a
+// power of two, so that nothing is rounded; what is stored is in ticks of the crowd.
+layout(constant_id = CONSTANT_LEVELS) const bool LEVELS = false;
+float thisTick = crowdTick;
+float tickSpan = 1.0, tickShare = 1.0;
+// The agent's last tick, of the crowd's.
+float lastTick() { return LEVELS ? crowdTick - tickSpan : thisTick - 1.0; }
+Step inOwnTicks(Step s) {
+  if (LEVELS) {
+    s.firstTick *= tickShare;
+    s.ticks *= tickShare;
+  }
+  return s;
+}
 #ifndef WITHOUT_PARAMETERS
 layout(std140, set = 0, binding = BINDING_PARAMETERS) uniform ParametersBlock {
   Parameters uniformParameters;
@@ -27,4 +42,20 @@ Parameters allParameters() {
   return p;
 }
 Parameters parameters = allParameters();
+
+// What is left of a difference that shrinks by `blend` a tick, after so many: a power of two.
+float blendOver(float blend, float ticks) {
+  float keep = 1.0 - blend, two = keep * keep, four = two * two;
+  return 1.0 - (ticks >= 8.0 ? four * four : ticks >= 4.0 ? four : ticks >= 2.0 ? two : keep);
+}
+// The invocation's agent ticks after so many ticks of the crowd. To be called once.
+void tickOver(float ticks) {
+  if (!LEVELS) return;
+  tickSpan = ticks;
+  tickShare = ticks >= 8.0 ? 0.125 : ticks >= 4.0 ? 0.25 : ticks >= 2.0 ? 0.5 : 1.0;  // a quotient may be rounded
+  thisTick = crowdTick * tickShare;
+  parameters.dt *= ticks;
+  parameters.heightBlend = blendOver(parameters.heightBlend, ticks);
+  parameters.tiltBlend = blendOver(parameters.tiltBlend, ticks);
+}
 #endif

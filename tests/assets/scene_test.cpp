@@ -378,6 +378,10 @@ TEST(Scene, FaultsNameFileAndField) {
       // A star turns one way at every corner.
       {R"({"obstacles": [{"polygon": {"corners": [[0, 10], [6, -8], [-9, 3], [9, 3], [-6, -8]]}}]})",
        "obstacles[0].polygon.corners is not convex"},
+      {R"({"levels": {"distances": [1, 2]}})", "levels.distances is array, expected an array of 3 numbers"},
+      {R"({"levels": {"distances": [1, 3, 2]}})", "levels.distances[2] is 2, expected at least 3"},
+      {R"({"levels": {"most": [1, 2, -3]}})", "levels.most[2] is -3, expected a whole number from 0 to"},
+      {R"({"levels": {"rates": [1]}})", "levels.rates is no known key, expected one of distances, most"},
       {R"({"threats": [{"radius": -1}]})", "threats[0].radius is -1, expected a number from 0 to 4096"},
       {R"({"herds": [{"threat": -1}]})", "herds[0].threat is -1, expected a number from 0 to 4096"},
       {R"({"events": [{"threat": {"number": 64}}]})",
@@ -458,7 +462,7 @@ class RandomScenes {
 
   Scene scene() {
     Scene made;
-    auto& [name, terrain, herds, camera, events, obstacles, threats, seed] = made;
+    auto& [name, terrain, herds, camera, events, obstacles, threats, levels, seed] = made;
     name = text();
     terrain = coin() ? decltype(Scene::terrain)(noise()) : terrainFile();
     herds.resize(whole(0, 3));
@@ -474,6 +478,12 @@ class RandomScenes {
     for (auto& [shape] : obstacles) shape = this->shape();
     threats.resize(whole(0, 3));
     for (Threat& each : threats) each = threat();
+    if (coin()) {
+      const float first = real(0, 4000);
+      levels =
+          Levels{.distances = {first, first, real(4000, 8000)},
+                 .most = {static_cast<uint32_t>(whole(0, 9)), 7, static_cast<uint32_t>(whole(0, 1 << 24))}};
+    }
     seed = random_();
     return made;
   }

@@ -65,7 +65,7 @@ TEST_P(MutantTest, IsRefused) {
        situationNamed(mutant.situation)
            .replayed(device(), controllerNamed(mutant.controller).value(),
                      {.footfalls = UINT32_MAX, .shaders = {mutant.shader}})) {
-    // wake decides nothing and has no row: what it does wrong, the stages after it do.
+    // Without levels of rate wake decides nothing and has no row. What it does wrong, the stages after it do.
     if (mutant.shader.stage != "wake") {
       EXPECT_EQ(stage.pass, stage.name != mutant.seenIn) << stage.name << ": " << stage.why;
     }

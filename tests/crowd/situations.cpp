@@ -8,6 +8,7 @@
 #include "crowd/herd.h"
 #include "gpu/transfer.h"
 #include "validation/herd_facts.h"
+#include "validation/lockstep/lockstep.h"
 
 namespace skitter::test {
 namespace {
@@ -396,6 +397,27 @@ Results gettingPushed(Device& device, Controller controller, const CrowdOptions&
   return replay.results();
 }
 
+// A camera that comes and goes, so that every rate is had, and changed from to every other.
+Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOptions& options) {
+  Scene scene = sceneOf(60, 1, 1, controller);
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
+  CrowdOptions own = options;
+  own.footfalls = 0;
+  own.feet = true;
+  own.levels = Levels{.distances = {6, 10, 14}, .most = {16, 16, 1000}};
+  Crowd crowd(device, smallRollingGround(), scene, own);
+  validation::Lockstep lockstep(crowd, scene, kTick);
+  for (int i = 0; i < 160; ++i) {
+    lockstep.begin();
+    const float t = static_cast<float>(crowd.tick());
+    crowd.lookFrom(
+        {20 * std::sin(0.05f * t), 1 + 12 * std::abs(std::sin(0.031f * t)), 20 * std::cos(0.043f * t)});
+    simulate(device, crowd, 1);
+    lockstep.end();
+  }
+  return lockstep.results();
+}
+
 }  // namespace
 
 const std::vector<Situation>& situations() {
@@ -419,6 +441,7 @@ const std::vector<Situation>& situations() {
       {"foldingBack", {Controller::clip}, foldingBack},
       {"beyondTheLimits", {Controller::planted}, beyondTheLimits},
       {"gettingPushed", {Controller::adaptive}, gettingPushed},
+      {"atRatesOfTheirOwn", {Controller::adaptive, Controller::loop}, atRatesOfTheirOwn},
       {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs},
   };
   return all;

@@ -72,6 +72,8 @@ void expectComparable(const Scene& scene, std::span<const crowd::StageId> stages
 Lockstep::Lockstep(Crowd& crowd, const Scene& scene, float dt, std::vector<crowd::StageId> only)
     : crowd_(crowd), seed_(scene.seed), only_(std::move(only)) {
   crowd::setTick(implOf(crowd_), dt);  // which herds' parameters depend on
+  const bool comparesWake = only_.empty() || std::ranges::find(only_, crowd::StageId::wake) != only_.end();
+  if (implOf(crowd_).rates && comparesWake) rates_.emplace(implOf(crowd_));
   followHerds();
 }
 
@@ -84,6 +86,7 @@ const std::vector<HerdState>& Lockstep::begin() {
   for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd_)))
     samples_.push_back(sampleAt(seed_, crowd_.tick() + 1, of.run->agents, agentsATick));
   around_ = surroundingsOf(implOf(crowd_));
+  if (rates_) rates_->begin();
   return before_ = download();
 }
 
@@ -95,6 +98,7 @@ void Lockstep::edit(uint32_t x0, uint32_t z0, uint32_t columns, uint32_t rows,
 
 const std::vector<HerdState>& Lockstep::end() {
   after_ = download();
+  if (rates_) rates_->end();
   followWays();
   for (size_t r = 0; r < compared_.size(); ++r)
     compared_[r].replay->tick(crowd_.tick(), before_[r], after_[r], around_);
@@ -109,6 +113,7 @@ std::vector<StageResult> Lockstep::results() const {
   for (const crowd::StageId stage : crowd::allStages) {
     const char* name = nameOf(stage);
     StageResult* sum = nullptr;
+    if (stage == crowd::StageId::wake && rates_) sums.push_back(rates_->result());
     for (const Compared* each : all) {
       if (!each->hasPlaces) continue;
       for (StageResult result : each->replay->results()) {

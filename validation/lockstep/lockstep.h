@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "crowd/stage_id.h"
 #include "skitter/crowd.h"
 #include "skitter/scene.h"
+#include "validation/lockstep/rate_check.h"
 #include "validation/replay.h"
 
 // A whole crowd against the reference: the loop of `skitter validate` and of skitter.validate().
@@ -69,6 +71,7 @@ class Lockstep {
   std::vector<AgentSample> samples_;  // of each size of each herd, in this tick
   std::vector<HerdState> before_, after_;
   Surroundings around_;
+  std::optional<RateCheck> rates_;  // where there are levels of rate
   std::vector<Compared> compared_;  // those that are there, as crowd::allRuns
   std::vector<Compared> gone_;
 };

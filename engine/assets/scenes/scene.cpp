@@ -421,8 +421,22 @@ void checkKeys(const Event& event, const std::string& file, const std::string& p
 }
 
 template <class Fields>
+void keysOf(Fields& fields, Levels& levels) {
+  auto& [distances, most] = levels;
+  fields.key("distances", distances, 0, Levels::farthest);
+  fields.integers("most", most, Scene::maxAgents);
+}
+void checkKeys(const Levels& levels, const std::string& file, const std::string& path) {
+  for (size_t k = 1; k < levels.distances.size(); ++k)
+    if (levels.distances[k] < levels.distances[k - 1])
+      throw inputError(fmt::format("{}: {}distances[{}] is {}, expected at least {}, as the one before it",
+                                   file, path.empty() ? "" : path + ".", k, levels.distances[k],
+                                   levels.distances[k - 1]));
+}
+
+template <class Fields>
 void keysOf(Fields& fields, Scene& scene) {
-  auto& [name, terrain, herds, camera, events, obstacles, threats, seed] = scene;
+  auto& [name, terrain, herds, camera, events, obstacles, threats, levels, seed] = scene;
   fields.key("name", name);
   fields.integer("seed", seed, 0, UINT64_MAX);
   fields.object("terrain", terrain);
@@ -431,6 +445,7 @@ void keysOf(Fields& fields, Scene& scene) {
   fields.objects("events", events, Scene::maxEvents, "events");
   fields.objects("obstacles", obstacles, Scene::maxObstacles, "obstacles");
   fields.objects("threats", threats, Scene::maxThreats, "threats");
+  fields.object("levels", levels);
 }
 void checkKeys(const Scene& scene, const std::string& file, const std::string&) {
   for (size_t e = 1; e < scene.events.size(); ++e)
@@ -499,6 +514,18 @@ Scene parseScene(const std::string& json, const std::string& name, const std::fi
   scene.name = std::filesystem::path(name).stem().string();
   scenes::readObject(parseJson(json, name, true), {name, folder}, "", scene);
   return scene;
+}
+
+Levels parseLevels(std::string_view json, const std::string& name) {
+  Levels levels;
+  scenes::readObject(parseJson(json, name, true), {name, {}}, "", levels);
+  return levels;
+}
+
+Levels loadLevels(const std::filesystem::path& fileOrDefault) {
+  if (fileOrDefault == "default") return {};
+  const std::vector<uint8_t> bytes = readFile(fileOrDefault);
+  return parseLevels({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, fileOrDefault.string());
 }
 
 std::string sceneJson(const Scene& scene) {

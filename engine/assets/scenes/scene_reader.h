@@ -126,6 +126,24 @@ class Reader {
       values.push_back(static_cast<float>(number(item, path, least, most)));
     }
   }
+  template <size_t Count>
+  void key(const char* key, std::array<float, Count>& values, double least, double most) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_array() || json->size() != Count)
+      fail(pathOf(key), *json, fmt::format("an array of {} numbers", Count));
+    for (size_t i = 0; i < Count; ++i)
+      values[i] = static_cast<float>(number((*json)[i], fmt::format("{}[{}]", pathOf(key), i), least, most));
+  }
+  template <size_t Count>
+  void integers(const char* key, std::array<uint32_t, Count>& values, uint32_t most) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_array() || json->size() != Count)
+      fail(pathOf(key), *json, fmt::format("an array of {} whole numbers", Count));
+    for (size_t i = 0; i < Count; ++i)
+      values[i] = static_cast<uint32_t>(whole((*json)[i], fmt::format("{}[{}]", pathOf(key), i), 0, most));
+  }
   // x, z of each.
   void places(const char* key, std::vector<glm::vec2>& values, size_t mostValues, double limit) {
     const auto* json = find(key);

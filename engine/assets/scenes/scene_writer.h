@@ -73,6 +73,18 @@ class Writer {
     for (const float value : values)
       array.push_back(number(value, fmt::format("{}[{}]", pathOf(key), array.size()), least, most));
   }
+  template <size_t Count>
+  void key(const char* key, const std::array<float, Count>& values, double least, double most) {
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    for (const float value : values)
+      array.push_back(number(value, fmt::format("{}[{}]", pathOf(key), array.size()), least, most));
+  }
+  template <size_t Count>
+  void integers(const char* key, const std::array<uint32_t, Count>& values, uint32_t most) {
+    nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
+    for (const uint32_t value : values)
+      array.push_back(whole(value, fmt::format("{}[{}]", pathOf(key), array.size()), 0, most));
+  }
   void places(const char* key, const std::vector<glm::vec2>& values, size_t mostValues, double limit) {
     nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
     expectAtMost(mostValues, values.size(), key);

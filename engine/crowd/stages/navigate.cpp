@@ -3,6 +3,8 @@
 #include "embedded/navigate_comp_texel.h"
 #include "embedded/navigate_forage_comp_storage.h"
 #include "embedded/navigate_forage_comp_texel.h"
+#include "embedded/navigate_listed_comp_storage.h"
+#include "embedded/navigate_listed_comp_texel.h"
 #include "embedded/navigate_ways_comp_storage.h"
 #include "embedded/navigate_ways_comp_texel.h"
 #include "shared/bindings.h"
@@ -21,6 +23,13 @@ Stage navigateStage() {
            {BINDING_BODY, load4},
            {BINDING_GAIT, load4}},
           Stage::Over::everyone};
+}
+
+Stage levelNavigateStage() {
+  Stage stage = navigateStage();
+  stage.code = {embedded::navigate_listed_comp_texel(), embedded::navigate_listed_comp_storage()};
+  stage.over = Stage::Over::agents;
+  return stage;
 }
 
 Stage wayNavigateStage() {

@@ -1,6 +1,8 @@
 #include "crowd/stage.h"
 #include "embedded/wake_comp_storage.h"
 #include "embedded/wake_comp_texel.h"
+#include "embedded/wake_levels_comp_storage.h"
+#include "embedded/wake_levels_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -11,6 +13,20 @@ Stage wakeStage() {
   return {StageId::wake,
           {embedded::wake_comp_texel(), embedded::wake_comp_storage()},
           {{BINDING_STEER, load4}, {BINDING_AWAKE_OUT, store}, {BINDING_COUNTERS, store}},
+          Stage::Over::blocks};
+}
+
+Stage levelWakeStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  return {StageId::wake,
+          {embedded::wake_levels_comp_texel(), embedded::wake_levels_comp_storage()},
+          {{BINDING_BODY, load4},
+           {BINDING_RATE, load4},
+           {BINDING_RATE_OUT, store},
+           {BINDING_AWAKE_OUT, store},
+           {BINDING_COUNTERS, store},
+           {BINDING_LEVELS, store}},
           Stage::Over::blocks};
 }
 

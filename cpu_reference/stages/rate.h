@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cpu_reference/types.h"
+
+// Levels of rate (docs/levels.md).
+namespace skitter::reference {
+
+inline constexpr int rateLevels = 4;
+
+// Of each level but the last one.
+template <typename Value>
+using RateBounds = std::array<Value, rateLevels - 1>;
+
+struct RateTuning {
+  RateBounds<double> distances{};  // metres
+  RateBounds<uint64_t> most{};     // agents
+};
+
+// A block as a tick finds it.
+struct RatedBlock {
+  uint64_t number = 0;
+  int level = 0;
+  std::vector<glm::dvec3> places = {};  // of its agents, world metres
+};
+
+// What a tick counts of a block.
+struct SeenBlock {
+  double square = 0;  // of its distance, quarter metres
+  size_t agents = 0;
+};
+double rateSquare(const RatedBlock& block, const glm::dvec3& camera);
+// The square to which each level has room, by what the tick before the last one counted.
+RateBounds<double> rateEdges(const RateTuning& tuning, std::span<const SeenBlock> seen);
+
+struct RateResult {
+  bool hasTurn = false;
+  int level = 0;  // at which it goes on
+};
+// `square` is none without a camera.
+RateResult rate(const RateTuning& tuning, const RatedBlock& block, uint64_t tick,
+                const std::optional<double>& square, const RateBounds<double>& edges);
+
+// The tuning of an agent that ticks in every so many-th tick.
+Tuning overTicks(const Tuning& tuning, int ticks);
+
+}  // namespace skitter::reference

@@ -1,0 +1,46 @@
+// Levels of rate (docs/levels.md): the buffer of the whole crowd that stage wake reads and writes, unsigned
+// integers.
+#ifndef SKITTER_LEVELS_H
+#define SKITTER_LEVELS_H
+
+#ifdef __cplusplus
+namespace skitter::shared {
+#define LEVEL inline constexpr int
+#else
+#define LEVEL const int
+#endif
+
+// Distances are squares, in sixteenths of a square metre; differences on each axis are cut to LEVELS_FARTHEST
+// quarter metres, so that the sum of three squares fits. The least is LEVELS_NEAREST.
+LEVEL LEVELS_FARTHEST = 32767;
+LEVEL LEVELS_NEAREST = 8;
+// Distances of a histogram: eight buckets of equal width an octave, from LEVELS_NEAREST on.
+LEVEL LEVELS_BUCKETS = 232;
+
+// Of each level but the last one: its farthest distance, and how many agents it and the levels before it may
+// have in all. Constant.
+LEVEL LEVELS_FAR = 0;
+LEVEL LEVELS_MOST = 4;
+// Of each level, two words, low and high: agents times ticks that they have made since the start.
+LEVEL LEVELS_TICKS = 8;
+// Of each level: its agents after the last tick.
+LEVEL LEVELS_AGENTS = 16;
+// In turn for even and odd ticks. Of each level but the last one: the farthest distance at which it has room.
+LEVEL LEVELS_EDGE = 24;
+LEVEL LEVELS_EDGES = 4;
+// In turn for even and odd ticks: agents by the distance of their block before the tick.
+LEVEL LEVELS_HISTOGRAM = 32;
+LEVEL LEVELS_HISTOGRAM_STRIDE = 256;
+LEVEL LEVELS_WORDS = 544;
+
+// Flags of wake's dispatches: there is a camera; the page is the first one of the crowd.
+LEVEL LEVELS_HAS_CAMERA = 1;
+LEVEL LEVELS_IS_FIRST = 2;
+// The place of a level in an entry of the list of legs that begin a step.
+LEVEL LIST_LEVEL = 1 << 30;
+
+#undef LEVEL
+#ifdef __cplusplus
+}  // namespace skitter::shared
+#endif
+#endif

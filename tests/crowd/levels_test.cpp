@@ -1,0 +1,273 @@
+// Levels of rate (docs/levels.md): who is far from the camera ticks less often, and nobody sees it.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "crowd/herd.h"
+#include "crowd/simulation.h"
+#include "skitter/error.h"
+#include "skitter/levels.h"
+#include "validation/lockstep/lockstep.h"
+
+namespace skitter::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr Levels near = {.distances = {6, 10, 14}, .most = {1000, 1000, 1000}};
+
+CrowdOptions levelled(const Levels& levels = near) {
+  CrowdOptions options;
+  options.feet = true;
+  options.levels = levels;
+  return options;
+}
+
+int levelOf(const HerdState& state, size_t agent) { return static_cast<int>(state.rate.at(4 * agent)); }
+
+// So high above the middle that everybody has an eighth of the rate.
+constexpr glm::vec3 farAway{0, 500, 0};
+
+// Over the crowd and away, at less than 40 m.
+glm::vec3 cameraAt(uint64_t tick) {
+  const auto t = static_cast<float>(tick);
+  return {20 * std::sin(0.05f * t), 1 + 12 * std::abs(std::sin(0.031f * t)), 20 * std::cos(0.043f * t)};
+}
+
+void walk(Device& device, Crowd& crowd, int ticks, const std::function<glm::vec3(uint64_t)>& camera) {
+  for (int i = 0; i < ticks; ++i) {
+    crowd.lookFrom(camera(crowd.tick() + 1));
+    simulate(device, crowd, 1);
+  }
+}
+const auto away = [](uint64_t) { return farAway; };
+
+class LevelsTest : public GpuTest, public ::testing::WithParamInterface<Controller> {
+ protected:
+  Scene sceneOfSome(uint32_t agents) const {
+    Scene scene = sceneOf(agents, 1, 1, GetParam());
+    scene.herds[0].spawn.kind = Spawn::Kind::grid;
+    scene.herds[0].spawn.spacing = 2;
+    return scene;
+  }
+};
+
+TEST_P(LevelsTest, WithoutThemACameraChangesNothing) {
+  Crowd crowd(device(), smallRollingGround(), sceneOfSome(20)),
+      seen(device(), smallRollingGround(), sceneOfSome(20));
+  simulate(device(), crowd, 30);
+  walk(device(), seen, 30, cameraAt);
+  EXPECT_EQ(crowd.stateHash(), seen.stateHash());
+  EXPECT_TRUE(crowd.levels().empty());
+  EXPECT_TRUE(crowd.download(0).rate.empty());
+}
+
+TEST_P(LevelsTest, WithoutACameraEverybodyTicks) {
+  Crowd crowd(device(), smallRollingGround(), sceneOfSome(20), levelled());
+  simulate(device(), crowd, 10);
+  const std::vector<LevelFigures> levels = crowd.levels();
+  ASSERT_EQ(levels.size(), 4u);
+  EXPECT_EQ(levels[0].agents, 20u);
+  EXPECT_EQ(levels[0].agentTicks, 200u);
+}
+
+TEST_P(LevelsTest, TheSameCameraGivesTheSameBits) {
+  const Heightfield ground = smallRollingGround();
+  const Levels levels{.distances = {6, 10, 14}, .most = {8, 16, 16}};
+  CrowdOptions paged = levelled(levels), apart = levelled(levels);
+  paged.pageAgents = 16;
+  apart.fuse = false;
+  Crowd whole(device(), ground, sceneOfSome(60), levelled(levels)),
+      inPages(device(), ground, sceneOfSome(60), paged), inParts(device(), ground, sceneOfSome(60), apart),
+      other(device(), ground, sceneOfSome(60), levelled(levels));
+  for (int i = 0; i < 12; ++i) {
+    for (Crowd* crowd : {&whole, &inPages, &inParts}) walk(device(), *crowd, 20, cameraAt);
+    walk(device(), other, 20, [](uint64_t tick) { return -cameraAt(tick); });
+    ASSERT_EQ(whole.stateHash(), inPages.stateHash()) << "tick " << whole.tick();
+    ASSERT_EQ(whole.stateHash(), inParts.stateHash()) << "tick " << whole.tick();
+  }
+  EXPECT_NE(whole.stateHash(), other.stateHash());
+}
+
+TEST_P(LevelsTest, WhoIsFarAwayMovesInEveryEighthTick) {
+  Crowd crowd(device(), smallRollingGround(), sceneOfSome(60), levelled());
+  walk(device(), crowd, 16, away);
+  HerdState before = crowd.download(0);
+  std::vector<int> moves(60);
+  std::vector<int> perTick;
+  for (int i = 0; i < 16; ++i) {
+    walk(device(), crowd, 1, away);
+    const HerdState after = crowd.download(0);
+    int moving = 0;
+    for (size_t agent = 0; agent < 60; ++agent) {
+      EXPECT_EQ(levelOf(after, agent), 3);
+      moving += positionOf(before, agent) != positionOf(after, agent) ? 1 : 0;
+      moves[agent] += positionOf(before, agent) != positionOf(after, agent) ? 1 : 0;
+    }
+    perTick.push_back(moving);
+    before = after;
+  }
+  EXPECT_THAT(moves, ::testing::Each(2));
+  // Eight blocks, the last of four agents: one a tick.
+  for (const int moving : perTick) EXPECT_THAT(moving, ::testing::AnyOf(8, 4));
+}
+
+// As far as a whole crowd with the dt of an eighth of the rate, but for the first ticks, which are faster.
+TEST_P(LevelsTest, TheyWalkAsFarAsAWholeCrowdInLongTicks) {
+  const Heightfield ground = rollingGround();
+  Crowd crowd(device(), ground, sceneOf(64, 1, 1, GetParam()), levelled()),
+      whole(device(), ground, sceneOf(64, 1, 1, GetParam()));
+  const HerdState start = crowd.download(0);
+  walk(device(), crowd, 8 * 37, away);
+  simulate(device(), whole, 37, 8 * kTick);
+  const HerdState ours = crowd.download(0), theirs = whole.download(0);
+  double ourWay = 0, theirWay = 0;
+  for (size_t agent = 0; agent < 64; ++agent) {
+    ourWay += glm::length(positionOf(ours, agent) - positionOf(start, agent));
+    theirWay += glm::length(positionOf(theirs, agent) - positionOf(start, agent));
+  }
+  EXPECT_NEAR(ourWay / theirWay, 1, 0.1);
+}
+
+TEST_P(LevelsTest, CountsAddUpAndNumbersAreKept) {
+  const Levels levels{.distances = {1000, 1000, 1000}, .most = {16, 24, 40}};
+  Crowd crowd(device(), rollingGround(), sceneOfSome(200), levelled(levels));
+  const auto middle = [](uint64_t) { return glm::vec3(0, 2, 0); };
+  walk(device(), crowd, 40, middle);
+  uint64_t ticks = 0;
+  for (const LevelFigures& level : crowd.levels()) ticks += level.agentTicks;
+  for (int i = 0; i < 16; ++i) {
+    walk(device(), crowd, 1, middle);
+    const std::vector<LevelFigures> now = crowd.levels();
+    ASSERT_EQ(now.size(), 4u);
+    uint64_t agents = 0;
+    for (const LevelFigures& level : now) agents += level.agents;
+    EXPECT_EQ(agents, 200u);
+    EXPECT_LE(now[0].agents, 16u);
+    EXPECT_LE(now[0].agents + now[1].agents, 40u);
+    EXPECT_LE(now[0].agents + now[1].agents + now[2].agents, 80u);
+    EXPECT_GE(now[3].agents, 120u);
+    EXPECT_GT(now[0].agents, 0u);
+  }
+  uint64_t later = 0;
+  for (const LevelFigures& level : crowd.levels()) later += level.agentTicks;
+  // 16 at most in each tick, 24 in every second, 40 in every fourth, the others in every eighth.
+  EXPECT_LE(later - ticks, 16u * (16 + 24 / 2 + 40 / 4 + 200 / 8));
+  EXPECT_GE(later - ticks, 16u * 200 / 8);
+}
+
+// Where a foot is to stand stays, to the rounding of places within 32 m, while its agent changes rate.
+TEST_P(LevelsTest, NoPlantedFootJumpsAsTheRateChanges) {
+  if (GetParam() != Controller::adaptive) GTEST_SKIP() << "Feet of controller loop slide at every rate.";
+  Crowd crowd(device(), smallRollingGround(), sceneOfSome(40), levelled());
+  const double leg = crowd.rig(0).legLength;
+  const size_t legs = crowd.rig(0).legs.size();
+  HerdState before = crowd.download(0);
+  int changes = 0;
+  double most = 0;
+  for (int i = 0; i < 400; ++i) {
+    const bool isNear = i / 50 % 2 == 1;
+    walk(device(), crowd, 1, [&](uint64_t) { return isNear ? glm::vec3(0, 1, 0) : farAway; });
+    const HerdState after = crowd.download(0);
+    for (size_t agent = 0; agent < 40; ++agent) {
+      changes += levelOf(before, agent) != levelOf(after, agent) ? 1 : 0;
+      const glm::dvec3 moved = positionOf(after, agent) - positionOf(before, agent);
+      for (size_t l = agent * legs; l < (agent + 1) * legs; ++l) {
+        if (!plantedOf(before, l) || !plantedOf(after, l)) continue;
+        glm::dvec3 apart = moved;
+        for (int axis = 0; axis < 3; ++axis)
+          apart[axis] += double{after.foot[4 * l + static_cast<size_t>(axis)]} -
+                         double{before.foot[4 * l + static_cast<size_t>(axis)]};
+        most = std::max(most, glm::length(apart) / leg);
+      }
+    }
+    before = after;
+  }
+  EXPECT_GT(changes, 40);
+  EXPECT_LT(most, 1e-5);
+}
+
+TEST_P(LevelsTest, TheReferenceFollowsEveryRate) {
+  const Levels levels{.distances = {6, 10, 14}, .most = {16, 16, 1000}};
+  for (const bool fuse : {true, false}) {
+    CrowdOptions options = levelled(levels);
+    options.fuse = fuse;
+    const Scene scene = sceneOfSome(60);
+    Crowd crowd(device(), smallRollingGround(), scene, options);
+    validation::Lockstep lockstep(crowd, scene, kTick);
+    for (int i = 0; i < 240; ++i) {
+      lockstep.begin();
+      crowd.lookFrom(cameraAt(crowd.tick() + 1));
+      simulate(device(), crowd, 1);
+      lockstep.end();
+    }
+    expectAllPass(lockstep.results());
+    for (const LevelFigures& level : crowd.levels()) EXPECT_GT(level.agentTicks, 100u) << level.rate;
+    EXPECT_EQ(lockstep.results()[1].name, "wake");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, LevelsTest, ::testing::Values(Controller::adaptive, Controller::loop),
+                         [](const auto& each) { return testNameOf(each.param); });
+
+class LevelsRefusalTest : public GpuTest {
+ protected:
+  void expectRefused(const Scene& scene, const CrowdOptions& options, const std::string& expected) {
+    try {
+      Crowd crowd(device(), smallRollingGround(), scene, options);
+      FAIL() << expected;
+    } catch (const Error& fault) {
+      EXPECT_EQ(fault.kind(), Error::Kind::input);
+      EXPECT_THAT(fault.what(), HasSubstr(expected));
+    }
+  }
+  void expectHerdRefused(const std::function<void(Herd&)>& change, const std::string& expected) {
+    Scene scene = sceneOf(9);
+    scene.name = "some";
+    change(scene.herds[0]);
+    expectRefused(scene, levelled(), expected);
+  }
+};
+
+TEST_F(LevelsRefusalTest, NamesWhatTheyAreNotMadeFor) {
+  expectHerdRefused([](Herd& herd) { herd.controller = Controller::keyPoses; },
+                    "levels of rate: some: herds[0].controller is key-poses, expected one of adaptive, loop");
+  expectHerdRefused([](Herd& herd) { herd.reserve = 1; }, "herds[0].reserve is above 0, expected 0");
+  expectHerdRefused([](Herd& herd) { herd.avoid = true; }, "herds[0].avoid is true, expected false");
+  expectHerdRefused([](Herd& herd) { herd.ways = Ways{}; }, "herds[0] has ways, expected none");
+  expectHerdRefused([](Herd& herd) { herd.hurt = true; }, "herds[0].hurt is true, expected false");
+  expectHerdRefused([](Herd& herd) { herd.reactions = true; }, "herds[0].reactions is true, expected false");
+  CrowdOptions options = levelled();
+  options.sleep = true;
+  expectRefused(sceneOf(9), options, "levels of rate with sleep");
+  options.sleep = false;
+  options.footfalls = 8;
+  expectRefused(sceneOf(9), options, "levels of rate with footfalls");
+}
+
+TEST_F(LevelsRefusalTest, OfLongTicksStatesAndCameras) {
+  Crowd crowd(device(), smallRollingGround(), sceneOf(9), levelled());
+  EXPECT_THROW(simulate(device(), crowd, 1, 1.0f / 30), Error);
+  EXPECT_THROW(crowd.saveToMemory(), Error);
+  EXPECT_THROW(crowd.lookFrom({0, NAN, 0}), Error);
+  Herd avoiding = sceneOf(9).herds[0];
+  avoiding.avoid = true;
+  EXPECT_THROW(crowd.addHerd(avoiding), Error);
+}
+
+TEST(Levels, AreReadFromJson) {
+  const Levels levels = parseLevels(R"({"distances": [1, 2.5, 2.5], "most": [3, 4, 5]})", "some.json");
+  EXPECT_EQ(levels, (Levels{.distances = {1, 2.5f, 2.5f}, .most = {3, 4, 5}}));
+  EXPECT_EQ(loadLevels("default"), Levels{});
+  try {
+    parseLevels(R"({"distance": [1, 2, 3]})", "some.json");
+    FAIL();
+  } catch (const Error& fault) {
+    EXPECT_THAT(fault.what(), HasSubstr("some.json: distance is no known key; did you mean distances?"));
+  }
+}
+
+}  // namespace
+}  // namespace skitter::test
