@@ -61,15 +61,15 @@ struct Cascade {
 // An orthographic view along the sunlight of the sphere about all that the camera sees up to `reach`. A
 // sphere keeps its size when the camera turns, and its centre moves by whole texels, so that edges do not
 // shimmer.
-Cascade fitCascade(const Eye& eye, const glm::dvec2& origin, double reach, uint32_t texels) {
+Cascade fitCascade(const Eye& eye, const glm::dvec3& towards, const glm::dvec2& origin, double reach,
+                   uint32_t texels) {
   const double spread2 = eye.tanX * eye.tanX + eye.tanY * eye.tanY;
   const double along = std::min(reach, 0.5 * reach * (1 + spread2));
   const double radius = std::sqrt((reach - along) * (reach - along) + reach * reach * spread2);
   const double sized = std::max(std::ceil(radius * 8) / 8, std::hypot(along, 1e-3)) * 1.02;
   const double texel = 2 * sized / texels;
 
-  const glm::dvec3 towards = glm::normalize(glm::dvec3(sunDirection()));
-  const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), towards));
+    const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), towards));
   const glm::dvec3 y = glm::cross(towards, x);
   const glm::dvec3 centre =
       eye.position + eye.forward * along;  // world, so that snapping is to one grid for ever
@@ -92,10 +92,8 @@ Cascade fitCascade(const Eye& eye, const glm::dvec2& origin, double reach, uint3
 
 }  // namespace
 
-glm::vec3 sunDirection() { return glm::normalize(glm::vec3(0.62f, 0.62f, 0.40f)); }
-
-Composition compose(const View& view, const Heightfield& terrain, float lowest, float highest, uint32_t width,
-                    uint32_t height, uint32_t shadowTexels) {
+Composition compose(const View& view, const LightModel& light, const Heightfield& terrain, float lowest,
+                    float highest, uint32_t width, uint32_t height, uint32_t shadowTexels) {
   const Eye eye = eyeOf(view, width, height);
   constexpr double tile = shared::TILE_SIZE;
   const glm::dvec2 tileAt(std::floor(eye.position.x / tile), std::floor(eye.position.z / tile));
@@ -103,8 +101,9 @@ Composition compose(const View& view, const Heightfield& terrain, float lowest, 
   Composition c;
   c.origin = tileAt * tile;
   const glm::dvec3 position = eye.position - glm::dvec3(c.origin.x, 0, c.origin.y);
-  const float fog = std::max(
+  const float suits = std::max(
       {kLeastFog, kFogOfTarget * float(eye.toTarget), 2 * (view.eye.y - highest), 2 * (lowest - view.eye.y)});
+  const float fog = light.fog > 0 ? light.fog : suits;
   c.viewDistance = kSightOfFog * fog;
 
   shared::Picture& b = c.block;
@@ -116,15 +115,15 @@ Composition compose(const View& view, const Heightfield& terrain, float lowest, 
   b.eye = glm::vec4(glm::vec3(position), float(2 * eye.tanY / height));
   b.right = glm::vec4(glm::vec3(eye.right * eye.tanX), 0);
   b.up = glm::vec4(glm::vec3(eye.up * eye.tanY), 0);
-  b.sun = glm::vec4(sunDirection(), 0);
+  setLight(b, light);
   b.tile = glm::vec4(float(tileAt.x), float(tileAt.y), c.viewDistance, 1 / fog);
   b.ground = glm::vec4(float(terrain.originX() - c.origin.x), float(terrain.originZ() - c.origin.y),
                        terrain.spacingX, terrain.spacingZ);
 
   const double nearReach = std::clamp(kNearShadow * eye.toTarget, 4.0, 400.0);
-  const Cascade nearCascade = fitCascade(eye, c.origin, nearReach, shadowTexels);
+  const Cascade nearCascade = fitCascade(eye, light.towards, c.origin, nearReach, shadowTexels);
   const double farReach = nearReach * kFarShadow;
-  const Cascade farCascade = fitCascade(eye, c.origin, farReach, shadowTexels);
+  const Cascade farCascade = fitCascade(eye, light.towards, c.origin, farReach, shadowTexels);
   b.forward = glm::vec4(glm::vec3(eye.forward), float(farReach));
   b.clipFromPicture[shared::VIEW_CAMERA + 1] = glm::mat4(nearCascade.clip);
   b.clipFromPicture[shared::VIEW_CAMERA + 2] = glm::mat4(farCascade.clip);

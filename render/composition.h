@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "render/light.h"
 #include "render/picture.h"
 #include "skitter/heightfield.h"
 #include "skitter/renderer.h"
@@ -15,11 +16,8 @@ struct Composition {
   float viewDistance = 0;  // metres; beyond it fog hides everything
 };
 
-// Towards the sun, unit, world.
-glm::vec3 sunDirection();
-
 // `lowest` and `highest` are the terrain's heights; shadowTexels is the side of a cascade's square.
-Composition compose(const View&, const Heightfield&, float lowest, float highest, uint32_t width,
+Composition compose(const View&, const LightModel&, const Heightfield&, float lowest, float highest, uint32_t width,
                     uint32_t height, uint32_t shadowTexels);
 
 }  // namespace skitter::render

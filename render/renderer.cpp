@@ -67,6 +67,7 @@ struct Renderer::Impl {
   vk::SampleCountFlagBits samples;
   gpu::Image colour, depth;
   gpu::Image drawn;  // before its edges are smoothed: multisampled, or to be filtered
+  render::LightModel light;
   gpu::Buffer picture;
   gpu::Image ground;
   vk::raii::Sampler groundSampler;
@@ -97,8 +98,9 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
              .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment,
              .samples = samples},
             "picture depth"),
+      light(render::lightModel(source.scene.light)),
       picture(c, sizeof(shared::Picture), "picture block", gpu::BufferUse::uniform),
-      ground(render::makeGroundMap(c, source.terrain, render::sunDirection())),
+      ground(render::makeGroundMap(c, source.terrain, glm::vec3(light.towards))),
       groundSampler(gpu::makeSampler(c, {.name = "ground map"})),
       shadow(c, height),
       setting{c,      source.terrain, source.heights, picture, ground, *groundSampler,
@@ -106,7 +108,7 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       terrain(setting),
       obstacles(setting, source),
       crowd(setting, source, textures),
-      sky(setting) {
+      sky(setting, light.stars) {
   timer.measure(false);
   drawn = gpu::Image(c,
                      {.format = drawnFormat(),
@@ -132,7 +134,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   drew = true;
   const vk::Extent2D extent = colour.extent();
   const render::Composition composition =
-      render::compose(view, setting.terrain, terrain.lowest(), terrain.highest(), extent.width, extent.height,
+      render::compose(view, light, setting.terrain, terrain.lowest(), terrain.highest(), extent.width, extent.height,
                       shadow.texels());
   context.beginLabel(cmd, "picture");
   timer.reset(cmd);

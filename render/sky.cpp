@@ -6,7 +6,7 @@
 
 namespace skitter::render {
 
-Sky::Sky(const Setting& s) {
+Sky::Sky(const Setting& s, bool stars) {
   pipeline_ =
       gpu::GraphicsPipeline(s.context, {.name = "sky",
                                         .vertex = embedded::sky_vert(),
@@ -17,7 +17,8 @@ Sky::Sky(const Setting& s) {
                                         .samples = s.samples,
                                         .depthUse = gpu::DepthUse::background,
                                         .cull = {},
-                                        .constants = {{shared::CONSTANT_ROOTS, s.filtered()}}});
+                                        .constants = {{shared::CONSTANT_ROOTS, s.filtered()},
+                                                      {shared::CONSTANT_STARS, stars}}});
   const std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &s.picture}};
   bindings_ = pipeline_.bind(s.context, list);
 }

@@ -7,7 +7,7 @@ namespace skitter::render {
 // Wherever nothing else was drawn.
 class Sky {
  public:
-  explicit Sky(const Setting&);
+  Sky(const Setting&, bool stars);
   void draw(vk::CommandBuffer) const;
 
  private:

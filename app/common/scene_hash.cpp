@@ -304,7 +304,7 @@ void add(Hash& hash, FileHashes& fileHashes, const Event& event) {
 uint64_t sceneHash(const Scene& scene, const Heightfield& terrain) {
   Hash hash;
   FileHashes fileHashes;
-  const auto& [name, source, herds, camera, events, obstacles, threats, levels, seed] = scene;
+  const auto& [name, source, herds, camera, events, obstacles, threats, levels, light, seed] = scene;
   hash.add(seed);
   hash.add(uint64_t{herds.size()});
   for (const Herd& herd : herds) add(hash, fileHashes, herd);

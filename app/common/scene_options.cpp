@@ -244,6 +244,7 @@ Scene SceneOptions::load() const {
 void SceneOptions::refuseOthersThan(const Scene& saved, const std::string& state) const {
   const auto jsonOf = [&](Scene each) {
     each.camera = saved.camera;
+    each.light = saved.light;
     each.name = saved.name;
     return nlohmann::json::parse(sceneJson(each));
   };

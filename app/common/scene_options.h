@@ -54,7 +54,7 @@ struct SceneOptions {
   // The scene as the flags leave it. Throws Error(input).
   Scene load() const;
   // Throws Error(input) that names the first option that makes another scene of `saved`, which the file
-  // `state` holds. The camera and the scene's name do not count.
+  // `state` holds. Camera, light and the scene's name do not count.
   void refuseOthersThan(const Scene& saved, const std::string& state) const;
   // What the scene that was loaded is read from.
   void declare(Files& files, const Scene& loaded) const;

@@ -186,6 +186,7 @@ void Run::start() {
   if (state_) {
     state_->options = crowdOptions();
     state_->scene.camera = scene_.camera;
+    state_->scene.light = scene_.light;
     crowd_.emplace(*device_, *state_);
     done_ = state_->tick;
     state_->source.reset();  // which keeps the file open

@@ -132,6 +132,7 @@ void RunOptions::adopt(const State& state, const RunNote& note, bool inWindow) {
 Scene RunOptions::load(const Scene* saved) const {
   Scene loaded = saved ? *saved : scene.load();
   loaded.camera = cameraOf(*this, loaded.camera);
+  if (light) loaded.light = {.sky = *light};
   return loaded;
 }
 
@@ -179,6 +180,11 @@ void RunOptions::addTo(CLI::App& command) {
   addNumbers(command, *this);
   command.add_option("--view", view, "follow the crowd from here instead of the scene's camera")
       ->check(CLI::IsMember({"close", "crowd", "far"}));
+  command
+      .add_option_function<std::string>(
+          "--light", [this](const std::string& text) { light = parseNamed("--light", text, allSkies); },
+          fmt::format("what lights the pictures: {} [the scene's]", namesOf(allSkies)))
+      ->type_name("NAME");
   command.add_flag("--headless", headless, "no window; without --out nothing is drawn at all");
   command
       .add_option(

@@ -292,6 +292,17 @@ void bindCameras(py::module_& module) {
           "2 to 1024 CameraKey, of \"path\".");
 }
 
+void bindLight(py::module_& module) {
+  py::class_<Light> light(module, "Light", "What lights pictures (docs/scene.md).");
+  light.def(py::init<>());
+  defineNamed(light, "sky", &Light::sky, allSkies, "\"day\", \"overcast\", \"evening\" or \"night\".");
+  light
+      .def_readwrite("sun", &Light::sun,
+                     "Azimuth about +Y from +Z and elevation, radians; None: as of the sky.")
+      .def_readwrite("exposure", &Light::exposure, "Times the sky's own.")
+      .def_readwrite("fog", &Light::fog, "Metres at which fog has taken 63 %; None: as suits the camera.");
+}
+
 }  // namespace
 
 PythonScene::PythonScene(const Scene& scene) : rest(scene), events(eventsOf(scene)) {
@@ -330,6 +341,7 @@ void bindScene(py::module_& module) {
   bindTerrain(module);
   bindRig(module);
   bindCameras(module);
+  bindLight(module);
   bindEvents(module);
 
   py::class_<PythonScene>(module, "Scene",
@@ -354,6 +366,9 @@ void bindScene(py::module_& module) {
           "camera", [](PythonScene& self) -> Camera& { return self.rest.camera; },
           [](PythonScene& self, const Camera& value) { self.rest.camera = value; },
           "Where pictures are taken from.")
+      .def_property(
+          "light", [](PythonScene& self) -> Light& { return self.rest.light; },
+          [](PythonScene& self, const Light& value) { self.rest.light = value; }, "What lights them.")
       .def_readwrite("herds", &PythonScene::herds, "A list of Herd.")
       .def_readwrite("events", &PythonScene::events, "A list of Event, by time.")
       .def_readwrite("terrain", &PythonScene::terrain, "A TerrainNoise or a TerrainFile.")

@@ -311,6 +311,15 @@ class Camera:
     keys: Sequence[CameraKey]
     def __init__(self) -> None: ...
 
+class Light:
+    """What lights pictures."""
+
+    sky: str
+    sun: Optional[Sequence[float]]
+    exposure: float
+    fog: Optional[float]
+    def __init__(self) -> None: ...
+
 class Mound:
     """Ground that rises, or sinks to a pit, with smooth sides."""
 
@@ -464,6 +473,7 @@ class Scene:
     name: str
     seed: int
     camera: Camera
+    light: Light
     herds: List[Herd]
     events: List[Event]
     terrain: Union[TerrainNoise, TerrainFile]

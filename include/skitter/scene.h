@@ -15,6 +15,7 @@
 #include "skitter/heightfield.h"
 #include "skitter/leg_state.h"
 #include "skitter/levels.h"
+#include "skitter/light.h"
 #include "skitter/solver.h"
 #include "skitter/tuning.h"
 #include "skitter/ways.h"
@@ -289,6 +290,7 @@ struct SKITTER_API Scene {
   std::vector<Obstacle> obstacles;  // herds with ways go around them, those that avoid keep clear of them
   std::vector<Threat> threats;      // and around these; Crowd::setThreat names them by their index
   std::optional<Levels> levels = {};  // of rate, where CrowdOptions::levels does not say others
+  Light light;                      // of pictures
   uint64_t seed = 1;
 
   Heightfield loadTerrain() const;  // throws Error(input)

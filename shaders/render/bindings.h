@@ -32,6 +32,7 @@ BINDING CONSTANT_CUTOUT = 5;    // what is less opaque than the material's cutof
 BINDING CONSTANT_STUMPS = 6;    // bones may be lost
 BINDING CONSTANT_DETAIL = 7;    // ground so near that its finest detail may be seen
 BINDING CONSTANT_SHADED = 8;    // ground on which shadows may fall
+BINDING CONSTANT_STARS = 9;
 #undef BINDING
 
 #ifdef __cplusplus

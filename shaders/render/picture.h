@@ -42,6 +42,11 @@ struct Picture {
   vec4 ground;     // picture x, z of height sample (0, 0); metres a sample in x and z
   vec4 shadow;     // metres a texel in the near and the far cascade; height of the eye above the terrain's
                    // highest point, 0 if below; size of the shadow map's square in texels
+  vec4 sunlight;   // rgb on a white surface that faces the sun; exposure
+  vec4 zenith;     // rgb; how soon the horizon's colour is gone
+  vec4 horizon;    // rgb
+  vec4 glow;       // rgb about the sun; brightness of its disc
+  vec4 ambient[6];  // rgb: 1, y, s, y y, s s and y s of a normal, s = dot(normal.xz, sun.xz)
 };
 
 // Push constants of crowd drawing.

@@ -99,6 +99,18 @@ TEST(Scene, EveryKey) {
   EXPECT_EQ(scene.agentCount(), 7u);
 }
 
+TEST(Scene, LightIsANameOrAnObject) {
+  const auto lightOf = [](const std::string& json) { return parseScene(json, "lit.json", "").light; };
+  EXPECT_EQ(lightOf("{}"), Light{});
+  EXPECT_EQ(lightOf(R"({"light": {}})"), Light{});
+  for (const Sky each : allSkies)
+    EXPECT_EQ(lightOf(fmt::format(R"({{"light": "{}"}})", nameOf(each))), Light{.sky = each});
+  const Light all{.sky = Sky::evening, .sun = glm::vec2(-2, 0.25f), .exposure = 1.5f, .fog = 60};
+  EXPECT_EQ(lightOf(R"({"light": {"sky": "evening", "sun": [-2, 0.25], "exposure": 1.5, "fog": 60}})"), all);
+  const Scene plain;
+  EXPECT_EQ(sceneJson(plain).find("light"), std::string::npos);
+}
+
 TEST(Scene, CamerasThatOrbitAndGoAlongPaths) {
   const Scene orbit = parseScene(R"({"camera": {"kind": "orbit", "distance": 20, "elevation": -0.5,
                                                 "azimuth": 1, "secondsATurn": -7}})",
@@ -292,6 +304,15 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"camera": {"keys": [{"time": -1, "position": [0, 1, 0]}]}})", "camera.keys[0].time is -1"},
       {R"({"camera": {"elevation": 1.6}})", "camera.elevation is 1.6"},
       {R"({"camera": {"about": [0, 1]}})", "camera.about is an array of 2"},
+      {R"({"light": "nigth"})", "light is \"nigth\"; did you mean night? Expected one of \"day\""},
+      {R"({"light": 3})", "light is 3, expected an object"},
+      {R"({"light": {"sky": "blue"}})", "light.sky is \"blue\", expected one of \"day\""},
+      {R"({"light": {"fgo": 9}})", "light.fgo is no known key; did you mean fog?"},
+      {R"({"light": {"sun": 1}})", "light.sun is 1, expected an array of 2 numbers"},
+      {R"({"light": {"sun": [0, 0.05]}})",
+       "light.sun[1] is 0.05, expected an elevation from 0.1 to 1.5708 radians"},
+      {R"({"light": {"exposure": 0}})", "light.exposure is 0, expected a number from 0.05"},
+      {R"({"light": {"fog": 4}})", "light.fog is 4, expected a number from 5 to 100000"},
       {R"({"events": {}})", "events is an object, expected an array of at most 4096 events"},
       {R"({"events": [{"at": -1, "mound": {}}]})", "events[0].at is -1"},
       {R"({"events": [{"at": 1}]})",
@@ -462,7 +483,7 @@ class RandomScenes {
 
   Scene scene() {
     Scene made;
-    auto& [name, terrain, herds, camera, events, obstacles, threats, levels, seed] = made;
+    auto& [name, terrain, herds, camera, events, obstacles, threats, levels, light, seed] = made;
     name = text();
     terrain = coin() ? decltype(Scene::terrain)(noise()) : terrainFile();
     herds.resize(whole(0, 3));
@@ -484,6 +505,7 @@ class RandomScenes {
           Levels{.distances = {first, first, real(4000, 8000)},
                  .most = {static_cast<uint32_t>(whole(0, 9)), 7, static_cast<uint32_t>(whole(0, 1 << 24))}};
     }
+    light = this->light();
     seed = random_();
     return made;
   }
@@ -539,6 +561,15 @@ class RandomScenes {
         return made;
       }
     }
+  }
+  Light light() {
+    Light made;
+    auto& [sky, sun, exposure, fog] = made;
+    sky = one(allSkies);
+    if (coin()) sun = {real(-1000, 1000), real(0.1, 1.57)};
+    exposure = real(0.05, 20);
+    maybe(fog, 5, 100000);
+    return made;
   }
   TerrainNoise noise() {
     TerrainNoise made;

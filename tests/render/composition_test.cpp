@@ -34,7 +34,7 @@ const std::array kCases{
 Composition composed(const Case& c) {
   const Heightfield field{
       .name = "flat", .columns = 2, .rows = 2, .spacingX = 9, .spacingZ = 9, .heights = {0, 0, 0, 0}};
-  return compose(c.view, field, kLowest, kHighest, c.width, c.height, kTexels);
+  return compose(c.view, lightModel({}), field, kLowest, kHighest, c.width, c.height, kTexels);
 }
 
 double reachOf(const Case& c, int cascade) {
@@ -87,7 +87,7 @@ TEST(Composition, cascadesHoldWhatIsSeenAndNotMuchMore) {
 
 // Whatever is up to 30 m above the sphere of what is seen casts into it, along the sunlight.
 TEST(Composition, cascadesReachThirtyMetresTowardsTheSun) {
-  EXPECT_LT(glm::distance(glm::dvec3(sunDirection()), kTowardsSun), 1e-6);
+  EXPECT_LT(glm::distance(lightModel({}).towards, kTowardsSun), 1e-6);
   for (const Case& each : kCases) {
     const Composition c = composed(each);
     EXPECT_LT(glm::distance(glm::dvec3(c.block.sun), kTowardsSun), 1e-6);

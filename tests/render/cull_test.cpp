@@ -61,7 +61,7 @@ constexpr double kEnd = 210;
 shared::Picture picture() {
   const Heightfield field{
       .name = "flat", .columns = 2, .rows = 2, .spacingX = 9, .spacingZ = 9, .heights = {0, 0, 0, 0}};
-  return compose(kView, field, 0, 0, kWidth, kHeight, 1024).block;
+  return compose(kView, lightModel({}), field, 0, 0, kWidth, kHeight, 1024).block;
 }
 
 // A sphere that touches the pyramid is drawn; up to four radii outside it casts.

@@ -122,7 +122,7 @@ std::optional<glm::dvec3> expectedAt(const Shot& shot, int column, int row, doub
        .glow = glm::dvec3(m.emissive) * glm::dvec3(at(TextureRole::emissive).value_or(glm::dvec4(1))),
        .normal = normal,
        .toEye = glm::normalize(kEye - (kBody + glm::dvec3(x, y, 0))),
-       .toSun = glm::dvec3(sunDirection())}));
+       .toSun = lightModel({}).towards}));
 }
 
 class MaterialShadingTest : public test::GpuLoadTest {
@@ -173,7 +173,7 @@ class MaterialShadingTest : public test::GpuLoadTest {
     const gpu::Image ground = makeGroundMap(
         context(),
         {.name = "flat", .columns = 2, .rows = 2, .spacingX = 9, .spacingZ = 9, .heights = {0, 0, 0, 0}},
-        sunDirection());
+        glm::vec3(lightModel({}).towards));
     const gpu::Image shadow(
         context(),
         {.format = vk::Format::eD32Sfloat, .extent = {8, 4}, .usage = vk::ImageUsageFlagBits::eSampled},
@@ -209,7 +209,7 @@ class MaterialShadingTest : public test::GpuLoadTest {
     }
     picture.eye = glm::vec4(glm::vec3(kEye), 0.01f);
     picture.forward = {0, 0, -1, 1000};
-    picture.sun = glm::vec4(sunDirection(), 0);
+    setLight(picture, lightModel({}));
     picture.tile = {0, 0, 1000, 0};  // no fog
     picture.ground = {0, 0, 1, 1};
     picture.shadow = {0.01f, 0.01f, 0, 4};

@@ -113,6 +113,33 @@ TEST_P(RendererTest, drawsSkyAboveGroundWithoutAgents) {
   for (size_t i = 3; i < picture.rgba.size(); i += 4) ASSERT_EQ(picture.rgba[i], 255);
 }
 
+TEST_P(RendererTest, lightIsTheScenes) {
+  const View view{.eye = {0, 6, -20}, .target = {0, 2, 0}};
+  const auto drawn = [&](const Light& light) {
+    Scene scene = smallScene(0);
+    scene.light = light;
+    return Stage(device(), scene, 160, 90).draw(view);
+  };
+  const auto lightness = [](const glm::dvec3& c) { return 0.21 * c.r + 0.72 * c.g + 0.07 * c.b; };
+  const Picture day = drawn({}), overcast = drawn({.sky = Sky::overcast}),
+                evening = drawn({.sky = Sky::evening}), night = drawn({.sky = Sky::night});
+  const auto skyOf = [](const Picture& p) { return p.mean(0, 8); };
+  const auto groundOf = [](const Picture& p) { return p.mean(70, 89); };
+  // Grey clouds, a red evening, and a night that is dark and blue, but not black.
+  EXPECT_LT(std::abs(skyOf(overcast).b - skyOf(overcast).r), 12);
+  EXPECT_GT(skyOf(day).b, skyOf(day).r + 15);
+  EXPECT_GT(skyOf(evening).r, skyOf(evening).b + 8);
+  EXPECT_GT(skyOf(night).b, skyOf(night).r + 15);
+  EXPECT_GT(groundOf(evening).r / groundOf(evening).b, 1.1 * groundOf(day).r / groundOf(day).b);
+  EXPECT_LT(groundOf(overcast).r / groundOf(overcast).b, groundOf(day).r / groundOf(day).b);
+  EXPECT_LT(lightness(skyOf(night)), 0.6 * lightness(skyOf(day)));
+  EXPECT_LT(lightness(groundOf(night)), 0.6 * lightness(groundOf(day)));
+  EXPECT_GT(lightness(groundOf(night)), 15);
+  // Exposure and fog count where they are given.
+  EXPECT_GT(lightness(groundOf(drawn({.exposure = 2}))), lightness(groundOf(day)) + 15);
+  EXPECT_GT(differing(drawn({.fog = 20}), day), size_t{160 * 90 / 3});
+}
+
 TEST_P(RendererTest, aSpiderIsWhereItsBonesAre) {
   const uint32_t width = 321, height = 203;
   // Turned well away from its rest pose, so that every rotation counts.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "sky_reference.h"
+
 namespace skitter::test {
 
 // Linear light of an sRGB code, 0 to 255 and between.
@@ -16,9 +18,10 @@ inline double encodedSrgb(double light) {
   return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
 }
 
-// The light of sky and ground about a direction.
+// The light of sky and ground by day about a direction.
 inline glm::dvec3 ambientFrom(const glm::dvec3& direction) {
-  return glm::mix(glm::dvec3(0.25, 0.19, 0.13), glm::dvec3(0.31, 0.43, 0.66), 0.5 + 0.5 * direction.y);
+  static const Harmonics day(render::lightModel({}));
+  return day.lightOn(direction);
 }
 
 // The tone curve of the picture.

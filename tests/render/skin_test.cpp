@@ -144,7 +144,7 @@ class SkinTest : public test::GpuLoadTest {
     const gpu::Image ground = makeGroundMap(
         context(),
         {.name = "flat", .columns = 2, .rows = 2, .spacingX = 9, .spacingZ = 9, .heights = {0, 0, 0, 0}},
-        sunDirection());
+        glm::vec3(lightModel({}).towards));
     const vk::raii::Sampler sampler = gpu::makeSampler(context(), {.name = "ground map"});
     const std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &block},
                                          {shared::DRAW_BODY, &bodies},

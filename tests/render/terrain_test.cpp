@@ -22,7 +22,7 @@ Ground ground(const TerrainNoise& noise = {.columns = 100, .rows = 73, .spacing 
   return g;
 }
 Composition composed(const Ground& g, const View& view, uint32_t width = 640, uint32_t height = 360) {
-  return compose(view, g.field, g.relief.lowest, g.relief.highest, width, height, 1024);
+  return compose(view, lightModel({}), g.field, g.relief.lowest, g.relief.highest, width, height, 1024);
 }
 std::vector<Patch> chosen(const Ground& g, const Composition& c) {
   return choosePatches(c, g.field, g.relief);

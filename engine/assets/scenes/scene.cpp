@@ -21,6 +21,7 @@
 namespace skitter::scenes {
 
 constexpr double cameraLimit = 1e5;  // metres
+constexpr double maxAzimuth = 1000;   // radians
 constexpr size_t maxCuts = 64;
 constexpr double maxVoidValue = std::numeric_limits<double>::max();
 
@@ -270,6 +271,20 @@ void checkKeys(const Camera& camera, const std::string& file, const std::string&
 }
 
 template <class Fields>
+void keysOf(Fields& fields, Light& light) {
+  auto& [sky, sun, exposure, fog] = light;
+  fields.named("sky", sky, allSkies);
+  fields.key("sun", sun, maxAzimuth);
+  fields.key("exposure", exposure, Light::minExposure, Light::maxExposure);
+  fields.key("fog", fog, Light::minFog, Light::maxFog);
+}
+void checkKeys(const Light& light, const std::string& file, const std::string& path) {
+  if (light.sun && !isWithin(light.sun->y, Light::minElevation, Light::maxElevation))
+    throw inputError(fmt::format("{}: {}.sun[1] is {}, expected an elevation from {:.3g} to {:.5g} radians",
+                                 file, path, light.sun->y, Light::minElevation, Light::maxElevation));
+}
+
+template <class Fields>
 void keysOf(Fields& fields, Mound& mound) {
   auto& [centre, radius, height] = mound;
   fields.key("centre", centre, Scene::maxCoordinate);
@@ -436,12 +451,13 @@ void checkKeys(const Levels& levels, const std::string& file, const std::string&
 
 template <class Fields>
 void keysOf(Fields& fields, Scene& scene) {
-  auto& [name, terrain, herds, camera, events, obstacles, threats, levels, seed] = scene;
+  auto& [name, terrain, herds, camera, events, obstacles, threats, levels, light, seed] = scene;
   fields.key("name", name);
   fields.integer("seed", seed, 0, UINT64_MAX);
   fields.object("terrain", terrain);
   fields.objects("herds", herds, Scene::maxHerds, "herds");
   fields.object("camera", camera);
+  fields.nameOrObject("light", light, &Light::sky, allSkies);
   fields.objects("events", events, Scene::maxEvents, "events");
   fields.objects("obstacles", obstacles, Scene::maxObstacles, "obstacles");
   fields.objects("threats", threats, Scene::maxThreats, "threats");

@@ -249,6 +249,15 @@ class Reader {
   void object(const char* key, std::optional<Object>& value) {
     if (find(key)) object(key, value.emplace());
   }
+  // An object, or the name of one that has but its `choice`.
+  template <typename Object, typename Enum, size_t Count>
+  void nameOrObject(const char* key, Object& value, Enum Object::*choice, const std::array<Enum, Count>& all) {
+    const auto* json = find(key);
+    if (!json) return;
+    if (!json->is_string()) return object(key, value);
+    value = {};
+    named(key, value.*choice, all);
+  }
   template <typename Object>
   void objects(const char* key, std::vector<Object>& values, size_t most, const char* what) {
     const auto* json = find(key);

@@ -133,6 +133,11 @@ class Writer {
   void object(const char* key, std::optional<Object>& value) {
     if (value) object(key, *value);
   }
+  // A missing key means the default, so a scene without it stays as it was.
+  template <typename Object, typename Enum, size_t Count>
+  void nameOrObject(const char* key, Object& value, Enum Object::*, const std::array<Enum, Count>&) {
+    if (!(value == Object{})) object(key, value);
+  }
   template <typename Object>
   void objects(const char* key, std::vector<Object>& values, size_t most, const char*) {
     nlohmann::ordered_json& array = json_[key] = nlohmann::ordered_json::array();
