@@ -69,7 +69,7 @@ Cascade fitCascade(const Eye& eye, const glm::dvec3& towards, const glm::dvec2& 
   const double sized = std::max(std::ceil(radius * 8) / 8, std::hypot(along, 1e-3)) * 1.02;
   const double texel = 2 * sized / texels;
 
-    const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), towards));
+  const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), towards));
   const glm::dvec3 y = glm::cross(towards, x);
   const glm::dvec3 centre =
       eye.position + eye.forward * along;  // world, so that snapping is to one grid for ever

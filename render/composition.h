@@ -17,7 +17,7 @@ struct Composition {
 };
 
 // `lowest` and `highest` are the terrain's heights; shadowTexels is the side of a cascade's square.
-Composition compose(const View&, const LightModel&, const Heightfield&, float lowest, float highest, uint32_t width,
-                    uint32_t height, uint32_t shadowTexels);
+Composition compose(const View&, const LightModel&, const Heightfield&, float lowest, float highest,
+                    uint32_t width, uint32_t height, uint32_t shadowTexels);
 
 }  // namespace skitter::render

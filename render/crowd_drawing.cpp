@@ -169,6 +169,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
         uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
     kind.draw = drawPipeline(s, crowdShading(kind.mesh.influences, formsOf(source)));
     kind.shadow = {s.context, shadowInfo(s, kind.mesh.influences, formsOf(source))};
+    kind.contact = Contact(s, source);
     if (textures) makeParts(s, source, *textures, kind);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
@@ -184,6 +185,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       draw.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
       page.shadow = kind.shadow.bind(s.context, shadow);
       page.draw = kind.draw.bind(s.context, draw);
+      if (kind.contact) page.contact = kind.contact.makePage(s, records);
       if (!kind.parts.empty()) bindParts(s, *textures, shadow, draw, kind, page);
       kind.pages.push_back(std::move(page));
     }
@@ -262,8 +264,8 @@ void CrowdDrawing::cull(vk::CommandBuffer cmd) const {
 }
 
 void CrowdDrawing::countParts(vk::CommandBuffer cmd) const {
-  const auto hasParts = [](const Kind& kind) { return !kind.parts.empty(); };
-  if (std::none_of(kinds_.begin(), kinds_.end(), hasParts)) return;
+  const auto counts = [](const Kind& kind) { return !kind.parts.empty() || kind.contact; };
+  if (std::none_of(kinds_.begin(), kinds_.end(), counts)) return;
   constexpr vk::DeviceSize stride = sizeof(VkDrawIndexedIndirectCommand);
   constexpr vk::DeviceSize count = offsetof(VkDrawIndexedIndirectCommand, instanceCount);
   gpu::computeToTransfer(cmd);
@@ -274,9 +276,10 @@ void CrowdDrawing::countParts(vk::CommandBuffer cmd) const {
         copies.push_back({.srcOffset = list * stride + count,
                           .dstOffset = (list * kind.parts.size() + part) * stride + count,
                           .size = sizeof(uint32_t)});
-    if (copies.empty()) continue;
-    for (const Page& page : kind.pages)
-      cmd.copyBuffer(page.culled.commands.handle(), page.partDraws.handle(), copies);
+    for (const Page& page : kind.pages) {
+      if (kind.contact) kind.contact.count(cmd, page.contact, page.culled);
+      if (!copies.empty()) cmd.copyBuffer(page.culled.commands.handle(), page.partDraws.handle(), copies);
+    }
   }
   gpu::transferToGraphics(cmd);
 }
@@ -339,6 +342,12 @@ void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
         for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawListPart(cmd, kinds_[k], page, lod, p);
       }
     }
+}
+
+void CrowdDrawing::drawContacts(vk::CommandBuffer cmd) const {
+  for (const Kind& kind : kinds_)
+    if (kind.contact)
+      for (const Page& page : kind.pages) kind.contact.draw(cmd, page.contact, page.culled, kind.palette);
 }
 
 void CrowdDrawing::bindBuffers(vk::CommandBuffer cmd, const Kind& kind, const Page& page, int list) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crowd/herd.h"
+#include "render/contact.h"
 #include "render/cull.h"
 #include "render/mesh.h"
 #include "render/setting.h"
@@ -30,10 +31,13 @@ class CrowdDrawing {
   void prepare(vk::CommandBuffer) const;
   // Fills them; before a computeToGraphics().
   void cull(vk::CommandBuffer) const;
-  // Gives each part of a kind with materials its count of agents; after the computeToGraphics().
+  // Gives each part of a kind with materials, and contacts, their counts of agents; after the
+  // computeToGraphics().
   void countParts(vk::CommandBuffer) const;
   void drawShadows(vk::CommandBuffer, int cascade) const;
   void draw(vk::CommandBuffer) const;
+  // After the ground, which they darken.
+  void drawContacts(vk::CommandBuffer) const;
   // Whether there is anybody who could be drawn.
   bool hasAgents() const;
   // Of the last picture, from the device, which has drawn it.
@@ -44,6 +48,7 @@ class CrowdDrawing {
     uint32_t firstAgent = 0;
     CulledPage culled;
     gpu::Bindings draw, shadow;
+    Contact::Page contact;
     // For a kind with materials: the indirect draws of each list, part by part, and each part's bindings.
     gpu::Buffer partDraws;
     std::vector<gpu::Bindings> drawPart, shadowPart;
@@ -62,6 +67,7 @@ class CrowdDrawing {
     uint32_t palette = 0;
     Mesh mesh;
     gpu::GraphicsPipeline draw, shadow;
+    Contact contact;
     std::vector<Part> parts;  // as the mesh's
     std::vector<Worn> worn;
     std::vector<Page> pages;

@@ -137,8 +137,7 @@ Ambient ambientOf(const LightModel& m) {
       byYS += light * (d.x * d.y);
     });
   const double k = 15.0 / 8;
-  return {0.375 * mean + k * byPP, 2.0 * byY,         2.0 * byS,
-          k * (byYY - byPP),       k * (bySS - byPP), 2 * k * byYS};
+  return {0.375 * mean + k * byPP, 2.0 * byY, 2.0 * byS, k * (byYY - byPP), k * (bySS - byPP), 2 * k * byYS};
 }
 
 void setLight(shared::Picture& picture, const LightModel& m) {

@@ -11,14 +11,14 @@ namespace skitter::render {
 // What a scene's light is to a picture (docs/stages/pictures.md#light). Radiances are linear, relative to a
 // white surface that reads as about 0.8 by day.
 struct LightModel {
-  glm::dvec3 towards;    // sun or moon, unit
-  glm::dvec3 sunlight;   // on a white surface that faces it
+  glm::dvec3 towards;   // sun or moon, unit
+  glm::dvec3 sunlight;  // on a white surface that faces it
   glm::dvec3 zenith, horizon, glow;
-  double haze;           // how soon the horizon's colour is gone: by half for 1 / haze of the height's sine
-  double disc;           // the disc's brightness, in sunlights
-  double exposure;       // radiances are multiplied by it before the tone curve
+  double haze;      // how soon the horizon's colour is gone: by half for 1 / haze of the height's sine
+  double disc;      // the disc's brightness, in sunlights
+  double exposure;  // radiances are multiplied by it before the tone curve
   bool stars;
-  float fog;             // metres at which it has taken 63 %; 0: as suits the camera
+  float fog;  // metres at which it has taken 63 %; 0: as suits the camera
 };
 LightModel lightModel(const Light&);
 

@@ -214,6 +214,7 @@ void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
   pass("ground", false, false);
   obstacles.draw(cmd);
   terrain.draw(cmd);
+  crowd.drawContacts(cmd);
   pass("sky", false, true);
   sky.draw(cmd);
   rendering.reset();

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sky_reference.h"
 #include "skitter/light.h"
+#include "sky_reference.h"
 
 namespace skitter::render {
 namespace {
@@ -63,11 +63,11 @@ TEST(Light, AmbientIsTheSkysByIntegrationButForWhatHigherOrdersHold) {
     const test::Harmonics reference(model);
     glm::dvec3 inside(0);
     for (const glm::dvec3& each : reference.coefficients) inside += each * each;
-    // The light is sum_l a_l sum_m L_lm Y_lm(n), and a_3 = 0. By Cauchy and Schwarz, the orders from 4 on give
-    // at most sqrt(sum a_l a_l (2 l + 1) / (4 pi)) times the root of the energy that is left.
-    // a_4 = -1/24, a_6 = 1/64, a_8 = -1/128 over pi's: (9 / 576 + 13 / 4096 + 17 / 16384 + ..) / (4 pi) < 1/600.
-    const glm::dvec3 left = glm::sqrt(
-        glm::max(reference.squares * (4 * std::numbers::pi) - inside, glm::dvec3(0)) / 600.0);
+    // The light is sum_l a_l sum_m L_lm Y_lm(n), and a_3 = 0. By Cauchy and Schwarz, the orders from 4 on
+    // give at most sqrt(sum a_l a_l (2 l + 1) / (4 pi)) times the root of the energy that is left. a_4 =
+    // -1/24, a_6 = 1/64, a_8 = -1/128 over pi's: (9 / 576 + 13 / 4096 + 17 / 16384 + ..) / (4 pi) < 1/600.
+    const glm::dvec3 left =
+        glm::sqrt(glm::max(reference.squares * (4 * std::numbers::pi) - inside, glm::dvec3(0)) / 600.0);
     const glm::dvec3 ground = radianceIn(model, {0, -1, 0});
     for (const glm::dvec3& normal : normals()) {
       glm::dvec3 sum(0);

@@ -21,7 +21,7 @@
 namespace skitter::scenes {
 
 constexpr double cameraLimit = 1e5;  // metres
-constexpr double maxAzimuth = 1000;   // radians
+constexpr double maxAzimuth = 1000;  // radians
 constexpr size_t maxCuts = 64;
 constexpr double maxVoidValue = std::numeric_limits<double>::max();
 

@@ -251,7 +251,8 @@ class Reader {
   }
   // An object, or the name of one that has but its `choice`.
   template <typename Object, typename Enum, size_t Count>
-  void nameOrObject(const char* key, Object& value, Enum Object::*choice, const std::array<Enum, Count>& all) {
+  void nameOrObject(const char* key, Object& value, Enum Object::*choice,
+                    const std::array<Enum, Count>& all) {
     const auto* json = find(key);
     if (!json) return;
     if (!json->is_string()) return object(key, value);
