@@ -29,10 +29,13 @@ endif()
 if(SKITTER_STATIC)
   # In an archive, hidden symbols of its objects meet the host's, whose Vulkan-Hpp or tinygltf may be another. So all
   # objects are linked into one, in which they become local.
+  # Unique symbols, such as the tables that std makes of variants of more than eleven types, become local only if they are
+  # weak before.
   set(object ${PROJECT_BINARY_DIR}/skitter.o)
   list(TRANSFORM shown PREPEND --keep-global-symbol= OUTPUT_VARIABLE kept)
   add_custom_command(OUTPUT ${object} DEPENDS ${targets} ${archives} COMMENT "Linking skitter.o" VERBATIM COMMAND_EXPAND_LISTS
     COMMAND ${CMAKE_LINKER} -r --force-group-allocation --whole-archive ${archives} -o ${object}
+    COMMAND ${CMAKE_OBJCOPY} --wildcard --weaken-symbol=_ZNSt* ${object}
     COMMAND ${CMAKE_OBJCOPY} --localize-hidden --wildcard ${kept} $<$<BOOL:${SKITTER_STRIP}>:--strip-debug> ${object})
   add_library(skitter_static STATIC engine/version.cpp ${object})
   list(APPEND libraries skitter_static)
