@@ -93,6 +93,7 @@ inline HerdFacts herdFacts(const Crowd::Impl& crowd, const crowd::HerdRun& of, c
   facts.avoid = {.quanta = quanta.inMetre,
                  .look = quanta.lookOf(kind),
                  .legLength = kind.parameters.legLength,
+                 .dt = kind.parameters.dt,
                  .obstacles = obstaclesOf(crowd.scene)};
   facts.firstNumber = crowd::numberOf(crowd, kind) + of.run->firstAgent;
   return facts;

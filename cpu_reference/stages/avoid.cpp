@@ -16,6 +16,8 @@ constexpr double softness = 0.05;
 constexpr int sweeps = 6;
 constexpr double obstacleTime = 0.5, obstacleSoftness = 0.01;
 constexpr double pushSpeed = 0.3, steadySpeed = 0.05;
+constexpr double frontRoom = 0.1, nearGive = 0.015, deepGive = 0.025, easeTime = 0.1;
+constexpr double freeSpeed = 1000;
 
 // Rounding errors of the size that a float32 computation makes; none by default.
 class Rounding {
@@ -210,6 +212,74 @@ glm::dvec2 solved(const std::vector<HalfPlane>& planes, const std::vector<Obstac
   return v;
 }
 
+// The side of an agent's cell that faces a neighbour: velocities of at most these numbers along n, m/s.
+struct CellSide {
+  glm::dvec2 n;
+  double near, deep;
+  double eased;  // as the deep one, for the body's speed
+};
+
+CellSide sideOf(const AvoidTuning& tuning, const Walker& self, const Seen& seen, const glm::dvec2& desired,
+                Rounding& rounded) {
+  const Walker& other = *seen.walker;
+  const glm::dvec2 p = glm::dvec2(seen.x, seen.z) / tuning.quanta;
+  const double d = glm::length(p), radii = static_cast<double>(seen.radii) / tuning.quanta;
+  const double smaller = static_cast<double>(std::min(self.radius, other.radius)) / tuning.quanta;
+  const glm::dvec2 n = seen.distance2 > 0 ? rounded(p / d, 4) : glm::dvec2(0);
+  const double inFront = glm::dot(n, desired) / std::max(glm::length(desired), 1e-6);
+  const double front = frontRoom * std::clamp(2 * rounded(inFront, 8), 0.0, 1.0);
+  const double leaves = std::max(0.0, glm::dot(n, other.velocity));
+  // Half of the gap is the neighbour's, if it holds itself to it.
+  const auto own = [&](double give) {
+    const double gap = rounded(d - (1 + front) * radii + give * smaller, 4 * (d + 2 * radii));
+    return (other.yields ? 0.5 : 1.0) * std::max(0.0, gap);
+  };
+  const auto eased = [&](double way) { return std::min(way / tuning.dt, way / easeTime + leaves); };
+  const double near = own(nearGive), deep = own(deepGive);
+  return {n, eased(near), deep / tuning.dt, eased(deep)};
+}
+
+// How fast the body may go on along its heading.
+double speedAlong(const CellSide& side, const glm::dvec2& heading, Rounding& rounded) {
+  const double toward = rounded(glm::dot(side.n, heading), 4);
+  if (toward <= 0) return freeSpeed;
+  const double speed = side.eased / std::max(toward, 1e-6);
+  return rounded(speed, 8 * speed);
+}
+
+// Moves a wish into the cell.
+glm::dvec2 withinCell(const std::vector<CellSide>& sides, glm::dvec2 v, int choice, AvoidResult& result,
+                      Rounding& rounded) {
+  std::vector<std::pair<double, int>> beyond;
+  for (size_t k = 0; k < sides.size(); ++k) {
+    const double excess = glm::dot(sides[k].n, v) - sides[k].near;
+    if (excess > 0) beyond.emplace_back(-excess, static_cast<int>(k));
+  }
+  std::ranges::sort(beyond);
+  result.worstMargin = std::numeric_limits<double>::infinity();
+  if (!beyond.empty()) {
+    result.worst = choice >= 0 ? choice : beyond[0].second;
+    if (beyond.size() > 1) {
+      result.nextWorst = beyond[1].second;
+      result.worstMargin = beyond[1].first - beyond[0].first;
+    }
+    const CellSide& worst = sides[static_cast<size_t>(result.worst)];
+    const glm::dvec2 way = rightOf(worst.n), onto = worst.near * worst.n;
+    double from = -freeSpeed * 1000, to = freeSpeed * 1000;
+    for (const CellSide& side : sides) {
+      const double slope = glm::dot(side.n, way), left = side.deep - glm::dot(side.n, onto);
+      if (slope > 1e-6) to = std::min(to, rounded(left, 4 * (side.deep + worst.near)) / slope);
+      if (slope < -1e-6) from = std::max(from, rounded(left, 4 * (side.deep + worst.near)) / slope);
+    }
+    v = rounded(onto + std::min(std::max(glm::dot(way, v), from), to) * way, 8 * glm::length(v));
+  }
+  double share = 1;
+  for (const CellSide& side : sides)
+    if (const double toward = glm::dot(side.n, v); toward > side.deep)
+      share = std::min(share, rounded(side.deep / toward, 8));
+  return share * v;
+}
+
 }  // namespace
 
 Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yields, double quanta) {
@@ -224,9 +294,10 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
                   std::span<const Walker> all, const glm::dvec2& desired, bool asleep,
                   const AvoidChoices& choices, const AvoidErrors& errors) {
   AvoidResult result;
-  result.standMargin = result.obstacleMargin = std::numeric_limits<double>::infinity();
+  result.standMargin = result.obstacleMargin = result.worstMargin = std::numeric_limits<double>::infinity();
   if (body.absent) {
     result.asleep = true;
+    result.mostSpeed = 0;
     return result;
   }
   Rounding rounded(errors);
@@ -236,6 +307,7 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
 
   const double speed = glm::length(desired);
   double close = 0, press = 0;
+  std::vector<CellSide> sides;
   for (const Seen& other : seen) {
     const double d = std::sqrt(static_cast<double>(other.distance2)) / tuning.quanta;
     const double radii = static_cast<double>(other.radii) / tuning.quanta;
@@ -246,6 +318,8 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
     const size_t place = result.planes.size();
     const int right = place < choices.right.size() ? choices.right[place] : -1;
     result.planes.push_back(planeOf(tuning, self, other, right, rounded));
+    sides.push_back(sideOf(tuning, self, other, desired, rounded));
+    result.mostSpeed = std::min(result.mostSpeed, speedAlong(sides.back(), body.heading, rounded));
   }
 
   for (const Beside& beside : obstaclesBeside(tuning, self, choices.otherObstacle, result.obstacleMargin))
@@ -259,6 +333,7 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
   v *= std::min(1.0, most / std::max(glm::length(v), 1e-6));
   const double slow = steadySpeed * tuning.legLength * close, moves = glm::length(v);
   v = (v + slow * body.heading) * (moves / std::max(moves + slow, 1e-6));
+  v = withinCell(sides, v, choices.worst, result, rounded);
   result.velocity = v;
 
   const double standing = 1e-2 * tuning.legLength;

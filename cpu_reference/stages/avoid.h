@@ -27,6 +27,7 @@ struct AvoidTuning {
   double quanta = 1024;  // in a metre
   int64_t look = 0;      // quanta between footprints, up to which another agent, or an obstacle, is seen
   double legLength = 1;
+  double dt = 1.0 / 60;
   std::vector<AvoidObstacle> obstacles = {};
 };
 
@@ -51,6 +52,7 @@ struct ObstaclePlane {
 struct AvoidChoices {
   std::vector<int> right = {};  // 0 or 1: forced, of the half-plane in that place
   int stands = -1;
+  int worst = -1;  // the neighbour, of the half-planes, on whose side of the cell the wish is moved
   bool otherObstacle = false;  // the nearest one that is left out takes the place of the farthest that is not
 };
 
@@ -62,6 +64,7 @@ struct AvoidErrors {
 
 struct AvoidResult {
   glm::dvec2 velocity{0};
+  double mostSpeed = 1000;  // m/s, along the heading
   bool asleep = false;
   int64_t seen = 0;                                // agents in reach, those that the cap drops among them
   std::vector<HalfPlane> planes;                   // of the nearest, the nearest first
@@ -69,6 +72,10 @@ struct AvoidResult {
   // By how much the farthest of these is nearer than the next one, a share of the lengths that this follows
   // from; infinite where there is none.
   double obstacleMargin = 0;
+  // The neighbour on whose side of the cell the wish was moved, -1 where it was in the cell; the next one,
+  // and by how much it is violated less, m/s; infinite where there is none.
+  int worst = -1, nextWorst = -1;
+  double worstMargin = 0;
   double standMargin = 0;  // of |v| from what counts as standing, m/s; infinite where not asked
 };
 

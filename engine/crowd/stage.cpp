@@ -6,6 +6,7 @@
 #include "crowd/controller.h"
 #include "crowd/controllers/controllers.h"
 #include "crowd/herd.h"
+#include "shared/avoid.h"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
 #include "skitter/records.h"
@@ -145,6 +146,7 @@ StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs) {
   // Others read no list, and go by the crowd's ticks.
   if (needs.options.levels && (stage.isOfTheAwake() || stage.over == Stage::Over::listed))
     kernels.first.constants.emplace_back(CONSTANT_LEVELS, true);
+  if (kind.avoids) kernels.first.constants.emplace_back(CONSTANT_AVOIDS, true);
   if (of.specialise != nullptr) of.specialise(kind, kernels.first);
   if (stage.specialise != nullptr) stage.specialise(needs, kernels);
   for (const StageShader& given : needs.options.shaders) {

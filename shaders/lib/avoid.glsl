@@ -1,12 +1,15 @@
 #ifndef AVOID_GLSL
 #define AVOID_GLSL
+#include "shared/avoid.h"
 // How an agent keeps clear of its neighbours (docs/stages/avoid.md).
 
 const float AVOID_HORIZON = 2.0, AVOID_PUSH_TIME = 0.5;
 const float AVOID_RIGHT_BIAS = 0.05;
 const float AVOID_SOFTNESS = 0.05;
 const int AVOID_SWEEPS = 6;
-const float AVOID_PUSH_SPEED = 0.3, AVOID_STEADY_SPEED = 0.05;
+const float AVOID_STEADY_SPEED = 0.05;
+const float AVOID_FRONT = 0.1, AVOID_NEAR = 0.015, AVOID_DEEP = 0.025, AVOID_EASE = 0.1;
+const float AVOID_FREE = 1000.0;  // m/s, faster than anybody
 
 // 1. The agents of least power, the least first, of equal ones that with the lesser number; unused ones last.
 struct Nearest {
@@ -85,6 +88,53 @@ vec2 solvePlanes(HalfPlane planes[NEIGHBOURS], vec2 v) {
       push[k] = more;
     }
   return v;
+}
+
+// 6. The side of the agent's cell toward a neighbour, of velocities v, m/s: n . v <= near is where it moves its
+// wish, n . v <= deep holds always, and n . v <= eased for the body's speed.
+struct CellSide {
+  vec2 n;
+  float near, deep, eased;
+};
+
+// `lesser`: the smaller footprint; `ahead`: unit, where the agent wants to go; `moves`: the neighbour's velocity.
+CellSide cellSideOf(vec2 p, float d, float radii, float lesser, vec2 ahead, vec2 moves, float share, float dt) {
+  vec2 n = p * (1.0 / max(d, 1e-9));
+  float gap = d - radii * (1.0 + AVOID_FRONT * clamp(2.0 * dot(n, ahead), 0.0, 1.0)), away = max(0.0, dot(n, moves));
+  float near = max(0.0, gap + AVOID_NEAR * lesser) * share, deep = max(0.0, gap + AVOID_DEEP * lesser) * share;
+  return CellSide(n, min(near / dt, near * (1.0 / AVOID_EASE) + away), deep / dt,
+                  min(deep / dt, deep * (1.0 / AVOID_EASE) + away));
+}
+
+// The speed along a unit vector at which the body stays on that side.
+float speedToward(CellSide side, vec2 along) {
+  float toward = dot(side.n, along);
+  return toward > 0.0 ? side.eased / max(toward, 1e-6) : AVOID_FREE;
+}
+
+// The velocity, moved to the side that it violates most, along that as far as the others allow, then shortened.
+vec2 withinCell(CellSide sides[NEIGHBOURS], vec2 v) {
+  vec2 n = vec2(0.0);
+  float most = 0.0, near = 0.0;
+  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
+    float beyond = dot(sides[k].n, v) - sides[k].near;
+    n = beyond > most ? sides[k].n : n;
+    near = beyond > most ? sides[k].near : near;
+    most = max(most, beyond);
+  }
+  vec2 along = vec2(-n.y, n.x), onto = near * n;
+  float least = -1e6, farthest = 1e6, share = 1.0;
+  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
+    float slope = dot(sides[k].n, along), left = sides[k].deep - dot(sides[k].n, onto);
+    farthest = slope > 1e-6 ? min(farthest, left / slope) : farthest;
+    least = slope < -1e-6 ? max(least, left / slope) : least;
+  }
+  v = most > 0.0 ? onto + min(max(dot(along, v), least), farthest) * along : v;
+  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
+    float toward = dot(sides[k].n, v);
+    share = toward > sides[k].deep ? min(share, sides[k].deep / toward) : share;
+  }
+  return share * v;
 }
 
 #endif

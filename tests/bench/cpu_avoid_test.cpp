@@ -102,12 +102,12 @@ Comparison compare(const Walkers& walkers, const std::vector<float>& records) {
     ++(isDecided ? comparison.compared : comparison.undecided);
     const float* got = &records[4 * i];
     const double error = std::hypot(got[0] - expected.velocity.x, got[1] - expected.velocity.y);
-    const bool isSame = static_cast<double>(got[3]) == static_cast<double>(expected.seen) && got[2] == 0 &&
+    const bool isSame = -static_cast<double>(got[2]) == static_cast<double>(expected.seen) &&
                         (!isDecided || error <= tolerance);
     if (isSame || !comparison.fault.empty()) continue;
     comparison.fault = "agent " + std::to_string(i) + " of " + std::to_string(walkers.size()) + ": (" +
                        std::to_string(got[0]) + ", " + std::to_string(got[1]) + "), " +
-                       std::to_string(got[3]) + " in reach, expected (" +
+                       std::to_string(-got[2]) + " in reach, expected (" +
                        std::to_string(expected.velocity.x) + ", " + std::to_string(expected.velocity.y) +
                        "), " + std::to_string(expected.seen);
   }

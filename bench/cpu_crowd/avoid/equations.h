@@ -10,6 +10,7 @@ constexpr float horizon = 2, pushTime = 0.5f;
 constexpr float rightBias = 0.05f;
 constexpr float softness = 0.05f;
 constexpr int sweeps = 6;
+constexpr float frontRoom = 0.1f, nearGive = 0.015f, deepGive = 0.025f, easeTime = 0.1f, freeSpeed = 1000;
 constexpr float pushSpeed = 0.3f, steadySpeed = 0.05f;  // leg lengths a second
 
 template <class F>
@@ -32,6 +33,7 @@ struct Neighbour {
   Vec2<F> p;  // from the agent to it
   F d;        // |p|
   F radii;    // of both
+  F lesser;   // the smaller of both
   F power;
   Vec2<F> v;     // the agent's velocity less its own
   F share;       // of the change that the agent takes
@@ -72,7 +74,7 @@ struct HalfPlane {
 // "3. Half-planes". As n . u, of a neighbour's u, is all that a bound needs, u is that number here.
 template <class F>
 HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own) {
-  const auto& [isThere, p, d, radii, power, v, share, part] = other;
+  const auto& [isThere, p, d, radii, lesser, power, v, share, part] = other;
   const Vec2<F> w{v.x - p.x * F(1 / horizon), v.z - p.z * F(1 / horizon)};
   const F along = dot(w, p), speed2 = dot(w, w), speed = squareRoot(speed2);
   // one of the cone's sides
@@ -125,7 +127,73 @@ Vec2<F> solved(const HalfPlane<F>* planes, int count, Vec2<F> v) {
   return v;
 }
 
-// "6. Result", of an agent that does not sleep.
+// "6. Cells": velocities of at most these numbers along n.
+template <class F>
+struct CellSide {
+  Vec2<F> n;
+  F near, deep, eased;
+};
+
+template <class F>
+CellSide<F> cellSideOf(const Neighbour<F>& other, const Vec2<F>& own, const Wish<F>& wish, float dt) {
+  const F inverse = F(1) / larger(other.d, F(1e-9f));
+  const Vec2<F> n{select(other.isThere, other.p.x * inverse, F(0)),
+                  select(other.isThere, other.p.z * inverse, F(0))};
+  const F ahead = dot(n, wish.desired) / larger(wish.speed, F(1e-6f));
+  const F gap = other.d - other.radii * (F(1) + F(frontRoom) * clamp(F(2) * ahead, 0, 1));
+  const F leaves = larger(F(0), dot(n, own) - dot(n, other.v));
+  const F near = larger(F(0), gap + F(nearGive) * other.lesser) * other.share;
+  const F deep = larger(F(0), gap + F(deepGive) * other.lesser) * other.share;
+  const F aTick(1 / dt), aTime(1 / easeTime);
+  return {n, smaller(near * aTick, near * aTime + leaves), deep * aTick,
+          smaller(deep * aTick, deep * aTime + leaves)};
+}
+
+// The body's speed along its heading.
+template <class F>
+F speedAlong(const CellSide<F>* sides, int count, const Vec2<F>& heading) {
+  F most(freeSpeed);
+  for (int k = 0; k < count; ++k) {
+    const F toward = dot(sides[k].n, heading);
+    most = smaller(most, select(F(0) < toward, sides[k].eased / larger(toward, F(1e-6f)), F(freeSpeed)));
+  }
+  return most;
+}
+
+template <class F>
+Vec2<F> withinCell(const CellSide<F>* sides, int count, Vec2<F> v) {
+  F nx(0), nz(0), near(0), most(0);
+  for (int k = 0; k < count; ++k) {
+    const F beyond = dot(sides[k].n, v) - sides[k].near;
+    const Mask<F> worse = most < beyond;
+    nx = select(worse, sides[k].n.x, nx);
+    nz = select(worse, sides[k].n.z, nz);
+    near = select(worse, sides[k].near, near);
+    most = larger(most, beyond);
+  }
+  const Mask<F> leaves = F(0) < most;
+  if (any(leaves)) {
+    const Vec2<F> onto{near * nx, near * nz}, along{F(0) - nz, nx};
+    F least(-1e6f), farthest(1e6f);
+    for (int k = 0; k < count; ++k) {
+      const F slope = dot(sides[k].n, along), left = sides[k].deep - dot(sides[k].n, onto);
+      const F at = left / select((F(1e-6f) < slope) | (slope < F(-1e-6f)), slope, F(1));
+      farthest = select(F(1e-6f) < slope, smaller(farthest, at), farthest);
+      least = select(slope < F(-1e-6f), larger(least, at), least);
+    }
+    const F on = smaller(larger(dot(along, v), least), farthest);
+    v = {select(leaves, onto.x + on * along.x, v.x), select(leaves, onto.z + on * along.z, v.z)};
+  }
+  F share(1);
+  for (int k = 0; k < count; ++k) {
+    const F toward = dot(sides[k].n, v);
+    const Mask<F> beyond = sides[k].deep < toward;
+    share = select(beyond, smaller(share, sides[k].deep / larger(toward, F(1e-20f))), share);
+  }
+  return {v.x * share, v.z * share};
+}
+
+// "7. Result", of an agent that does not sleep.
 template <class F>
 Vec2<F> resultOf(const Vec2<F>& v, const Wish<F>& wish, const Vec2<F>& heading, float legLength) {
   const F most = larger(wish.speed, F(pushSpeed * legLength)), length = lengthOf(v);
