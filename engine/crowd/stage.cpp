@@ -6,7 +6,6 @@
 #include "crowd/controller.h"
 #include "crowd/controllers/controllers.h"
 #include "crowd/herd.h"
-#include "shared/avoid.h"
 #include "shared/bindings.h"
 #include "shared/ik_batch.h"
 #include "skitter/records.h"

@@ -2,6 +2,6 @@
 import pathlib
 import re
 
-HEADER = pathlib.Path(__file__).resolve().parents[2] / "engine" / "include" / "skitter" / "controller.h"
+HEADER = pathlib.Path(__file__).resolve().parents[2] / "include" / "skitter" / "controller.h"
 CONTROLLERS = re.findall(r'"([a-z-]+)"', re.search(
     r"nameOf\(Controller controller\).*?\{([^{}]*)\};", HEADER.read_text(), re.S)[1])

@@ -1,6 +1,6 @@
 #ifndef AVOID_GLSL
 #define AVOID_GLSL
-#include "shared/avoid.h"
+#include "lib/aside.glsl"
 // How an agent keeps clear of its neighbours (docs/stages/avoid.md).
 
 const float AVOID_HORIZON = 2.0, AVOID_PUSH_TIME = 0.5;

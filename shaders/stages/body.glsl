@@ -1,8 +1,8 @@
 #ifndef BODY_STAGE_GLSL
 #define BODY_STAGE_GLSL
 // Stage body, for entry points that make it alone or together with gait; they declare its bindings.
+#include "lib/aside.glsl"
 #include "lib/body.glsl"
-#include "shared/avoid.h"
 #include "stages/rig_legs.glsl"
 #include "stages/ground.glsl"
 #include "stages/hurt.glsl"

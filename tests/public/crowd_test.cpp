@@ -536,6 +536,22 @@ TEST_F(PublicCrowd, RefusesScenesThatCannotBe) {
   refuse("standing: events[0]", [](Scene& scene) { scene.events = {{.at = 0, .what = HerdRemoval{7}}}; });
 }
 
+TEST_F(PublicCrowd, WhoIsFarFromTheCameraTicksLess) {
+  Scene scene = standingScene(8);
+  EXPECT_TRUE(Crowd(device(), flatGround(), scene).levels().empty());
+  Crowd crowd(device(), flatGround(), scene, {.levels = Levels{.distances = {1, 20, 60}}});
+  crowd.lookFrom(glm::vec3(30, 0, 0));
+  walk(device(), crowd, 40);
+  const std::vector<LevelFigures> levels = crowd.levels();
+  ASSERT_EQ(levels.size(), Levels::count);
+  EXPECT_EQ(levels[0].rate, 1u);
+  EXPECT_EQ(levels[2].rate, 4u);
+  EXPECT_EQ(levels[2].agents, 8u);
+  EXPECT_GT(levels[2].agentTicks, 0u);
+  scene.herds[0].avoid = true;
+  expectRefused("avoid", [&] { Crowd(device(), flatGround(), scene, {.levels = Levels{}}); });
+}
+
 TEST_F(PublicCrowd, RefusesGroundAndRigsThatCannotBe) {
   const auto refuseGround = [&](const std::string& text, const auto& change) {
     Heightfield ground = flatGround();
