@@ -317,9 +317,7 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": [{"at": -1, "mound": {}}]})", "events[0].at is -1"},
       {R"({"events": [{"at": 1}]})",
        "events[0] has 0 of mound, edit, goal, speed, teleport, add, remove, addHerd, removeHerd, threat, "
-       "leg, "
-       "expected "
-       "one"},
+       "leg, push, expected one"},
       {R"({"events": [{"mound": {}, "edit": {"columns": 1, "rows": 1, "heights": [0]}}]})",
        "events[0] has 2 of mound, edit"},
       {R"({"events": [{"mond": {}, "mound": {}}]})", "events[0].mond is no known key; did you mean mound?"},
@@ -399,7 +397,7 @@ TEST(Scene, FaultsNameFileAndField) {
       // A star turns one way at every corner.
       {R"({"obstacles": [{"polygon": {"corners": [[0, 10], [6, -8], [-9, 3], [9, 3], [-6, -8]]}}]})",
        "obstacles[0].polygon.corners is not convex"},
-      {R"({"levels": {"distances": [1, 2]}})", "levels.distances is array, expected an array of 3 numbers"},
+      {R"({"levels": {"distances": [1, 2]}})", "levels.distances is an array of 2, expected an array of 3 numbers"},
       {R"({"levels": {"distances": [1, 3, 2]}})", "levels.distances[2] is 2, expected at least 3"},
       {R"({"levels": {"most": [1, 2, -3]}})", "levels.most[2] is -3, expected a whole number from 0 to"},
       {R"({"levels": {"rates": [1]}})", "levels.rates is no known key, expected one of distances, most"},

@@ -131,7 +131,7 @@ TEST_F(React, LegsOfAFallenCreatureFoldAndHomesOfAPushedOneAreAhead) {
   const glm::dvec3 root{0.1, 0.3, 0}, home{0.6, 0, 0};
   const reference::Foot foot =
       reference::foldedFoot(tuning, heights, root, home, bodyAt(1, 1), {.target = {1, 0, 0}}, 0.5);
-  EXPECT_NEAR(foot.target.x, 0.5 * 1 + 0.5 * (0.1 + 0.6 * 0.5), 1e-12);
+  EXPECT_NEAR(foot.target.x, 0.5 * 1 + 0.5 * (0.1 + tuning.foldAside * 0.5), 1e-12);
   EXPECT_EQ(foot.progress, 0);
 }
 

@@ -44,7 +44,8 @@ void ReferenceHerd::spawn(uint32_t agents) {
   for (const Record record : allRecords)
     if (crowd::infoOf(record).kept == crowd::Kept::always) make(record);
   for (const CheckedStage& stage : checkedStages(Controller::adaptive))
-    for (const Record record : stage.writes) make(record);
+    if (stage.stage != crowd::StageId::react)  // nobody pushes it
+      for (const Record record : stage.writes) make(record);
   make(Record::metric);
   make(Record::watch);
 
