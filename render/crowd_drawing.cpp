@@ -24,8 +24,11 @@
 namespace skitter::render {
 namespace {
 
-// Each cascade's level of detail: a shadow's outline forgives much.
-constexpr int kShadowLod[shared::SHADOW_CASCADES] = {1, 3};
+// The level that each list of shadows draws: a shadow's outline forgives much.
+constexpr int kShadowLod[shared::INSTANCE_LISTS - shared::CAMERA_LODS] = {1, 3, 3};
+// The first list of each cascade, and where the last one's end.
+constexpr int kCascadeLists[shared::SHADOW_CASCADES + 1] = {shared::NEAR_FINE, shared::FAR_SHADOWS,
+                                                            shared::INSTANCE_LISTS};
 
 using gpu::BindingKind;
 
@@ -288,18 +291,18 @@ void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
                                              .palette = kinds_[k].palette,
                                              .firstAgent = page.firstAgent,
                                              .kind = k};
-      const int list = shared::CAMERA_LODS + cascade;
+      const int first = kCascadeLists[cascade], end = kCascadeLists[cascade + 1];
       const auto cutout = [](const Worn& worn) { return worn.cutout; };
       if (std::ranges::none_of(kinds_[k].worn, cutout)) {
         kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
-        drawList(cmd, kinds_[k], page, list);
+        for (int list = first; list < end; ++list) drawList(cmd, kinds_[k], page, list);
         continue;
       }
       for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
         const gpu::GraphicsPipeline& pipeline = shadowOf(kinds_[k], p);
         const bool own = &pipeline != &kinds_[k].shadow;
         pipeline.use(cmd, own ? page.shadowPart[p] : page.shadow, gpu::bytesOf(constants));
-        drawListPart(cmd, kinds_[k], page, list, p);
+        for (int list = first; list < end; ++list) drawListPart(cmd, kinds_[k], page, list, p);
       }
     }
 }

@@ -18,9 +18,13 @@ using uint = uint32_t;
 
 // Two squares beside each other in one shadow map: sharp near the camera, coarse further away.
 SKITTER_PICTURE_CONST SHADOW_CASCADES = 2;
-// Instance lists of a page, and their indirect draws: the camera's levels of detail, then the cascades'.
+// Instance lists of a page, and their indirect draws: the camera's levels of detail, then the near
+// cascade's finer and coarser one, then the far cascade's.
 SKITTER_PICTURE_CONST CAMERA_LODS = 4;
-SKITTER_PICTURE_CONST INSTANCE_LISTS = 6;
+SKITTER_PICTURE_CONST NEAR_FINE = 4;
+SKITTER_PICTURE_CONST NEAR_COARSE = 5;
+SKITTER_PICTURE_CONST FAR_SHADOWS = 6;
+SKITTER_PICTURE_CONST INSTANCE_LISTS = 7;
 // clipFromPicture[VIEW_CAMERA], then one of each cascade.
 SKITTER_PICTURE_CONST VIEW_CAMERA = 0;
 SKITTER_PICTURE_CONST VIEWS = 3;

@@ -15,7 +15,7 @@ namespace skitter::render {
 namespace {
 
 using test::Sight;
-using Lists = std::vector<int>;  // ascending: 0 to 3 the camera's levels, 4 and 5 the cascades
+using Lists = std::vector<int>;  // ascending: 0 to 3 the camera's levels, 4 and 5 the near cascade's, 6 the far one's
 
 constexpr uint32_t kWidth = 640, kHeight = 360;
 constexpr float kRadius = 0.8f;
@@ -108,6 +108,9 @@ TEST_P(CullTest, theRadiusInPixelsChoosesTheLevel) {
     ASSERT_FALSE(found[i].empty()) << "agent " << i;
     EXPECT_EQ(found[i].front(), expected[i]) << "agent " << i;
     EXPECT_TRUE(found[i].size() == 1 || found[i][1] > 3) << "agent " << i;
+    // All are in reach of the near cascade, which draws who is small in the picture more coarsely.
+    EXPECT_EQ(std::ranges::count(found[i], 4), expected[i] < 2) << "agent " << i;
+    EXPECT_EQ(std::ranges::count(found[i], 5), expected[i] >= 2) << "agent " << i;
   }
 }
 
@@ -140,9 +143,15 @@ TEST_P(CullTest, cascadesListWhoTouchesThem) {
         places.push_back({at.x, 1, at.y});
         Lists lists{3};
         for (int i = 0; i < 2; ++i)
-          if (touches(i, places.back())) lists.push_back(4 + i);
+          if (touches(i, places.back())) lists.push_back(5 + i);
         expected.push_back(lists);
       }
+  // 21 texels of the far cascade within 0.98 of the near one's half side the far one is not looked up.
+  const double alone = 9.8 - 21 * 90.0 / 1024 - double(kRadius);
+  for (const double past : {-0.05, 0.05}) {
+    places.push_back({centres[0].x + alone + past, 1, centres[0].y});
+    expected.push_back(past < 0 ? Lists{3, 5} : Lists{3, 5, 6});
+  }
   const std::vector<Lists> found = cull(p, places);
   for (size_t i = 0; i < places.size(); ++i)
     EXPECT_EQ(
