@@ -23,6 +23,11 @@ BINDING DRAW_TINT = 9;       // LOAD4, one an agent; read where CONSTANT_TINTED 
 BINDING DRAW_MATERIAL = 10;  // uniform block MaterialBlock (material.h)
 BINDING DRAW_TEXTURES = 11;  // the material's, in the order of TextureRole: five bindings
 
+BINDING DRAW_POINTS = 16;       // LOAD4, of a kind's skin (splat.h)
+BINDING DRAW_SPLATS = 17;       // LOAD4 and STORE4, agents whose points are drawn
+BINDING DRAW_CANVAS = 18;       // uint a pixel, written by splat_points; LOAD4
+BINDING DRAW_SPLAT_STATE = 19;  // uint
+
 BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter

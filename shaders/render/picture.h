@@ -18,9 +18,18 @@ using uint = uint32_t;
 
 // Two squares beside each other in one shadow map: sharp near the camera, coarse further away.
 SKITTER_PICTURE_CONST SHADOW_CASCADES = 2;
-// Instance lists of a page, and their indirect draws: the camera's levels of detail, then the cascades'.
+// Levels of detail of a mesh: the camera's, and one more for shadows alone.
 SKITTER_PICTURE_CONST CAMERA_LODS = 4;
-SKITTER_PICTURE_CONST INSTANCE_LISTS = 6;
+SKITTER_PICTURE_CONST MESH_LODS = 5;
+// Instance lists of a page, and their indirect draws: the camera's levels of detail; agents drawn point by
+// point (splat.h); and each cascade's, a finer and a coarser one.
+SKITTER_PICTURE_CONST SPLAT_LIST = 4;
+SKITTER_PICTURE_CONST SHADOW_LISTS = 5;
+SKITTER_PICTURE_CONST CASCADE_LISTS = 2;
+SKITTER_PICTURE_CONST INSTANCE_LISTS = 9;
+// Where shadows that are left out are counted, in place of a draw.
+SKITTER_PICTURE_CONST LEFT_OUT = 9;
+SKITTER_PICTURE_CONST DRAW_COMMANDS_COUNT = 10;
 // clipFromPicture[VIEW_CAMERA], then one of each cascade.
 SKITTER_PICTURE_CONST VIEW_CAMERA = 0;
 SKITTER_PICTURE_CONST VIEWS = 3;
@@ -62,6 +71,9 @@ struct CullConstants {
   uint agents;
   float radius;                      // about the body's position, metres
   float lodPixels[CAMERA_LODS - 1];  // the radius in pixels from which each level but the last serves
+  float splatPixels;                 // below it agents are drawn point by point
+  float shadowPixels[SHADOW_CASCADES];  // from it on a cascade has the finer one of its levels
+  float leastShadow;                    // the radius in pixels below which shadows are left out
 };
 
 #ifdef __cplusplus
