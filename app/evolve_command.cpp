@@ -121,6 +121,21 @@ struct Judged {
   std::vector<GaitJudgement> found, byRule;
 };
 
+// What a gait is worth by measure: the share of the wanted speed that it keeps, less what breaks stability.
+double worthOf(const GaitJudgement& judged) {
+  return std::clamp(judged.speed / double{Evolution::wantedSpeed}, 0.0, 1.0) * (1 - judged.unstable);
+}
+
+// Patterns that a table leaves out go by the rule, so it has only gaits that were judged better than the rule's.
+std::vector<RigGait> tableOf(const Evolution& search, const std::optional<Judged>& judged) {
+  std::vector<RigGait> gaits = search.gaits();
+  if (!judged) return gaits;
+  std::vector<RigGait> better;
+  for (size_t i = 0; i < gaits.size(); ++i)
+    if (worthOf(judged->found[i]) > worthOf(judged->byRule[i])) better.push_back(std::move(gaits[i]));
+  return better;
+}
+
 nlohmann::ordered_json searchJson(const Evolution& search, const std::optional<Judged>& judged) {
   nlohmann::ordered_json json = {
       {"seed", search.options().seed},      {"batch", search.options().batch},
@@ -139,7 +154,7 @@ nlohmann::ordered_json searchJson(const Evolution& search, const std::optional<J
 void writeTable(const EvolveCommand& options, const Rig& rig, const Evolution& search,
                 const std::optional<Judged>& judged) {
   writeText(options.map(), search.map());
-  writeText(options.table(), writeGaits(rig, search.gaits(), searchJson(search, judged).dump()));
+  writeText(options.table(), writeGaits(rig, tableOf(search, judged), searchJson(search, judged).dump()));
 }
 
 void printJudgement(const char* name, const std::vector<GaitJudgement>& all) {
@@ -251,7 +266,8 @@ int evolve(const EvolveCommand& options) {
           "trial, error   {} of {} losses came to 90 % of the best gait known, in {} trials at the median, "
           "{} at most\n",
           adapted->creatures - adapted->failed, adapted->creatures, adapted->median, adapted->most);
-    fmt::print("written        {} ({} gaits), {}\n", options.table().string(), judged->found.size(),
+    fmt::print("written        {} ({} gaits of {} patterns, the others go by the rule), {}\n",
+               options.table().string(), tableOf(search, judged).size(), judged->found.size(),
                options.map().string());
   }
   return 0;
