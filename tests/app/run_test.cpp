@@ -126,8 +126,8 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   EXPECT_EQ(keysOf(run),
             (std::set<std::string>{"device", "agents", "ticks", "seed", "tickMilliseconds",
                                    "cpuMicrosecondsPerAgentTick", "watchEvery", "fidelity", "crowding",
-                                   "foraging", "damage", "reactions", "herds", "sleeping", "stateHash", "ticksWanted",
-                                   "interrupted", "manifest", "resumedAt"}));
+                                   "foraging", "damage", "reactions", "herds", "levels", "sleeping",
+                                   "stateHash", "ticksWanted", "interrupted", "manifest", "resumedAt"}));
   EXPECT_TRUE(run.at("foraging").empty()) << "nobody does";
   EXPECT_TRUE(run.at("damage").is_null()) << "nobody is hurt";
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
