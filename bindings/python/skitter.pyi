@@ -113,6 +113,10 @@ class Tuning:
     poseWalk: float
     springFrequency: float
     springDamping: float
+    fallTime: float
+    riseTime: float
+    lieTime: float
+    slideFriction: float
 
 class Spawn:
     """Where the agents of a herd start."""
