@@ -96,13 +96,14 @@ struct Reaction {
 struct Creature {
   std::vector<Limb> limbs;
   int groups = 0;
-  // Where legs are hurt or it reacts: how far its homes are from the rig's, model space, and its share of the speed.
+  // Where legs are hurt or it reacts: how far its homes are from the rig's, model space, and its share of the
+  // speed.
   glm::dvec3 shift{0};
   double speed = 1;
   // Where it reacts (cpu_reference/stages/react.h).
   std::optional<Reaction> reaction = {};
 
-  // What a push adds to how fast the feet must go.
+  // A push makes the feet go faster by so much, m/s.
   double hurry() const { return reaction && !reaction->isFallen() ? glm::length(reaction->velocity) : 0; }
   bool stumbles() const { return reaction && reaction->phase == ReactionPhase::stumbling; }
 

@@ -100,24 +100,6 @@ LightModel modelOf(Sky sky) {
           .fog = 0};
 }
 
-}  // namespace
-
-LightModel lightModel(const Light& light) {
-  LightModel m = modelOf(light.sky);
-  if (light.sun) {
-    const double azimuth = light.sun->x, elevation = light.sun->y;
-    m.towards = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-                 std::cos(azimuth) * std::cos(elevation)};
-  }
-  m.exposure *= light.exposure;
-  m.fog = light.fog.value_or(0);
-  return m;
-}
-
-glm::dvec3 radianceIn(const LightModel& m, const glm::dvec3& direction) {
-  return direction.y < 0 ? groundRadiance(m) : skyIn(m, direction.y, glm::dot(direction, m.towards));
-}
-
 // Spherical harmonics to the second order, as a polynomial of the normal (Ramamoorthi and Hanrahan 2001, "An
 // Efficient Representation for Irradiance Environment Maps"). Over pi, the cosine's lobe weighs the orders by
 // 1, 2/3 and 1/4, so with means <> over the sphere the light is <L> + 2 <L d>.n + 5/4 <L P2(n.d)>. The light
@@ -140,6 +122,25 @@ Ambient ambientOf(const LightModel& m) {
   return {0.375 * mean + k * byPP, 2.0 * byY, 2.0 * byS, k * (byYY - byPP), k * (bySS - byPP), 2 * k * byYS};
 }
 
+}  // namespace
+
+LightModel lightModel(const Light& light) {
+  LightModel m = modelOf(light.sky);
+  if (light.sun) {
+    const double azimuth = light.sun->x, elevation = light.sun->y;
+    m.towards = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                 std::cos(azimuth) * std::cos(elevation)};
+  }
+  m.exposure *= light.exposure;
+  m.fog = light.fog.value_or(0);
+  m.ambient = ambientOf(m);
+  return m;
+}
+
+glm::dvec3 radianceIn(const LightModel& m, const glm::dvec3& direction) {
+  return direction.y < 0 ? groundRadiance(m) : skyIn(m, direction.y, glm::dot(direction, m.towards));
+}
+
 void setLight(shared::Picture& picture, const LightModel& m) {
   const auto four = [](const glm::dvec3& xyz, double w) { return glm::vec4(glm::dvec4(xyz, w)); };
   picture.sun = four(m.towards, 0);
@@ -148,7 +149,7 @@ void setLight(shared::Picture& picture, const LightModel& m) {
   picture.horizon = four(m.horizon, 0);
   picture.glow = four(m.glow, m.disc);
   // The shaders have s times the sun's distance from the vertical.
-  Ambient ambient = ambientOf(m);
+  Ambient ambient = m.ambient;
   const double side = sunIn(m).x, scale = side < kNoSide ? 0 : 1 / side;
   ambient[2] *= scale;
   ambient[4] *= scale * scale;

@@ -8,6 +8,10 @@
 
 namespace skitter::render {
 
+// The light of sky and ground on a white surface with the unit normal (s, y, p), s towards sun or moon
+// along the ground: a + b y + c s + d y y + e s s + f y s, in this order.
+using Ambient = std::array<glm::dvec3, 6>;
+
 // What a scene's light is to a picture (docs/stages/pictures.md#light). Radiances are linear, relative to a
 // white surface that reads as about 0.8 by day.
 struct LightModel {
@@ -18,17 +22,13 @@ struct LightModel {
   double disc;      // the disc's brightness, in sunlights
   double exposure;  // radiances are multiplied by it before the tone curve
   bool stars;
-  float fog;  // metres at which it has taken 63 %; 0: as suits the camera
+  float fog;             // metres at which it has taken 63 %; 0: as suits the camera
+  Ambient ambient = {};  // follows from the others, by some 40,000 looks at the sky
 };
 LightModel lightModel(const Light&);
 
 // The sky's in a unit direction; below the horizon the ground's.
 glm::dvec3 radianceIn(const LightModel&, const glm::dvec3& direction);
-
-// The light of sky and ground on a white surface with the unit normal (s, y, p), s towards sun or moon
-// along the ground: a + b y + c s + d y y + e s s + f y s, in this order.
-using Ambient = std::array<glm::dvec3, 6>;
-Ambient ambientOf(const LightModel&);
 
 void setLight(shared::Picture&, const LightModel&);
 

@@ -134,8 +134,8 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   drew = true;
   const vk::Extent2D extent = colour.extent();
   const render::Composition composition =
-      render::compose(view, light, setting.terrain, terrain.lowest(), terrain.highest(), extent.width, extent.height,
-                      shadow.texels());
+      render::compose(view, light, setting.terrain, terrain.lowest(), terrain.highest(), extent.width,
+                      extent.height, shadow.texels());
   context.beginLabel(cmd, "picture");
   timer.reset(cmd);
   timer.next(cmd, "cull");

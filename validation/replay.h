@@ -129,7 +129,7 @@ class Replay {
 
   Heightfield terrain_;
   Setting setting_;
-  std::optional<Setting> ofAgent_;  // made of setting_ where there is none
+  std::optional<Setting> ofAgent_;    // made of setting_ where there is none
   std::map<uint64_t, Setting> over_;  // of agents that tick in every so many-th tick
   std::vector<crowd::StageId> only_;
   std::vector<Judge> judges_;

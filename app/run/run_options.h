@@ -28,7 +28,7 @@ struct RunOptions {
   std::optional<double> fps, slow;  // of a video
   Size size{1280, 720};
   std::string view, out, json, trace, footfalls;
-  std::optional<Sky> light;  // none: as the scene says
+  std::optional<Sky> light;           // none: as the scene says
   std::string save, resume;           // state files
   std::string levels;                 // of rate: "default", a file, or those of the scene
   std::optional<uint64_t> saveEvery;  // frames

@@ -28,7 +28,7 @@ struct HerdFigures {
   Fidelity fidelity;
 };
 
-// Of a herd with reactions, since its agents came.
+// A herd with reactions has these figures; they begin when its agents come.
 struct ReactionFigures {
   uint32_t herd = 0;
   uint64_t falls = 0, stands = 0;  // of all its agents

@@ -15,7 +15,7 @@ namespace skitter::reference {
 
 inline constexpr int rateLevels = 4;
 
-// Of each level but the last one.
+// One value for each level but the last one.
 template <typename Value>
 using RateBounds = std::array<Value, rateLevels - 1>;
 
@@ -31,7 +31,7 @@ struct RatedBlock {
   std::vector<glm::dvec3> places = {};  // of its agents, world metres
 };
 
-// What a tick counts of a block.
+// A tick counts a block so.
 struct SeenBlock {
   double square = 0;  // of its distance, quarter metres
   size_t agents = 0;

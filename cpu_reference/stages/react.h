@@ -9,7 +9,7 @@
 
 namespace skitter::reference {
 
-// What react decides, each by a number that is above a threshold or not.
+// React decides each of these by a number that is above a threshold or not; its unit stands beside it.
 enum class ReactDecision {
   losesGround,  // metres
   isCaught,     // metres

@@ -85,8 +85,8 @@ inline double foot(const Step& step, const AgentBody& body, bool planted) {
 // Distance of a foot from its root or home.
 inline double footDistance(double length) { return relative + rotated(length); }
 
-// What the body's bounds begin with: of follow, of the points that its plane goes through, and of the blends
-// of height and tilt.
+// Inputs of the body err by so much: follow, the points that its plane goes through (level and upright), and
+// the blends of height and tilt.
 struct BodyInputs {
   double follow = 0, horizontal = 0, vertical = 0, blend = 0;
 };

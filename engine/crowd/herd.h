@@ -211,8 +211,8 @@ struct Crowd::Impl {
   float dt = 0;               // of the first tick; 0 before it
   gpu::StageTimer timer;
   std::optional<crowd::RateLevels> rates;  // where there are levels of them
-  Scene scene;                  // that it was made of
-  bool rigsAreCallers = false;  // not those that the scene names
+  Scene scene;                             // that it was made of
+  bool rigsAreCallers = false;             // not those that the scene names
 
   // One that is gone has no places. Throws Error(input) where no herd had that number.
   const crowd::Herd& herdAt(uint32_t herd) const;

@@ -303,8 +303,8 @@ SKITTER_CONST float REACTION_RISING = 5.0;
 // Below so many legs that carry a creature lies on its belly, and cannot fall.
 SKITTER_CONST int FEWEST_THAT_FALL = 3;
 
-// rate, per agent where there are levels of rate, written by wake (docs/levels.md). All agents of a block have
-// the same.
+// rate, per agent where there are levels of rate, written by wake (docs/levels.md). All agents of a block
+// have the same.
 //   [0] level at which it goes on from its last tick, level of that tick, that tick, unused
 SKITTER_CONST int RATE_STRIDE = 1;
 // An agent of level k ticks in every 2^k-th tick.

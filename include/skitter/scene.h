@@ -286,11 +286,11 @@ struct SKITTER_API Scene {
   std::variant<TerrainNoise, TerrainFile> terrain;
   std::vector<Herd> herds{Herd{}};
   Camera camera;
-  std::vector<Event> events;        // by time; Crowd::record lets them happen
-  std::vector<Obstacle> obstacles;  // herds with ways go around them, those that avoid keep clear of them
-  std::vector<Threat> threats;      // and around these; Crowd::setThreat names them by their index
+  std::vector<Event> events;          // by time; Crowd::record lets them happen
+  std::vector<Obstacle> obstacles;    // herds with ways go around them, those that avoid keep clear of them
+  std::vector<Threat> threats;        // and around these; Crowd::setThreat names them by their index
   std::optional<Levels> levels = {};  // of rate, where CrowdOptions::levels does not say others
-  Light light;                      // of pictures
+  Light light;                        // of pictures
   uint64_t seed = 1;
 
   Heightfield loadTerrain() const;  // throws Error(input)

@@ -29,9 +29,9 @@ SKITTER_RECORDS(BIND)
 #undef BIND
 // A page's own, for its stages only.
 //
-// Legs that begin a step: uint, leg record * 2 + (1 if aimed anew); where there are levels of rate, + LIST_LEVEL *
-// the level of this tick. Later in the tick, legs that ik's first
-// dispatch leaves: uint, leg record. For controllers that play clips, agents that fade: uint.
+// Legs that begin a step: uint, leg record * 2 + (1 if aimed anew); where there are levels of rate, +
+// LIST_LEVEL * the level of this tick. Later in the tick, legs that ik's first dispatch leaves: uint, leg
+// record. For controllers that play clips, agents that fade: uint.
 BINDING BINDING_LIST = 60;
 BINDING BINDING_COUNTERS = 61;
 BINDING BINDING_HISTOGRAM = 62;

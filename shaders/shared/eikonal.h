@@ -31,9 +31,9 @@ EIKONAL bool isBeyond(eikonal_uint m, eikonal_uint apart, eikonal_uint across) {
   return int(m * m + (m - apart) * (m - apart) - across * across) > 0;
 }
 
-// From the lesser times a and b beside the cell in x and z, 0 or more, and the time h > 0 that it takes to cross
-// it: Godunov's upwind scheme in whole units of the cell. Greater than the times that it depends on, and never
-// less where one of them is greater: no order of cells shows in the times of a field.
+// From the lesser times a and b beside the cell in x and z, 0 or more, and the time h > 0 that it takes to
+// cross it: Godunov's upwind scheme in whole units of the cell. Greater than the times that it depends on,
+// and never less where one of them is greater: no order of cells shows in the times of a field.
 EIKONAL float eikonal(float a, float b, float h) {
 #ifdef __cplusplus
   using std::floor, std::max, std::min, std::sqrt;

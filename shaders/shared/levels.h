@@ -17,18 +17,18 @@ LEVEL LEVELS_NEAREST = 8;
 // Distances of a histogram: eight buckets of equal width an octave, from LEVELS_NEAREST on.
 LEVEL LEVELS_BUCKETS = 232;
 
-// Of each level but the last one: its farthest distance, and how many agents it and the levels before it may
-// have in all. Constant.
+// Each level but the last one has a farthest distance, and a number of agents that it and the levels before
+// it may have in all. Both are constant.
 LEVEL LEVELS_FAR = 0;
 LEVEL LEVELS_MOST = 4;
-// Of each level, two words, low and high: agents times ticks that they have made since the start.
+// Each level has two words, low and high: agents times ticks that they have made since the start.
 LEVEL LEVELS_TICKS = 8;
-// Of each level: its agents after the last tick.
+// Each level has the number of its agents after the last tick.
 LEVEL LEVELS_AGENTS = 16;
-// In turn for even and odd ticks. Of each level but the last one: the farthest distance at which it has room.
+// Each level but the last one has a farthest distance at which it has room, in turn for even and odd ticks.
 LEVEL LEVELS_EDGE = 24;
 LEVEL LEVELS_EDGES = 4;
-// In turn for even and odd ticks: agents by the distance of their block before the tick.
+// The histogram counts agents by the distance of their block before the tick, in turn for even and odd ticks.
 LEVEL LEVELS_HISTOGRAM = 32;
 LEVEL LEVELS_HISTOGRAM_STRIDE = 256;
 LEVEL LEVELS_WORDS = 544;

@@ -43,7 +43,7 @@ Parameters allParameters() {
 }
 Parameters parameters = allParameters();
 
-// What is left of a difference that shrinks by `blend` a tick, after so many: a power of two.
+// The blend of so many ticks (a power of two) in one, where each takes `blend` of what is left.
 float blendOver(float blend, float ticks) {
   float keep = 1.0 - blend, two = keep * keep, four = two * two;
   return 1.0 - (ticks >= 8.0 ? four * four : ticks >= 4.0 ? four : ticks >= 2.0 ? two : keep);

@@ -397,7 +397,8 @@ TEST(Scene, FaultsNameFileAndField) {
       // A star turns one way at every corner.
       {R"({"obstacles": [{"polygon": {"corners": [[0, 10], [6, -8], [-9, 3], [9, 3], [-6, -8]]}}]})",
        "obstacles[0].polygon.corners is not convex"},
-      {R"({"levels": {"distances": [1, 2]}})", "levels.distances is an array of 2, expected an array of 3 numbers"},
+      {R"({"levels": {"distances": [1, 2]}})",
+       "levels.distances is an array of 2, expected an array of 3 numbers"},
       {R"({"levels": {"distances": [1, 3, 2]}})", "levels.distances[2] is 2, expected at least 3"},
       {R"({"levels": {"most": [1, 2, -3]}})", "levels.most[2] is -3, expected a whole number from 0 to"},
       {R"({"levels": {"rates": [1]}})", "levels.rates is no known key, expected one of distances, most"},

@@ -23,7 +23,7 @@ class EventsTest : public GpuTest {};
 
 // The message of the Error(input) that the call throws, or "taken".
 template <typename Call>
-std::string inputFault(const Call& call) {
+std::string outcomeOf(const Call& call) {
   try {
     call();
   } catch (const Error& error) {
@@ -458,7 +458,7 @@ TEST_F(EventsTest, BeyondTheMapAreRefusedOrChangeNothing) {
     Scene scene = sceneOf(2);
     scene.name = "late.json";
     scene.events = {{0, Mound{}}, std::move(event)};
-    return inputFault([&] {
+    return outcomeOf([&] {
       Crowd crowd(device(), ground, scene);
       simulate(device(), crowd, 2);
     });
@@ -474,7 +474,7 @@ TEST_F(EventsTest, AboutNobodyAreRefusedWhenTheCrowdIsMade) {
   const auto faultOf = [&](const decltype(Event::what)& what) -> std::string {
     Scene scene = twoHerds();
     scene.events = {{0, Mound{}}, {9, what}};
-    return inputFault([&] { Crowd(device(), flatGround(), scene); });
+    return outcomeOf([&] { Crowd(device(), flatGround(), scene); });
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::string event = "two.json: events[1]";
@@ -506,7 +506,7 @@ TEST_F(EventsTest, AboutNobodyAreRefusedWhenTheCrowdIsMade) {
 TEST_F(EventsTest, OfHerdsThatCannotBeAreRefusedWhenTheCrowdIsMade) {
   const auto faultIn = [&](Scene scene, const std::vector<decltype(Event::what)>& events) -> std::string {
     for (const auto& what : events) scene.events.push_back({1, what});
-    return inputFault([&] { Crowd(device(), flatGround(), scene); });
+    return outcomeOf([&] { Crowd(device(), flatGround(), scene); });
   };
   const auto faultOf = [&](const std::vector<decltype(Event::what)>& events) {
     return faultIn(twoHerds(), events);

@@ -298,6 +298,18 @@ Results beyondTheLimits(Device& device, Controller controller, const CrowdOption
   return replay(device, crowd, ground, 60);
 }
 
+// What the host has said happens before the first of them.
+void replayTicks(Device& device, Crowd& crowd, validation::Replay& replay, int ticks) {
+  crowd::applyChanges(implOf(crowd));
+  HerdState before = crowd.download(0);
+  for (int i = 0; i < ticks; ++i) {
+    simulate(device, crowd, 1);
+    HerdState after = crowd.download(0);
+    replay.tick(crowd.tick(), before, after);
+    before = std::move(after);
+  }
+}
+
 // Every agent is hurt in a way of its own, some to where they lie down; later half of them heal.
 Results losingLegs(Device& device, Controller controller, const CrowdOptions& options) {
   constexpr uint32_t agents = 24, legs = 8;
@@ -307,16 +319,7 @@ Results losingLegs(Device& device, Controller controller, const CrowdOptions& op
   Crowd crowd(device, ground, scene, options);
   simulate(device, crowd, 40);
   validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
-  const auto run = [&](int ticks) {
-    crowd::applyChanges(implOf(crowd));
-    HerdState before = crowd.download(0);
-    for (int i = 0; i < ticks; ++i) {
-      simulate(device, crowd, 1);
-      HerdState after = crowd.download(0);
-      replay.tick(crowd.tick(), before, after);
-      before = std::move(after);
-    }
-  };
+  const auto run = [&](int ticks) { replayTicks(device, crowd, replay, ticks); };
   std::vector<AgentLeg> hurt;
   const auto add = [&](uint32_t agent, uint32_t leg, LegState state) {
     hurt.push_back({crowd.agentId(0, agent), leg % legs, state, (agent + leg) % 4});
@@ -346,16 +349,7 @@ Results gettingPushed(Device& device, Controller controller, const CrowdOptions&
   Crowd crowd(device, ground, scene, options);
   simulate(device, crowd, 40);
   validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
-  const auto run = [&](int ticks) {
-    crowd::applyChanges(implOf(crowd));
-    HerdState before = crowd.download(0);
-    for (int i = 0; i < ticks; ++i) {
-      simulate(device, crowd, 1);
-      HerdState after = crowd.download(0);
-      replay.tick(crowd.tick(), before, after);
-      before = std::move(after);
-    }
-  };
+  const auto run = [&](int ticks) { replayTicks(device, crowd, replay, ticks); };
   const auto pushAll = [&](float strongest, uint32_t every) {
     for (uint32_t agent = 0; agent < agents; agent += every) {
       const float angle = 2.4f * static_cast<float>(agent);
@@ -409,9 +403,10 @@ Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOpti
   validation::Lockstep lockstep(crowd, scene, kTick);
   for (int i = 0; i < 160; ++i) {
     lockstep.begin();
-    const float t = static_cast<float>(crowd.tick());
-    crowd.lookFrom(
-        {20 * std::sin(0.05f * t), 1 + 12 * std::abs(std::sin(0.031f * t)), 20 * std::cos(0.043f * t)});
+    // Low through the crowd, so that levels are full, then over it and away.
+    const float t = static_cast<float>(crowd.tick()), wide = t < 100 ? 7 : 20;
+    crowd.lookFrom({wide * std::sin(0.02f * t), 1 + (t < 100 ? 0 : 12 * std::abs(std::sin(0.031f * t))),
+                    wide * std::cos(0.017f * t)});
     simulate(device, crowd, 1);
     lockstep.end();
   }

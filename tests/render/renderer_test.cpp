@@ -354,7 +354,8 @@ TEST_P(RendererTest, feetDarkenTheGroundThatTheyTouchAndNoOther) {
     ++judged;
     EXPECT_LT(lightnessAt(with, foot + 0.04f * out), 0.9 * lightnessAt(without, foot + 0.04f * out))
         << "leg " << leg;
-    EXPECT_EQ(lightnessAt(with, foot + 0.25f * out), lightnessAt(without, foot + 0.25f * out)) << "leg " << leg;
+    EXPECT_EQ(lightnessAt(with, foot + 0.25f * out), lightnessAt(without, foot + 0.25f * out))
+        << "leg " << leg;
   }
   EXPECT_GE(judged, 2);
 }

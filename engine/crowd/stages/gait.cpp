@@ -88,6 +88,7 @@ Stage navigateBodyAndGaitStage() {
   stage.code = {embedded::navigate_body_gait_comp_texel(), embedded::navigate_body_gait_comp_storage()};
   stage.hurtCode = {embedded::navigate_body_gait_hurt_comp_texel(),
                     embedded::navigate_body_gait_hurt_comp_storage()};
+  stage.reactCode.reset();  // react comes between navigate and body
   std::erase_if(stage.bindings, [](const gpu::BindingDecl& decl) { return decl.binding == BINDING_STEER; });
   stage.bindings.push_back({BINDING_GOAL, load4});
   stage.bindings.push_back({BINDING_GOAL_OUT, store});
