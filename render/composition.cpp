@@ -115,7 +115,7 @@ Composition compose(const View& view, const LightModel& light, const Heightfield
   b.eye = glm::vec4(glm::vec3(position), float(2 * eye.tanY / height));
   b.right = glm::vec4(glm::vec3(eye.right * eye.tanX), 0);
   b.up = glm::vec4(glm::vec3(eye.up * eye.tanY), 0);
-  setLight(b, light);
+  b.sun = glm::vec4(glm::vec3(light.towards), 0);
   b.tile = glm::vec4(float(tileAt.x), float(tileAt.y), c.viewDistance, 1 / fog);
   b.ground = glm::vec4(float(terrain.originX() - c.origin.x), float(terrain.originZ() - c.origin.y),
                        terrain.spacingX, terrain.spacingZ);

@@ -71,7 +71,7 @@ gpu::GraphicsPipeline drawPipeline(const Setting& s, gpu::GraphicsInfo info) {
   info.colour = s.colour;
   info.depth = s.depth;
   info.samples = s.samples;
-  info.constants.push_back({shared::CONSTANT_ROOTS, s.filtered()});
+  std::ranges::copy(s.lit(), std::back_inserter(info.constants));
   return {s.context, info};
 }
 

@@ -1,8 +1,11 @@
 #include "render/light.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
+
+#include "render/bindings.h"
 
 namespace skitter::render {
 namespace {
@@ -141,20 +144,28 @@ glm::dvec3 radianceIn(const LightModel& m, const glm::dvec3& direction) {
   return direction.y < 0 ? groundRadiance(m) : skyIn(m, direction.y, glm::dot(direction, m.towards));
 }
 
-void setLight(shared::Picture& picture, const LightModel& m) {
-  const auto four = [](const glm::dvec3& xyz, double w) { return glm::vec4(glm::dvec4(xyz, w)); };
-  picture.sun = four(m.towards, 0);
-  picture.sunlight = four(m.sunlight, m.exposure);
-  picture.zenith = four(m.zenith, m.haze);
-  picture.horizon = four(m.horizon, 0);
-  picture.glow = four(m.glow, m.disc);
+LightNumbers lightNumbers(const LightModel& m) {
+  LightNumbers numbers{.sunlight = glm::vec3(m.sunlight),
+                       .exposure = float(m.exposure),
+                       .zenith = glm::vec3(m.zenith),
+                       .haze = float(m.haze),
+                       .horizon = glm::vec3(m.horizon),
+                       .glow = glm::vec3(m.glow),
+                       .disc = float(m.disc),
+                       .ambient = {}};
   // The shaders have s times the sun's distance from the vertical.
-  Ambient ambient = m.ambient;
   const double side = sunIn(m).x, scale = side < kNoSide ? 0 : 1 / side;
-  ambient[2] *= scale;
-  ambient[4] *= scale * scale;
-  ambient[5] *= scale;
-  for (size_t i = 0; i < ambient.size(); ++i) picture.ambient[i] = four(ambient[i], 0);
+  const std::array<double, 6> scales{1, 1, scale, 1, scale * scale, scale};
+  for (size_t i = 0; i < scales.size(); ++i) numbers.ambient[i] = glm::vec3(m.ambient[i] * scales[i]);
+  return numbers;
+}
+
+std::vector<gpu::SpecConstant> lightConstants(const LightModel& m) {
+  constexpr size_t count = sizeof(LightNumbers) / sizeof(float);
+  const auto numbers = std::bit_cast<std::array<float, count>>(lightNumbers(m));
+  std::vector<gpu::SpecConstant> constants;
+  for (size_t i = 0; i < count; ++i) constants.emplace_back(shared::CONSTANT_LIGHT + uint32_t(i), numbers[i]);
+  return constants;
 }
 
 }  // namespace skitter::render

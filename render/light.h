@@ -2,8 +2,9 @@
 
 #include <array>
 #include <glm/glm.hpp>
+#include <vector>
 
-#include "render/picture.h"
+#include "gpu/kernel.h"
 #include "skitter/light.h"
 
 namespace skitter::render {
@@ -30,6 +31,17 @@ LightModel lightModel(const Light&);
 // The sky's in a unit direction; below the horizon the ground's.
 glm::dvec3 radianceIn(const LightModel&, const glm::dvec3& direction);
 
-void setLight(shared::Picture&, const LightModel&);
+// What shaders have of it, as constants from CONSTANT_LIGHT on (shaders/render/light.glsl).
+struct LightNumbers {
+  glm::vec3 sunlight;
+  float exposure;
+  glm::vec3 zenith;
+  float haze;
+  glm::vec3 horizon, glow;
+  float disc;
+  std::array<glm::vec3, 6> ambient;  // s is multiplied by the sun's distance from the vertical
+};
+LightNumbers lightNumbers(const LightModel&);
+std::vector<gpu::SpecConstant> lightConstants(const LightModel&);
 
 }  // namespace skitter::render

@@ -71,7 +71,7 @@ ObstacleDrawing::ObstacleDrawing(const Setting& s, const Crowd::Impl& crowd) {
   info.samples = s.samples;
   info.depthUse = gpu::DepthUse::reversed;
   info.cull = vk::CullModeFlagBits::eBack;
-  info.constants = {{shared::CONSTANT_ROOTS, s.filtered()}};
+  info.constants = s.lit();
   list.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
   draw_ = gpu::GraphicsPipeline(s.context, info);
   drawBindings_ = draw_.bind(s.context, list);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gpu/graphics.h"
+#include "render/bindings.h"
 #include "render/ground_map.h"
 #include "render/shadow.h"
 #include "skitter/heightfield.h"
@@ -18,7 +19,14 @@ struct Setting {
   const ShadowMap& shadow;
   vk::Format colour, depth;
   vk::SampleCountFlagBits samples;
+  const std::vector<gpu::SpecConstant> light;  // lightConstants of the scene's
 
+  // Constants of whatever is lit (shaders/render/light.glsl).
+  std::vector<gpu::SpecConstant> lit() const {
+    std::vector<gpu::SpecConstant> constants = light;
+    constants.emplace_back(shared::CONSTANT_ROOTS, filtered());
+    return constants;
+  }
   bool filtered() const { return samples == vk::SampleCountFlagBits::e1; }  // edges are smoothed afterwards
 };
 

@@ -247,6 +247,9 @@ Terrain::Terrain(const Setting& s) : field_(s.terrain), relief_(reliefOf(s.terra
   for (const bool detailed : {true, false})
     for (const bool shaded : {true, false}) {
       Form& form = forms_[size_t(GroundForm{detailed, shaded}.index())];
+      std::vector<gpu::SpecConstant> constants = s.lit();
+      constants.emplace_back(shared::CONSTANT_DETAIL, detailed);
+      constants.emplace_back(shared::CONSTANT_SHADED, shaded);
       form.pipeline = gpu::GraphicsPipeline(
           s.context, {.name = "ground",
                       .vertex = embedded::terrain_vert(),
@@ -261,9 +264,7 @@ Terrain::Terrain(const Setting& s) : field_(s.terrain), relief_(reliefOf(s.terra
                       .colour = s.colour,
                       .depth = s.depth,
                       .samples = s.samples,
-                      .constants = {{shared::CONSTANT_ROOTS, s.filtered()},
-                                    {shared::CONSTANT_DETAIL, detailed},
-                                    {shared::CONSTANT_SHADED, shaded}}});
+                      .constants = constants});
       form.bindings = form.pipeline.bind(s.context, list);
     }
 

@@ -33,6 +33,9 @@ BINDING CONSTANT_STUMPS = 6;    // bones may be lost
 BINDING CONSTANT_DETAIL = 7;    // ground so near that its finest detail may be seen
 BINDING CONSTANT_SHADED = 8;    // ground on which shadows may fall
 BINDING CONSTANT_STARS = 9;
+// From here on the numbers of the light, in the order of `LightNumbers` in render/light.h. As numbers of the
+// picture's block they would cost a software device a fifth of what ground costs.
+BINDING CONSTANT_LIGHT = 16;
 #undef BINDING
 
 #ifdef __cplusplus

@@ -26,8 +26,8 @@ void main() {
   float rim = 1.0 - max(dot(normal, toEye), 0.0);
   rim *= rim * rim;
   vec3 ambient = ambientLight(normal) * colour.a;
-  vec3 light = colour.rgb * (picture.sunlight.rgb * (facing * lit) + ambient) +
-               picture.sunlight.rgb * (0.10 * sheen * lit * smoothstep(0.0, 0.15, facing)) +
+  vec3 light = colour.rgb * (SUN_LIGHT * (facing * lit) + ambient) +
+               SUN_LIGHT * (0.10 * sheen * lit * smoothstep(0.0, 0.15, facing)) +
                ambient * rim * 0.35;
   outColour = vec4(developed(hazed(light, -toEye, away, picture.tile.w, sun)), 1.0);
 }

@@ -35,6 +35,6 @@ void main() {
   vec3 normal = normalize(smoothNormal * (1.0 + dot(smoothNormal, bump)) - bump);
   float lit = open.y * sunlight(position, smoothNormal, 3.0);
   float openness = open.x * mix(0.5, 1.0, smoothstep(0.0, 0.7, above)) * (1.0 + 0.12 * clods.x);
-  vec3 light = albedo * (picture.sunlight.rgb * (max(dot(normal, sun), 0.0) * lit) + ambientLight(normal) * openness);
+  vec3 light = albedo * (SUN_LIGHT * (max(dot(normal, sun), 0.0) * lit) + ambientLight(normal) * openness);
   outColour = vec4(developed(hazed(light, -toEye, away, picture.tile.w, sun)), 1.0);
 }

@@ -31,22 +31,17 @@ SKITTER_PICTURE_CONST DRAW_WORDS = 5;
 
 struct Picture {
   mat4 clipFromPicture[VIEWS];
-  vec4 planes[4];   // of the camera's pyramid: inside where dot(xyz, p) + w > 0
-  vec4 eye;         // xyz; metres across a pixel one metre away
-  vec4 right;       // scaled to the edge of the picture one metre ahead
-  vec4 up;          // likewise
-  vec4 forward;     // unit; metres ahead at which shadows have faded
-  vec4 sun;         // unit, towards the sun
-  vec4 tile;        // x, z of the tile at the origin of picture space; distance at which drawing ends;
-                    // 1 / distance at which fog has taken 63 %
-  vec4 ground;      // picture x, z of height sample (0, 0); metres a sample in x and z
-  vec4 shadow;      // metres a texel in the near and the far cascade; height of the eye above the terrain's
-                    // highest point, 0 if below; size of the shadow map's square in texels
-  vec4 sunlight;    // rgb on a white surface that faces the sun; exposure
-  vec4 zenith;      // rgb; how soon the horizon's colour is gone
-  vec4 horizon;     // rgb
-  vec4 glow;        // rgb about the sun; brightness of its disc
-  vec4 ambient[6];  // rgb: 1, y, s, y y, s s and y s of a normal, s = dot(normal.xz, sun.xz)
+  vec4 planes[4];  // of the camera's pyramid: inside where dot(xyz, p) + w > 0
+  vec4 eye;        // xyz; metres across a pixel one metre away
+  vec4 right;      // scaled to the edge of the picture one metre ahead
+  vec4 up;         // likewise
+  vec4 forward;    // unit; metres ahead at which shadows have faded
+  vec4 sun;        // unit, towards the sun
+  vec4 tile;       // x, z of the tile at the origin of picture space; distance at which drawing ends;
+                   // 1 / distance at which fog has taken 63 %
+  vec4 ground;     // picture x, z of height sample (0, 0); metres a sample in x and z
+  vec4 shadow;     // metres a texel in the near and the far cascade; height of the eye above the terrain's
+                   // highest point, 0 if below; size of the shadow map's square in texels
 };
 
 // Push constants of crowd drawing.

@@ -86,6 +86,6 @@ void main() {
   // A mirror image's hills cast their shadows the wrong way.
   float lit = mix(ground.w, 1.0, folded.beyond) * open;
   openness *= 0.62 + 0.38 * open;
-  vec3 light = albedo * (picture.sunlight.rgb * (max(dot(normal, sun), 0.0) * lit) + ambientLight(normal) * openness);
+  vec3 light = albedo * (SUN_LIGHT * (max(dot(normal, sun), 0.0) * lit) + ambientLight(normal) * openness);
   outColour = vec4(developed(hazed(light, -toEye, away, picture.tile.w, sun)), 1.0);
 }

@@ -59,7 +59,7 @@ void main() {
   float lit = light.y * sunlight(position, side * outward, 3.0);
   float seen = max(dot(normal, toEye), 0.0);
   vec3 ambient = ambientLight(normal) * reflector.diffuse + ambientLight(reflect(-toEye, normal)) * mirrored(reflector, seen);
-  vec3 shaded = picture.sunlight.rgb * lit * reflected(reflector, normal, toEye, sun) + ambient * open + glowing;
+  vec3 shaded = SUN_LIGHT * lit * reflected(reflector, normal, toEye, sun) + ambient * open + glowing;
   // After every look-up, whose level follows from the pixels beside.
   if (CUTOUT && base.a < material.emissive.w) discard;
   outColour = vec4(developed(hazed(shaded, -toEye, away, picture.tile.w, sun)), 1.0);

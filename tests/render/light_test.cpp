@@ -10,12 +10,11 @@ namespace skitter::render {
 namespace {
 
 glm::dvec3 ambientOn(const LightModel& model, const glm::dvec3& normal) {
-  shared::Picture picture{};
-  setLight(picture, model);
-  const double s = normal.x * double(picture.sun.x) + normal.z * double(picture.sun.z);
+  const LightNumbers numbers = lightNumbers(model);
+  const double s = normal.x * model.towards.x + normal.z * model.towards.z;
   const std::array<double, 6> each{1, normal.y, s, normal.y * normal.y, s * s, normal.y * s};
   glm::dvec3 sum(0);
-  for (int i = 0; i < 6; ++i) sum += each[size_t(i)] * glm::dvec3(picture.ambient[i]);
+  for (int i = 0; i < 6; ++i) sum += each[size_t(i)] * glm::dvec3(numbers.ambient[size_t(i)]);
   return sum;
 }
 

@@ -163,6 +163,7 @@ class MaterialShadingTest : public test::GpuLoadTest {
     gpu::GraphicsInfo info = wornShading(1, {.tinted = true}, shot.material, textures.has(0));
     info.colour = vk::Format::eR32G32B32A32Sfloat;
     info.depthUse = gpu::DepthUse::none;
+    std::ranges::copy(lightConstants(lightModel({})), std::back_inserter(info.constants));
     const gpu::GraphicsPipeline pipeline(context(), info);
     const gpu::Buffer block = uploaded(std::vector{pictureBlock()}, gpu::BufferUse::uniform);
     const gpu::Buffer bodies = uploaded(std::vector{glm::vec4(glm::vec3(kBody), shared::packedTile(0, 0)),
@@ -209,7 +210,7 @@ class MaterialShadingTest : public test::GpuLoadTest {
     }
     picture.eye = glm::vec4(glm::vec3(kEye), 0.01f);
     picture.forward = {0, 0, -1, 1000};
-    setLight(picture, lightModel({}));
+    picture.sun = glm::vec4(glm::vec3(lightModel({}).towards), 0);
     picture.tile = {0, 0, 1000, 0};  // no fog
     picture.ground = {0, 0, 1, 1};
     picture.shadow = {0.01f, 0.01f, 0, 4};
