@@ -1,6 +1,7 @@
 #include "cpu_reference/stages/route.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cpu_reference/heightfield.h"
 #include "cpu_reference/stages/swing.h"
@@ -53,7 +54,7 @@ Route route(const Tuning& tuning, const Heights& heights, const AgentBody& body,
       way.places[i] = {at.place.x, at.place.z};
       way.gaps[i] = heightAt(heights, position.x + at.place.x, position.y + at.place.z) - body.y - at.place.y;
       way.height = std::max(way.height, (way.gaps[i] * up.y + tuning.stepClearance * clearing) / at.raise);
-      way.heightError = std::max(way.heightError, up.y / at.raise);
+      way.heightError = std::max(way.heightError, std::abs(up.y) / at.raise);
     }
     const double capped = std::min(way.height, tuning.stepHeightMax), over = way.height - capped;
     way.lift = capped * up + aside;
