@@ -2,6 +2,7 @@
 
 #include "gpu/adopt.h"
 #include "gpu/device_memory.h"
+#include "gpu/pipeline.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ std::optional<uint32_t> findType(const vk::PhysicalDeviceMemoryProperties& memor
 
 }  // namespace
 
-Context::Context(Parts parts) : parts_(std::move(parts)) {
+Context::Context(Parts parts) : parts_(std::move(parts)), pipelines_(std::make_unique<Pipelines>()) {
   guarded("device set-up", [&] {
     const std::vector<uint8_t> cached = std::exchange(parts_.pipelineCache, {});
     pipelineCache_ =

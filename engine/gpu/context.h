@@ -11,6 +11,8 @@
 
 namespace skitter::gpu {
 
+class Pipelines;
+
 // The engine's view of a Device: the handles, and what everything made on it shares. Its address is stable,
 // so what is made on it keeps a pointer to it.
 //
@@ -78,8 +80,10 @@ class Context {
   bool timestamps() const { return limits().timestampBits != 0; }
   bool draws() const { return features().graphics; }
 
-  // Kernels and graphics pipelines all go through it, so that making one again is cheap.
+  // Kernels and graphics pipelines that are new all go through it.
   const vk::raii::PipelineCache& pipelineCache() const { return pipelineCache_; }
+  // Those that were made before.
+  Pipelines& pipelines() const { return *pipelines_; }
   // Nearest, clamped to the edge: what heightfields are read with.
   vk::Sampler nearestSampler() const { return *nearestSampler_; }
 
@@ -105,6 +109,7 @@ class Context {
 
   Parts parts_;
   vk::raii::PipelineCache pipelineCache_ = nullptr;
+  std::unique_ptr<Pipelines> pipelines_;
   vk::raii::Sampler nearestSampler_ = nullptr;
 };
 

@@ -45,11 +45,9 @@ vk::PipelineDepthStencilStateCreateInfo depthState(DepthUse use) {
   return state;
 }
 
-}  // namespace
-
-GraphicsPipeline::GraphicsPipeline(const Context& context, const GraphicsInfo& info)
-    : layout_(context, info.name, info.bindings, info.pushBytes,
-              vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment) {
+Pipeline makePipeline(const Context& context, const GraphicsInfo& info) {
+  Pipeline made{BindingLayout(context, info.name, info.bindings, info.pushBytes,
+                              vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment)};
   const vk::raii::ShaderModule vertex = makeModule(context, info.vertex, info.name + " vertex");
   const vk::raii::ShaderModule fragment =
       info.fragment ? makeModule(context, *info.fragment, info.name + " fragment") : nullptr;
@@ -111,19 +109,40 @@ GraphicsPipeline::GraphicsPipeline(const Context& context, const GraphicsInfo& i
                                               .pDepthStencilState = &depth,
                                               .pColorBlendState = &blend,
                                               .pDynamicState = &dynamic,
-                                              .layout = layout_.pipelineLayout()};
-  pipeline_ = guarded("creating the graphics pipeline " + info.name,
-                      [&] { return vk::raii::Pipeline(context.device(), context.pipelineCache(), create); });
-  context.name(*pipeline_, info.name);
+                                              .layout = made.layout.pipelineLayout()};
+  made.handle = guarded("creating the graphics pipeline " + info.name, [&] {
+    return vk::raii::Pipeline(context.device(), context.pipelineCache(), create);
+  });
+  context.name(*made.handle, info.name);
+  return made;
 }
+
+PipelineKey keyOf(const Context& context, const GraphicsInfo& info) {
+  PipelineKey key;
+  key.add(info.name).add(context, info.vertex).add(info.fragment.has_value());
+  if (info.fragment) key.add(context, *info.fragment);
+  key.add(info.bindings).add(info.pushBytes).add(info.streams.size());
+  for (const VertexStream& stream : info.streams) {
+    key.add(stream.stride).add(stream.rate).add(stream.attributes.size());
+    for (const VertexAttribute& each : stream.attributes)
+      key.add(each.location).add(each.format).add(each.offset);
+  }
+  key.add(info.colour).add(info.depth).add(info.samples).add(info.depthUse);
+  return key.add(VkCullModeFlags(info.cull)).add(info.blended).add(info.constants);
+}
+
+}  // namespace
+
+GraphicsPipeline::GraphicsPipeline(const Context& context, const GraphicsInfo& info)
+    : made_(context.pipelines().of(keyOf(context, info), [&] { return makePipeline(context, info); })) {}
 
 void GraphicsPipeline::use(vk::CommandBuffer cmd, const Bindings& bindings,
                            std::span<const std::byte> push) const {
-  assert(push.size() == layout_.pushBytes());
-  cmd.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline_);
-  cmd.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout_.pipelineLayout(), 0, bindings.set(), {});
+  assert(push.size() == layout().pushBytes());
+  cmd.bindPipeline(vk::PipelineBindPoint::eGraphics, *made_->handle);
+  cmd.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, layout().pipelineLayout(), 0, bindings.set(), {});
   if (!push.empty())
-    cmd.pushConstants(layout_.pipelineLayout(), layout_.stages(), 0, uint32_t(push.size()), push.data());
+    cmd.pushConstants(layout().pipelineLayout(), layout().stages(), 0, uint32_t(push.size()), push.data());
 }
 
 Rendering::Rendering(vk::CommandBuffer cmd, const RenderTargets& targets, bool yUp) : cmd_(cmd), yUp_(yUp) {

@@ -53,19 +53,18 @@ class GraphicsPipeline {
   GraphicsPipeline() = default;
   GraphicsPipeline(const Context&, const GraphicsInfo&);
 
-  const std::string& name() const { return layout_.name(); }
-  const BindingLayout& layout() const { return layout_; }
+  const std::string& name() const { return layout().name(); }
+  const BindingLayout& layout() const { return made_->layout; }
   Bindings bind(const Context& context, std::span<const Binding> list) const {
-    return {context, layout_, list};
+    return {context, layout(), list};
   }
-  explicit operator bool() const { return !!*pipeline_; }
+  explicit operator bool() const { return !!made_; }
 
   // `push` is exactly pushBytes long. What follows is plain vkCmdBind*Buffer and vkCmdDraw*.
   void use(vk::CommandBuffer, const Bindings&, std::span<const std::byte> push) const;
 
  private:
-  BindingLayout layout_;
-  vk::raii::Pipeline pipeline_ = nullptr;
+  std::shared_ptr<const Pipeline> made_;
 };
 
 struct RenderTargets {

@@ -19,9 +19,10 @@ vk::raii::ShaderModule makeModule(const Context& context, const ShaderCode& code
   return module;
 }
 
-Kernel::Kernel(const Context& context, const KernelInfo& info)
-    : layout_(context, info.name, info.bindings, info.pushBytes),
-      maxGroups_(context.limits().maxComputeWorkGroupCountX) {
+namespace {
+
+Pipeline makePipeline(const Context& context, const KernelInfo& info) {
+  Pipeline made{BindingLayout(context, info.name, info.bindings, info.pushBytes)};
   const auto module = makeModule(context, info.code, info.name);
   std::vector<vk::SpecializationMapEntry> entries;
   std::vector<uint32_t> values;
@@ -37,25 +38,38 @@ Kernel::Kernel(const Context& context, const KernelInfo& info)
                                               .pMapEntries = entries.data(),
                                               .dataSize = values.size() * sizeof(uint32_t),
                                               .pData = values.data()};
-  pipeline_ = guarded("the kernel \"" + info.name + "\"", [&] {
+  made.handle = guarded("the kernel \"" + info.name + "\"", [&] {
     return vk::raii::Pipeline(
         context.device(), context.pipelineCache(),
         vk::ComputePipelineCreateInfo{.stage = {.stage = vk::ShaderStageFlagBits::eCompute,
                                                 .module = *module,
                                                 .pName = "main",
                                                 .pSpecializationInfo = &specialization},
-                                      .layout = layout_.pipelineLayout()});
+                                      .layout = made.layout.pipelineLayout()});
   });
-  context.name(*pipeline_, info.name);
+  context.name(*made.handle, info.name);
+  return made;
 }
 
+}  // namespace
+
+Kernel::Kernel(const Context& context, const KernelInfo& info)
+    : made_(context.pipelines().of(PipelineKey()
+                                       .add(info.name)
+                                       .add(context, info.code)
+                                       .add(info.bindings)
+                                       .add(info.pushBytes)
+                                       .add(info.constants),
+                                   [&] { return makePipeline(context, info); })),
+      maxGroups_(context.limits().maxComputeWorkGroupCountX) {}
+
 void Kernel::prepare(vk::CommandBuffer cmd, const Bindings& bindings, std::span<const std::byte> push) const {
-  assert(*pipeline_ && bindings);
-  assert(push.size() == layout_.pushBytes());
-  cmd.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
-  cmd.bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_.pipelineLayout(), 0, bindings.set(), {});
+  assert(made_ && bindings);
+  assert(push.size() == layout().pushBytes());
+  cmd.bindPipeline(vk::PipelineBindPoint::eCompute, *made_->handle);
+  cmd.bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout().pipelineLayout(), 0, bindings.set(), {});
   if (!push.empty()) {
-    cmd.pushConstants(layout_.pipelineLayout(), layout_.stages(), 0, uint32_t(push.size()), push.data());
+    cmd.pushConstants(layout().pipelineLayout(), layout().stages(), 0, uint32_t(push.size()), push.data());
   }
 }
 

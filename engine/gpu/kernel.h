@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gpu/bindings.h"
+#include "gpu/pipeline.h"
 
 #include <bit>
 #include <cstdint>
@@ -57,22 +57,22 @@ constexpr uint32_t groupsFor(uint32_t items, uint32_t size) {
   return items / size + (items % size != 0 ? 1u : 0u);
 }
 
-// A compute pipeline with its layouts. Making one again is cheap (the context keeps a pipeline cache); making
-// it is for set-up, dispatching for the frame loop.
+// A compute pipeline with its layouts. Making one again is cheap (the context keeps pipelines); making it is
+// for set-up, dispatching for the frame loop.
 class Kernel {
  public:
   Kernel() = default;
   Kernel(const Context&, const KernelInfo&);
 
-  const std::string& name() const { return layout_.name(); }
-  const BindingLayout& layout() const { return layout_; }
+  const std::string& name() const { return layout().name(); }
+  const BindingLayout& layout() const { return made_->layout; }
   Bindings bind(const Context& context, std::span<const Binding> list) const {
-    return {context, layout_, list};
+    return {context, layout(), list};
   }
   Bindings bind(const Context& context, std::initializer_list<Binding> list) const {
-    return {context, layout_, list};
+    return {context, layout(), list};
   }
-  explicit operator bool() const { return !!*pipeline_; }
+  explicit operator bool() const { return !!made_; }
 
   // `push` is exactly pushBytes long. Zero groups record nothing; more than the device's limit is a caller's
   // bug.
@@ -84,8 +84,7 @@ class Kernel {
  private:
   void prepare(vk::CommandBuffer, const Bindings&, std::span<const std::byte> push) const;
 
-  BindingLayout layout_;
-  vk::raii::Pipeline pipeline_ = nullptr;
+  std::shared_ptr<const Pipeline> made_;
   uint32_t maxGroups_ = 0;
 };
 
