@@ -72,7 +72,7 @@ void Judge::add(uint64_t tick, uint64_t agent, int leg, const Sample& sample, bo
 StageResult Judge::result() const {
   StageResult result = result_;
   if (result.samples + result.kept == 0) result.why = "no samples";
-  if (ratio_ > 1) result.why = "beyond the tolerance: " + result.worst;
+  if (hasRefused()) result.why = "beyond the tolerance: " + result.worst;
   result.pass = result.why.empty();
   return result;
 }

@@ -54,6 +54,7 @@ class Judge {
   void add(uint64_t tick, uint64_t agent, int leg, const Sample& sample, bool tie = false);
   // A record had to stay as it was, and did; where it did not, it is a sample that fails.
   void keep() { ++result_.kept; }
+  bool hasRefused() const { return ratio_ > 1; }
   // Passes if there was something to compare and every sample passed.
   StageResult result() const;
 

@@ -211,6 +211,10 @@ bool Replay::pass() const {
   return std::all_of(all.begin(), all.end(), [](const StageResult& result) { return result.pass; });
 }
 
+bool Replay::hasRefused() const {
+  return std::ranges::any_of(judges_, [](const Judge& judge) { return judge.hasRefused(); });
+}
+
 std::vector<CheckedStage> checkedStages(Controller controller) {
   std::vector<CheckedStage> stages;
   for (const Check* check : checksOf(controller)) stages.push_back({check->stage, check->writes});

@@ -122,6 +122,8 @@ class Replay {
   // The stages that are compared, in order, less those that every tick left out.
   std::vector<StageResult> results() const;
   bool pass() const;
+  // A sample has failed already.
+  bool hasRefused() const;
 
  private:
   // With the creature that the agent is, where its legs can be hurt.

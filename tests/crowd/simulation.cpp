@@ -78,7 +78,7 @@ std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const 
                                             int ticks, float dt) {
   validation::Replay replay(facts);
   HerdState before = crowd.download(0);
-  for (int i = 0; i < ticks; ++i) {
+  for (int i = 0; i < ticks && !replay.hasRefused(); ++i) {
     const validation::Surroundings around = validation::surroundingsOf(implOf(crowd));
     simulate(device, crowd, 1, dt);
     HerdState after = crowd.download(0);
@@ -100,7 +100,8 @@ std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crow
     before.push_back(crowd::download(impl, *of.run));
     replays.push_back(std::make_unique<validation::Replay>(validation::herdFacts(impl, of, terrain)));
   }
-  for (int i = 0; i < ticks; ++i) {
+  const auto hasRefused = [](const auto& replay) { return replay->hasRefused(); };
+  for (int i = 0; i < ticks && std::ranges::none_of(replays, hasRefused); ++i) {
     const validation::Surroundings around = validation::surroundingsOf(impl);
     simulate(device, crowd, 1, dt);
     for (size_t r = 0; r < runs.size(); ++r) {

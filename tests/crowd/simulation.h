@@ -32,7 +32,8 @@ std::string testNameOf(Controller controller);
 // Submits `ticks` ticks and waits.
 void simulate(Device& device, Crowd& crowd, int ticks, float dt = kTick);
 
-// Runs `ticks` ticks in lock step with the reference, from the crowd's present state on; of the first herd.
+// Runs `ticks` ticks in lock step with the reference, or fewer where one is refused, from the crowd's present
+// state on; of the first herd.
 std::vector<validation::StageResult> replay(Device& device, Crowd& crowd, const Heightfield& terrain,
                                             int ticks, float dt = kTick);
 // The same, with `facts` of the herd in place of those that the crowd has.

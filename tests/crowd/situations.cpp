@@ -234,7 +234,7 @@ Results fading(Device& device, Controller controller, const CrowdOptions& option
   Crowd crowd(device, ground, sceneOf(agents, 1, 1, controller), options);
   simulate(device, crowd, 60);
   validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
-  for (size_t many = 0; many <= agents; ++many) {
+  for (size_t many = 0; many <= agents && !replay.hasRefused(); ++many) {
     forEachRecord(device, pageOf(crowd).play, shared::PLAY_STRIDE,
                   [&](size_t agent, float* play) { play[4] = agent < many ? 0.25f : 1; });
     const HerdState before = crowd.download(0);
@@ -302,7 +302,7 @@ Results beyondTheLimits(Device& device, Controller controller, const CrowdOption
 void replayTicks(Device& device, Crowd& crowd, validation::Replay& replay, int ticks) {
   crowd::applyChanges(implOf(crowd));
   HerdState before = crowd.download(0);
-  for (int i = 0; i < ticks; ++i) {
+  for (int i = 0; i < ticks && !replay.hasRefused(); ++i) {
     simulate(device, crowd, 1);
     HerdState after = crowd.download(0);
     replay.tick(crowd.tick(), before, after);
@@ -401,7 +401,7 @@ Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOpti
   own.levels = Levels{.distances = {6, 10, 14}, .most = {16, 16, 1000}};
   Crowd crowd(device, smallRollingGround(), scene, own);
   validation::Lockstep lockstep(crowd, scene, kTick);
-  for (int i = 0; i < 160; ++i) {
+  for (int i = 0; i < 160 && !lockstep.hasRefused(); ++i) {
     lockstep.begin();
     // Low through the crowd, so that levels are full, then over it and away.
     const float t = static_cast<float>(crowd.tick()), wide = t < 100 ? 7 : 20;

@@ -8,7 +8,8 @@
 namespace skitter::test {
 
 // A crowd of one herd in which something happens that is rare in a walk, replayed in lock step. The sound
-// shaders pass in every situation. A fault that a walk does not show is refused in one of them.
+// shaders pass in every situation. A fault that a walk does not show is refused in one of them; the first
+// tick that is refused ends the situation.
 struct Situation {
   const char* name;
   std::vector<Controller> controllers;  // those that are replayed in it with sound shaders

@@ -105,6 +105,11 @@ const std::vector<HerdState>& Lockstep::end() {
   return after_;
 }
 
+bool Lockstep::hasRefused() const {
+  return (rates_ && rates_->hasRefused()) ||
+         std::ranges::any_of(compared_, [](const Compared& each) { return each.replay->hasRefused(); });
+}
+
 std::vector<StageResult> Lockstep::results() const {
   std::vector<const Compared*> all;
   for (const std::vector<Compared>* list : {&compared_, &gone_})

@@ -46,6 +46,8 @@ class Lockstep {
   // By stage, all sizes of herds that have places in one, also of herds that are gone; the worst gives a
   // stage's error. Messages name it, and agents by their numbers in the herd.
   std::vector<StageResult> results() const;
+  // A sample of the herds that are there has failed already.
+  bool hasRefused() const;
 
  private:
   // A herd's agents of one size.

@@ -20,6 +20,7 @@ class RateCheck {
   void begin();
   void end();
   StageResult result() const { return judge_.result(); }
+  bool hasRefused() const { return judge_.hasRefused(); }
 
  private:
   // An agent as the device has it.
