@@ -234,8 +234,8 @@ std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, con
   return made;
 }
 
-// The kinds' pipelines and agents, once herds and kinds have their places.
-void fillAll(Impl& crowd, bool spawn) {
+// Once herds and kinds have their places: there is memory for their agents.
+void expectRoom(Impl& crowd) {
   uint64_t needed = 0, agents = 0;
   for (crowd::Kind& kind : crowd.kinds) {
     if (kind.stages.empty()) continue;
@@ -247,14 +247,17 @@ void fillAll(Impl& crowd, bool spawn) {
   if (agents > Scene::maxAgents)
     throw inputError(std::to_string(agents) + " agents, expected at most " +
                      std::to_string(Scene::maxAgents));
+}
+
+// Then the kinds' pipelines and agents.
+void fillAll(Impl& crowd, bool spawn) {
   for (uint32_t k = 0; k < crowd.kinds.size(); ++k)
     if (!crowd.kinds[k].stages.empty()) fill(crowd, k, spawn);
   crowd::shareGround(crowd);
 }
 
-// A herd of those kinds, one a size. `generation`, which is even, is that of places where somebody is.
-crowd::Herd herdFrom(const Herd& from, uint64_t seed, std::span<const uint32_t> kinds,
-                     uint32_t generation = 0) {
+// A herd of those kinds, one a size; nobody is present yet.
+crowd::Herd herdFrom(const Herd& from, uint64_t seed, std::span<const uint32_t> kinds) {
   crowd::Numbering numbering = crowd::numberingOf(from, seed);
   crowd::Herd herd{.runs = {},
                    .agents = from.agents + from.reserve,
@@ -266,7 +269,6 @@ crowd::Herd herdFrom(const Herd& from, uint64_t seed, std::span<const uint32_t> 
     herd.runs.push_back({.kind = kinds[i], .firstOfHerd = first, .agents = numbering.counts[i]});
     first += numbering.counts[i];
   }
-  herd.presence = crowd::Presence::beginning(from, herd.starts, generation);
   return herd;
 }
 
@@ -347,6 +349,8 @@ std::unique_ptr<Impl> makeCrowd(Device& device, const Heightfield& terrain, cons
     for (crowd::SizeRun& run : herd.runs) enrol(crowd, from, run, crowd.kinds[run.kind]);
   }
   prepareComing(crowd, 0, 0);
+  expectRoom(crowd);
+  for (crowd::Herd& herd : crowd.herds) herd.presence = crowd::Presence::beginning(herd.from, herd.starts, 0);
   fillAll(crowd, true);
   settle(crowd, crowd.kinds);
   return made;
@@ -390,6 +394,7 @@ std::unique_ptr<Impl> remakeCrowd(Device& device, const State& state) {
   }
   prepareComing(crowd, state.tick, state.dt);
   crowd::checkState(crowd, state);
+  expectRoom(crowd);
   fillAll(crowd, false);
   warmUp(crowd, crowd.kinds);
   crowd::restore(crowd, state);
@@ -444,8 +449,7 @@ HerdId admit(Impl& crowd, uint32_t number, const Herd& from, std::vector<crowd::
   const std::vector<uint32_t> slots = freeIn(crowd.kinds, kinds.size());
   const crowd::Herd none;
   const crowd::Herd& before = number < crowd.herds.size() ? crowd.herds[number] : none;
-  crowd::Herd herd =
-      herdFrom(from, crowd::seedOf(crowd.seed, number), slots, before.presence.nextGeneration());
+  crowd::Herd herd = herdFrom(from, crowd::seedOf(crowd.seed, number), slots);
   herd.generation = (before.generation + 1) / 2 * 2;
   herd.since = crowd.tick;
   uint64_t needed = 0;
@@ -454,6 +458,8 @@ HerdId admit(Impl& crowd, uint32_t number, const Herd& from, std::vector<crowd::
     needed += crowd::bytesOf(crowd, kinds[i]);
   }
   expectMemory(*crowd.context, herd.agents, needed);
+  // `generation`, which is even, is that of places where somebody is.
+  herd.presence = crowd::Presence::beginning(from, herd.starts, before.presence.nextGeneration());
 
   const HerdId id{number, herd.generation};
   for (size_t i = 0; i < slots.size(); ++i) put(crowd.kinds, slots[i], std::move(kinds[i]));
