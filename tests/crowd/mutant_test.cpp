@@ -56,7 +56,11 @@ const std::vector<Mutant>& mutants() {
   return list;
 }
 
-class MutantTest : public GpuTest, public ::testing::WithParamInterface<size_t> {};
+// Broken shaders load through storage buffers, which every device can.
+class MutantTest : public GpuTest, public ::testing::WithParamInterface<size_t> {
+ protected:
+  MutantTest() : GpuTest(LoadPath::storage) {}
+};
 
 TEST_P(MutantTest, IsRefused) {
   const Mutant& mutant = mutants()[GetParam()];
@@ -75,7 +79,10 @@ TEST_P(MutantTest, IsRefused) {
   EXPECT_TRUE(found);
 }
 
-using MutantFidelityTest = GpuTest;
+class MutantFidelityTest : public GpuTest {
+ protected:
+  MutantFidelityTest() : GpuTest(LoadPath::storage) {}
+};
 
 // An ik that lets bones pass their limits: the figures say so.
 TEST_F(MutantFidelityTest, BrokenLimitsAreSeen) {
