@@ -105,25 +105,22 @@ Contact::Page Contact::makePage(const Setting& s, const crowd::Page& records) co
                                        {shared::DRAW_HEIGHTS, &s.heights}};
   Page page;
   page.bindings = pipeline_.bind(s.context, list);
-  const std::vector<VkDrawIndexedIndirectCommand> draws(lists, {.indexCount = indexCount_,
-                                                                .instanceCount = 0,
-                                                                .firstIndex = 0,
-                                                                .vertexOffset = 0,
-                                                                .firstInstance = 0});
-  page.draws =
-      gpu::Buffer(s.context, draws.size() * sizeof draws[0], "contact draws", gpu::BufferUse::indirect);
-  gpu::upload(s.context, page.draws, draws);
+  const std::vector<VkDrawIndexedIndirectCommand> draw(1, {.indexCount = indexCount_,
+                                                           .instanceCount = 0,
+                                                           .firstIndex = 0,
+                                                           .vertexOffset = 0,
+                                                           .firstInstance = 0});
+  page.draw = gpu::Buffer(s.context, sizeof draw[0], "contact draw", gpu::BufferUse::indirect);
+  gpu::upload(s.context, page.draw, draw);
   return page;
 }
 
 void Contact::count(vk::CommandBuffer cmd, const Page& page, const CulledPage& culled) const {
-  std::array<vk::BufferCopy, lists> copies;
-  for (int list = 0; list < lists; ++list) {
-    const vk::DeviceSize at = vk::DeviceSize(list) * sizeof(VkDrawIndexedIndirectCommand) +
-                              offsetof(VkDrawIndexedIndirectCommand, instanceCount);
-    copies[size_t(list)] = vk::BufferCopy{.srcOffset = at, .dstOffset = at, .size = sizeof(uint32_t)};
-  }
-  cmd.copyBuffer(culled.commands.handle(), page.draws.handle(), copies);
+  constexpr vk::DeviceSize at = offsetof(VkDrawIndexedIndirectCommand, instanceCount);
+  cmd.copyBuffer(culled.commands.handle(), page.draw.handle(),
+                 vk::BufferCopy{.srcOffset = shared::CONTACTS * sizeof(VkDrawIndexedIndirectCommand) + at,
+                                .dstOffset = at,
+                                .size = sizeof(uint32_t)});
 }
 
 void Contact::draw(vk::CommandBuffer cmd, const Page& page, const CulledPage& culled,
@@ -132,13 +129,11 @@ void Contact::draw(vk::CommandBuffer cmd, const Page& page, const CulledPage& cu
       .view = shared::VIEW_CAMERA, .palette = palette, .firstAgent = 0, .kind = 0};
   pipeline_.use(cmd, page.bindings, gpu::bytesOf(constants));
   cmd.bindIndexBuffer(indices_.handle(), 0, vk::IndexType::eUint32);
-  for (int list = 0; list < lists; ++list) {
-    const std::array buffers{vertices_.handle(), culled.instances.handle()};
-    const std::array<vk::DeviceSize, 2> offsets{0, vk::DeviceSize(list) * culled.agents * sizeof(uint32_t)};
-    cmd.bindVertexBuffers(0, 2, buffers.data(), offsets.data());
-    cmd.drawIndexedIndirect(page.draws.handle(), vk::DeviceSize(list) * sizeof(VkDrawIndexedIndirectCommand),
-                            1, sizeof(VkDrawIndexedIndirectCommand));
-  }
+  const std::array buffers{vertices_.handle(), culled.instances.handle()};
+  const std::array<vk::DeviceSize, 2> offsets{
+      0, vk::DeviceSize(shared::CONTACTS) * culled.agents * sizeof(uint32_t)};
+  cmd.bindVertexBuffers(0, 2, buffers.data(), offsets.data());
+  cmd.drawIndexedIndirect(page.draw.handle(), 0, 1, sizeof(VkDrawIndexedIndirectCommand));
 }
 
 }  // namespace skitter::render

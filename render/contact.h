@@ -6,18 +6,16 @@
 
 namespace skitter::render {
 
-// How ground below feet and bodies darkens (docs/stages/pictures.md, Contact): squares on the ground, of the
-// agents of the first lists alone, that are near.
+// How ground below feet and bodies darkens (docs/stages/pictures.md, Contact): squares on the ground, of
+// agents that are near.
 class Contact {
  public:
-  static constexpr int lists = 2;  // the camera's two finest levels of detail
-
   Contact() = default;
   // Draws nothing of a kind that plays clips, whose models have no legs.
   Contact(const Setting&, const crowd::Kind&);
 
   struct Page {
-    gpu::Buffer draws;  // indirect, of each list
+    gpu::Buffer draw;  // indirect
     gpu::Bindings bindings;
   };
   Page makePage(const Setting&, const crowd::Page&) const;

@@ -11,6 +11,9 @@
 #include "embedded/cutout_frag.h"
 #include "embedded/cutout_vert_storage.h"
 #include "embedded/cutout_vert_texel.h"
+#include "embedded/lit_frag.h"
+#include "embedded/lit_vert_storage.h"
+#include "embedded/lit_vert_texel.h"
 #include "embedded/shadow_vert_storage.h"
 #include "embedded/shadow_vert_texel.h"
 #include "embedded/worn_frag.h"
@@ -24,8 +27,12 @@
 namespace skitter::render {
 namespace {
 
-// Each cascade's level of detail: a shadow's outline forgives much.
-constexpr int kShadowLod[shared::SHADOW_CASCADES] = {1, 3};
+// The level that each list draws after the camera's: a shadow's outline forgives much. Contacts are no level.
+constexpr int kLastLod = shared::CAMERA_LODS - 1;
+constexpr int kOtherLod[shared::INSTANCE_LISTS - shared::CAMERA_LODS] = {2, 3, 3, kLastLod};
+// The first list of each cascade, and where the last one's end.
+constexpr int kCascadeLists[shared::SHADOW_CASCADES + 1] = {shared::NEAR_FINE, shared::FAR_SHADOWS,
+                                                            shared::CONTACTS};
 
 using gpu::BindingKind;
 
@@ -111,7 +118,7 @@ CrowdForms formsOf(const crowd::Kind& kind) {
 }
 
 // The level that a list draws: of the camera's each its own.
-int levelOf(int list) { return list < shared::CAMERA_LODS ? list : kShadowLod[list - shared::CAMERA_LODS]; }
+int levelOf(int list) { return list < shared::CAMERA_LODS ? list : kOtherLod[list - shared::CAMERA_LODS]; }
 
 VkDrawIndexedIndirectCommand commandOf(const MeshLod& lod) {
   return {.indexCount = lod.indexCount,
@@ -141,6 +148,14 @@ gpu::GraphicsInfo crowdShading(int influences, const CrowdForms& forms) {
                         {shared::CONSTANT_STUMPS, forms.stumps}}};
 }
 
+gpu::GraphicsInfo litShading(int influences, const CrowdForms& forms) {
+  gpu::GraphicsInfo info = crowdShading(influences, forms);
+  info.name = "crowd lit at its vertices";
+  info.vertex = {embedded::lit_vert_texel(), embedded::lit_vert_storage()};
+  info.fragment = embedded::lit_frag();
+  return info;
+}
+
 gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Material& material, int has) {
   gpu::GraphicsInfo info = crowdShading(influences, forms);
   info.name = "worn crowd";
@@ -168,6 +183,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
     kind.mesh =
         uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
     kind.draw = drawPipeline(s, crowdShading(kind.mesh.influences, formsOf(source)));
+    kind.lit = drawPipeline(s, litShading(kind.mesh.influences, formsOf(source)));
     kind.shadow = {s.context, shadowInfo(s, kind.mesh.influences, formsOf(source))};
     kind.contact = Contact(s, source);
     if (textures) makeParts(s, source, *textures, kind);
@@ -185,6 +201,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       draw.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
       page.shadow = kind.shadow.bind(s.context, shadow);
       page.draw = kind.draw.bind(s.context, draw);
+      page.lit = kind.lit.bind(s.context, draw);
       if (kind.contact) page.contact = kind.contact.makePage(s, records);
       if (!kind.parts.empty()) bindParts(s, *textures, shadow, draw, kind, page);
       kind.pages.push_back(std::move(page));
@@ -291,18 +308,18 @@ void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
                                              .palette = kinds_[k].palette,
                                              .firstAgent = page.firstAgent,
                                              .kind = k};
-      const int list = shared::CAMERA_LODS + cascade;
+      const int first = kCascadeLists[cascade], end = kCascadeLists[cascade + 1];
       const auto cutout = [](const Worn& worn) { return worn.cutout; };
       if (std::ranges::none_of(kinds_[k].worn, cutout)) {
         kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
-        drawList(cmd, kinds_[k], page, list);
+        for (int list = first; list < end; ++list) drawList(cmd, kinds_[k], page, list);
         continue;
       }
       for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
         const gpu::GraphicsPipeline& pipeline = shadowOf(kinds_[k], p);
         const bool own = &pipeline != &kinds_[k].shadow;
         pipeline.use(cmd, own ? page.shadowPart[p] : page.shadow, gpu::bytesOf(constants));
-        drawListPart(cmd, kinds_[k], page, list, p);
+        for (int list = first; list < end; ++list) drawListPart(cmd, kinds_[k], page, list, p);
       }
     }
 }
@@ -332,14 +349,21 @@ void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
                                              .firstAgent = page.firstAgent,
                                              .kind = k};
       if (kinds_[k].parts.empty()) {
-        kinds_[k].draw.use(cmd, page.draw, gpu::bytesOf(constants));
-        for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawList(cmd, kinds_[k], page, lod);
+        for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) {
+          if (lod == 0) kinds_[k].draw.use(cmd, page.draw, gpu::bytesOf(constants));
+          if (lod == shared::FIRST_VERTEX_LIT) kinds_[k].lit.use(cmd, page.lit, gpu::bytesOf(constants));
+          drawList(cmd, kinds_[k], page, lod);
+        }
       }
       for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
         const gpu::GraphicsPipeline& pipeline = drawOf(kinds_[k], p);
         const bool own = &pipeline != &kinds_[k].draw;
         pipeline.use(cmd, own ? page.drawPart[p] : page.draw, gpu::bytesOf(constants));
-        for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) drawListPart(cmd, kinds_[k], page, lod, p);
+        for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) {
+          if (lod == shared::FIRST_VERTEX_LIT && !own)
+            kinds_[k].lit.use(cmd, page.lit, gpu::bytesOf(constants));
+          drawListPart(cmd, kinds_[k], page, lod, p);
+        }
       }
     }
 }

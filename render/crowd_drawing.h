@@ -18,6 +18,8 @@ struct CrowdForms {
 };
 // The pipeline that shades a kind, without its targets. `influences` is the most bones that carry a vertex.
 gpu::GraphicsInfo crowdShading(int influences, const CrowdForms& forms);
+// The same of its levels that are lit at their vertices.
+gpu::GraphicsInfo litShading(int influences, const CrowdForms& forms);
 // The same of what a kind wears of a material that has the textures `has` (Textures::has).
 gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Material&, int has);
 
@@ -47,7 +49,7 @@ class CrowdDrawing {
   struct Page {
     uint32_t firstAgent = 0;
     CulledPage culled;
-    gpu::Bindings draw, shadow;
+    gpu::Bindings draw, lit, shadow;
     Contact::Page contact;
     // For a kind with materials: the indirect draws of each list, part by part, and each part's bindings.
     gpu::Buffer partDraws;
@@ -66,7 +68,7 @@ class CrowdDrawing {
   struct Kind {
     uint32_t palette = 0;
     Mesh mesh;
-    gpu::GraphicsPipeline draw, shadow;
+    gpu::GraphicsPipeline draw, lit, shadow;
     Contact contact;
     std::vector<Part> parts;  // as the mesh's
     std::vector<Worn> worn;

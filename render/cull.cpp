@@ -35,7 +35,8 @@ CulledPage Cull::makePage(const gpu::Context& context, const gpu::Buffer& pictur
 }
 
 void Cull::record(vk::CommandBuffer cmd, const CulledPage& page, float radius) const {
-  shared::CullConstants constants{.agents = page.agents, .radius = radius, .lodPixels = {}};
+  shared::CullConstants constants{
+      .agents = page.agents, .radius = radius, .lodPixels = {}, .contactPixels = kContactPixels};
   std::copy(std::begin(kLodPixels), std::end(kLodPixels), constants.lodPixels);
   kernel_.dispatch(cmd, page.bindings, gpu::bytesOf(constants),
                    gpu::groupsFor(page.agents, shared::WORK_GROUP));

@@ -20,11 +20,6 @@ struct Grid {
   }
 };
 
-glm::vec2 gradientAt(const Grid& g, int x, int z) {
-  return {(g.at(x + 1, z) - g.at(x - 1, z)) / (2 * g.field.spacingX),
-          (g.at(x, z + 1) - g.at(x, z - 1)) / (2 * g.field.spacingZ)};
-}
-
 // Hollows see less sky: the height compared with the mean of rings of samples about it.
 float opennessAt(const Grid& g, int x, int z) {
   float open = 1;
@@ -69,17 +64,25 @@ std::vector<float> shadowHeights(const Grid& g, const glm::vec3& sun) {
   return shadow;
 }
 
+Grid gridOf(const Heightfield& field) { return {field, int(field.columns), int(field.rows)}; }
+
 }  // namespace
+
+glm::vec2 gradientAt(const Heightfield& field, int x, int z) {
+  const Grid g = gridOf(field);
+  return {(g.at(x + 1, z) - g.at(x - 1, z)) / (2 * field.spacingX),
+          (g.at(x, z + 1) - g.at(x, z - 1)) / (2 * field.spacingZ)};
+}
 
 gpu::Image makeGroundMap(const gpu::Context& context, const Heightfield& field, const glm::vec3& towardsSun) {
   constexpr float kPenumbra = 0.35f;  // metres of height over which a hill's shadow softens
-  const Grid grid{field, int(field.columns), int(field.rows)};
+  const Grid grid = gridOf(field);
   const std::vector<float> shadow = shadowHeights(grid, towardsSun);
   std::vector<uint64_t> texels(field.heights.size());
   for (int z = 0; z < grid.rows; ++z)
     for (int x = 0; x < grid.columns; ++x) {
       const size_t i = size_t(z) * size_t(grid.columns) + size_t(x);
-      const glm::vec2 gradient = gradientAt(grid, x, z);
+      const glm::vec2 gradient = gradientAt(field, x, z);
       const float sun = 1 - std::clamp((shadow[i] - field.heights[i]) / kPenumbra, 0.0f, 1.0f);
       texels[i] = glm::packHalf4x16(glm::vec4(gradient, opennessAt(grid, x, z), sun));
     }

@@ -16,13 +16,18 @@
 namespace skitter::render {
 namespace {
 
-// Share of the triangles at each level. Triangle setup is what drawing costs on software devices.
-constexpr std::array<float, shared::CAMERA_LODS> kShare{1.0f, 0.35f, 0.12f, 0.05f};
+// Share of the triangles that no ribbon replaces at each level after the finest. Triangle setup is what
+// drawing costs on software devices.
+constexpr std::array<float, shared::CAMERA_LODS - 1> kShare{0.35f, 0.12f, 0.04f, 0.015f};
+// The same of surfaces without ribbons.
+constexpr std::array<float, kSurfacePixels.size()> kSurfaceShare{0.35f, 0.12f, 0.05f};
 constexpr float kLargestError = 0.05f;    // of the mesh's extent
+constexpr float kLastError = 0.1f;        // the same at the last level
 constexpr float kLeastHalfWidth = 1e-6f;  // metres, so that a point has two sides
 // That the radius of a bone has, at most, where the bone is a ribbon; of an agent as near as the level
 // allows.
-constexpr float kRibbonPixels = 2;
+constexpr float kRibbonPixels = 3.5f;
+constexpr float kBendPixels = 1;  // that joints within a ribbon may be off it at rest, likewise
 
 // A skin, and where each entry of its palette starts: vertices are stored relative to it.
 struct Skin {
@@ -119,14 +124,15 @@ Welded weld(const std::vector<SkinVertex>& vertices, const std::vector<uint32_t>
 }
 
 // Simplifies triangles of the skin.
-std::vector<uint32_t> simplified(const Welded& welded, std::vector<uint32_t> triangles, float share) {
+std::vector<uint32_t> simplified(const Welded& welded, std::vector<uint32_t> triangles, float share,
+                                 float error) {
   if (triangles.empty()) return {};
   for (uint32_t& index : triangles) index = welded.remap[index];
   const size_t wanted = size_t(float(triangles.size() / 3) * share) * 3;
   std::vector<uint32_t> indices(triangles.size());
   indices.resize(meshopt_simplify(indices.data(), triangles.data(), triangles.size(),
                                   &welded.vertices[0].position.x, welded.vertices.size(), sizeof(SkinVertex),
-                                  wanted, kLargestError, 0, nullptr));
+                                  wanted, error, 0, nullptr));
   return indices;
 }
 
@@ -176,13 +182,17 @@ void append(MeshData& data, MeshLod& lod, const Skin& skin, const Surface& surfa
 // A quad, whose corners the vertex shader moves apart.
 void append(MeshData& data, MeshLod& lod, const Ribbon& ribbon) {
   const auto first = uint32_t(data.vertices.size()) - uint32_t(lod.firstVertex);
+  data.influences = std::max(data.influences, 2);
   // Counter-clockwise, as seen from the eye that they are spread for.
-  for (const auto& [end, out, side] :
-       {std::tuple(ribbon.from, -1, 1), {ribbon.from, -1, -1}, {ribbon.to, 1, 1}, {ribbon.to, 1, -1}}) {
+  for (const auto& [end, other, side] : {std::tuple(ribbon.from, ribbon.to, 1),
+                                         {ribbon.from, ribbon.to, -1},
+                                         {ribbon.to, ribbon.from, 1},
+                                         {ribbon.to, ribbon.from, -1}}) {
     MeshVertex vertex{};
-    vertex.bones[0] = ribbon.bone;
-    vertex.influences[0] = glm::vec4(end.along * ribbon.direction, 1);
-    vertex.normal = float(out) * ribbon.direction;
+    vertex.bones[0] = end.bone;
+    vertex.influences[0] = glm::vec4(end.along * end.direction, 1);
+    vertex.bones[1] = other.bone;
+    vertex.influences[1] = glm::vec4(other.along * other.direction, 0);
     vertex.colour = end.colour;
     vertex.halfWidth = float(side) * std::max(end.radius, kLeastHalfWidth);
     data.vertices.push_back(vertex);
@@ -217,10 +227,12 @@ void appendLods(MeshData& data, const Skin& skin) {
   if (skin.look) splitByMaterial(data, 0, 0);
   const Welded welded = weld(skin.vertices, skin.indices, worn);
   for (size_t i = 1; i < data.lods.size(); ++i) {
-    const float radius = kRibbonPixels * data.radius / kLodPixels[i - 1];
-    const Ribbons thin = skin.rig ? ribbonsOf(*skin.rig, radius) : Ribbons{{}, skin.indices};
+    const float pixel = data.radius / kLodPixels[i - 1];
+    const float error = i + 1 < data.lods.size() ? kLargestError : kLastError;
+    const Ribbons thin = skin.rig ? ribbonsOf(*skin.rig, kRibbonPixels * pixel, kBendPixels * pixel)
+                                  : Ribbons{{}, skin.indices};
     append(data, data.lods[i], skin,
-           optimised(welded.vertices, welded.worn, simplified(welded, thin.others, kShare[i])));
+           optimised(welded.vertices, welded.worn, simplified(welded, thin.others, kShare[i - 1], error)));
     for (const Ribbon& ribbon : thin.ribbons) append(data, data.lods[i], ribbon);
     if (skin.look) splitByMaterial(data, i, 6 * uint32_t(thin.ribbons.size()));
   }
@@ -241,8 +253,8 @@ std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
   if (indices.empty()) return surfaces;
   surfaces.push_back(optimised(vertices, {}, indices));
   const Welded welded = weld(vertices, indices, {});
-  for (size_t i = 1; i < kShare.size(); ++i)
-    surfaces.push_back(optimised(welded.vertices, {}, simplified(welded, indices, kShare[i])));
+  for (const float share : kSurfaceShare)
+    surfaces.push_back(optimised(welded.vertices, {}, simplified(welded, indices, share, kLargestError)));
   return surfaces;
 }
 

@@ -12,14 +12,19 @@ namespace skitter::render {
 
 struct MeshVertex {
   uint16_t bones[4];
-  glm::vec4 influences[4];  // vertex relative to the bone's rest start, weight
-  glm::vec3 normal;         // of a ribbon the way along it, out of the end
+  glm::vec4 influences[4];  // vertex relative to the bone's rest start, weight; of a ribbon the first one is
+                            // this end's, the second one the other end's, without weight
+  glm::vec3 normal;         // none of a ribbon
   glm::vec3 colour;
   float halfWidth;  // of a ribbon, metres, below 0 on one side and above on the other; 0 on surfaces
 };
 
 // Pixels that an agent's radius covers, down to which each level of detail but the last serves.
-inline constexpr std::array<float, shared::CAMERA_LODS - 1> kLodPixels{75, 40, 14};
+inline constexpr std::array<float, shared::CAMERA_LODS - 1> kLodPixels{150, 75, 25, 10};
+// The same for contacts.
+inline constexpr float kContactPixels = 40;
+// The same for surfaces without ribbons (surfacesOf).
+inline constexpr std::array<float, 3> kSurfacePixels{75, 40, 14};
 
 // Indices of one level of detail; its vertices are a range of their own.
 struct MeshLod {

@@ -1,6 +1,7 @@
 #include "render/ribbons.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace skitter::render {
 namespace {
@@ -58,23 +59,87 @@ std::vector<BoneSurface> boneSurfacesOf(const Rig& rig) {
   return surfaces;
 }
 
-Ribbon::End endOf(const BoneSurface& surface, int i, float along) {
-  return {along, surface.radiusAt(along), surface.colour[i] / surface.share[i]};
+Ribbon::End endOf(uint16_t entry, const BoneSurface& surface, int i, float along) {
+  return {entry, surface.bone->direction, along, surface.radiusAt(along),
+          surface.colour[i] / surface.share[i]};
+}
+
+// One ribbon for those of bones that follow each other. Each bone counts by its length: its colours at a
+// quarter and three quarters of it, nearer to one end of the ribbon and the other.
+Ribbon joined(const Leg& leg, const std::vector<Ribbon>& bones, size_t first) {
+  Ribbon whole{bones.front().from, bones.back().to};
+  if (bones.size() == 1) return whole;
+  float length = 0, before = 0;
+  for (size_t b = 0; b < bones.size(); ++b) length += leg.bones[first + b].length;
+  glm::vec3 colour[2] = {};
+  float radius[2] = {}, share[2] = {};
+  for (size_t b = 0; b < bones.size(); ++b) {
+    const float own = leg.bones[first + b].length;
+    for (const auto& [end, at] : {std::pair(bones[b].from, 0.25f), {bones[b].to, 0.75f}}) {
+      const float t = (before + at * own) / length;
+      for (int i = 0; i < 2; ++i) {
+        const float weight = own * (i == 0 ? 1 - t : t);
+        colour[i] += weight * end.colour;
+        radius[i] += weight * (at == 0.25f ? 0.75f * bones[b].from.radius + 0.25f * bones[b].to.radius
+                                           : 0.25f * bones[b].from.radius + 0.75f * bones[b].to.radius);
+        share[i] += weight;
+      }
+    }
+    before += own;
+  }
+  // So weighed, the value at one end is that at about a third of the way.
+  const float a = radius[0] / share[0], b = radius[1] / share[1];
+  whole.from.radius = std::max(0.0f, 2 * a - b);
+  whole.to.radius = std::max(0.0f, 2 * b - a);
+  whole.from.colour = colour[0] / share[0];
+  whole.to.colour = colour[1] / share[1];
+  return whole;
+}
+
+float distanceToLine(const glm::vec3& point, const glm::vec3& from, const glm::vec3& to) {
+  const glm::vec3 line = to - from;
+  const float share = glm::dot(point - from, line) / std::max(glm::dot(line, line), 1e-12f);
+  return glm::distance(point, from + std::clamp(share, 0.0f, 1.0f) * line);
+}
+
+// Whether the bones from `first` to `last` of a leg lie along one line, `bend` metres aside.
+bool isStraight(const Leg& leg, size_t first, size_t last, float bend) {
+  const glm::vec3 end = leg.bones[last].start + leg.bones[last].length * leg.bones[last].direction;
+  for (size_t joint = first + 1; joint <= last; ++joint)
+    if (distanceToLine(leg.bones[joint].start, leg.bones[first].start, end) > bend) return false;
+  return true;
 }
 
 }  // namespace
 
-Ribbons ribbonsOf(const Rig& rig, float radius) {
+Ribbons ribbonsOf(const Rig& rig, float radius, float bend) {
   Ribbons found;
   const std::vector<BoneSurface> surfaces = boneSurfacesOf(rig);
   std::vector<bool> thin(surfaces.size());
-  for (size_t entry = 0; entry < surfaces.size(); ++entry) {
-    const BoneSurface& surface = surfaces[entry];
-    if (surface.count == 0) continue;
-    const Ribbon ribbon{uint16_t(entry), surface.bone->direction, endOf(surface, 0, surface.least),
-                        endOf(surface, 1, surface.most)};
-    thin[entry] = std::max(ribbon.from.radius, ribbon.to.radius) <= radius;
-    if (thin[entry]) found.ribbons.push_back(ribbon);
+  for (const Leg& leg : rig.legs) {
+    const size_t firstEntry = 1 + size_t(&leg - rig.legs.data()) * size_t(rig.maxBones());
+    // Ribbons of the bones before this one that the last ribbon joins; none where the bone before is not
+    // thin.
+    std::vector<Ribbon> run;
+    for (size_t b = 0; b < leg.bones.size(); ++b) {
+      const auto entry = uint16_t(firstEntry + b);
+      const BoneSurface& surface = surfaces[entry];
+      Ribbon ribbon;
+      if (surface.count > 0) {
+        ribbon = {endOf(entry, surface, 0, surface.least), endOf(entry, surface, 1, surface.most)};
+        thin[entry] = std::max(ribbon.from.radius, ribbon.to.radius) <= radius;
+      }
+      if (!thin[entry]) {
+        run.clear();
+        continue;
+      }
+      if (run.empty() || !isStraight(leg, b - run.size(), b, bend)) {
+        run.clear();
+        found.ribbons.emplace_back();
+      }
+      run.push_back(ribbon);
+      found.ribbons.back() = joined(leg, run, b + 1 - run.size());
+    }
   }
   const auto isThin = [&](uint32_t vertex) { return thin[heaviestBone(rig.vertices[vertex])]; };
   for (auto triangle = rig.indices.begin(); triangle != rig.indices.end(); triangle += 3)

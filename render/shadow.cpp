@@ -9,7 +9,7 @@ constexpr uint32_t kTallest = 1440;  // pixels; a taller picture would show the 
 
 ShadowMap::ShadowMap(const gpu::Context& context, uint32_t pictureHeight)
     : texels_(pictureHeight > kTallest ? 4096 : 2048) {
-  const vk::Format format = vk::Format::eD32Sfloat;
+  const vk::Format format = vk::Format::eD16Unorm;
   image_ = gpu::Image(
       context,
       {.format = format,

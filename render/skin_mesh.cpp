@@ -41,7 +41,7 @@ SkinMesh skinMeshOf(const Crowd& crowd, uint32_t herd, const HostSpace& space) {
   mesh.entries = Palettes::entriesOf(crowd, herd);
   mesh.radius = crowd::radiusOf(implOf(crowd), implOf(crowd).herdAt(herd));
   for (size_t level = 0; level < surfaces.size(); ++level)
-    append(mesh, surfaces[level], level < render::kLodPixels.size() ? render::kLodPixels[level] : 0);
+    append(mesh, surfaces[level], level < render::kSurfacePixels.size() ? render::kSurfacePixels[level] : 0);
   move(mesh, space);
   return mesh;
 }

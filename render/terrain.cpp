@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "embedded/terrain_frag.h"
 #include "embedded/terrain_vert.h"
 #include "gpu/transfer.h"
 #include "render/bindings.h"
+#include "render/ground_map.h"
 
 namespace skitter::render {
 namespace {
@@ -17,15 +20,20 @@ constexpr float kFinestSpacing = 0.12f;  // metres between vertices below which 
 constexpr uint32_t kMostPatches = 4096;  // 64 KiB, the most that an update takes
 
 // By how much a mesh may differ from the ground, root mean square, before a finer one takes its place.
-constexpr float kErrorPixels = 1.0f / 4;
+constexpr float kErrorPixels = 1.0f / 2;
 // A level serves at least so many sides of a patch, or neighbours could be two levels apart, and at most as
 // far as its cells have so many pixels across: smaller triangles cost more than they show.
 constexpr float kLeastRange = 4, kCellPixels = 8;
 constexpr float kMorphBegins = 0.87f;  // of the range, in shaders/render/terrain.vert
 
-// Metres across a pixel from which grains, of 0.062 m, are not seen, nor pebbles, which have at most 0.048 m
-// (shaders/render/terrain.frag), with a little for rounding.
-constexpr float kNoDetail = 0.4f * 0.062f * 1.01f;
+// Metres across a pixel from which clods, of 0.31 m, are not seen, and from which grains, of 0.062 m, are
+// not, nor pebbles, which have at most 0.048 m (shaders/render/terrain.frag), with a little for rounding.
+constexpr float kNoClods = 0.4f * 0.31f * 1.01f, kNoGrains = 0.4f * 0.062f * 1.01f;
+constexpr float kLeastFacing = 0.02f;  // cosine that the shader takes a surface to have at least
+// The ground map has slopes as half floats.
+constexpr float kHalfRounding = 1 + 0x1p-11f;
+// Samples across a patch that are looked at, at most: coarser patches are too far away for detail.
+constexpr float kLookedAt = 4 * kCells;
 // Of the depth to which shadows reach, where they have faded (shaders/render/shadow.glsl), likewise.
 constexpr float kNoShadow = 0.98f * 1.01f;
 
@@ -70,6 +78,40 @@ double deviationIn(const Heightfield& field, uint32_t x, uint32_t z, uint32_t st
       sum += 0.25 * (drawn - ground) * (drawn - ground);
     }
   return std::sqrt(sum);
+}
+
+// Of the samples from `first` to `last`.
+std::pair<float, float> lowestAndHighest(const Heightfield& field, const glm::uvec2& first,
+                                         const glm::uvec2& last) {
+  float lowest = std::numeric_limits<float>::max(), highest = -lowest;
+  for (uint32_t z = first.y; z <= last.y; ++z)
+    for (uint32_t x = first.x; x <= last.x; ++x) {
+      const float height = field.heights[size_t(z) * field.columns + x];
+      lowest = std::min(lowest, height);
+      highest = std::max(highest, height);
+    }
+  return {lowest, highest};
+}
+
+// Relief's slopes.
+void addSlopes(Relief& relief, const Heightfield& field) {
+  constexpr uint32_t side = kReliefBlock;
+  const auto blocks = [](uint32_t samples) { return std::max(1u, (samples - 1 + side - 1) / side); };
+  relief.blocksAcross = blocks(field.columns);
+  const uint32_t down = blocks(field.rows);
+  relief.slopes.assign(size_t(relief.blocksAcross) * down, 0.0f);
+  for (uint32_t z = 0; z < field.rows; ++z)
+    for (uint32_t x = 0; x < field.columns; ++x) {
+      const float slope = glm::length(gradientAt(field, int(x), int(z)));
+      relief.steepest = std::max(relief.steepest, slope);
+      // A sample where blocks meet is of each of them.
+      for (uint32_t row = (z - std::min(z, 1u)) / side; row <= std::min(z / side, down - 1); ++row)
+        for (uint32_t column = (x - std::min(x, 1u)) / side;
+             column <= std::min(x / side, relief.blocksAcross - 1); ++column) {
+          float& most = relief.slopes[size_t(row) * relief.blocksAcross + column];
+          most = std::max(most, slope);
+        }
+    }
 }
 
 class Chooser {
@@ -182,6 +224,44 @@ class Chooser {
   std::vector<Found> found_;
 };
 
+// What is known of the ground that a patch shows.
+struct Bounds {
+  glm::vec3 low, high;  // a box, in picture space
+  float steepest;       // slope
+};
+
+Bounds boundsOf(const Composition& c, const Relief& relief, const Patch& patch) {
+  const glm::vec2 spacing(c.block.ground.z, c.block.ground.w);
+  const glm::vec2 from = glm::vec2(c.block.ground) + glm::vec2(patch) * spacing;
+  const glm::vec2 to = from + float(kCells) * patch.z * spacing;
+  return {{from.x, relief.lowest, from.y}, {to.x, relief.highest, to.y}, relief.steepest};
+}
+
+// `bounds` of all ground, made those of the ground below the patch; those of the mirror image stay.
+void tighten(Bounds& bounds, const Heightfield& field, const Relief& relief, const Patch& patch) {
+  const float side = float(kCells) * patch.z;
+  const glm::vec2 last(float(field.columns - 1), float(field.rows - 1));
+  if (side > kLookedAt || patch.x < 0 || patch.y < 0 || patch.x + side > last.x || patch.y + side > last.y)
+    return;
+  const glm::uvec2 first(glm::floor(glm::vec2(patch))), end(glm::ceil(glm::vec2(patch) + side));
+  const auto [lowest, highest] = lowestAndHighest(field, first, end);
+  bounds.low.y = lowest;
+  bounds.high.y = highest;
+  bounds.steepest = 0;
+  for (uint32_t z = first.y / kReliefBlock; z * kReliefBlock < end.y; ++z)
+    for (uint32_t x = first.x / kReliefBlock; x * kReliefBlock < end.x; ++x)
+      bounds.steepest = std::max(bounds.steepest, relief.slopes[z * relief.blocksAcross + x]);
+}
+
+// The least metres across a pixel on it, as shaders/render/terrain.frag takes them.
+float leastFootprint(const shared::Picture& b, const Bounds& bounds) {
+  const glm::vec3 eye(b.eye), off = eye - glm::clamp(eye, bounds.low, bounds.high);
+  // The way to the eye leans off the vertical by at least so much, and the normal by at most so much.
+  const float eyes = std::atan2(glm::length(glm::vec2(off.x, off.z)), eye.y - bounds.low.y);
+  const float facing = std::cos(std::max(0.0f, eyes - std::atan(bounds.steepest * kHalfRounding)));
+  return glm::length(off) * b.eye.w / std::sqrt(std::max(facing, kLeastFacing));
+}
+
 std::vector<uint16_t> patchIndices() {
   std::vector<uint16_t> indices;
   // Strips of eight cells, so that a row's vertices are still cached when the next row needs them.
@@ -209,7 +289,8 @@ Relief reliefOf(const Heightfield& field) {
     return double(field.heights[size_t(z) * field.columns + x]);
   };
   const auto [lowest, highest] = std::ranges::minmax(field.heights);
-  Relief relief{.lowest = lowest, .highest = highest, .twist = 0, .deviations = {}};
+  Relief relief{.lowest = lowest, .highest = highest, .twist = 0, .deviations = {}, .slopes = {}};
+  addSlopes(relief, field);
   relief.twist = meanOf(field.columns - 1, field.rows - 1, [&](uint32_t x, uint32_t z) {
     return at(x, z) + at(x + 1, z + 1) - at(x + 1, z) - at(x, z + 1);
   });
@@ -225,16 +306,20 @@ std::vector<Patch> choosePatches(const Composition& composition, const Heightfie
   return Chooser(composition, field, relief).choose();
 }
 
-GroundForm formOf(const Composition& composition, const Relief& relief, const Patch& patch, bool casts) {
+GroundForm formOf(const Composition& composition, const Heightfield& field, const Relief& relief,
+                  const Patch& patch, bool casts) {
   const shared::Picture& b = composition.block;
-  const glm::vec2 spacing(b.ground.z, b.ground.w);
-  const glm::vec2 from = glm::vec2(b.ground) + glm::vec2(patch) * spacing;
-  const glm::vec2 to = from + float(kCells) * patch.z * spacing;
-  const glm::vec3 eye(b.eye), low(from.x, relief.lowest, from.y), high(to.x, relief.highest, to.y);
-  const float away = glm::distance(eye, glm::clamp(eye, low, high));
-  const glm::vec3 forward(b.forward);
-  const glm::vec3 first = glm::mix(high, low, glm::greaterThan(forward, glm::vec3(0)));
-  return {.detailed = away * b.eye.w < kNoDetail,
+  Bounds bounds = boundsOf(composition, relief, patch);
+  float footprint = leastFootprint(b, bounds);
+  if (footprint < kNoClods) {
+    tighten(bounds, field, relief, patch);
+    footprint = leastFootprint(b, bounds);
+  }
+  const glm::vec3 eye(b.eye), forward(b.forward);
+  const glm::vec3 first = glm::mix(bounds.high, bounds.low, glm::greaterThan(forward, glm::vec3(0)));
+  return {.detail = footprint < kNoGrains  ? 2
+                    : footprint < kNoClods ? 1
+                                           : 0,
           .shaded = casts && glm::dot(first - eye, forward) < kNoShadow * b.forward.w};
 }
 
@@ -244,11 +329,11 @@ Terrain::Terrain(const Setting& s) : field_(s.terrain), relief_(reliefOf(s.terra
                                        {shared::DRAW_HEIGHTS, &s.heights},
                                        {shared::DRAW_GROUND, &s.ground, s.groundSampler},
                                        {shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()}};
-  for (const bool detailed : {true, false})
+  for (int detail = 0; detail <= GroundForm::kFullDetail; ++detail)
     for (const bool shaded : {true, false}) {
-      Form& form = forms_[size_t(GroundForm{detailed, shaded}.index())];
+      Form& form = forms_[size_t(GroundForm{detail, shaded}.index())];
       std::vector<gpu::SpecConstant> constants = s.lit();
-      constants.emplace_back(shared::CONSTANT_DETAIL, detailed);
+      constants.emplace_back(shared::CONSTANT_DETAIL, detail);
       constants.emplace_back(shared::CONSTANT_SHADED, shaded);
       form.pipeline = gpu::GraphicsPipeline(
           s.context, {.name = "ground",
@@ -279,7 +364,7 @@ Terrain::Terrain(const Setting& s) : field_(s.terrain), relief_(reliefOf(s.terra
 void Terrain::prepare(vk::CommandBuffer cmd, const Composition& composition, bool casts) {
   std::array<std::vector<Patch>, kGroundForms> byForm;
   for (const Patch& patch : choosePatches(composition, field_, relief_))
-    byForm[size_t(formOf(composition, relief_, patch, casts).index())].push_back(patch);
+    byForm[size_t(formOf(composition, field_, relief_, patch, casts).index())].push_back(patch);
   std::vector<Patch> patches;
   for (size_t f = 0; f < byForm.size(); ++f) {
     forms_[f].patches = uint32_t(byForm[f].size());

@@ -12,11 +12,18 @@ namespace skitter::render {
 // (shaders/render/terrain.vert).
 using Patch = glm::vec4;
 
+constexpr int kReliefBlock = shared::PATCH_CELLS;  // cells along a block of Relief::slopes
+
 // How the ground's triangles differ from it. A mesh of level n has a vertex every 2^n samples.
 struct Relief {
   float lowest = 0, highest = 0;  // metres, as are the others
   float twist = 0;  // root mean square over cells: of the sum of two opposite corners less the others'
   std::vector<float> deviations;  // of the meshes of level 1, 2, ...: root mean square
+  // The steepest slope that is shaded (gradientAt) in each block of kReliefBlock x kReliefBlock cells, row by
+  // row, and of all.
+  std::vector<float> slopes;
+  uint32_t blocksAcross = 0;
+  float steepest = 0;
 
   float deviationOf(int level) const;
 };
@@ -29,13 +36,15 @@ std::vector<Patch> choosePatches(const Composition&, const Heightfield&, const R
 
 // What a patch needs of the ground's shader.
 struct GroundForm {
-  bool detailed = true;  // its finest detail may be seen
-  bool shaded = true;    // shadows may fall on it
-  int index() const { return (detailed ? 0 : 2) + (shaded ? 0 : 1); }
+  int detail = kFullDetail;  // CONSTANT_DETAIL: what of its detail may be seen
+  bool shaded = true;        // shadows may fall on it
+  static constexpr int kFullDetail = 2;
+  int index() const { return 2 * (kFullDetail - detail) + (shaded ? 0 : 1); }
 };
-constexpr int kGroundForms = 4;
-// `casts`: whether anything casts shadows.
-GroundForm formOf(const Composition&, const Relief&, const Patch&, bool casts);
+constexpr int kGroundForms = 2 * (GroundForm::kFullDetail + 1);
+// `field` is the ground that `relief` was made of, as it is now. `casts`: whether anything casts shadows.
+GroundForm formOf(const Composition&, const Heightfield& field, const Relief& relief, const Patch&,
+                  bool casts);
 
 // The ground, drawn from the very height image that the crowd walks on.
 class Terrain {

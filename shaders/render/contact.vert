@@ -40,7 +40,7 @@ void main() {
   outFromMiddle = where.xy;
   vec2 p = middle.xz + where.xy * where.z;
   vec3 position = vec3(p.x, groundAt(field, p), p.y);
-  // The ground's triangles differ from the ground by a quarter of a pixel.
+  // The ground's triangles differ from the ground by half a pixel, root mean square.
   vec3 toEye = picture.eye.xyz - position;
   float away = length(toEye), depth = away * picture.tile.w;
   outShare *= exp(-depth * depth);

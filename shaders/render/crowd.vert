@@ -4,14 +4,23 @@
 #include "skin.glsl"
 #include "hash.glsl"
 #include "tint.h"
+#ifdef LIT
+#include "light.glsl"
+#include "shadow_map.glsl"
+#include "chitin.glsl"
+#endif
 
 layout(location = 8) in vec3 colour;
 layout(constant_id = CONSTANT_TINTED) const bool TINTED = false;
 layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
 LOAD4_BUFFER(DRAW_TINT, tints)
 
+#ifdef LIT
+layout(location = 0) out vec3 outColour;  // as the picture shows it
+#else
 layout(location = 0) out vec3 outPosition;
 layout(location = 1) out vec3 outNormal;
+#endif
 #ifdef WORN
 layout(location = 9) in vec4 uv;
 layout(location = 11) in float opacity;
@@ -20,9 +29,19 @@ layout(location = 3) out vec2 outLight;    // openness to the sky, sunlight that
 layout(location = 4) out vec4 outTint;     // times the colour; of which only the lightness counts where w is 1
 layout(location = 5) out vec4 outUv;
 layout(location = 6) out vec4 outTangent;
-#else
+#elif !defined(LIT)
 layout(location = 2) out vec4 outColour;  // linear RGB; openness to the sky
 layout(location = 3) out float outSun;    // sunlight that hills leave
+#endif
+
+#ifdef LIT
+// One comparison for a vertex: what it lights is a few pixels wide.
+float sunlight(vec3 p, vec3 normal) {
+  vec3 nearAt = offSurface(0, p, normal, 3.0), farAt = offSurface(1, p, normal, 3.0);
+  bool isNear = inNearCascade(nearAt);
+  vec3 at = isNear ? nearAt : farAt;
+  return fadedShadow(p, compared(placeOnMap(at, isNear), at.z, texelOfMap()));
+}
 #endif
 
 void main() {
@@ -31,8 +50,10 @@ void main() {
   float away = length(toEye);
   spread(s, toEye / away, away * picture.eye.w);
   gl_Position = picture.clipFromPicture[VIEW_CAMERA] * vec4(s.position, 1.0);
+#ifndef LIT
   outPosition = s.position;
   outNormal = s.normal;
+#endif
 
   vec2 at = (s.body.xz - picture.ground.xy) / picture.ground.zw;
   vec4 ground = textureLod(groundMap, (at + 0.5) / vec2(textureSize(groundMap, 0)), 0.0);
@@ -58,7 +79,14 @@ void main() {
   vec3 own = colour;
   if ((flags & TINT_LIGHTNESS) != 0) own = vec3(dot(own, vec3(RED_LIGHTNESS, GREEN_LIGHTNESS, BLUE_LIGHTNESS)));
   if (TINTED) own *= tint.xyz;
-  outColour = vec4(own * value * warm, openness);
+  vec4 seen = vec4(own * value * warm, openness);
+#ifdef LIT
+  vec3 normal = normalize(s.normal);
+  // On a sphere the rim's mean is 0.1. The triangles of a coarse one would spread that of the outline over all of it.
+  outColour = chitin(seen, normal, toEye / away, away, ground.w * sunlight(s.position, normal), 0.1);
+#else
+  outColour = seen;
   outSun = ground.w;
+#endif
 #endif
 }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Which agents each list draws: an agent in the camera's pyramid joins the list of its level of detail, one
-// in reach of a shadow cascade that cascade's. The order within a list is of no consequence.
+// in reach of a shadow cascade one of that cascade's. The order within a list is of no consequence.
 #include "picture.glsl"
 #include "lib/load4.glsl"
 
@@ -11,16 +11,21 @@ LOAD4_BUFFER(DRAW_BODY, bodies)
 layout(set = 0, binding = DRAW_INSTANCES, std430) writeonly buffer Instances { uint instances[]; };
 layout(set = 0, binding = DRAW_COMMANDS, std430) buffer Commands { uint commands[]; };
 
+// Texels of the far cascade from a point within which shadow.glsl looks: half its longest way, across, a square
+// and the way off the surface.
+const float FAR_REACH = 21.0;
+
 void append(uint list, uint agent) {
   uint place = atomicAdd(commands[list * DRAW_WORDS + 1], 1u);
   instances[list * constants.agents + place] = agent;
 }
 
-bool inCascade(int cascade, vec3 p) {
+// The further of the ways along a cascade's sides, half of which is 1; `margin` is an agent's radius.
+float outOfCascade(int cascade, vec3 p, out float margin) {
   vec4 clip = picture.clipFromPicture[1 + cascade] * vec4(p, 1.0);
   float texel = cascade == 0 ? picture.shadow.x : picture.shadow.y;
-  float margin = 2.0 * constants.radius / (texel * picture.shadow.w);
-  return max(abs(clip.x), abs(clip.y)) < 1.0 + margin;
+  margin = 2.0 * constants.radius / (texel * picture.shadow.w);
+  return max(abs(clip.x), abs(clip.y));
 }
 
 void main() {
@@ -33,14 +38,21 @@ void main() {
   float inside = picture.tile.z - away;
   for (int i = 0; i < 4; ++i) inside = min(inside, dot(picture.planes[i].xyz, p) + picture.planes[i].w);
   bool seen = inside > -constants.radius;
+  float pixels = constants.radius / (max(away, 1e-3) * picture.eye.w);
   if (seen) {
-    float pixels = constants.radius / (max(away, 1e-3) * picture.eye.w);
     uint lod = 0u;
     for (int i = 0; i < CAMERA_LODS - 1; ++i) lod += pixels < constants.lodPixels[i] ? 1u : 0u;
     append(lod, agent);
+    if (pixels >= constants.contactPixels) append(uint(CONTACTS), agent);
   }
-  // An agent outside the picture may cast its shadow into it.
-  bool casts = inside > -4.0 * constants.radius;
-  for (int cascade = 0; cascade < SHADOW_CASCADES; ++cascade)
-    if (casts && inCascade(cascade, p)) append(uint(CAMERA_LODS + cascade), agent);
+  // An agent outside the picture may cast its shadow into it, but none is seen where shadows have faded. The far
+  // cascade is not looked up where the near one holds the whole shadow and all from where it would be looked up.
+  float ahead = dot(p - picture.eye.xyz, picture.forward.xyz);
+  bool casts = min(inside, picture.forward.w - ahead) > -4.0 * constants.radius;
+  float nearMargin, farMargin;
+  float outOfNear = outOfCascade(0, p, nearMargin), outOfFar = outOfCascade(1, p, farMargin);
+  float nearAlone = 0.98 - 2.0 * FAR_REACH * picture.shadow.y / (picture.shadow.x * picture.shadow.w);
+  if (casts && outOfNear < 1.0 + nearMargin)
+    append(uint(pixels < constants.lodPixels[2] ? NEAR_COARSE : NEAR_FINE), agent);
+  if (casts && outOfFar < 1.0 + farMargin && outOfNear + nearMargin > nearAlone) append(uint(FAR_SHADOWS), agent);
 }

@@ -18,9 +18,16 @@ using uint = uint32_t;
 
 // Two squares beside each other in one shadow map: sharp near the camera, coarse further away.
 SKITTER_PICTURE_CONST SHADOW_CASCADES = 2;
-// Instance lists of a page, and their indirect draws: the camera's levels of detail, then the cascades'.
-SKITTER_PICTURE_CONST CAMERA_LODS = 4;
-SKITTER_PICTURE_CONST INSTANCE_LISTS = 6;
+// Instance lists of a page, and their indirect draws: the camera's levels of detail, then the near cascade's
+// finer and coarser shadows, the far cascade's, and who darkens the ground that it touches.
+SKITTER_PICTURE_CONST CAMERA_LODS = 5;
+SKITTER_PICTURE_CONST NEAR_FINE = 5;
+SKITTER_PICTURE_CONST NEAR_COARSE = 6;
+SKITTER_PICTURE_CONST FAR_SHADOWS = 7;
+SKITTER_PICTURE_CONST CONTACTS = 8;
+SKITTER_PICTURE_CONST INSTANCE_LISTS = 9;
+// The camera's levels from this one on are lit at their vertices.
+SKITTER_PICTURE_CONST FIRST_VERTEX_LIT = 2;
 // clipFromPicture[VIEW_CAMERA], then one of each cascade.
 SKITTER_PICTURE_CONST VIEW_CAMERA = 0;
 SKITTER_PICTURE_CONST VIEWS = 3;
@@ -62,6 +69,7 @@ struct CullConstants {
   uint agents;
   float radius;                      // about the body's position, metres
   float lodPixels[CAMERA_LODS - 1];  // the radius in pixels from which each level but the last serves
+  float contactPixels;               // the same of contacts
 };
 
 #ifdef __cplusplus

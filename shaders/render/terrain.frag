@@ -13,9 +13,10 @@ layout(location = 2) in vec3 nearAt;
 layout(location = 3) in vec3 farAt;
 layout(location = 0) out vec4 outColour;
 layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
-// The host knows of each patch whether it needs them (render/terrain.cpp): a software device pays for
-// detail that fades to nothing as for any other.
-layout(constant_id = CONSTANT_DETAIL) const bool DETAIL = true;
+// The host knows of each patch what it needs of them (render/terrain.cpp): a software device pays for detail
+// that fades to nothing as for any other.
+layout(constant_id = CONSTANT_DETAIL) const int DETAIL = 2;
+const bool CLODS = DETAIL > 0, GRAINS = DETAIL > 1;
 layout(constant_id = CONSTANT_SHADED) const bool SHADED = true;
 
 // A flat dome that stays inside its cell.
@@ -60,23 +61,23 @@ void main() {
   float broad = noise(place * (1.0 / 9.7)).x;
   vec4 clumps = noise(place.yzx * (1.0 / 1.7) + 31.7) * visible(1.7, footprint);
   // Each is bent by the one before, so that no lattice shows.
-  vec4 clods = noise(place * (1.0 / 0.31) + 0.4 * clumps.yzw) * visible(0.31, footprint);
-  vec4 grains = vec4(0.0);
-  if (DETAIL) grains = noise(place.yzx * (1.0 / 0.062) + 0.4 * clods.yzw) * visible(0.062, footprint);
+  vec4 clods = vec4(0.0), grains = vec4(0.0);
+  if (CLODS) clods = noise(place * (1.0 / 0.31) + 0.4 * clumps.yzw) * visible(0.31, footprint);
+  if (GRAINS) grains = noise(place.yzx * (1.0 / 0.062) + 0.4 * clods.yzw) * visible(0.062, footprint);
   Pebble pebble = Pebble(0.0, 0.0, vec2(0.0), 0.0);
-  if (DETAIL) pebble = pebbleAt(metres, slope, footprint);
+  if (GRAINS) pebble = pebbleAt(metres, slope, footprint);
 
   float dryness = clamp(0.5 + 0.64 * broad + 0.40 * clumps.x - 0.6 * slope, 0.0, 1.0);
   float rock = smoothstep(0.25, 0.75, slope + 0.14 * clumps.x + 0.09 * clods.x);
   vec3 soil = mix(vec3(0.175, 0.118, 0.070), vec3(0.340, 0.245, 0.150), dryness);
   soil = mix(soil, vec3(0.150, 0.150, 0.062), 0.55 * smoothstep(0.1, 0.8, 1.16 * clumps.x - 1.04 * broad));
   vec3 albedo = mix(soil, vec3(0.275, 0.245, 0.215), rock);
-  if (DETAIL) albedo = mix(albedo, vec3(0.24, 0.205, 0.165) * pebble.lightness, pebble.on);
+  if (GRAINS) albedo = mix(albedo, vec3(0.24, 0.205, 0.165) * pebble.lightness, pebble.on);
   albedo *= 1.0 + 0.11 * clods.x + 0.15 * grains.x + 0.12 * clumps.x;
 
   vec3 bump = (0.08 * clumps.wyz + 0.11 * clods.yzw + 0.18 * grains.wyz) * NOISE_AXES;
   bump *= 1.0 - 0.45 * rock;  // where the sun goes along a wall it would look pitted
-  if (DETAIL) bump = mix(bump, vec3(-1.1, 0.0, -1.1) * pebble.fromCentre.xxy, pebble.on);
+  if (GRAINS) bump = mix(bump, vec3(-1.1, 0.0, -1.1) * pebble.fromCentre.xxy, pebble.on);
   vec3 normal = normalize(smoothNormal * (1.0 + dot(smoothNormal, bump)) - bump);
   float openness = ground.z * (1.0 - 0.45 * pebble.beside) * (1.0 + 0.12 * clods.x);
 

@@ -15,7 +15,8 @@ namespace skitter::render {
 namespace {
 
 using test::Sight;
-using Lists = std::vector<int>;  // ascending: 0 to 3 the camera's levels, 4 and 5 the cascades
+using Lists = std::vector<int>;  // ascending: 0 to 4 the camera's levels, 5 and 6 the near
+                                 // cascade, 7 the far one, 8 contacts
 
 constexpr uint32_t kWidth = 640, kHeight = 360;
 constexpr float kRadius = 0.8f;
@@ -57,6 +58,10 @@ INSTANTIATE_TEST_SUITE_P(Loads, CullTest, test::bothLoadPaths(), test::loadPathN
 // Far from the world's origin, in no axis' direction; 20 m to its target, so drawing ends after 210 m.
 const View kView{.eye = {-203, 12, 517}, .target = {-191, 4.0f, 530.8564f}, .fieldOfView = 0.9f};
 constexpr double kEnd = 210;
+constexpr std::array kThresholds{150.0, 75.0, 25.0, 10.0};
+constexpr double kContactThreshold = 40;
+
+bool isShadow(int list) { return list >= 5 && list <= 7; }
 
 shared::Picture picture() {
   const Heightfield field{
@@ -78,14 +83,23 @@ TEST_P(CullTest, thePyramidsSidesDecide) {
   for (const glm::dvec2 side : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}})
     expect(s.at(20, side.x, side.y),
            side.x * s.right + side.y * s.up - (side.x == 0 ? s.tanY : s.tanX) * s.forward);
-  expect(s.at(kEnd, 0, 0), s.forward);
+  // Where drawing ends shadows have long faded.
+  for (const double radii : {0.99, 1.01}) {
+    places.push_back(s.at(kEnd, 0, 0) + radii * double(kRadius) * s.forward);
+    expected.push_back({radii < 1, false});
+  }
+  // 1.9 times 4.5 distances to the target ahead they have.
+  for (const double radii : {3.99, 4.01}) {
+    places.push_back(s.at(1.9 * 4.5 * 20 + radii * double(kRadius), 0, 0));
+    expected.push_back({true, radii < 4});
+  }
   places.push_back(s.at(-10, 0, 0));
   expected.push_back({false, false});
 
   const std::vector<Lists> found = cull(picture(), places);
   for (size_t i = 0; i < places.size(); ++i) {
-    EXPECT_EQ(!found[i].empty() && found[i].front() < 4, expected[i].first) << "agent " << i;
-    EXPECT_EQ(!found[i].empty() && found[i].back() >= 4, expected[i].second) << "agent " << i;
+    EXPECT_EQ(!found[i].empty() && found[i].front() < 5, expected[i].first) << "agent " << i;
+    EXPECT_EQ(std::ranges::any_of(found[i], isShadow), expected[i].second) << "agent " << i;
   }
 }
 
@@ -93,13 +107,12 @@ TEST_P(CullTest, thePyramidsSidesDecide) {
 TEST_P(CullTest, theRadiusInPixelsChoosesTheLevel) {
   const Sight s(kView, kWidth, kHeight);
   const double onePixel = double(kRadius) * kHeight / (2 * s.tanY);  // metres away
-  const std::array thresholds{75.0, 40.0, 14.0};
   std::vector<glm::dvec3> places;
   std::vector<int> expected;
-  for (int level = 0; level < 3; ++level)
+  for (int level = 0; level < 4; ++level)
     for (const double share : {1.005, 0.995})
       for (const double x : {0.0, 0.9}) {
-        const double away = onePixel / (thresholds[size_t(level)] * share);
+        const double away = onePixel / (kThresholds[size_t(level)] * share);
         places.push_back(s.eye + away * glm::normalize(s.at(1, x, -x) - s.eye));
         expected.push_back(share > 1 ? level : level + 1);
       }
@@ -107,8 +120,25 @@ TEST_P(CullTest, theRadiusInPixelsChoosesTheLevel) {
   for (size_t i = 0; i < places.size(); ++i) {
     ASSERT_FALSE(found[i].empty()) << "agent " << i;
     EXPECT_EQ(found[i].front(), expected[i]) << "agent " << i;
-    EXPECT_TRUE(found[i].size() == 1 || found[i][1] > 3) << "agent " << i;
+    EXPECT_TRUE(found[i].size() == 1 || found[i][1] > 4) << "agent " << i;
+    // The near cascade draws who is small in the picture more coarsely.
+    EXPECT_EQ(std::ranges::count(found[i], 5), expected[i] < 3) << "agent " << i;
+    EXPECT_EQ(std::ranges::count(found[i], 6), expected[i] >= 3) << "agent " << i;
   }
+}
+
+// Those near enough have contacts.
+TEST_P(CullTest, theRadiusInPixelsChoosesContacts) {
+  const Sight s(kView, kWidth, kHeight);
+  const double onePixel = double(kRadius) * kHeight / (2 * s.tanY);
+  std::vector<glm::dvec3> places;
+  for (const double share : {1.005, 0.995}) {
+    places.push_back(s.eye + onePixel / (kContactThreshold * share) * s.forward);
+    places.push_back(s.eye - onePixel / (kContactThreshold * share) * s.forward);
+  }
+  const std::vector<Lists> found = cull(picture(), places);
+  for (size_t i = 0; i < places.size(); ++i)
+    EXPECT_EQ(std::ranges::count(found[i], 8), i == 0) << "agent " << i;
 }
 
 // Squares of 20 m and 90 m seen from straight above: who touches a square is on its list.
@@ -117,6 +147,7 @@ TEST_P(CullTest, cascadesListWhoTouchesThem) {
   for (glm::vec4& plane : p.planes) plane = {0, 0, 0, 1e6f};
   p.tile = {0, 0, 1e6f, 0};
   p.eye = {0, 0, 0, 1};
+  p.forward = {0, 0, 1, 1e6f};
   p.shadow = {20.0f / 1024, 90.0f / 1024, 0, 1024};
   const glm::dvec2 centres[2] = {{3, -4}, {-12, 8}};
   const double halves[2] = {10, 45};
@@ -138,17 +169,23 @@ TEST_P(CullTest, cascadesListWhoTouchesThem) {
       for (const glm::dvec2 side : {glm::dvec2(1, 0), {-1, 0.3}, {0.4, 1}, {0, -1}, {1, -1}}) {
         const glm::dvec2 at = centres[cascade] + side * (halves[cascade] + past * double(kRadius));
         places.push_back({at.x, 1, at.y});
-        Lists lists{3};
+        Lists lists;
         for (int i = 0; i < 2; ++i)
-          if (touches(i, places.back())) lists.push_back(4 + i);
+          if (touches(i, places.back())) lists.push_back(6 + i);
         expected.push_back(lists);
       }
+  // 21 texels of the far cascade within 0.98 of the near one's half side the far one is not looked up.
+  const double alone = 9.8 - 21 * 90.0 / 1024 - double(kRadius);
+  for (const double past : {-0.05, 0.05}) {
+    places.push_back({centres[0].x + alone + past, 1, centres[0].y});
+    expected.push_back(past < 0 ? Lists{6} : Lists{6, 7});
+  }
   const std::vector<Lists> found = cull(p, places);
-  for (size_t i = 0; i < places.size(); ++i)
-    EXPECT_EQ(
-        Lists(std::find_if(found[i].begin(), found[i].end(), [](int l) { return l > 3; }), found[i].end()),
-        Lists(expected[i].begin() + 1, expected[i].end()))
-        << "agent " << i;
+  for (size_t i = 0; i < places.size(); ++i) {
+    Lists shadows;
+    std::ranges::copy_if(found[i], std::back_inserter(shadows), isShadow);
+    EXPECT_EQ(shadows, expected[i]) << "agent " << i;
+  }
 }
 
 // More agents than a work group, and no multiple of one: each is drawn once at the level of its distance, or
@@ -171,7 +208,8 @@ TEST_P(CullTest, everyAgentInSightIsDrawnOnce) {
     const double depth = away(random) * (places.size() % 3 == 0 ? 0.1 : 1);
     const glm::dvec3 place = s.at(depth, across(random), across(random));
     const double inside = depthInside(place) + double(kRadius), distance = glm::distance(place, s.eye);
-    const std::array bounds{onePixel / 75, onePixel / 40, onePixel / 14};
+    std::array<double, 4> bounds{};
+    std::ranges::transform(kThresholds, bounds.begin(), [&](double pixels) { return onePixel / pixels; });
     if (std::abs(inside) < 0.02 ||
         std::any_of(bounds.begin(), bounds.end(), [&](double b) { return std::abs(distance - b) < 0.02; }))
       continue;
@@ -181,9 +219,9 @@ TEST_P(CullTest, everyAgentInSightIsDrawnOnce) {
     })));
   }
   const std::vector<Lists> found = cull(picture(), places);
-  std::array<int, 5> counts{};
+  std::array<int, 6> counts{};
   for (size_t i = 0; i < places.size(); ++i) {
-    const auto drawn = std::count_if(found[i].begin(), found[i].end(), [](int list) { return list < 4; });
+    const auto drawn = std::count_if(found[i].begin(), found[i].end(), [](int list) { return list < 5; });
     ASSERT_EQ(drawn, expected[i] < 0 ? 0 : 1) << "agent " << i;
     if (drawn > 0) {
       ASSERT_EQ(found[i].front(), expected[i]) << "agent " << i;

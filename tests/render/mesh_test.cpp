@@ -106,16 +106,18 @@ TEST(Mesh, everyLevelWearsTheRigsNormalsAndColours) {
 }
 
 // docs/stages/pictures.md, cull and Ribbons.
-constexpr double kShares[] = {1, 0.35, 0.12, 0.05}, kNearest[] = {1e9, 75, 40, 14}, kRibbonPixels = 2;
+constexpr double kShares[] = {1, 0.35, 0.12, 0.04, 0.015}, kNearest[] = {1e9, 150, 75, 25, 10};
+constexpr double kRibbonPixels = 3.5, kBendPixels = 1;
 
 Ribbons ribbonsAt(const Rig& rig, const MeshData& mesh, size_t level) {
-  return ribbonsOf(rig, float(kRibbonPixels * mesh.radius / kNearest[level]));
+  const double pixel = mesh.radius / kNearest[level];
+  return ribbonsOf(rig, float(kRibbonPixels * pixel), float(kBendPixels * pixel));
 }
 
 TEST(Mesh, levelsHaveTheirShareOfTheTrianglesAndRibbons) {
   const Rig rig = spiderRig();
   const MeshData mesh = makeMesh(rig);
-  for (size_t i = 0; i < 4; ++i) {
+  for (size_t i = 0; i < mesh.lods.size(); ++i) {
     const Ribbons thin = ribbonsAt(rig, mesh, i);
     const double share = kShares[i] * double(thin.others.size()), ribbons = 6.0 * double(thin.ribbons.size());
     EXPECT_LE(mesh.lods[i].indexCount, share + ribbons) << "level " << i;
@@ -124,30 +126,40 @@ TEST(Mesh, levelsHaveTheirShareOfTheTrianglesAndRibbons) {
   }
 }
 
-TEST(Mesh, ribbonsLieAlongTheirBones) {
+const Bone& boneOf(const Rig& rig, uint16_t entry) {
+  const auto most = size_t(rig.maxBones());
+  return rig.legs[(entry - 1u) / most].bones[(entry - 1u) % most];
+}
+glm::vec3 placeOf(const Rig& rig, const Ribbon::End& end) {
+  return boneOf(rig, end.bone).start + end.along * boneOf(rig, end.bone).direction;
+}
+
+TEST(Mesh, ribbonsLieBetweenTheirEnds) {
   const Rig rig = spiderRig();
   const MeshData mesh = makeMesh(rig);
-  for (size_t level = 0; level < 4; ++level) {
+  EXPECT_EQ(mesh.influences, 2);
+  for (size_t level = 0; level < mesh.lods.size(); ++level) {
     const Ribbons thin = ribbonsAt(rig, mesh, level);
     const MeshLod& lod = mesh.lods[level];
     for (size_t r = 0; r < thin.ribbons.size(); ++r) {
       const Ribbon& ribbon = thin.ribbons[r];
       const uint32_t* corner = &mesh.indices[lod.firstIndex + lod.indexCount - 6 * (thin.ribbons.size() - r)];
-      const Bone& bone = rig.legs[(ribbon.bone - 1u) / uint32_t(rig.maxBones())]
-                             .bones[(ribbon.bone - 1u) % uint32_t(rig.maxBones())];
+      const glm::vec3 ends[] = {placeOf(rig, ribbon.from), placeOf(rig, ribbon.to)};
       double sides = 0;
       for (int i = 0; i < 6; ++i) {
         const MeshVertex& vertex = mesh.vertices[uint32_t(lod.firstVertex) + corner[i]];
-        const float along = glm::dot(positionAtRest(rig, vertex) - bone.start, bone.direction);
-        const Ribbon::End& end =
-            std::abs(along - ribbon.from.along) < std::abs(along - ribbon.to.along) ? ribbon.from : ribbon.to;
-        EXPECT_NEAR(along, end.along, 1e-6f);
-        EXPECT_LT(glm::distance(positionAtRest(rig, vertex), bone.start + along * bone.direction), 1e-6f);
+        const bool last = vertex.bones[0] != ribbon.from.bone ||
+                          (ribbon.from.bone == ribbon.to.bone &&
+                           glm::distance(positionAtRest(rig, vertex), ends[0]) > 1e-6f);
+        const Ribbon::End &end = last ? ribbon.to : ribbon.from, &other = last ? ribbon.from : ribbon.to;
+        EXPECT_EQ(vertex.bones[0], end.bone);
+        EXPECT_LT(glm::distance(positionAtRest(rig, vertex), ends[last]), 1e-6f);
         EXPECT_NEAR(std::abs(vertex.halfWidth), end.radius, 2e-6f);
-        const float out = &end == &ribbon.to ? 1.0f : -1.0f;
-        EXPECT_EQ(vertex.normal, out * bone.direction);
         EXPECT_EQ(vertex.colour, end.colour);
-        EXPECT_EQ(vertex.bones[0], ribbon.bone);
+        // The other end is the second influence, without weight.
+        EXPECT_EQ(vertex.bones[1], other.bone);
+        EXPECT_EQ(vertex.influences[1], glm::vec4(other.along * other.direction, 0));
+        const float out = last ? 1.0f : -1.0f;
         sides += std::copysign(1.0, out * vertex.halfWidth);
       }
       EXPECT_EQ(sides, 0) << "both triangles lie on one side";
@@ -187,11 +199,12 @@ Rig tube(size_t bone, const std::vector<std::pair<float, float>>& rings) {
 TEST(Ribbons, taperAsTheirBonesDo) {
   const float length = spiderRig().legs[0].bones[1].length;
   const Rig rig = tube(1, {{0.0f, 0.06f}, {0.5f * length, 0.05f}, {length, 0.04f}});
-  const Ribbons found = ribbonsOf(rig, 0.061f);
+  const Ribbons found = ribbonsOf(rig, 0.061f, 0);
   ASSERT_EQ(found.ribbons.size(), 1u);
   EXPECT_TRUE(found.others.empty());
   const Ribbon& ribbon = found.ribbons[0];
-  EXPECT_EQ(ribbon.bone, 2);
+  EXPECT_EQ(ribbon.from.bone, 2);
+  EXPECT_EQ(ribbon.to.bone, 2);
   EXPECT_NEAR(ribbon.from.along, 0, 1e-6f);
   EXPECT_NEAR(ribbon.to.along, length, 1e-6f);
   EXPECT_NEAR(ribbon.from.radius, 0.06f, 1e-6f);
@@ -204,30 +217,57 @@ TEST(Ribbons, taperAsTheirBonesDo) {
 TEST(Ribbons, areOfThinBonesAlone) {
   const float length = spiderRig().legs[0].bones[1].length;
   const Rig rig = tube(1, {{0.0f, 0.04f}, {length, 0.06f}});
-  EXPECT_EQ(ribbonsOf(rig, 0.059f).ribbons.size(), 0u);
-  EXPECT_EQ(ribbonsOf(rig, 0.059f).others, rig.indices);
-  EXPECT_EQ(ribbonsOf(rig, 0.061f).ribbons.size(), 1u);
-  EXPECT_EQ(ribbonsOf(spiderRig(), 0).ribbons.size(), 0u);
+  EXPECT_EQ(ribbonsOf(rig, 0.059f, 0).ribbons.size(), 0u);
+  EXPECT_EQ(ribbonsOf(rig, 0.059f, 0).others, rig.indices);
+  EXPECT_EQ(ribbonsOf(rig, 0.061f, 0).ribbons.size(), 1u);
+  EXPECT_EQ(ribbonsOf(spiderRig(), 0, 1).ribbons.size(), 0u);
 }
 
 // What lies beyond a joint is a ribbon's, too; a single ring has one radius; a bone is never shorter than
 // itself.
 TEST(Ribbons, coverTheirBonesAndSkin) {
   const float length = spiderRig().legs[0].bones[2].length;
-  const Ribbon longer = ribbonsOf(tube(2, {{-0.1f, 0.02f}, {length + 0.2f, 0.02f}}), 1).ribbons.at(0);
+  const Ribbon longer = ribbonsOf(tube(2, {{-0.1f, 0.02f}, {length + 0.2f, 0.02f}}), 1, 0).ribbons.at(0);
   EXPECT_NEAR(longer.from.along, -0.1f, 1e-6f);
   EXPECT_NEAR(longer.to.along, length + 0.2f, 1e-6f);
-  const Ribbon ring = ribbonsOf(tube(2, {{0.3f * length, 0.02f}}), 1).ribbons.at(0);
+  const Ribbon ring = ribbonsOf(tube(2, {{0.3f * length, 0.02f}}), 1, 0).ribbons.at(0);
   EXPECT_EQ(ring.from.along, 0);
   EXPECT_EQ(ring.to.along, length);
   EXPECT_NEAR(ring.from.radius, 0.02f, 1e-6f);
   EXPECT_NEAR(ring.to.radius, 0.02f, 1e-6f);
 }
 
+// A ribbon ends where a joint within it would be too far off.
+TEST(Ribbons, spanBonesThatAreAlmostStraight) {
+  const Rig rig = spiderRig();
+  const auto ends = [&](float bend) {
+    std::vector<std::pair<int, int>> found;
+    for (const Ribbon& ribbon : ribbonsOf(rig, 1, bend).ribbons)
+      if (ribbon.to.bone <= rig.maxBones()) found.emplace_back(ribbon.from.bone, ribbon.to.bone);
+    return found;
+  };
+  using Ends = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(ends(0), (Ends{{1, 1}, {2, 2}, {3, 3}, {4, 4}}));
+  // Twice the area of the triangle of joints by its base: how far the first knee is off.
+  const std::vector<Bone>& bones = rig.legs[0].bones;
+  const glm::vec3 base = bones[2].start - bones[0].start;
+  const float off = glm::length(glm::cross(base, bones[1].start - bones[0].start)) / glm::length(base);
+  EXPECT_EQ(ends(0.99f * off).front(), std::pair(1, 1));
+  EXPECT_EQ(ends(1.01f * off).front(), std::pair(1, 2));
+  EXPECT_EQ(ends(0.06f), (Ends{{1, 2}, {3, 4}}));
+  EXPECT_EQ(ends(1), (Ends{{1, 4}}));
+  // A thick bone parts the thin ones about it.
+  const Ribbons parted = ribbonsOf(rig, 0.045f, 1);
+  EXPECT_EQ(parted.ribbons[0].to.bone, 1);
+  EXPECT_EQ(parted.ribbons[1].from.bone, 3);
+  EXPECT_EQ(parted.ribbons[1].to.bone, 4);
+  EXPECT_FALSE(parted.others.empty());
+}
+
 // A triangle between a thin bone and the body is no ribbon's.
 TEST(Ribbons, leaveTheBodyAlone) {
   const Rig rig = spiderRig();
-  const Ribbons all = ribbonsOf(rig, 1);
+  const Ribbons all = ribbonsOf(rig, 1, 0);
   EXPECT_EQ(all.ribbons.size(), 32u);
   const auto hangsOnTheBody = [&](uint32_t index) {
     const SkinVertex& vertex = rig.vertices[index];
