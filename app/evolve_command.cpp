@@ -15,6 +15,7 @@
 #include "app/common/progress.h"
 #include "app/common/signals.h"
 #include "app/common/values.h"
+#include "app/evolve/judgement.h"
 #include "assets/files/file.h"
 #include "assets/files/partial_file.h"
 #include "skitter/error.h"
@@ -29,7 +30,6 @@ namespace fs = std::filesystem;
 using EvolveClock = std::chrono::steady_clock;
 
 constexpr uint64_t usualEvaluations = 1000000, mostEvaluations = 1000000000000;
-constexpr double judgedSeconds = 20;
 constexpr auto savedEvery = std::chrono::seconds(30);
 constexpr double eliteBytes = 300;
 constexpr uint64_t mostAdapted = 10000;
@@ -37,11 +37,11 @@ constexpr uint64_t mostAdapted = 10000;
 struct EvolveCommand {
   std::string rig = "spider", out, json;
   std::optional<std::string> device;
-  std::optional<uint64_t> seed, batch;
+  std::optional<uint64_t> seed, batch, adaptSeed;
   std::optional<double> dt;
   uint64_t evaluations = usualEvaluations;
   uint32_t adapt = 0;
-  bool resume = false, force = false, quiet = false;
+  bool resume = false, force = false, judge = false, quiet = false;
 
   bool isBuiltin() const { return rig == "spider"; }
   fs::path table() const {
@@ -117,8 +117,31 @@ struct MeanJudgement {
   }
 };
 
+// The best gait of each pattern, how it walks, and how the rule's does; and those that are worth more.
 struct Judged {
   std::vector<GaitJudgement> found, byRule;
+  std::vector<RigGait> table;
+
+  Judged(Device& device, const Rig& rig, const Evolution& search) : table(search.gaits()) {
+    std::vector<uint32_t> patterns;
+    for (const RigGait& gait : table) patterns.push_back(gait.idle);
+    const auto walk = [&](std::vector<RigGait> gaits) {
+      Rig walker = rig;
+      walker.gaits = std::move(gaits);
+      return judgeGaits(device, walker, patterns, judgedSeconds, search.options().dt);
+    };
+    found = walk(table);
+    byRule = walk({});
+    table = betterThanRule(table, found, byRule);
+  }
+  nlohmann::ordered_json json(const Rig& rig) const {
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (size_t i = 0; i < found.size(); ++i)
+      all.push_back({{"without", namesOf(rig, found[i].idle)},
+                     {"found", app::jsonOf(found[i])},
+                     {"byRule", app::jsonOf(byRule[i])}});
+    return all;
+  }
 };
 
 nlohmann::ordered_json searchJson(const Evolution& search, const std::optional<Judged>& judged) {
@@ -139,7 +162,8 @@ nlohmann::ordered_json searchJson(const Evolution& search, const std::optional<J
 void writeTable(const EvolveCommand& options, const Rig& rig, const Evolution& search,
                 const std::optional<Judged>& judged) {
   writeText(options.map(), search.map());
-  writeText(options.table(), writeGaits(rig, search.gaits(), searchJson(search, judged).dump()));
+  writeText(options.table(),
+            writeGaits(rig, judged ? judged->table : search.gaits(), searchJson(search, judged).dump()));
 }
 
 void printJudgement(const char* name, const std::vector<GaitJudgement>& all) {
@@ -162,35 +186,83 @@ void printSearch(const Evolution& search, uint64_t done, double seconds) {
 
 // How creatures found a gait again that they were not told of.
 struct AdaptationFigures {
+  // The median, of an even number the lower one, and the most.
+  struct Spread {
+    uint32_t median = 0, most = 0;
+
+    explicit Spread(std::vector<uint32_t> all = {}) {
+      if (all.empty()) return;
+      std::ranges::sort(all);
+      median = all[(all.size() - 1) / 2];
+      most = all.back();
+    }
+  };
   size_t creatures = 0, failed = 0;
-  uint32_t median = 0, most = 0;  // trials of those who found one
+  Spread trials, used;  // up to 90 %, of those who found a gait; and until they stopped, of all
 
   explicit AdaptationFigures(const std::vector<AdaptationReport>& reports) : creatures(reports.size()) {
-    std::vector<uint32_t> trials;
-    for (const AdaptationReport& report : reports)
-      if (report.trials > 0) trials.push_back(report.trials);
-    failed = creatures - trials.size();
-    if (trials.empty()) return;
-    std::ranges::sort(trials);
-    median = trials[(trials.size() - 1) / 2];
-    most = trials.back();
+    std::vector<uint32_t> toFind, inAll;
+    for (const AdaptationReport& report : reports) {
+      if (report.trials > 0) toFind.push_back(report.trials);
+      inAll.push_back(report.used);
+    }
+    failed = creatures - toFind.size();
+    trials = Spread(std::move(toFind));
+    used = Spread(std::move(inAll));
   }
   nlohmann::ordered_json json() const {
-    return {{"creatures", creatures}, {"failed", failed}, {"trialsMedian", median}, {"trialsMost", most}};
+    return {{"creatures", creatures},    {"failed", failed},          {"trialsMedian", trials.median},
+            {"trialsMost", trials.most}, {"usedMedian", used.median}, {"usedMost", used.most}};
+  }
+  std::string text() const {
+    return fmt::format(
+        "trial, error   {} of {} losses came to 90 % of the best gait known, in {} trials at the median, {} "
+        "at "
+        "most; all stopped after {} at the median, {} at most\n",
+        creatures - failed, creatures, trials.median, trials.most, used.median, used.most);
   }
 };
 
+Rig rigFor(const EvolveCommand& options) { return options.isBuiltin() ? spiderRig() : loadRig(options.rig); }
+
+Device deviceFor(const EvolveCommand& options) {
+  DeviceRequest request;
+  request.device = options.device;
+  return Device::create(request);
+}
+
+// Judges the table that the rig has.
+int judgeTable(const EvolveCommand& options) {
+  Files files;
+  if (!options.isBuiltin()) files.reads("--rig", options.rig);
+  files.writes("--json", options.json);
+  files.check();
+  const Rig rig = rigFor(options);
+  Device device = deviceFor(options);
+  const float dt = static_cast<float>(options.dt.value_or(double{EvolutionOptions{}.dt}));
+  std::optional<StopDeadline> whileJudging(std::in_place,
+                                           [] { return interruptedAfter(0, 1, "judgements of a table"); });
+  const TableReport report(device, rig, dt);
+  whileJudging.reset();
+  if (!options.json.empty()) {
+    Manifest manifest{.dt = double{dt}};
+    manifest.add(device.report());
+    writeJson(options.json, report.json(), manifest);
+  }
+  if (!options.quiet) fmt::print("{}", report.text());
+  return 0;
+}
+
 int evolve(const EvolveCommand& options) {
+  if (options.judge) return judgeTable(options);
   checkEvolve(options);
   Files files = evolveFiles(options);
   files.check();
   std::atomic<uint64_t> saved = 0;
   const auto leave = [&] { return interruptedAfter(saved, options.evaluations, "evaluations"); };
   std::optional<StopDeadline> deadline(std::in_place, leave);
-  const Rig rig = options.isBuiltin() ? spiderRig() : loadRig(options.rig);
-  DeviceRequest request;
-  request.device = options.device;
-  Device device = Device::create(request);
+  const Rig rig = rigFor(options);
+  Device device = deviceFor(options);
   Evolution search = searchOf(device, rig, options);
   files.expect("the map of --out", eliteBytes * static_cast<double>(search.cellCount()));
   files.check();
@@ -221,13 +293,12 @@ int evolve(const EvolveCommand& options) {
     writeText(options.map(), search.map());
     saved = search.evaluations();
     const StopDeadline whileJudging(leave);
-    const std::vector<RigGait> gaits = search.gaits();
-    judged = Judged{search.judge(gaits, judgedSeconds), search.judge(gaits, judgedSeconds, true)};
+    judged.emplace(device, rig, search);
   }
   std::optional<AdaptationFigures> adapted;
   if (judged && options.adapt > 0) {
     const StopDeadline whileAdapting(leave);
-    adapted.emplace(search.adapt(options.adapt, search.options().seed));
+    adapted.emplace(search.adapt(options.adapt, options.adaptSeed.value_or(search.options().seed)));
   }
   writeTable(options, rig, search, judged);
   if (!options.json.empty()) {
@@ -236,6 +307,7 @@ int evolve(const EvolveCommand& options) {
     json["evaluationsWanted"] = options.evaluations;
     json["evaluationsNow"] = done;
     json["seconds"] = seconds;
+    if (judged) json["candidates"] = judged->json(rig);
     if (adapted) json["adapted"] = adapted->json();
     Manifest manifest{.dt = double{search.options().dt}, .seed = search.options().seed};
     manifest.add(device.report());
@@ -246,13 +318,9 @@ int evolve(const EvolveCommand& options) {
     printSearch(search, done, seconds);
     printJudgement("found", judged->found);
     printJudgement("by rule", judged->byRule);
-    if (adapted)
-      fmt::print(
-          "trial, error   {} of {} losses came to 90 % of the best gait known, in {} trials at the median, "
-          "{} at most\n",
-          adapted->creatures - adapted->failed, adapted->creatures, adapted->median, adapted->most);
-    fmt::print("written        {} ({} gaits), {}\n", options.table().string(), judged->found.size(),
-               options.map().string());
+    if (adapted) fmt::print("{}", adapted->text());
+    fmt::print("written        {} ({} gaits of {} patterns, the others go by the rule), {}\n",
+               options.table().string(), judged->table.size(), judged->found.size(), options.map().string());
   }
   return 0;
 }
@@ -309,8 +377,22 @@ void addEvolve(CLI::App& app, Command& chosen) {
           },
           "then so many creatures lose legs and are not told which, and find a gait by trial and error")
       ->type_name("N");
-  command->add_flag("--resume", options->resume, "go on from the map beside the table");
-  command->add_flag("--force", options->force, "begin anew, and write over a map that is there");
+  command
+      ->add_option_function<std::string>(
+          "--adapt-seed",
+          [options](const std::string& text) {
+            options->adaptSeed = parseWhole("--adapt-seed", text, 0, UINT64_MAX);
+          },
+          "what these losses are drawn from [the seed of the search]")
+      ->type_name("N")
+      ->needs(command->get_option("--adapt"));
+  CLI::Option* judge = command->add_flag("--judge", options->judge,
+                                         "search nothing: judge the table that the rig has, beside the rule");
+  for (const char* searching : {"--out", "--evaluations", "--seed", "--batch", "--adapt", "--adapt-seed"})
+    judge->excludes(command->get_option(searching));
+  judge->excludes(command->add_flag("--resume", options->resume, "go on from the map beside the table"));
+  judge->excludes(
+      command->add_flag("--force", options->force, "begin anew, and write over a map that is there"));
   command
       ->add_option_function<std::string>(
           "--device", [options](const std::string& text) { options->device = text; },
@@ -326,7 +408,8 @@ void addEvolve(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  skitter evolve --out spider.gaits.json\n"
       "  skitter evolve --rig crab.glb --evaluations 250000\n"
-      "  skitter evolve --rig crab.glb --evaluations 2000000 --resume");
+      "  skitter evolve --rig crab.glb --evaluations 2000000 --resume\n"
+      "  skitter evolve --rig crab.glb --judge --json figures.json");
   command->callback([options, &chosen] { chosen = [options] { return evolve(*options); }; });
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <string_view>
 
+#include "skitter/rig.h"
 #include "skitter/rig_gaits.h"
 #include "skitter/rig_setup.h"
 
@@ -54,6 +55,12 @@ class FileHashes {
  private:
   std::map<std::filesystem::path, uint64_t> hashes_;
 };
+
+// The gaits of the built-in spider for legs that do not carry; nothing where it has none.
+void addSpiderTable(Hash& hash) {
+  const Rig rig = spiderRig();
+  if (!rig.gaits.empty()) hash.add(std::string_view(writeGaits(rig, rig.gaits)));
+}
 
 // Bindings to all members: a new one does not compile until it is looked at here.
 void add(Hash& hash, const Goal& goal) {
@@ -136,7 +143,9 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   if (hurt) {
     hash.add("hurt");
     std::error_code ignored;
-    if (rig != "spider" && std::filesystem::exists(gaitsOf(rig), ignored))
+    if (rig == "spider")
+      addSpiderTable(hash);
+    else if (std::filesystem::exists(gaitsOf(rig), ignored))
       hash.add(fileHashes.hashOf(gaitsOf(rig)));
   }
   if (reactions) hash.add("reactions");

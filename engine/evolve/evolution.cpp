@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <glm/glm.hpp>
 #include <optional>
 #include <utility>
 
@@ -26,9 +24,6 @@ namespace {
 
 // Candidates of a pattern that are no children: the gait by rule, and drawn ones.
 constexpr uint64_t candidatesAtFirst = 32;
-constexpr double judgedSide = 72;  // leg lengths
-constexpr double mostJudged = 20;  // seconds that the ground has room for
-constexpr uint32_t ticksAtOnce = 64;
 
 std::vector<uint32_t> searchedPatterns(const Rig& rig) {
   std::vector<uint32_t> patterns = evolve::patternsOf(rig);
@@ -50,12 +45,6 @@ void checkEvolution(const EvolutionOptions& options) {
 
 size_t carriersOf(const Rig& rig, uint32_t idle) {
   return rig.legs.size() - static_cast<size_t>(std::popcount(idle));
-}
-
-glm::dvec2 worldOfBody(const HerdState& state, size_t agent) {
-  const float* body = &state.body[agent * 4 * shared::BODY_STRIDE];
-  return {double{body[0]} + double{shared::TILE_SIZE} * double{shared::tileX(body[3])},
-          double{body[2]} + double{shared::TILE_SIZE} * double{shared::tileZ(body[3])}};
 }
 
 // A gait of the map, for the legs that it was found for or for their mirror images.
@@ -211,46 +200,6 @@ std::vector<RigGait> Evolution::gaits() const {
 
 std::string Evolution::map() const { return evolve::writeMap(impl_->rig, impl_->patterns, impl_->state); }
 
-std::vector<GaitJudgement> Evolution::judge(std::span<const RigGait> gaits, double seconds,
-                                            bool byRule) const {
-  if (gaits.empty()) return {};
-  if (!(seconds > 0 && seconds <= mostJudged))
-    throw inputError(
-        fmt::format("seconds of a judgement is {}, expected more than 0, up to {}", seconds, mostJudged));
-  Rig rig = impl_->rig;
-  if (!byRule) rig.gaits.assign(gaits.begin(), gaits.end());
-  CrowdOptions options{.pose = false, .watchEvery = 1};
-  options.rigs = {rig};
-  Crowd crowd(*impl_->device, evolve::flatGround(rig, judgedSide),
-              evolve::walkOf(rig, static_cast<uint32_t>(gaits.size()), wantedSpeed), options);
-  std::vector<AgentLeg> legs;
-  for (uint32_t agent = 0; agent < gaits.size(); ++agent)
-    for (uint32_t leg = 0; leg < rig.legs.size(); ++leg)
-      if ((gaits[agent].idle >> leg & 1u) != 0)
-        legs.push_back({crowd.agentId(0, agent), leg, LegState::lost, 1u});
-  crowd.hurt(legs);
-  const HerdState before = crowd.download(0);
-  const auto ticks = static_cast<uint32_t>(std::lround(seconds / double{impl_->options.dt}));
-  for (uint32_t done = 0; done < ticks; done += ticksAtOnce)
-    impl_->device->run([&](VkCommandBuffer cmd) {
-      for (uint32_t tick = done; tick < std::min(ticks, done + ticksAtOnce); ++tick)
-        crowd.record(cmd, impl_->options.dt);
-    });
-  const HerdState after = crowd.download(0);
-  const std::vector<Fidelity> fidelity = crowd.agentFidelity(0);
-  std::vector<GaitJudgement> judged;
-  for (size_t agent = 0; agent < gaits.size(); ++agent) {
-    const double way = worldOfBody(after, agent).y - worldOfBody(before, agent).y;
-    judged.push_back({.idle = gaits[agent].idle,
-                      .speed = way / (double{rig.legLength} * ticks * double{impl_->options.dt}),
-                      .unstable = fidelity[agent].unstable,
-                      .margin = fidelity[agent].margin,
-                      .slip = fidelity[agent].slip,
-                      .reachError = fidelity[agent].reachErrorMost});
-  }
-  return judged;
-}
-
 KnownGaits Evolution::Impl::known() const {
   KnownGaits all(rig.legs.size());
   const std::vector<size_t> mirror = crowd::mirroredLegs(rig);
@@ -275,7 +224,7 @@ void Evolution::Impl::adaptAll(const KnownGaits& known, std::span<AdaptationRepo
     std::vector<std::pair<size_t, uint32_t>> tried;
     std::vector<evolve::TrialTask> tasks;
     for (size_t i = 0; i < minds.size(); ++i) {
-      const std::optional<uint32_t> next = reports[i].trials > 0 ? std::nullopt : minds[i].next();
+      const std::optional<uint32_t> next = minds[i].next();
       if (!next) continue;
       const RigGait& gait = known.gaits[*next].gait;
       tried.emplace_back(i, *next);
@@ -290,7 +239,9 @@ void Evolution::Impl::adaptAll(const KnownGaits& known, std::span<AdaptationRepo
                             trials->countedSeconds(), wantedSpeed);
       minds[i].tell(behaviour, fitness);
       reports[i].found = minds[i].bestFitness();
-      if (reports[i].found >= nearlyAsGood * reports[i].bestKnown) reports[i].trials = minds[i].trials();
+      reports[i].used = minds[i].trials();
+      const bool isNearlyAsGood = reports[i].found >= nearlyAsGood * reports[i].bestKnown;
+      if (isNearlyAsGood && reports[i].trials == 0) reports[i].trials = reports[i].used;
     }
   }
 }

@@ -39,12 +39,22 @@ struct GaitJudgement {
   double reachError = 0;  // the largest
 };
 
+// How creatures walk that lack the legs of a pattern each, for `seconds` on flat ground; each wants to go at
+// Evolution::wantedSpeed. They have the gaits of `rig`: those of its table (Rig::gaits), and the rule's for
+// patterns that it leaves out. In a pattern of 0 all legs carry. Ticks last `dt`. Waits for the device.
+// Throws Error(input) for seconds of more than 20 or not above 0, for a dt out of the range of
+// EvolutionOptions, and as a crowd does (skitter/crowd.h).
+SKITTER_API std::vector<GaitJudgement> judgeGaits(Device& device, const Rig& rig,
+                                                  std::span<const uint32_t> patterns, double seconds,
+                                                  float dt = 1.0f / 60);
+
 // How a creature came through a loss that it did not know of, by trial and error over the map.
 struct AdaptationReport {
   uint32_t lost = 0;     // mask of legs
   double bestKnown = 0;  // fitness of the best gait that the map has for these
   double found = 0;      // of the best that was tried
   uint32_t trials = 0;   // up to the first with 90 % of bestKnown; 0: none had it
+  uint32_t used = 0;     // in all, until it thought that it had found a good one, or had tried 20
 };
 
 // One search, on one device. Not thread-safe. The same rig, options and batches give the same bits on a
@@ -78,10 +88,6 @@ class SKITTER_API Evolution {
   std::vector<RigGait> gaits() const;
   // The whole search as JSON, with which another one can go on.
   std::string map() const;
-
-  // Walks of `seconds` on flat ground: with the given gaits, each by a creature without that gait's legs; or,
-  // `byRule`, with the gaits that a rig without a table has then. Waits for the device.
-  std::vector<GaitJudgement> judge(std::span<const RigGait> gaits, double seconds, bool byRule = false) const;
 
   // Creatures that lose one to three legs each, drawn by the seed, and are not told which: each tries gaits
   // of the map, of any pattern, at most 20 of them. Losses for which the map has no gait are left out. Waits

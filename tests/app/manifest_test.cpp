@@ -128,5 +128,21 @@ TEST_F(ManifestTest, TheHashIsOfTheFilesOfRigs) {
   EXPECT_NE(hashOf({"--rig", file("quadruped.glb")}), hash);
 }
 
+TEST_F(ManifestTest, TheHashIsOfTheTablesOfHerdsThatCanBeHurt) {
+  for (const char* name : {"quadruped.glb", "quadruped.rig.json"})
+    std::filesystem::copy_file(std::string(SKITTER_ROOT "/assets/") + name, file(name));
+  const auto hashWith = [&](const char* hurt, const char* groups) {
+    std::ofstream(file("quadruped.gaits.json"))
+        << R"({"version": 1, "legs": ["L1", "R1", "L2", "R2"], "gaits": [{"without": ["L1"], "groups": )"
+        << groups << R"(, "wait": "all", "shift": [0, 0, 0], "speed": 1, "fitness": 1,
+               "turns": {"R1": [0, 1], "L2": [0.3, 1], "R2": [0.6, 1]}}]})";
+    std::ofstream(file("scene.json"))
+        << R"({"herds": [{"agents": 2, "rig": "quadruped.glb", "hurt": )" << hurt << "}]}";
+    return hashOf({file("scene.json")});
+  };
+  EXPECT_NE(hashWith("true", "3"), hashWith("true", "2"));
+  EXPECT_EQ(hashWith("false", "3"), hashWith("false", "2"));
+}
+
 }  // namespace
 }  // namespace skitter::test

@@ -25,6 +25,7 @@ Rig hexapod() {
     legs.push_back(leg);
   }
   rig.legs = legs;
+  rig.gaits.clear();  // of eight legs
   rig.vertices.clear();
   rig.indices.clear();
   return rig;

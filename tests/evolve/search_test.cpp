@@ -208,13 +208,32 @@ TEST_F(EvolutionTest, ItsGaitsAreATableThatIsJudged) {
   EXPECT_LT(search.filledCount(), search.cellCount());
   for (const RigGait& gait : gaits) EXPECT_GT(gait.fitness, 0) << gait.idle;
   EXPECT_EQ(parseGaits(writeGaits(rig, gaits), "table", rig), gaits);
-  const std::vector<GaitJudgement> judged = search.judge(std::span(gaits).first(4), 2);
+  Rig walker = rig;
+  walker.gaits = gaits;
+  std::vector<uint32_t> patterns;
+  for (size_t i = 0; i < 4; ++i) patterns.push_back(gaits[i].idle);
+  const std::vector<GaitJudgement> judged = judgeGaits(device(), walker, patterns, 2, 1.0f / 20);
   ASSERT_EQ(judged.size(), 4u);
   for (size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(judged[i].idle, gaits[i].idle);
     EXPECT_GT(judged[i].speed, 0.3);
     EXPECT_LT(judged[i].speed, 1.6);
   }
+}
+
+// A table's gait is slower than the rule's, so that one is not taken for the other.
+TEST_F(EvolutionTest, ATableIsJudgedForItsPatternsAndTheRuleForOthers) {
+  Rig rig = spiderRig();
+  rig.gaits = {};
+  const std::vector<uint32_t> patterns = {0, 1, 2, 4};
+  const std::vector<GaitJudgement> byRule = judgeGaits(device(), rig, patterns, 2, 1.0f / 20);
+  RigGait slow{.idle = 2, .groups = 3, .speed = 0.5f, .turns = {}};
+  for (size_t leg = 0; leg < 8; ++leg) slow.turns.push_back({static_cast<float>(leg % 3) / 3, 1});
+  rig.gaits = {slow};
+  const std::vector<GaitJudgement> byTable = judgeGaits(device(), rig, patterns, 2, 1.0f / 20);
+  // 2 is R1 and 1 its mirror image, L1.
+  for (const size_t i : {0, 3}) EXPECT_EQ(byTable[i].speed, byRule[i].speed) << i;
+  for (const size_t i : {1, 2}) EXPECT_LT(byTable[i].speed, 0.8 * byRule[i].speed) << i;
 }
 
 TEST_F(EvolutionTest, RefusesWhatCannotBe) {

@@ -27,10 +27,6 @@ TEST_F(PublicEvolution, SearchesAndGoesOn) {
   search = Evolution(device(), rig, map, "map");
   EXPECT_EQ(search.map(), map);
   EXPECT_EQ(search.gaits(), gaits);
-  const std::vector<GaitJudgement> judged = search.judge(std::span(gaits).first(1), 1, true);
-  ASSERT_EQ(judged.size(), 1u);
-  EXPECT_GT(judged[0].speed, 0);
-  EXPECT_TRUE(search.judge({}, 1).empty());
   const std::vector<AdaptationReport> reports = search.adapt(5, 1);
   ASSERT_FALSE(reports.empty());
   EXPECT_LE(reports.size(), 5u);
@@ -40,8 +36,21 @@ TEST_F(PublicEvolution, SearchesAndGoesOn) {
     EXPECT_LE(report.trials, 20u);
     EXPECT_EQ(report.trials > 0, report.found >= 0.9 * report.bestKnown);
   }
-  expectRefused("seconds of a judgement is 0", [&] { search.judge(gaits, 0); });
   expectRefused("map:", [&] { Evolution(device(), rig, "{", "map"); });
+}
+
+TEST_F(PublicEvolution, GaitsAreJudged) {
+  const Rig rig = spiderRig();
+  const std::vector<uint32_t> patterns = {0, 1};
+  const std::vector<GaitJudgement> judged = judgeGaits(device(), rig, patterns, 1, 1.0f / 20);
+  ASSERT_EQ(judged.size(), 2u);
+  EXPECT_EQ(judged[1].idle, 1u);
+  EXPECT_GT(judged[0].speed, 0);
+  EXPECT_TRUE(judgeGaits(device(), rig, {}, 1).empty());
+  expectRefused("seconds of a judgement is 0", [&] { judgeGaits(device(), rig, patterns, 0); });
+  expectRefused("dt of a judgement is 1", [&] { judgeGaits(device(), rig, patterns, 1, 1); });
+  expectRefused("pattern of a judgement is 0x100",
+                [&] { judgeGaits(device(), rig, std::vector<uint32_t>{256}, 1); });
 }
 
 }  // namespace
