@@ -30,7 +30,8 @@ struct Avoiding {
   bool mayRest;
 
   reference::AvoidResult run(const reference::AvoidChoices& choices) const {
-    return reference::avoid(setting.avoid, body, self, moment.around, desired, mayRest, choices);
+    return reference::avoid(setting.avoid, setting.tuning.dt, body, self, moment.around, desired, mayRest,
+                            choices);
   }
 };
 
@@ -72,34 +73,47 @@ double sizeOf(const Avoiding& agent) {
 // How far a float32 solve may be off. It is six standard deviations of solves that err at random, which take
 // the same sides, for where rounding leads depends on how the half-planes lie to each other; and what float32
 // errs by where no half-plane is met: a normalisation, a root and ten operations.
-double bound(const Avoiding& agent, const reference::AvoidResult& result, bool otherObstacle = false) {
+struct Allowed {
+  double velocity = 0, mostSpeed = 0;  // m/s
+};
+Allowed bound(const Avoiding& agent, const reference::AvoidResult& result, bool otherObstacle = false) {
   reference::AvoidChoices same{.otherObstacle = otherObstacle};
   std::vector<reference::Walker> neighbours;
   for (const reference::HalfPlane& plane : result.planes) {
     same.right.push_back(plane.right);
     neighbours.push_back(*walkerAt(agent.moment, plane.neighbour));
   }
-  double squares = 0;
+  double squares = 0, speedSquares = 0;
   for (int i = 0; i < erringSolves; ++i) {
     const reference::AvoidErrors errors{.number = tolerance::roundoff, .seed = static_cast<uint64_t>(i) + 1};
-    const glm::dvec2 erring = reference::avoid(agent.setting.avoid, agent.body, agent.self, neighbours,
-                                               agent.desired, agent.mayRest, same, errors)
-                                  .velocity;
-    const glm::dvec2 apart = erring - result.velocity;
+    const reference::AvoidResult erring =
+        reference::avoid(agent.setting.avoid, agent.setting.tuning.dt, agent.body, agent.self, neighbours,
+                         agent.desired, agent.mayRest, same, errors);
+    const glm::dvec2 apart = erring.velocity - result.velocity;
+    const double faster = erring.mostSpeed - result.mostSpeed;
     squares += glm::dot(apart, apart);
+    speedSquares += faster * faster;
   }
-  return tolerance::deviations * std::sqrt(squares / erringSolves) + 16 * tolerance::roundoff * sizeOf(agent);
+  const auto spread = [](double sum) { return tolerance::deviations * std::sqrt(sum / erringSolves); };
+  // A speed follows from a gap, which errs by roundings of the lengths that it is the difference of, in a
+  // tick.
+  const double inATick = sizeOf(agent) / agent.setting.tuning.dt;
+  return {spread(squares) + 16 * tolerance::roundoff * sizeOf(agent),
+          spread(speedSquares) + 16 * tolerance::roundoff * (inATick + result.mostSpeed)};
 }
 
-Sample compareAvoid(const Avoiding& agent, const reference::AvoidResult& expected, double allowed) {
+Sample compareAvoid(const Avoiding& agent, const reference::AvoidResult& expected, const Allowed& allowed) {
   const Moment& moment = agent.moment;
   const glm::dvec2 got = velocityOf(moment.after, moment.agent);
   Sample sample;
   sample.finite("avoid", records(moment.after.avoid, moment.agent, shared::AVOID_STRIDE));
   sample.same("agents in reach", static_cast<double>(expected.seen), seenOf(moment.after, moment.agent));
-  sample.same("asleep", expected.asleep, records(moment.after.avoid, moment.agent, shared::AVOID_STRIDE)[2]);
-  sample.compare("velocity, m/s", glm::length(got - expected.velocity), allowed, {expected.velocity, 0, 0},
-                 {got, 0, 0});
+  sample.same("asleep", expected.asleep, asleepOf(moment.after, moment.agent));
+  const double mostSpeed = *mostSpeedOf(moment.after, moment.agent);
+  sample.compare("speed along the heading, m/s", std::abs(mostSpeed - expected.mostSpeed), allowed.mostSpeed,
+                 {expected.mostSpeed, 0, 0, 0}, {mostSpeed, 0, 0, 0});
+  sample.compare("velocity, m/s", glm::length(got - expected.velocity), allowed.velocity,
+                 {expected.velocity, 0, 0}, {got, 0, 0});
   return sample;
 }
 
@@ -108,7 +122,7 @@ Sample compareAvoid(const Avoiding& agent, const reference::AvoidResult& expecte
 void checkAvoid(const Setting& setting, const Moment& moment, Judge& judge) {
   const Avoiding agent = avoidingOf(setting, moment);
   const reference::AvoidResult result = agent.run({});
-  const double allowed = agent.body.absent ? 0 : bound(agent, result);
+  const Allowed allowed = agent.body.absent ? Allowed{} : bound(agent, result);
   const Sample sample = compareAvoid(agent, result, allowed);
   if (sample.passes()) return judge.add(moment.n, moment.number(), -1, sample);
 
@@ -125,9 +139,9 @@ void checkAvoid(const Setting& setting, const Moment& moment, Judge& judge) {
     choices.right.assign(result.planes.size(), -1);
     for (size_t i = 0; i < inDoubt.size(); ++i) choices.right[inDoubt[i]] = static_cast<int>(way >> i & 1);
     const reference::AvoidResult other = agent.run(choices);
-    const double otherAllowed = bound(agent, other, choices.otherObstacle);
+    const Allowed otherAllowed = bound(agent, other, choices.otherObstacle);
     for (const int stands : {-1, 0, 1}) {
-      if (stands >= 0 && !(other.standMargin < otherAllowed)) continue;
+      if (stands >= 0 && !(other.standMargin < otherAllowed.velocity)) continue;
       choices.stands = stands;
       const Sample tie = compareAvoid(agent, agent.run(choices), otherAllowed);
       if (tie.passes()) return judge.add(moment.n, moment.number(), -1, tie, true);

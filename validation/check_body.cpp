@@ -128,7 +128,8 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
   const double phase = gaitOf(moment.before, moment.agent).phase;
   const auto run = [&](const reference::BodyChoices& choices) {
     return reference::body(setting.tuning, setting.heights, setting.creature, previous, desired, steps,
-                           misses, moment.now(), phase, choices);
+                           misses, moment.now(), phase,
+                           {choices.follow, choices.turnSign, mostSpeedOf(moment.after, moment.agent)});
   };
   auto inputs = tolerance::feltGround(setting.tuning, setting.creature, previous);
   inputs.blend = blendError(moment);
@@ -166,8 +167,9 @@ void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) 
   auto inputs = tolerance::blindGround(setting.heights, setting.extent, setting.creature, previous);
   inputs.blend = blendError(moment);
   const auto run = [&](int turnSign) {
-    return reference::blindBody(setting.tuning, setting.heights, setting.creature, previous, desired,
-                                {.follow = {}, .turnSign = turnSign});
+    return reference::blindBody(
+        setting.tuning, setting.heights, setting.creature, previous, desired,
+        {.follow = {}, .turnSign = turnSign, .mostSpeed = mostSpeedOf(moment.after, moment.agent)});
   };
   const reference::BodyResult result = run(0);
   const Sample sample = compare(setting, moment, previous, inputs, result);

@@ -226,10 +226,16 @@ glm::dvec2 velocityOf(const HerdState& state, size_t agent) {
 
 bool asleepOf(const HerdState& state, size_t agent) {
   if (state.avoid.empty()) return mayRest(state, agent);
-  return load(state.avoid, at(agent, shared::AVOID_STRIDE)).z == 1;
+  return load(state.avoid, at(agent, shared::AVOID_STRIDE)).z > 0;
 }
 
 double seenOf(const HerdState& state, size_t agent) {
+  const double told = load(state.avoid, at(agent, shared::AVOID_STRIDE)).z;
+  return told > 0 ? told - 1 : -told;
+}
+
+std::optional<double> mostSpeedOf(const HerdState& state, size_t agent) {
+  if (state.avoid.empty()) return {};
   return load(state.avoid, at(agent, shared::AVOID_STRIDE)).w;
 }
 

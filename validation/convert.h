@@ -37,6 +37,8 @@ glm::dvec2 velocityOf(const HerdState& state, size_t agent);
 bool asleepOf(const HerdState& state, size_t agent);
 // Agents in reach, as avoid has them.
 double seenOf(const HerdState& state, size_t agent);
+// How fast the body may be along its heading, where the herd avoids.
+std::optional<double> mostSpeedOf(const HerdState& state, size_t agent);
 reference::AgentBody bodyOf(const HerdState& state, size_t agent);
 reference::Gait gaitOf(const HerdState& state, size_t agent);
 // Without lift and tangent where the controller has no arcs.

@@ -16,6 +16,9 @@ constexpr double softness = 0.05;
 constexpr int sweeps = 6;
 constexpr double obstacleTime = 0.5, obstacleSoftness = 0.01;
 constexpr double pushSpeed = 0.3, steadySpeed = 0.05;
+constexpr double frontRoom = 0.1, nearRoom = 0.02, deepRoom = 0.01, looseBelow = 0.9;
+constexpr double easeTime = 0.4, slackSpeed = 1e-4, freeSpeed = 100;
+constexpr int cellSweeps = 2;
 
 // Rounding errors of the size that a float32 computation makes; none by default.
 class Rounding {
@@ -210,6 +213,55 @@ glm::dvec2 solved(const std::vector<HalfPlane>& planes, const std::vector<Obstac
   return v;
 }
 
+// The side of an agent's cell that faces a neighbour: velocities of at most these numbers along n, m/s.
+struct CellSide {
+  glm::dvec2 n;
+  double near, deep;
+  double eased;  // as the deep one, for the body's speed
+};
+
+CellSide sideOf(const AvoidTuning& tuning, double dt, const Walker& self, const Seen& seen,
+                const glm::dvec2& desired, Rounding& rounded) {
+  const Walker& other = *seen.walker;
+  const glm::dvec2 p = glm::dvec2(seen.x, seen.z) / tuning.quanta;
+  const double d = glm::length(p), radii = static_cast<double>(seen.radii) / tuning.quanta;
+  const double smaller = static_cast<double>(std::min(self.radius, other.radius)) / tuning.quanta;
+  const glm::dvec2 n = seen.distance2 > 0 ? rounded(p / d, 4) : glm::dvec2(0);
+  const double inFront = glm::dot(n, desired) / std::max(glm::length(desired), 1e-6);
+  const double front = frontRoom * std::clamp(2 * rounded(inFront, 8), 0.0, 1.0);
+  const double leaves = std::max(0.0, rounded(glm::dot(n, other.velocity), 4 * glm::length(other.velocity)));
+  // Half of the gap is the neighbour's, if it holds itself to it. Who overlaps much is not held.
+  const auto own = [&](double room) {
+    const double size = 4 * (d + 2 * radii);
+    const double gap = rounded(d - (1 + front) * radii - room * smaller, size);
+    return (other.yields ? 0.5 : 1.0) * std::max(0.0, gap) +
+           std::max(0.0, rounded(looseBelow * radii - d, size));
+  };
+  const auto eased = [&](double way) { return std::min(way / dt, way / easeTime + leaves); };
+  const double near = own(nearRoom), deep = own(deepRoom), slack = slackSpeed * tuning.legLength;
+  return {n, eased(near), deep / dt + slack, eased(deep) + slack};
+}
+
+// How fast the body may go on along its heading.
+double speedAlong(const CellSide& side, const glm::dvec2& heading, Rounding& rounded) {
+  const double speed = side.eased / std::max(rounded(glm::dot(side.n, heading), 4), 1e-6);
+  return rounded(speed, 8 * speed);
+}
+
+// Moves a wish into the cell: onto one side after the other, then back toward rest.
+glm::dvec2 withinCell(const std::vector<CellSide>& sides, glm::dvec2 v, Rounding& rounded) {
+  for (int sweep = 0; sweep < cellSweeps; ++sweep)
+    for (auto side = sides.rbegin(); side != sides.rend(); ++side) {
+      const double beyond = glm::dot(side->n, v) - side->near;
+      if (beyond > 0) v = rounded(v - beyond * side->n, 4 * (glm::length(v) + side->near));
+    }
+  double part = 1;
+  for (const CellSide& side : sides)
+    if (const double toward = glm::dot(side.n, v); toward > side.deep)
+      part = std::min(part, rounded(side.deep / toward, 8));
+  return part * v;
+}
+
 }  // namespace
 
 Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yields, double quanta) {
@@ -220,7 +272,7 @@ Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yiel
           radius, body.speed * body.heading,         yields};
 }
 
-AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker& self,
+AvoidResult avoid(const AvoidTuning& tuning, double dt, const AgentBody& body, const Walker& self,
                   std::span<const Walker> all, const glm::dvec2& desired, bool asleep,
                   const AvoidChoices& choices, const AvoidErrors& errors) {
   AvoidResult result;
@@ -229,6 +281,7 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
     result.asleep = true;
     return result;
   }
+  result.mostSpeed = freeSpeed * tuning.legLength;
   Rounding rounded(errors);
   std::vector<Seen> seen = inReach(tuning, self, all);
   result.seen = static_cast<int64_t>(seen.size());
@@ -236,6 +289,7 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
 
   const double speed = glm::length(desired);
   double close = 0, press = 0;
+  std::vector<CellSide> sides;
   for (const Seen& other : seen) {
     const double d = std::sqrt(static_cast<double>(other.distance2)) / tuning.quanta;
     const double radii = static_cast<double>(other.radii) / tuning.quanta;
@@ -246,6 +300,8 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
     const size_t place = result.planes.size();
     const int right = place < choices.right.size() ? choices.right[place] : -1;
     result.planes.push_back(planeOf(tuning, self, other, right, rounded));
+    sides.push_back(sideOf(tuning, dt, self, other, desired, rounded));
+    result.mostSpeed = std::min(result.mostSpeed, speedAlong(sides.back(), body.heading, rounded));
   }
 
   for (const Beside& beside : obstaclesBeside(tuning, self, choices.otherObstacle, result.obstacleMargin))
@@ -259,6 +315,7 @@ AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker
   v *= std::min(1.0, most / std::max(glm::length(v), 1e-6));
   const double slow = steadySpeed * tuning.legLength * close, moves = glm::length(v);
   v = (v + slow * body.heading) * (moves / std::max(moves + slow, 1e-6));
+  v = withinCell(sides, v, rounded);
   result.velocity = v;
 
   const double standing = 1e-2 * tuning.legLength;

@@ -62,6 +62,7 @@ struct AvoidErrors {
 
 struct AvoidResult {
   glm::dvec2 velocity{0};
+  double mostSpeed = 0;  // m/s, along the heading
   bool asleep = false;
   int64_t seen = 0;                                // agents in reach, those that the cap drops among them
   std::vector<HalfPlane> planes;                   // of the nearest, the nearest first
@@ -78,8 +79,8 @@ constexpr size_t mostNeighbours = 8, mostObstacles = 4;
 Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yields, double quanta);
 
 // `self` as others see it; `all` are the walkers of the crowd, itself among them. `desired` and `asleep` are
-// navigate's.
-AvoidResult avoid(const AvoidTuning& tuning, const AgentBody& body, const Walker& self,
+// navigate's; `dt` is the tick's, in seconds.
+AvoidResult avoid(const AvoidTuning& tuning, double dt, const AgentBody& body, const Walker& self,
                   std::span<const Walker> all, const glm::dvec2& desired, bool asleep,
                   const AvoidChoices& choices = {}, const AvoidErrors& errors = {});
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "cpu_reference/heightfield.h"
 
@@ -46,32 +47,51 @@ void turn(const Tuning& tuning, const glm::dvec2& desired, const BodyChoices& ch
   body.heading = normalized(glm::dvec2(turned.x, turned.z));
 }
 
-glm::dvec2 waysToEdges(const Tuning& tuning, const AgentBody& body) {
+constexpr double asideSpeed = 0.3;  // leg lengths a second (docs/stages/avoid.md)
+
+glm::dvec2 waysToEdges(const Tuning& tuning, const AgentBody& body, const glm::dvec2& along) {
   const glm::dvec2 halfExtent{tuning.halfExtentX, tuning.halfExtentZ}, place = body.world();
   glm::dvec2 ways;
   for (int axis = 0; axis < 2; ++axis) {
-    const double h = body.heading[axis];
+    const double h = along[axis];
     const double left = h < 0 ? halfExtent[axis] + place[axis] : halfExtent[axis] - place[axis];
     ways[axis] = std::max(0.0, left) / std::max(std::abs(h), 1e-6);
   }
   return ways;
 }
 
-void walk(const Tuning& tuning, const glm::dvec2& desired, const glm::dvec2& pushed, BodyResult& result) {
+// The velocity of the body, without what pushes it.
+glm::dvec2 velocityOf(const Tuning& tuning, std::optional<double> most, const glm::dvec2& wish,
+                      BodyResult& result) {
+  AgentBody& body = result.body;
+  if (!most) return body.speed * body.heading;
+  body.speed = std::min(body.speed, *most);
+  const double blocked = std::clamp(1 - *most / (asideSpeed * tuning.legLength), 0.0, 1.0);
+  const glm::dvec2 ways = waysToEdges(tuning, body, wish);
+  const double aside = std::min(body.follow * std::min(result.wantedSpeed, asideSpeed * tuning.legLength),
+                                stoppingSpeed(tuning, std::min(ways.x, ways.y)));
+  return glm::mix(body.speed * body.heading, aside * wish, blocked);
+}
+
+// Returns how fast the body went.
+glm::dvec2 walk(const Tuning& tuning, std::optional<double> most, const glm::dvec2& desired,
+                const glm::dvec2& pushed, BodyResult& result) {
   AgentBody& body = result.body;
   result.wantedSpeed = glm::length(desired);
   const glm::dvec2 w = result.wantedSpeed > 1e-4 * tuning.legLength ? glm::normalize(desired) : body.heading;
   const double wanted = body.follow * result.wantedSpeed * std::max(0.0, glm::dot(w, body.heading));
   body.speed += std::clamp(wanted - body.speed, -tuning.braking * tuning.dt, tuning.acceleration * tuning.dt);
-  result.ways = waysToEdges(tuning, body);
+  result.ways = waysToEdges(tuning, body, body.heading);
   body.speed = std::min(body.speed, stoppingSpeed(tuning, std::min(result.ways.x, result.ways.y)));
-  body.localX += (body.speed * body.heading.x + pushed.x) * tuning.dt;
-  body.localZ += (body.speed * body.heading.y + pushed.y) * tuning.dt;
+  const glm::dvec2 velocity = velocityOf(tuning, most, w, result) + pushed;
+  body.localX += velocity.x * tuning.dt;
+  body.localZ += velocity.y * tuning.dt;
   const double overX = std::floor(body.localX / tileSize), overZ = std::floor(body.localZ / tileSize);
   body.tileX += overX;
   body.tileZ += overZ;
   body.localX -= overX * tileSize;
   body.localZ -= overZ * tileSize;
+  return velocity;
 }
 
 // Where the ground points are, relative to the previous body.
@@ -153,7 +173,7 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
           const BodyChoices& choices, BodyResult& result) {
   AgentBody& next = result.body;
   turn(tuning, desired, choices, result);
-  walk(tuning, desired, pushed, result);
+  const glm::dvec2 moves = walk(tuning, choices.mostSpeed, desired, pushed, result);
   const glm::dvec3 way((next.tileX - previous.tileX) * tileSize + next.localX - previous.localX, 0,
                        (next.tileZ - previous.tileZ) * tileSize + next.localZ - previous.localZ);
   for (glm::dvec3& point : points) point -= way;
@@ -167,7 +187,6 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
   next.orientation = glm::quat_cast(glm::dmat3(glm::cross(up, forward), up, forward));
   if (glm::dot(next.orientation, previous.orientation) < 0) next.orientation = -next.orientation;
 
-  const glm::dvec2 moves = next.speed * h + pushed;
   const double predicted = previous.y + (plane.b * moves.x + plane.c * moves.y) * tuning.dt;
   const double breath =
       std::pow(4 * phase * (1 - phase), 2) * std::min(1.0, previous.still / tuning.settleTime);

@@ -41,6 +41,9 @@ struct BodyResult {
 struct BodyChoices {
   std::optional<double> follow;
   int turnSign = 0;  // +1, -1: forced
+  // No choice, but a fact of the tick where the herd avoids: the speed that avoid allows along the heading,
+  // m/s.
+  std::optional<double> mostSpeed = {};
 };
 
 // The largest speed from which a body still stops within `way`: it moves on by s dt in this tick, and brakes

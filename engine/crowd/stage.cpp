@@ -145,6 +145,7 @@ StageKernels kernelsOf(const Stage& stage, const StageNeeds& needs) {
   // Others read no list, and go by the crowd's ticks.
   if (needs.options.levels && (stage.isOfTheAwake() || stage.over == Stage::Over::listed))
     kernels.first.constants.emplace_back(CONSTANT_LEVELS, true);
+  if (kind.avoids) kernels.first.constants.emplace_back(CONSTANT_AVOIDS, true);
   if (of.specialise != nullptr) of.specialise(kind, kernels.first);
   if (stage.specialise != nullptr) stage.specialise(needs, kernels);
   for (const StageShader& given : needs.options.shaders) {

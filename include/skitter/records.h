@@ -88,7 +88,8 @@ SKITTER_CONST float GOAL_SERIES = 4.0;  // only the host begins one
 SKITTER_CONST int STEER_STRIDE = 1;
 
 // avoid, per agent of a herd that avoids, written by avoid: the later stages take it in place of steer.
-//   [0] velocity x, z (m/s), 1 if the agent sleeps, agents in reach
+//   [0] velocity x, z (m/s); 1 plus the agents in reach if the agent sleeps, else minus these; the most speed
+//       of the body along its heading (m/s)
 SKITTER_CONST int AVOID_STRIDE = 1;
 // Neighbours that an agent keeps clear of.
 SKITTER_CONST int NEIGHBOURS = 8;

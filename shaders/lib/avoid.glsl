@@ -1,12 +1,17 @@
 #ifndef AVOID_GLSL
 #define AVOID_GLSL
+#include "lib/aside.glsl"
 // How an agent keeps clear of its neighbours (docs/stages/avoid.md).
 
 const float AVOID_HORIZON = 2.0, AVOID_PUSH_TIME = 0.5;
 const float AVOID_RIGHT_BIAS = 0.05;
 const float AVOID_SOFTNESS = 0.05;
 const int AVOID_SWEEPS = 6;
-const float AVOID_PUSH_SPEED = 0.3, AVOID_STEADY_SPEED = 0.05;
+const float AVOID_STEADY_SPEED = 0.05;
+// Shares of footprints; seconds; leg lengths a second.
+const float AVOID_FRONT = 0.1, AVOID_NEAR = 0.02, AVOID_DEEP = 0.01, AVOID_LOOSE = 0.9;
+const float AVOID_EASE = 0.4, AVOID_SLACK = 1e-4, AVOID_FREE = 100.0;
+const int AVOID_CELL_SWEEPS = 2;
 
 // 1. The agents of least power, the least first, of equal ones that with the lesser number; unused ones last.
 struct Nearest {
@@ -85,6 +90,41 @@ vec2 solvePlanes(HalfPlane planes[NEIGHBOURS], vec2 v) {
       push[k] = more;
     }
   return v;
+}
+
+// 6. The side of the agent's cell toward a neighbour: velocities v, m/s, with n . v <= near for its wish, n . v <= deep
+// for what it gets, and n . v <= eased for the body's speed.
+struct CellSide {
+  vec2 n;
+  float near, deep, eased;
+};
+
+// `lesser`: the smaller footprint; `ahead`: unit, where the agent wants to go; `moves`: the neighbour's velocity.
+CellSide cellSideOf(vec2 p, float d, float radii, float lesser, vec2 ahead, vec2 moves, float share, Parameters q) {
+  vec2 n = p * (1.0 / max(d, 1e-9));
+  float gap = d - radii * (1.0 + AVOID_FRONT * clamp(2.0 * dot(n, ahead), 0.0, 1.0)), away = max(0.0, dot(n, moves));
+  float loose = max(0.0, AVOID_LOOSE * radii - d);
+  float near = max(0.0, gap - AVOID_NEAR * lesser) * share + loose;
+  float deep = max(0.0, gap - AVOID_DEEP * lesser) * share + loose;
+  float slack = AVOID_SLACK * q.legLength, atOnce = deep / q.dt;
+  return CellSide(n, min(near / q.dt, near * (1.0 / AVOID_EASE) + away), atOnce + slack,
+                  min(atOnce, deep * (1.0 / AVOID_EASE) + away) + slack);
+}
+
+// The speed along a unit vector at which the body stays on that side. It reaches what is free before the divisor is 0.
+float speedToward(CellSide side, vec2 along) { return side.eased / max(dot(side.n, along), 1e-6); }
+
+// The velocity, moved to each side that it is beyond, the nearest neighbour's last, and then shortened.
+vec2 withinCell(CellSide sides[NEIGHBOURS], vec2 v) {
+  [[unroll]] for (int sweep = 0; sweep < AVOID_CELL_SWEEPS; ++sweep)
+    [[unroll]] for (int k = NEIGHBOURS - 1; k >= 0; --k)
+      v -= max(0.0, dot(sides[k].n, v) - sides[k].near) * sides[k].n;
+  float part = 1.0;
+  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
+    float toward = dot(sides[k].n, v);
+    part = toward > sides[k].deep ? min(part, sides[k].deep / toward) : part;
+  }
+  return part * v;
 }
 
 #endif

@@ -77,6 +77,7 @@ BINDING CONSTANT_SLEEP = 25;    // SLEEP_
 BINDING CONSTANT_FEET = 26;     // tips are written, and feet where no other stage needs them
 BINDING CONSTANT_RESERVE = 29;  // whether places may be empty
 BINDING CONSTANT_LEVELS = 30;   // whether blocks tick at rates of their own (docs/levels.md)
+BINDING CONSTANT_AVOIDS = 31;   // whether the herd avoids, so that steer is avoid's record
 BINDING CONSTANT_HERD_STEPS = 28;  // 2 to their power is at least the number of herds in a page
 // From here on the numbers with which the rig's records of legs begin, 4 * RIG_LEG_STRIDE a leg.
 BINDING CONSTANT_RIG_LEGS = 100;

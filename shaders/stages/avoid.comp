@@ -79,8 +79,9 @@ void main() {
   RARELY(seen > NEIGHBOURS) ADD64(crowding, CROWDING_DROPPED, uint(seen - NEIGHBOURS));
 
   vec2 wanted = steer.xy;
-  float speed = length(wanted), near = 0.0, press = 0.0;
+  float speed = length(wanted), near = 0.0, press = 0.0, most = AVOID_FREE * parameters.legLength;
   HalfPlane planes[NEIGHBOURS];
+  CellSide sides[NEIGHBOURS];
   [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
     bool there = nearest.number[k] >= 0;
     int at = max(nearest.number[k], 0) * WALKER_STRIDE;
@@ -92,8 +93,13 @@ void main() {
     float closeness = there ? clamp(2.0 - d / r, 0.0, 1.0) : 0.0;
     near = max(near, closeness);
     press = max(press, closeness * max(0.0, dot(p, wanted)) / max(d * speed, 1e-6));
-    planes[k] = halfPlaneOf(p, d, r, float(power) * (metres * metres), going.xy, going.xy - moves.xy,
-                            other.w != 0.0 ? 0.5 : 1.0, partingLine(number, nearest.number[k]));
+    float share = other.w != 0.0 ? 0.5 : 1.0;
+    planes[k] = halfPlaneOf(p, d, r, float(power) * (metres * metres), going.xy, going.xy - moves.xy, share,
+                            partingLine(number, nearest.number[k]));
+    sides[k] = cellSideOf(p, d, r, float(min(self.z, other.z)) * metres, wanted / max(speed, 1e-6),
+                          moves.xy, share, parameters);
+    sides[k].n = there ? sides[k].n : vec2(0.0);
+    most = there ? min(most, speedToward(sides[k], moving.xy)) : most;
     // Nobody forbids anything.
     planes[k].n = there ? planes[k].n : vec2(0.0);
     planes[k].bound = there ? planes[k].bound : -1.0;
@@ -112,12 +118,13 @@ void main() {
 #else
   RARELY(forbidden) velocity = solvePlanes(planes, velocity);
 #endif
-  float most = max(speed, AVOID_PUSH_SPEED * parameters.legLength), moved = length(velocity);
-  velocity *= moved > most ? most / moved : 1.0;
-  moved = min(moved, most);
+  float fastest = max(speed, AVOID_PUSH_SPEED * parameters.legLength), moved = length(velocity);
+  velocity *= moved > fastest ? fastest / moved : 1.0;
+  moved = min(moved, fastest);
   float steady = AVOID_STEADY_SPEED * parameters.legLength * near;
   // Devices need not divide a number by itself exactly.
   velocity = near > 0.0 ? (velocity + steady * moving.xy) * (moved / max(moved + steady, 1e-6)) : velocity;
+  velocity = withinCell(sides, velocity);
   bool asleep = steer.z != 0.0 && length(velocity) < 1e-2 * parameters.legLength;
-  STORE4(avoidsOut, agent, vec4(velocity, asleep ? 1.0 : 0.0, float(seen)));
+  STORE4(avoidsOut, agent, vec4(velocity, asleep ? 1.0 + float(seen) : -float(seen), most));
 }

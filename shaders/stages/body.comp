@@ -15,5 +15,5 @@ STORE4_BUFFER(BINDING_BODY_OUT, bodiesOut);
 
 void main() {
   int agent = agentAt(int(gl_GlobalInvocationID.x));
-  if (agent >= 0) makeBody(agent, LOAD_BODY(agent), LOAD4(steers, agent).xy);
+  if (agent >= 0) makeBody(agent, LOAD_BODY(agent), LOAD4(steers, agent));
 }

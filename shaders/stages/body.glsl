@@ -1,6 +1,7 @@
 #ifndef BODY_STAGE_GLSL
 #define BODY_STAGE_GLSL
 // Stage body, for entry points that make it alone or together with gait; they declare its bindings.
+#include "lib/aside.glsl"
 #include "lib/body.glsl"
 #include "stages/rig_legs.glsl"
 #include "stages/ground.glsl"
@@ -22,8 +23,11 @@ Body looseBody(Body body, Reaction r) {
 }
 #endif
 
-// `body` is the agent's, `velocity` what it is steered to.
-Body makeBody(int agent, Body body, vec2 velocity) {
+layout(constant_id = CONSTANT_AVOIDS) const bool AVOIDS = false;
+
+// `body` is the agent's, `steer` the record of it, or avoid's.
+Body makeBody(int agent, Body body, vec4 steer) {
+  vec2 velocity = steer.xy;
   float dt = parameters.dt;
 #ifdef REACTS
   Body old = body;
@@ -77,7 +81,15 @@ Body makeBody(int agent, Body body, vec2 velocity) {
   float speed = follow * commanded * max(0.0, dot(wanted, body.heading));
   body.speed += clamp(speed - body.speed, -parameters.braking * dt, parameters.acceleration * dt);
   body.speed = min(body.speed, speedToEdge(parameters, body.local, body.tile, body.heading));
+  if (AVOIDS) body.speed = min(body.speed, steer.w);
   vec2 moved = body.heading * (body.speed * dt);
+  if (AVOIDS) {
+    // Who is blocked ahead steps aside. Both displacements lie in its cell, which is convex.
+    float toEdge = speedToEdge(parameters, body.local, body.tile, wanted);
+    float aside = AVOID_PUSH_SPEED * parameters.legLength;
+    vec2 stepped = wanted * (min(follow * min(commanded, aside), toEdge) * dt);
+    moved = mix(moved, stepped, clamp(1.0 - steer.w / aside, 0.0, 1.0));
+  }
 #ifdef REACTS
   moved += reaction.velocity * dt;
 #endif

@@ -30,10 +30,10 @@ void main() {
   if (agent < 0) return;
   Body body = LOAD_BODY(agent);
 #ifdef NAVIGATES
-  vec2 velocity = makeVelocity(agent, worldOf(body.local, body.tile));
-  STORE4(steersOut, agent, vec4(velocity, 0.0, 0.0));
+  vec4 steer = vec4(makeVelocity(agent, worldOf(body.local, body.tile)), 0.0, 0.0);
+  STORE4(steersOut, agent, steer);
 #else
-  vec2 velocity = LOAD4(steers, agent).xy;
+  vec4 steer = LOAD4(steers, agent);
 #endif
-  makeGait(agent, makeBody(agent, body, velocity));
+  makeGait(agent, makeBody(agent, body, steer));
 }

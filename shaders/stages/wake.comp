@@ -17,7 +17,7 @@ void main() {
   uint mask = 0u;
   [[unroll]] for (int lane = 0; lane < BLOCK; ++lane) {
     int agent = block * BLOCK + lane;
-    bool sleeps = LOAD4(steers, clamp(agent, 0, max(count - 1, 0))).z != 0.0;
+    bool sleeps = LOAD4(steers, clamp(agent, 0, max(count - 1, 0))).z > 0.0;
     mask |= agent < count && !sleeps ? 1u << lane : 0u;
   }
   RARELY(mask != 0u) {

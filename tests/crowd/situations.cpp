@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "crowd/changes.h"
 #include "crowd/herd.h"
@@ -50,7 +51,40 @@ Results meeting(Device& device, Controller controller, const CrowdOptions& optio
   return replay(device, crowd, ground, 200);
 }
 
-// The same among obstacles of every shape, more than an agent looks at, and one agent begins in one.
+// Agents begin in each other, and part.
+Results parting(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(25, 1, 1, controller);
+  scene.herds[0].avoid = true;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.4f};
+  scene.herds[0].goal = {.kind = Goal::Kind::none};
+  Crowd crowd(device, ground, scene, options);
+  return replay(device, crowd, ground, 100);
+}
+
+// Pairs walk at each other, a little beside or straight, so that a rule and not their places says on which
+// side they pass.
+Results facing(Device& device, Controller controller, const CrowdOptions& options) {
+  constexpr uint32_t agents = 12;
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(agents, 1, 1, controller);
+  scene.herds[0].avoid = true;
+  Crowd crowd(device, ground, scene, options);
+  std::vector<AgentPlace> places;
+  std::vector<AgentGoal> goals;
+  for (uint32_t i = 0; i < agents; ++i) {
+    const float side = i % 2 == 0 ? 1.0f : -1.0f, beside = 0.02f * (static_cast<float>(i / 2) - 2.5f);
+    const float x = 4 * static_cast<float>(i / 2) - 10 + side * beside;
+    const AgentId agent = crowd.agentId(0, i);
+    places.push_back({agent, {{x, -2 * side}, i % 2 == 0 ? 0.0f : std::numbers::pi_v<float>}});
+    goals.push_back({agent, {.kind = Goal::Kind::velocity, .velocity = {0, side}}});
+  }
+  crowd.teleport(places);
+  crowd.steer(goals);
+  return replay(device, crowd, ground, 150);
+}
+
+// As in meeting, among obstacles of every shape, more than an agent looks at, and one agent begins in one.
 Results amongObstacles(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = smallRollingGround();
   Scene scene = sceneOf(49, 1, 1, controller);
@@ -419,6 +453,8 @@ const std::vector<Situation>& situations() {
   static const std::vector<Situation> all = {
       {"walking", {Controller::adaptive}, walking},
       {"meeting", {Controller::adaptive, Controller::clip}, meeting},
+      {"parting", {Controller::adaptive}, parting},
+      {"facing", {Controller::adaptive}, facing},
       {"amongObstacles", {Controller::adaptive, Controller::clip}, amongObstacles},
       {"findingWays", {Controller::adaptive, Controller::clip}, findingWays},
       {"roaming", {Controller::adaptive, Controller::clip}, roaming},

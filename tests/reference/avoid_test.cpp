@@ -16,6 +16,7 @@ using reference::Walker;
 class Avoid : public testing::Test {
  protected:
   static constexpr int64_t metre = 1024;
+  static constexpr double tick = 1.0 / 60;
   reference::AvoidTuning tuning{.quanta = metre, .look = 2 * metre, .legLength = 1};
 
   static Walker at(int64_t number, double x, double z, const glm::dvec2& velocity = glm::dvec2(0)) {
@@ -31,7 +32,7 @@ class Avoid : public testing::Test {
     reference::AgentBody body;
     body.speed = glm::length(all[0].velocity);
     body.heading = body.speed > 0 ? all[0].velocity / body.speed : glm::dvec2(0, 1);
-    return reference::avoid(tuning, body, all[0], all, desired, mayRest);
+    return reference::avoid(tuning, tick, body, all[0], all, desired, mayRest);
   }
 };
 
@@ -112,18 +113,34 @@ TEST_F(Avoid, theNearestObstaclesCount) {
   const Walker self = at(0, 0, 0);
   reference::AvoidChoices choices;
   choices.otherObstacle = true;
-  EXPECT_EQ(
-      reference::avoid(tuning, {}, self, {&self, 1}, {0, 0}, false, choices).obstaclePlanes.at(0).obstacle,
-      0u);
+  EXPECT_EQ(reference::avoid(tuning, tick, {}, self, {&self, 1}, {0, 0}, false, choices)
+                .obstaclePlanes.at(0)
+                .obstacle,
+            0u);
 }
 
 // Neighbours push; the obstacle has the last word but for the body's heading, which is toward it.
 TEST_F(Avoid, nobodyIsPushedIntoAWall) {
   tuning.obstacles = {{.corners = {{-5, 0.5}, {5, 0.5}}}};
   const AvoidResult result = first({at(0, 0, 0), at(1, 0.1, -0.3), at(2, -0.1, -0.3)}, {0, 0});
-  EXPECT_LT(result.velocity.y, 0.08);
+  EXPECT_LT(result.velocity.y, 0.1);
   tuning.obstacles.clear();
   EXPECT_GT(first({at(0, 0, 0), at(1, 0.1, -0.3), at(2, -0.1, -0.3)}, {0, 0}).velocity.y, 0.2);
+}
+
+// Footprints touch, or are 0.375 m apart, of which 0.1 is kept free in front and 0.01 and 0.005 everywhere.
+TEST_F(Avoid, nobodyLeavesItsCell) {
+  const AvoidResult touching = first({at(0, 0, 0, {0, 0.5}), at(1, 0, 1)}, {0, 1});
+  EXPECT_LE(touching.velocity.y, 1e-4 + 1e-9);
+  EXPECT_NEAR(touching.mostSpeed, 1e-4, 1e-9);
+  const std::vector<Walker> apart = {at(0, 0, 0, {0, 0.5}), at(1, 0, 1.375)};
+  EXPECT_LE(first(apart, {0, 1}).velocity.y, 0.5 * 0.265 / 0.4 + 1e-9);
+  EXPECT_NEAR(first(apart, {0, 1}).mostSpeed, 0.5 * 0.27 / 0.4 + 1e-4, 1e-9);
+  EXPECT_NEAR(first({apart[0], at(1, 0, 1.375, {0, 0.25})}, {0, 1}).mostSpeed, 0.5 * 0.27 / 0.4 + 0.25 + 1e-4,
+              1e-9);
+  EXPECT_NEAR(first({apart[0], at(1, 0, -1)}, {0, 1}).mostSpeed, 100, 1e-9) << "behind it";
+  // Who overlap much part first.
+  EXPECT_NEAR(first({apart[0], at(1, 0, 0.5)}, {0, 1}).mostSpeed, 0.4 / 0.4 + 1e-4, 1e-9);
 }
 
 TEST_F(Avoid, whoDoesNotYieldIsGivenWay) {
@@ -231,7 +248,7 @@ TEST_F(Avoid, aSleeperIsWokenByWhoComes) {
 TEST_F(Avoid, nobodyIsInAnEmptyPlace) {
   reference::AgentBody body;
   body.absent = true;
-  const AvoidResult result = reference::avoid(tuning, body, {}, {}, {0, 0}, true);
+  const AvoidResult result = reference::avoid(tuning, tick, body, {}, {}, {0, 0}, true);
   EXPECT_TRUE(result.asleep);
   EXPECT_EQ(result.velocity, glm::dvec2(0));
 }

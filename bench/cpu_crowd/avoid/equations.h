@@ -2,7 +2,7 @@
 
 #include "bench/cpu_crowd/avoid/neighbours.h"
 
-// docs/stages/avoid.md, "2. What is wanted" to "6. Result", of the agents of a block. Metres, metres per
+// docs/stages/avoid.md, "2. What is wanted" to "7. Result", of the agents of a block. Metres, metres per
 // second; x, z.
 namespace skitter::cpu_avoid {
 
@@ -10,7 +10,10 @@ constexpr float horizon = 2, pushTime = 0.5f;
 constexpr float rightBias = 0.05f;
 constexpr float softness = 0.05f;
 constexpr int sweeps = 6;
-constexpr float pushSpeed = 0.3f, steadySpeed = 0.05f;  // leg lengths a second
+constexpr float frontRoom = 0.1f, nearRoom = 0.02f, deepRoom = 0.01f, looseBelow = 0.9f, easeTime = 0.4f;
+constexpr int cellSweeps = 2;
+// leg lengths a second
+constexpr float pushSpeed = 0.3f, steadySpeed = 0.05f, slackSpeed = 1e-4f, freeSpeed = 100;
 
 template <class F>
 struct Vec2 {
@@ -32,6 +35,7 @@ struct Neighbour {
   Vec2<F> p;  // from the agent to it
   F d;        // |p|
   F radii;    // of both
+  F lesser;   // the smaller of both
   F power;
   Vec2<F> v;     // the agent's velocity less its own
   F share;       // of the change that the agent takes
@@ -72,7 +76,7 @@ struct HalfPlane {
 // "3. Half-planes". As n . u, of a neighbour's u, is all that a bound needs, u is that number here.
 template <class F>
 HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own) {
-  const auto& [isThere, p, d, radii, power, v, share, part] = other;
+  const auto& [isThere, p, d, radii, lesser, power, v, share, part] = other;
   const Vec2<F> w{v.x - p.x * F(1 / horizon), v.z - p.z * F(1 / horizon)};
   const F along = dot(w, p), speed2 = dot(w, w), speed = squareRoot(speed2);
   // one of the cone's sides
@@ -125,7 +129,56 @@ Vec2<F> solved(const HalfPlane<F>* planes, int count, Vec2<F> v) {
   return v;
 }
 
-// "6. Result", of an agent that does not sleep.
+// "6. Cells": velocities of at most these numbers along n.
+template <class F>
+struct CellSide {
+  Vec2<F> n;
+  F near, deep, eased;
+};
+
+template <class F>
+CellSide<F> cellSideOf(const Neighbour<F>& other, const Vec2<F>& own, const Wish<F>& wish, float dt,
+                       float legLength) {
+  // Who is not there has no distance.
+  const F d = select(other.isThere, other.d, F(1)), inverse = F(1) / larger(d, F(1e-9f));
+  const Vec2<F> n{select(other.isThere, other.p.x * inverse, F(0)),
+                  select(other.isThere, other.p.z * inverse, F(0))};
+  const F ahead = dot(n, wish.desired) / larger(wish.speed, F(1e-6f));
+  const F gap = d - other.radii * (F(1) + F(frontRoom) * clamp(F(2) * ahead, 0, 1));
+  const F leaves = larger(F(0), dot(n, own) - dot(n, other.v));
+  const F loose = larger(F(0), F(looseBelow) * other.radii - d);
+  const F near = larger(F(0), gap - F(nearRoom) * other.lesser) * other.share + loose;
+  const F deep = larger(F(0), gap - F(deepRoom) * other.lesser) * other.share + loose;
+  const F aTick(1 / dt), aTime(1 / easeTime), slack(slackSpeed * legLength);
+  return {n, smaller(near * aTick, near * aTime + leaves), deep * aTick + slack,
+          smaller(deep * aTick, deep * aTime + leaves) + slack};
+}
+
+// The body's speed along its heading. Who is not there has n = 0, and so forbids nothing.
+template <class F>
+F speedAlong(const CellSide<F>* sides, int count, const Vec2<F>& heading, float legLength) {
+  F most(freeSpeed * legLength);
+  for (int k = 0; k < count; ++k)
+    most = smaller(most, sides[k].eased / larger(dot(sides[k].n, heading), F(1e-6f)));
+  return most;
+}
+
+template <class F>
+Vec2<F> withinCell(const CellSide<F>* sides, int count, Vec2<F> v) {
+  for (int sweep = 0; sweep < cellSweeps; ++sweep)
+    for (int k = count - 1; k >= 0; --k) {
+      const F back = larger(F(0), dot(sides[k].n, v) - sides[k].near);
+      v = {v.x - back * sides[k].n.x, v.z - back * sides[k].n.z};
+    }
+  F part(1);
+  for (int k = 0; k < count; ++k) {
+    const F toward = dot(sides[k].n, v);
+    part = select(sides[k].deep < toward, smaller(part, sides[k].deep / toward), part);
+  }
+  return {v.x * part, v.z * part};
+}
+
+// "7. Result", of an agent that does not sleep.
 template <class F>
 Vec2<F> resultOf(const Vec2<F>& v, const Wish<F>& wish, const Vec2<F>& heading, float legLength) {
   const F most = larger(wish.speed, F(pushSpeed * legLength)), length = lengthOf(v);

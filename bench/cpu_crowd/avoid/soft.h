@@ -78,6 +78,9 @@ class SoftAvoider final : public Avoider {
                toFloats(lookUp(grid_.z.data(), at) - load<Ints<F>>(&grid_.z[first])) * metres};
     other.d = squareRoot(toFloats(power + radii * radii)) * metres;
     other.radii = toFloats(radii) * metres;
+    other.lesser =
+        smaller(toFloats(load<Ints<F>>(&grid_.radius[first])), toFloats(lookUp(grid_.radius.data(), at))) *
+        metres;
     other.power = toFloats(power) * (metres * metres);
     other.v = {own.x - lookUp(grid_.velocityX.data(), at), own.z - lookUp(grid_.velocityZ.data(), at)};
     other.share = lookUp(grid_.share.data(), at);
@@ -108,17 +111,22 @@ class SoftAvoider final : public Avoider {
     const Vec2<F> velocity{load<F>(&grid_.velocityX[first]), load<F>(&grid_.velocityZ[first])};
     Wish<F> wish({own(walkers_.wantedX), own(walkers_.wantedZ)});
     HalfPlane<F> planes[mostNeighbours];
+    CellSide<F> sides[mostNeighbours];
     for (int k = 0; k < nearest.most; ++k) {
       const Neighbour<F> other = neighbourOf(nearest, k, first, velocity);
       wish.see(other);
       planes[k] = halfPlaneOf(other, velocity);
+      sides[k] = cellSideOf(other, velocity, wish, walkers_.dt, walkers_.legLength);
     }
     Vec2<F> v = wish.wanted(own(walkers_.speed));
     if (isForbidden(planes, nearest.most, v)) v = solved(planes, nearest.most, v);
-    v = resultOf(v, wish, {own(walkers_.headingX), own(walkers_.headingZ)}, walkers_.legLength);
+    const Vec2<F> heading{own(walkers_.headingX), own(walkers_.headingZ)};
+    v = withinCell(sides, nearest.most, resultOf(v, wish, heading, walkers_.legLength));
+    const F most = speedAlong(sides, nearest.most, heading, walkers_.legLength);
     for (int i = 0; i < here; ++i) {
       float* record = &records_[4 * static_cast<size_t>(grid_.number[first + static_cast<size_t>(i)])];
-      record[0] = lane(v.x, i), record[1] = lane(v.z, i), record[2] = 0, record[3] = nearest.seen[i];
+      record[0] = lane(v.x, i), record[1] = lane(v.z, i), record[2] = -nearest.seen[i],
+      record[3] = lane(most, i);
     }
   }
 

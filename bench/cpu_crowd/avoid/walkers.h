@@ -15,9 +15,10 @@ namespace skitter::cpu_avoid {
 // What the stage is given: all agents as the last tick left them, by their numbers. All of them are there,
 // and have legs of one length. Each vector has a number for each agent.
 struct Walkers {
-  float quanta = 1024;  // in a metre
-  int32_t look = 0;     // quanta beyond footprints
-  float legLength = 1;  // metres
+  float quanta = 1024;   // in a metre
+  int32_t look = 0;      // quanta beyond footprints
+  float legLength = 1;   // metres
+  float dt = 1.0f / 60;  // of a tick, seconds
 
   std::vector<float> tileX, tileZ, localX, localZ;  // of the body
   std::vector<float> headingX, headingZ, speed;     // of the body, m/s
@@ -43,8 +44,8 @@ class Avoider {
   // Of all ticks so timed.
   virtual std::vector<cpu_crowd::StageSeconds> stageSeconds() const = 0;
 
-  // Four floats an agent, as the avoid record has them: velocity x, z (m/s), 0, and agents in reach; of the
-  // algorithm of the paper, neighbours.
+  // Four floats an agent, as the avoid record has them: velocity x, z (m/s), minus the agents in reach, the
+  // most speed along the heading (m/s); of the algorithm of the paper 0 and neighbours.
   const std::vector<float>& records() const { return records_; }
   // So that a tick that computes nothing is found out.
   void forget() { records_.assign(records_.size(), std::numeric_limits<float>::quiet_NaN()); }
