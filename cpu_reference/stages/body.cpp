@@ -73,12 +73,12 @@ glm::dvec2 velocityOf(const Tuning& tuning, std::optional<double> most, const gl
   return glm::mix(body.speed * body.heading, aside * wish, blocked);
 }
 
-// Returns how fast the body went.
+// Returns how fast the body went; its heading was `before`.
 glm::dvec2 walk(const Tuning& tuning, std::optional<double> most, const glm::dvec2& desired,
-                const glm::dvec2& pushed, BodyResult& result) {
+                const glm::dvec2& before, const glm::dvec2& pushed, BodyResult& result) {
   AgentBody& body = result.body;
   result.wantedSpeed = glm::length(desired);
-  const glm::dvec2 w = result.wantedSpeed > 1e-4 * tuning.legLength ? glm::normalize(desired) : body.heading;
+  const glm::dvec2 w = result.wantedSpeed > 1e-4 * tuning.legLength ? glm::normalize(desired) : before;
   const double wanted = body.follow * result.wantedSpeed * std::max(0.0, glm::dot(w, body.heading));
   body.speed += std::clamp(wanted - body.speed, -tuning.braking * tuning.dt, tuning.acceleration * tuning.dt);
   result.ways = waysToEdges(tuning, body, body.heading);
@@ -173,7 +173,7 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
           const BodyChoices& choices, BodyResult& result) {
   AgentBody& next = result.body;
   turn(tuning, desired, choices, result);
-  const glm::dvec2 moves = walk(tuning, choices.mostSpeed, desired, pushed, result);
+  const glm::dvec2 moves = walk(tuning, choices.mostSpeed, desired, previous.heading, pushed, result);
   const glm::dvec3 way((next.tileX - previous.tileX) * tileSize + next.localX - previous.localX, 0,
                        (next.tileZ - previous.tileZ) * tileSize + next.localZ - previous.localZ);
   for (glm::dvec3& point : points) point -= way;

@@ -60,6 +60,15 @@ TEST_F(Body, accelerationIsBounded) {
   EXPECT_EQ(speed, 0);
 }
 
+// A body that still turns, and wishes too little to turn to: its way is along the heading that it had.
+TEST_F(Body, wishesTooSmallToTurnToAreAlongTheOldHeading) {
+  const double wish = 0.5e-4 * tuning.legLength;
+  body.turnRate = 40 * tuning.turnAcceleration * tuning.dt;
+  walk({0, wish}, 1, flat);
+  ASSERT_LT(body.heading.y, 0.999);
+  EXPECT_NEAR(body.speed, wish * body.heading.y, 1e-12);
+}
+
 TEST_F(Body, brakesBeforeTheEdgeAndNoEarlier) {
   tuning.halfExtentX = tuning.halfExtentZ = 20;
   for (const double side : {1.0, -1.0}) {
