@@ -70,12 +70,13 @@ double sizeOf(const Avoiding& agent) {
   return 2 * fastest + reach / agent.setting.avoid.quanta;
 }
 
-// How far a float32 solve may be off. It is six standard deviations of solves that err at random, which take
-// the same sides, for where rounding leads depends on how the half-planes lie to each other; and what float32
-// errs by where no half-plane is met: a normalisation, a root and ten operations.
 struct Allowed {
   double velocity = 0, mostSpeed = 0;  // m/s
 };
+
+// How far a float32 solve may be off. It is six standard deviations of solves that err at random, which take
+// the same sides, for where rounding leads depends on how the half-planes lie to each other; and what float32
+// errs by where no half-plane is met: a normalisation, a root and ten operations.
 Allowed bound(const Avoiding& agent, const reference::AvoidResult& result, bool otherObstacle = false) {
   reference::AvoidChoices same{.otherObstacle = otherObstacle};
   std::vector<reference::Walker> neighbours;

@@ -117,7 +117,7 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
     judge.add(moment.n, moment.number(), -1, compareLoose(setting, moment, previous));
     return;
   }
-  const glm::dvec2 desired = velocityOf(moment.after, moment.agent);
+  const reference::Wish wish{velocityOf(moment.after, moment.agent), mostSpeedOf(moment.after, moment.agent)};
   std::vector<reference::Step> steps;
   const size_t legs = static_cast<size_t>(setting.legs);
   std::vector<double> misses;
@@ -127,9 +127,8 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
   }
   const double phase = gaitOf(moment.before, moment.agent).phase;
   const auto run = [&](const reference::BodyChoices& choices) {
-    return reference::body(setting.tuning, setting.heights, setting.creature, previous, desired, steps,
-                           misses, moment.now(), phase,
-                           {choices.follow, choices.turnSign, mostSpeedOf(moment.after, moment.agent)});
+    return reference::body(setting.tuning, setting.heights, setting.creature, previous, wish, steps, misses,
+                           moment.now(), phase, choices);
   };
   auto inputs = tolerance::feltGround(setting.tuning, setting.creature, previous);
   inputs.blend = blendError(moment);
@@ -163,13 +162,12 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
 
 void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::AgentBody previous = bodyOf(moment.before, moment.agent);
-  const glm::dvec2 desired = velocityOf(moment.after, moment.agent);
+  const reference::Wish wish{velocityOf(moment.after, moment.agent), mostSpeedOf(moment.after, moment.agent)};
   auto inputs = tolerance::blindGround(setting.heights, setting.extent, setting.creature, previous);
   inputs.blend = blendError(moment);
   const auto run = [&](int turnSign) {
-    return reference::blindBody(
-        setting.tuning, setting.heights, setting.creature, previous, desired,
-        {.follow = {}, .turnSign = turnSign, .mostSpeed = mostSpeedOf(moment.after, moment.agent)});
+    return reference::blindBody(setting.tuning, setting.heights, setting.creature, previous, wish,
+                                {.follow = {}, .turnSign = turnSign});
   };
   const reference::BodyResult result = run(0);
   const Sample sample = compare(setting, moment, previous, inputs, result);

@@ -60,30 +60,32 @@ glm::dvec2 waysToEdges(const Tuning& tuning, const AgentBody& body, const glm::d
   return ways;
 }
 
-// The velocity of the body, without what pushes it.
-glm::dvec2 velocityOf(const Tuning& tuning, std::optional<double> most, const glm::dvec2& wish,
-                      BodyResult& result) {
-  AgentBody& body = result.body;
-  if (!most) return body.speed * body.heading;
-  body.speed = std::min(body.speed, *most);
-  const double blocked = std::clamp(1 - *most / (asideSpeed * tuning.legLength), 0.0, 1.0);
-  const glm::dvec2 ways = waysToEdges(tuning, body, wish);
+// How a body goes that may go on at `most`: who is blocked ahead steps aside, along `w`.
+glm::dvec2 besideOthers(const Tuning& tuning, double most, const glm::dvec2& w, const BodyResult& result) {
+  const AgentBody& body = result.body;
+  const double blocked = std::clamp(1 - most / (asideSpeed * tuning.legLength), 0.0, 1.0);
+  const glm::dvec2 ways = waysToEdges(tuning, body, w);
   const double aside = std::min(body.follow * std::min(result.wantedSpeed, asideSpeed * tuning.legLength),
                                 stoppingSpeed(tuning, std::min(ways.x, ways.y)));
-  return glm::mix(body.speed * body.heading, aside * wish, blocked);
+  return glm::mix(body.speed * body.heading, aside * w, blocked);
 }
 
-// Returns how fast the body went; its heading was `before`.
-glm::dvec2 walk(const Tuning& tuning, std::optional<double> most, const glm::dvec2& desired,
-                const glm::dvec2& before, const glm::dvec2& pushed, BodyResult& result) {
+// Returns the velocity with which the body went. Its heading was `before` the turn.
+glm::dvec2 walk(const Tuning& tuning, const Wish& wish, const glm::dvec2& before, const glm::dvec2& pushed,
+                BodyResult& result) {
   AgentBody& body = result.body;
-  result.wantedSpeed = glm::length(desired);
-  const glm::dvec2 w = result.wantedSpeed > 1e-4 * tuning.legLength ? glm::normalize(desired) : before;
+  result.wantedSpeed = glm::length(wish.velocity);
+  const glm::dvec2 w = result.wantedSpeed > 1e-4 * tuning.legLength ? glm::normalize(wish.velocity) : before;
   const double wanted = body.follow * result.wantedSpeed * std::max(0.0, glm::dot(w, body.heading));
   body.speed += std::clamp(wanted - body.speed, -tuning.braking * tuning.dt, tuning.acceleration * tuning.dt);
   result.ways = waysToEdges(tuning, body, body.heading);
   body.speed = std::min(body.speed, stoppingSpeed(tuning, std::min(result.ways.x, result.ways.y)));
-  const glm::dvec2 velocity = velocityOf(tuning, most, w, result) + pushed;
+  glm::dvec2 velocity = body.speed * body.heading;
+  if (wish.mostSpeed) {
+    body.speed = std::min(body.speed, *wish.mostSpeed);
+    velocity = besideOthers(tuning, *wish.mostSpeed, w, result);
+  }
+  velocity += pushed;
   body.localX += velocity.x * tuning.dt;
   body.localZ += velocity.y * tuning.dt;
   const double overX = std::floor(body.localX / tileSize), overZ = std::floor(body.localZ / tileSize);
@@ -168,12 +170,12 @@ glm::dvec3 leaningNormal(const Tuning& tuning, const SupportPlane& plane, const 
 }
 
 // From the follow factor on. `points` are relative to the previous body.
-void move(const Tuning& tuning, const Heights& heights, const AgentBody& previous, const glm::dvec2& desired,
+void move(const Tuning& tuning, const Heights& heights, const AgentBody& previous, const Wish& wish,
           std::vector<glm::dvec3> points, double phase, double drop, const glm::dvec2& pushed,
           const BodyChoices& choices, BodyResult& result) {
   AgentBody& next = result.body;
-  turn(tuning, desired, choices, result);
-  const glm::dvec2 moves = walk(tuning, choices.mostSpeed, desired, previous.heading, pushed, result);
+  turn(tuning, wish.velocity, choices, result);
+  const glm::dvec2 moves = walk(tuning, wish, previous.heading, pushed, result);
   const glm::dvec3 way((next.tileX - previous.tileX) * tileSize + next.localX - previous.localX, 0,
                        (next.tileZ - previous.tileZ) * tileSize + next.localZ - previous.localZ);
   for (glm::dvec3& point : points) point -= way;
@@ -218,10 +220,10 @@ double stoppingSpeed(const Tuning& tuning, double way) {
 }
 
 BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
-                const AgentBody& previous, const glm::dvec2& wish, std::span<const Step> steps,
+                const AgentBody& previous, const Wish& wish, std::span<const Step> steps,
                 std::span<const double> misses, double tick, double phase, const BodyChoices& choices) {
   const Reaction reaction = creature.reaction.value_or(Reaction{});
-  const glm::dvec2 desired = (reaction.phase == ReactionPhase::rising ? 0 : creature.speed) * wish;
+  const glm::dvec2 desired = (reaction.phase == ReactionPhase::rising ? 0 : creature.speed) * wish.velocity;
   BodyResult result;
   result.body = previous;
   double follow = 1;
@@ -234,8 +236,8 @@ BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& cr
     result.follow.push_back(leg);
   }
   result.body.follow = std::max(choices.follow.value_or(follow), tuning.followLeast);
-  move(tuning, heights, previous, desired, groundPoints(creature, previous, steps, tick), phase,
-       creature.shift.y + reaction.drop, reaction.velocity, choices, result);
+  move(tuning, heights, previous, {desired, wish.mostSpeed}, groundPoints(creature, previous, steps, tick),
+       phase, creature.shift.y + reaction.drop, reaction.velocity, choices, result);
   if (reaction.phase != ReactionPhase::steady) {
     result.body.still = 0;
     result.stillMargin = std::numeric_limits<double>::infinity();
@@ -244,14 +246,14 @@ BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& cr
 }
 
 BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creature& creature,
-                     const AgentBody& previous, const glm::dvec2& desired, const BodyChoices& choices) {
+                     const AgentBody& previous, const Wish& wish, const BodyChoices& choices) {
   BodyResult result;
   result.body = previous;
   result.body.follow = 1;
   Tuning upright = tuning;
   upright.leanGain = upright.leanLevel = upright.breathHeight = 0;
-  move(upright, heights, previous, creature.speed * desired, groundBelowHomes(heights, creature, previous), 0,
-       creature.shift.y, {0, 0}, choices, result);
+  move(upright, heights, previous, {creature.speed * wish.velocity, wish.mostSpeed},
+       groundBelowHomes(heights, creature, previous), 0, creature.shift.y, {0, 0}, choices, result);
   return result;
 }
 

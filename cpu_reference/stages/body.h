@@ -41,9 +41,14 @@ struct BodyResult {
 struct BodyChoices {
   std::optional<double> follow;
   int turnSign = 0;  // +1, -1: forced
-  // No choice, but a fact of the tick where the herd avoids: the speed that avoid allows along the heading,
-  // m/s.
-  std::optional<double> mostSpeed = {};
+};
+
+// What a body is steered to.
+struct Wish {
+  glm::dvec2 velocity;              // m/s
+  std::optional<double> mostSpeed;  // m/s, along the heading, where the herd avoids
+
+  Wish(const glm::dvec2& desired, std::optional<double> most = {}) : velocity(desired), mostSpeed(most) {}
 };
 
 // The largest speed from which a body still stops within `way`: it moves on by s dt in this tick, and brakes
@@ -53,13 +58,13 @@ double stoppingSpeed(const Tuning& tuning, double way);
 // `misses`: Chain::miss of each leg after the last tick. `tick` is n, the tick being computed; `phase` the
 // gait's after the last one.
 BodyResult body(const Tuning& tuning, const Heights& heights, const Creature& creature,
-                const AgentBody& previous, const glm::dvec2& desired, std::span<const Step> steps,
+                const AgentBody& previous, const Wish& wish, std::span<const Step> steps,
                 std::span<const double> misses, double tick, double phase = 0,
                 const BodyChoices& choices = {});
 
 // A body that does not feel its feet: nothing holds it back, and the ground below the homes takes the place
 // of the ground points. Of `choices` the turn's sign counts.
 BodyResult blindBody(const Tuning& tuning, const Heights& heights, const Creature& creature,
-                     const AgentBody& previous, const glm::dvec2& desired, const BodyChoices& choices = {});
+                     const AgentBody& previous, const Wish& wish, const BodyChoices& choices = {});
 
 }  // namespace skitter::reference

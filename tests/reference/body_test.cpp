@@ -144,20 +144,22 @@ TEST_F(Body, bellyStaysAboveABump) {
 TEST_F(Body, stretchedLegBehindHoldsTheBodyAndOneAheadDoesNot) {
   steps = stepsAtHome(creature, body);
   steps[0] = plantedAt(body, creature.limbs[0].root + glm::dvec3(0, -0.26, -0.98));
-  const auto held = reference::body(tuning, heights, creature, body, {0, 1}, steps, misses, 1);
+  const auto held = reference::body(tuning, heights, creature, body, glm::dvec2(0, 1), steps, misses, 1);
   EXPECT_LT(held.body.follow, 0.5);
-  const auto free = reference::body(tuning, heights, creature, body, {0, -1}, steps, misses, 1);
+  const auto free = reference::body(tuning, heights, creature, body, glm::dvec2(0, -1), steps, misses, 1);
   EXPECT_EQ(free.body.follow, 1);
 }
 
 TEST_F(Body, footThatCannotFollowHoldsTheBody) {
   steps = stepsAtHome(creature, body);
   misses[3] = tuning.errorStop / 2;
-  EXPECT_NEAR(reference::body(tuning, heights, creature, body, {0, 1}, steps, misses, 1).body.follow, 0.5,
-              1e-6);
+  EXPECT_NEAR(
+      reference::body(tuning, heights, creature, body, glm::dvec2(0, 1), steps, misses, 1).body.follow, 0.5,
+      1e-6);
   steps[3].firstTick = 0;
   steps[3].duration = 20;
-  EXPECT_EQ(reference::body(tuning, heights, creature, body, {0, 1}, steps, misses, 1).body.follow, 1);
+  EXPECT_EQ(reference::body(tuning, heights, creature, body, glm::dvec2(0, 1), steps, misses, 1).body.follow,
+            1);
 }
 
 TEST_F(Body, leansIntoATurnAndComesUpright) {

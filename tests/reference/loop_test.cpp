@@ -96,7 +96,7 @@ TEST_F(Loop, feetDoNotSlipOnAStraightWay) {
   double worst = 0;
   for (int n = 0; n < 300; ++n) {
     const double before = body.world().y;
-    body = reference::blindBody(tuning, heights, creature, body, {0, 1}).body;
+    body = reference::blindBody(tuning, heights, creature, body, glm::dvec2(0, 1)).body;
     const reference::Gait gait = reference::loopGait(tuning, 2, body, phase).gait;
     phase = gait.phase;
     for (size_t l = 0; l < 8; ++l) {
@@ -115,7 +115,8 @@ TEST_F(Loop, blindBodyLiesOnTheGroundBelowItsHomes) {
   terrain = field(129, 0.5f, slope);
   heights = validation::heightsOf(terrain, parametersFor(terrain));
   body.surfaceSpeed = body.speed = 0;
-  for (int n = 0; n < 240; ++n) body = reference::blindBody(tuning, heights, creature, body, {0, 0}).body;
+  for (int n = 0; n < 240; ++n)
+    body = reference::blindBody(tuning, heights, creature, body, glm::dvec2(0, 0)).body;
   const glm::dvec3 up = body.orientation * glm::dvec3(0, 1, 0);
   EXPECT_NEAR(glm::length(up - glm::normalize(glm::dvec3(-0.3, 1, 0.2))), 0, 1e-3);
   EXPECT_NEAR(body.y, slope(0.5, 0.5), 1e-2);
@@ -123,9 +124,11 @@ TEST_F(Loop, blindBodyLiesOnTheGroundBelowItsHomes) {
 }
 
 TEST_F(Loop, blindBodyWaitsForNobody) {
-  for (int n = 0; n < 60; ++n) body = reference::blindBody(tuning, heights, creature, body, {0, 1}).body;
+  for (int n = 0; n < 60; ++n)
+    body = reference::blindBody(tuning, heights, creature, body, glm::dvec2(0, 1)).body;
   const double before = body.world().y;
-  for (int n = 0; n < 60; ++n) body = reference::blindBody(tuning, heights, creature, body, {0, 1}).body;
+  for (int n = 0; n < 60; ++n)
+    body = reference::blindBody(tuning, heights, creature, body, glm::dvec2(0, 1)).body;
   EXPECT_NEAR(body.world().y - before, 60 * tuning.dt, 1e-9);
 }
 
