@@ -12,9 +12,10 @@ namespace skitter::render {
 
 struct MeshVertex {
   uint16_t bones[4];
-  glm::vec4 influences[4];  // vertex relative to the bone's rest start, weight; of a ribbon the first one is
-                            // this end's, the second one the other end's, without weight
-  glm::vec3 normal;         // none of a ribbon
+  // The vertex relative to the bone's rest start, and a weight. A ribbon's first one is of this end, and its
+  // second one, without weight, of the other end.
+  glm::vec4 influences[4];
+  glm::vec3 normal;  // ribbons have none
   glm::vec3 colour;
   float halfWidth;  // of a ribbon, metres, below 0 on one side and above on the other; 0 on surfaces
 };

@@ -80,8 +80,7 @@ Ribbon joined(const Leg& leg, const std::vector<Ribbon>& bones, size_t first) {
       for (int i = 0; i < 2; ++i) {
         const float weight = own * (i == 0 ? 1 - t : t);
         colour[i] += weight * end.colour;
-        radius[i] += weight * (at == 0.25f ? 0.75f * bones[b].from.radius + 0.25f * bones[b].to.radius
-                                           : 0.25f * bones[b].from.radius + 0.75f * bones[b].to.radius);
+        radius[i] += weight * glm::mix(bones[b].from.radius, bones[b].to.radius, at);
         share[i] += weight;
       }
     }
@@ -102,7 +101,7 @@ float distanceToLine(const glm::vec3& point, const glm::vec3& from, const glm::v
   return glm::distance(point, from + std::clamp(share, 0.0f, 1.0f) * line);
 }
 
-// Whether the bones from `first` to `last` of a leg lie along one line, `bend` metres aside.
+// Whether the joints between the bones from `first` to `last` of a leg are within `bend` metres of one line.
 bool isStraight(const Leg& leg, size_t first, size_t last, float bend) {
   const glm::vec3 end = leg.bones[last].start + leg.bones[last].length * leg.bones[last].direction;
   for (size_t joint = first + 1; joint <= last; ++joint)
@@ -118,8 +117,7 @@ Ribbons ribbonsOf(const Rig& rig, float radius, float bend) {
   std::vector<bool> thin(surfaces.size());
   for (const Leg& leg : rig.legs) {
     const size_t firstEntry = 1 + size_t(&leg - rig.legs.data()) * size_t(rig.maxBones());
-    // Ribbons of the bones before this one that the last ribbon joins; none where the bone before is not
-    // thin.
+    // The bones before this one that the last ribbon joins. There are none where the bone before is not thin.
     std::vector<Ribbon> run;
     for (size_t b = 0; b < leg.bones.size(); ++b) {
       const auto entry = uint16_t(firstEntry + b);

@@ -80,7 +80,7 @@ double deviationIn(const Heightfield& field, uint32_t x, uint32_t z, uint32_t st
   return std::sqrt(sum);
 }
 
-// Of the samples from `first` to `last`.
+// The lowest and the highest height of the samples from `first` to `last`.
 std::pair<float, float> lowestAndHighest(const Heightfield& field, const glm::uvec2& first,
                                          const glm::uvec2& last) {
   float lowest = std::numeric_limits<float>::max(), highest = -lowest;
@@ -93,7 +93,7 @@ std::pair<float, float> lowestAndHighest(const Heightfield& field, const glm::uv
   return {lowest, highest};
 }
 
-// Relief's slopes.
+// Fills in the relief's slopes.
 void addSlopes(Relief& relief, const Heightfield& field) {
   constexpr uint32_t side = kReliefBlock;
   const auto blocks = [](uint32_t samples) { return std::max(1u, (samples - 1 + side - 1) / side); };
@@ -224,7 +224,7 @@ class Chooser {
   std::vector<Found> found_;
 };
 
-// What is known of the ground that a patch shows.
+// Bounds of the ground that a patch shows.
 struct Bounds {
   glm::vec3 low, high;  // a box, in picture space
   float steepest;       // slope
@@ -237,7 +237,7 @@ Bounds boundsOf(const Composition& c, const Relief& relief, const Patch& patch) 
   return {{from.x, relief.lowest, from.y}, {to.x, relief.highest, to.y}, relief.steepest};
 }
 
-// `bounds` of all ground, made those of the ground below the patch; those of the mirror image stay.
+// Makes `bounds` of all ground those of the ground below the patch. Patches of the mirror image keep them.
 void tighten(Bounds& bounds, const Heightfield& field, const Relief& relief, const Patch& patch) {
   const float side = float(kCells) * patch.z;
   const glm::vec2 last(float(field.columns - 1), float(field.rows - 1));

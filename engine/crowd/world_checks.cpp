@@ -95,8 +95,11 @@ void checkRig(const Rig& rig) {
     };
     check(gait.idle != 0 && gait.idle >> rig.legs.size() == 0,
           fmt::format("gaits[{}] is without legs {:#x}, expected a mask of the rig's", i, gait.idle));
-    check(gait.turns.size() == rig.legs.size(),
-          fmt::format("gaits[{}] has {} turns, expected {}", i, gait.turns.size(), rig.legs.size()));
+    check(
+        gait.turns.size() == rig.legs.size(),
+        fmt::format("gaits[{}] has {} turns, expected {}, one a leg: the gaits of a rig with other legs are "
+                    "cleared",
+                    i, gait.turns.size(), rig.legs.size()));
     check(gait.groups >= 1 && gait.groups <= RigGait::maxGroups,
           fmt::format("gaits[{}] has {} groups, expected 1 to {}", i, gait.groups, RigGait::maxGroups));
     check(std::ranges::all_of(gait.turns, isTurn) && gait.speed > 0 && gait.speed <= 1 &&

@@ -26,8 +26,9 @@ class BehaviourMap {
 };
 
 struct AdaptationOptions {
-  // Of the kernel, in shares of time. A leg that is held up is about 0.6 away: with 0.4, a trial changes what
-  // is expected of gaits on other legs by a quarter of its surprise, and one bad trial is not taken for all.
+  // The kernel's length, in shares of time. A leg that is held up is about 0.6 away: with 0.4, a trial
+  // changes what is expected of gaits on other legs by a quarter of its surprise, and one bad trial is not
+  // taken for all.
   double lengthScale = 0.4;
   double noise = 0.001;       // variance of a measured fitness
   double deviation = 0.3;     // of what is expected, before any trial

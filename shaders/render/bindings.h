@@ -30,7 +30,7 @@ BINDING CONSTANT_TINTED = 3;    // agents have tints (tint.h)
 BINDING CONSTANT_TEXTURES = 4;  // which textures the material has, bit by bit
 BINDING CONSTANT_CUTOUT = 5;    // what is less opaque than the material's cutoff is not drawn
 BINDING CONSTANT_STUMPS = 6;    // bones may be lost
-BINDING CONSTANT_DETAIL = 7;    // detail of the ground that may be seen: 1 clods, 2 grains and pebbles as well
+BINDING CONSTANT_DETAIL = 7;    // what of the ground may be seen: 1 clods, 2 grains and pebbles too
 BINDING CONSTANT_SHADED = 8;    // ground on which shadows may fall
 BINDING CONSTANT_STARS = 9;
 // From here on the numbers of the light, in the order of `LightNumbers` in render/light.h. As numbers of the

@@ -1,9 +1,9 @@
 #ifndef CHITIN_GLSL
 #define CHITIN_GLSL
 
-// What the eye sees of a creature without materials. `colour` is linear RGB and openness to the sky, `lit` the share
-// of sunlight that nothing takes away; `normal` and `toEye` are unit, `away` metres to the eye. The rim has at most
-// `mostRim`.
+// The colour that a creature without materials has in the picture. `colour` is linear RGB and openness to the sky,
+// `lit` is the share of sunlight that nothing takes away, `normal` and `toEye` are unit, and `away` is in metres. The
+// rim has at most `mostRim`.
 vec3 chitin(vec4 colour, vec3 normal, vec3 toEye, float away, float lit, float mostRim) {
   vec3 sun = picture.sun.xyz;
   float facing = max(dot(normal, sun), 0.0);

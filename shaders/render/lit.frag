@@ -1,5 +1,5 @@
 #version 460
-// Of agents that are small in the picture: their vertices are lit.
+// Shades agents that are small in the picture, whose vertices are lit.
 layout(location = 0) in vec3 colour;
 layout(location = 0) out vec4 outColour;
 

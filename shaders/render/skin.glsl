@@ -16,7 +16,7 @@ layout(location = 2) in vec4 influence0;  // vertex - rest start, weight
 layout(location = 3) in vec4 influence1;
 layout(location = 4) in vec4 influence2;
 layout(location = 5) in vec4 influence3;
-layout(location = 6) in vec3 normal;      // none of a ribbon
+layout(location = 6) in vec3 normal;      // ribbons have none
 layout(location = 7) in float halfWidth;  // of a ribbon, metres, of either sign; 0 on surfaces
 
 #ifdef WORN
@@ -75,8 +75,8 @@ Skinned skinned() {
   return s;
 }
 
-// Of a ribbon's normals at its edges, to the side. Light that is interpolated between them falls on more of the
-// ribbon than light from normals between them: with 0.6 the mean is that of a cylinder lit from the side.
+// How far a ribbon's normals lean to the side at its edges. Light that is interpolated between them falls on more of
+// the ribbon than light from normals between them: with 0.6 the mean is that of a cylinder lit from the side.
 #ifdef LIT
 const float ROUNDNESS = 0.6;
 #else

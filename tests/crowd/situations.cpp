@@ -84,7 +84,7 @@ Results facing(Device& device, Controller controller, const CrowdOptions& option
   return replay(device, crowd, ground, 150);
 }
 
-// As in meeting, among obstacles of every shape, more than an agent looks at, and one agent begins in one.
+// Agents meet among obstacles of every shape, more than an agent looks at, and one agent begins in one.
 Results amongObstacles(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = smallRollingGround();
   Scene scene = sceneOf(49, 1, 1, controller);

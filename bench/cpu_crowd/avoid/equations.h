@@ -139,7 +139,7 @@ struct CellSide {
 template <class F>
 CellSide<F> cellSideOf(const Neighbour<F>& other, const Vec2<F>& own, const Wish<F>& wish, float dt,
                        float legLength) {
-  // Who is not there has no distance.
+  // A neighbour that is not there has no distance.
   const F d = select(other.isThere, other.d, F(1)), inverse = F(1) / larger(d, F(1e-9f));
   const Vec2<F> n{select(other.isThere, other.p.x * inverse, F(0)),
                   select(other.isThere, other.p.z * inverse, F(0))};
