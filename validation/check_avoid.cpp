@@ -29,9 +29,10 @@ struct Avoiding {
   glm::dvec2 desired;
   bool mayRest;
 
+  reference::AvoidTick tick() const { return {static_cast<int64_t>(moment.n), setting.tuning.dt}; }
+
   reference::AvoidResult run(const reference::AvoidChoices& choices) const {
-    return reference::avoid(setting.avoid, setting.tuning.dt, body, self, moment.around, desired, mayRest,
-                            choices);
+    return reference::avoid(setting.avoid, tick(), body, self, moment.around, desired, mayRest, choices);
   }
 };
 
@@ -88,8 +89,8 @@ Allowed bound(const Avoiding& agent, const reference::AvoidResult& result, bool 
   for (int i = 0; i < erringSolves; ++i) {
     const reference::AvoidErrors errors{.number = tolerance::roundoff, .seed = static_cast<uint64_t>(i) + 1};
     const reference::AvoidResult erring =
-        reference::avoid(agent.setting.avoid, agent.setting.tuning.dt, agent.body, agent.self, neighbours,
-                         agent.desired, agent.mayRest, same, errors);
+        reference::avoid(agent.setting.avoid, agent.tick(), agent.body, agent.self, neighbours, agent.desired,
+                         agent.mayRest, same, errors);
     const glm::dvec2 apart = erring.velocity - result.velocity;
     const double faster = erring.mostSpeed - result.mostSpeed;
     squares += glm::dot(apart, apart);

@@ -154,6 +154,7 @@ Walkers walkersOf(const Crowd& crowd) {
   walkers.look = static_cast<int32_t>(quanta.lookOf(kind));
   walkers.legLength = kind.parameters.legLength;
   walkers.dt = kind.parameters.dt;
+  walkers.tick = static_cast<int64_t>(impl.tick);
   for (size_t agent = 0; agent < state.agents; ++agent) {
     const reference::AgentBody body = validation::bodyOf(state, agent);
     const glm::dvec2 desired = validation::desiredOf(state, agent);

@@ -19,6 +19,7 @@ constexpr double pushSpeed = 0.3, steadySpeed = 0.05;
 constexpr double frontRoom = 0.1, nearRoom = 0.02, deepRoom = 0.01, looseBelow = 0.9;
 constexpr double easeTime = 0.4, slackSpeed = 1e-4, freeSpeed = 100;
 constexpr int cellSweeps = 2;
+constexpr double turnTime = 2;
 
 // Rounding errors of the size that a float32 computation makes; none by default.
 class Rounding {
@@ -220,7 +221,15 @@ struct CellSide {
   double eased;  // as the deep one, for the body's speed
 };
 
-CellSide sideOf(const AvoidTuning& tuning, double dt, const Walker& self, const Seen& seen,
+// Whether somebody of that number goes before another one, in that tick. The order is another one in each
+// turn.
+bool isBefore(int64_t number, int64_t other, int64_t tick, double dt) {
+  const int64_t turn = tick / std::max<int64_t>(1, std::llround(turnTime / dt));
+  const auto mixed = static_cast<uint32_t>(turn * int64_t{0x9E3779B1});
+  return (static_cast<uint32_t>(number) ^ mixed) < (static_cast<uint32_t>(other) ^ mixed);
+}
+
+CellSide sideOf(const AvoidTuning& tuning, const AvoidTick& tick, const Walker& self, const Seen& seen,
                 const glm::dvec2& desired, Rounding& rounded) {
   const Walker& other = *seen.walker;
   const glm::dvec2 p = glm::dvec2(seen.x, seen.z) / tuning.quanta;
@@ -228,18 +237,21 @@ CellSide sideOf(const AvoidTuning& tuning, double dt, const Walker& self, const 
   const double smaller = static_cast<double>(std::min(self.radius, other.radius)) / tuning.quanta;
   const glm::dvec2 n = seen.distance2 > 0 ? rounded(p / d, 4) : glm::dvec2(0);
   const double inFront = glm::dot(n, desired) / std::max(glm::length(desired), 1e-6);
-  const double front = frontRoom * std::clamp(2 * rounded(inFront, 8), 0.0, 1.0);
+  const bool givesWay = !other.yields || isBefore(other.number, self.number, tick.number, tick.dt);
+  const double front = givesWay ? frontRoom * std::clamp(2 * rounded(inFront, 8), 0.0, 1.0) : 0;
   const double leaves = std::max(0.0, rounded(glm::dot(n, other.velocity), 4 * glm::length(other.velocity)));
   // Half of the gap is the neighbour's, if it holds itself to it. Who overlaps much is not held.
+  const double size = 4 * (d + 2 * radii);
   const auto own = [&](double room) {
-    const double size = 4 * (d + 2 * radii);
     const double gap = rounded(d - (1 + front) * radii - room * smaller, size);
     return (other.yields ? 0.5 : 1.0) * std::max(0.0, gap) +
            std::max(0.0, rounded(looseBelow * radii - d, size));
   };
-  const auto eased = [&](double way) { return std::min(way / dt, way / easeTime + leaves); };
+  const auto eased = [&](double way) { return std::min(way / tick.dt, way / easeTime + leaves); };
+  const double lacking = givesWay ? std::max(0.0, rounded((1 + front) * radii - d, size)) : 0;
+  const double back = std::min(lacking / easeTime, pushSpeed * tuning.legLength);
   const double near = own(nearRoom), deep = own(deepRoom), slack = slackSpeed * tuning.legLength;
-  return {n, eased(near), deep / dt + slack, eased(deep) + slack};
+  return {n, eased(near) - back, deep / tick.dt + slack, eased(deep) + slack};
 }
 
 // How fast the body may go on along its heading.
@@ -248,13 +260,22 @@ double speedAlong(const CellSide& side, const glm::dvec2& heading, Rounding& rou
   return rounded(speed, 8 * speed);
 }
 
-// Moves a wish into the cell: onto one side after the other, then back toward rest.
-glm::dvec2 withinCell(const std::vector<CellSide>& sides, glm::dvec2 v, Rounding& rounded) {
-  for (int sweep = 0; sweep < cellSweeps; ++sweep)
+// Moves a wish into the cell: onto one side after the other, obstacles after neighbours, then back toward
+// rest.
+glm::dvec2 withinCell(const AvoidTuning& tuning, const std::vector<CellSide>& sides,
+                      const std::vector<ObstaclePlane>& obstacles, glm::dvec2 v, Rounding& rounded) {
+  const double fastestOut = pushSpeed * tuning.legLength;
+  for (int sweep = 0; sweep < cellSweeps; ++sweep) {
     for (auto side = sides.rbegin(); side != sides.rend(); ++side) {
       const double beyond = glm::dot(side->n, v) - side->near;
-      if (beyond > 0) v = rounded(v - beyond * side->n, 4 * (glm::length(v) + side->near));
+      if (beyond > 0) v = rounded(v - beyond * side->n, 4 * (glm::length(v) + std::abs(side->near)));
     }
+    for (const ObstaclePlane& plane : obstacles) {
+      const double least = std::min(plane.bound, fastestOut);
+      const double lacking = least - glm::dot(plane.n, v);
+      if (lacking > 0) v = rounded(v + lacking * plane.n, 4 * (glm::length(v) + std::abs(least)));
+    }
+  }
   double part = 1;
   for (const CellSide& side : sides)
     if (const double toward = glm::dot(side.n, v); toward > side.deep)
@@ -272,7 +293,7 @@ Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yiel
           radius, body.speed * body.heading,         yields};
 }
 
-AvoidResult avoid(const AvoidTuning& tuning, double dt, const AgentBody& body, const Walker& self,
+AvoidResult avoid(const AvoidTuning& tuning, const AvoidTick& tick, const AgentBody& body, const Walker& self,
                   std::span<const Walker> all, const glm::dvec2& desired, bool asleep,
                   const AvoidChoices& choices, const AvoidErrors& errors) {
   AvoidResult result;
@@ -300,7 +321,7 @@ AvoidResult avoid(const AvoidTuning& tuning, double dt, const AgentBody& body, c
     const size_t place = result.planes.size();
     const int right = place < choices.right.size() ? choices.right[place] : -1;
     result.planes.push_back(planeOf(tuning, self, other, right, rounded));
-    sides.push_back(sideOf(tuning, dt, self, other, desired, rounded));
+    sides.push_back(sideOf(tuning, tick, self, other, desired, rounded));
     result.mostSpeed = std::min(result.mostSpeed, speedAlong(sides.back(), body.heading, rounded));
   }
 
@@ -315,7 +336,7 @@ AvoidResult avoid(const AvoidTuning& tuning, double dt, const AgentBody& body, c
   v *= std::min(1.0, most / std::max(glm::length(v), 1e-6));
   const double slow = steadySpeed * tuning.legLength * close, moves = glm::length(v);
   v = (v + slow * body.heading) * (moves / std::max(moves + slow, 1e-6));
-  v = withinCell(sides, v, rounded);
+  v = withinCell(tuning, sides, result.obstaclePlanes, v, rounded);
   result.velocity = v;
 
   const double standing = 1e-2 * tuning.legLength;

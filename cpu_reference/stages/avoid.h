@@ -30,6 +30,12 @@ struct AvoidTuning {
   std::vector<AvoidObstacle> obstacles = {};
 };
 
+// The tick of the crowd, which decides whose turn it is.
+struct AvoidTick {
+  int64_t number = 1;
+  double dt = 1.0 / 60;  // seconds
+};
+
 // One neighbour asks for n . v >= bound.
 struct HalfPlane {
   int64_t neighbour = 0;  // its number
@@ -79,8 +85,8 @@ constexpr size_t mostNeighbours = 8, mostObstacles = 4;
 Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yields, double quanta);
 
 // `self` as others see it; `all` are the walkers of the crowd, itself among them. `desired` and `asleep` are
-// navigate's; `dt` is the tick's, in seconds.
-AvoidResult avoid(const AvoidTuning& tuning, double dt, const AgentBody& body, const Walker& self,
+// navigate's.
+AvoidResult avoid(const AvoidTuning& tuning, const AvoidTick& tick, const AgentBody& body, const Walker& self,
                   std::span<const Walker> all, const glm::dvec2& desired, bool asleep,
                   const AvoidChoices& choices = {}, const AvoidErrors& errors = {});
 

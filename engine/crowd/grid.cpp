@@ -36,6 +36,7 @@ constexpr float finestQuanta = 1024;  // in a metre
 // least `leastCell`, errs by a 250th.
 constexpr float cellMargin = 1.01f;
 constexpr uint32_t leastCell = 128;  // quanta
+constexpr double secondsATurn = 2;
 constexpr uint32_t leastBuckets = 256, leastRun = 64, mostRuns = 4096;
 
 uint64_t agentsOf(const Crowd::Impl& crowd) {
@@ -105,6 +106,11 @@ Quanta quantaOf(const Crowd::Impl& crowd) {
     quanta.longestReach = farthest + widest;
     if (quanta.longestReach <= longestReachInQuanta) return quanta;
   }
+}
+
+uint32_t turnOf(const Crowd::Impl& crowd) {
+  const auto ticksATurn = std::max<int64_t>(1, std::llround(secondsATurn / double{crowd.dt}));
+  return static_cast<uint32_t>(crowd.tick / static_cast<uint64_t>(ticksATurn));
 }
 
 uint32_t numberOf(const Crowd::Impl& crowd, const Kind& kind) {
@@ -196,7 +202,7 @@ shared::GridConstants Grid::gridConstantsOf(const Crowd::Impl& crowd, const Kind
 
 shared::TickConstants Grid::constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page) const {
   return {.count = page.agents,
-          .tick = 0,
+          .tick = static_cast<float>(turnOf(crowd)),
           .first = numberOf(crowd, kind) + page.firstAgent,
           .every = buckets,
           .watched = row,

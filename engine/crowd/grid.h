@@ -24,6 +24,9 @@ struct Quanta {
 };
 Quanta quantaOf(const Crowd::Impl& crowd);
 
+// Whose turn it is to go first changes with this number, which the tick has.
+uint32_t turnOf(const Crowd::Impl& crowd);
+
 // The number in the crowd of a kind's first agent.
 uint32_t numberOf(const Crowd::Impl& crowd, const Kind& kind);
 

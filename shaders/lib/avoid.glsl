@@ -99,26 +99,40 @@ struct CellSide {
   float near, deep, eased;
 };
 
-// `lesser`: the smaller footprint; `ahead`: unit, where the agent wants to go; `moves`: the neighbour's velocity.
-CellSide cellSideOf(vec2 p, float d, float radii, float lesser, vec2 ahead, vec2 moves, float share, Parameters q) {
+// Which of two agents goes first. `turn` counts turns, which have orders of their own, so that nobody waits for long.
+bool goesFirst(int number, int other, float turn) {
+  uint order = uint(turn) * 0x9E3779B1u;
+  return (uint(number) ^ order) < (uint(other) ^ order);
+}
+
+// `lesser`: the smaller footprint; `ahead`: unit, where the agent wants to go; `moves`: the neighbour's velocity;
+// `yields`: the agent makes room for the neighbour.
+CellSide cellSideOf(vec2 p, float d, float radii, float lesser, vec2 ahead, vec2 moves, float share, bool yields,
+                    Parameters q) {
   vec2 n = p * (1.0 / max(d, 1e-9));
-  float gap = d - radii * (1.0 + AVOID_FRONT * clamp(2.0 * dot(n, ahead), 0.0, 1.0)), away = max(0.0, dot(n, moves));
+  float room = yields ? AVOID_FRONT * clamp(2.0 * dot(n, ahead), 0.0, 1.0) : 0.0;
+  float gap = d - radii * (1.0 + room), away = max(0.0, dot(n, moves));
+  float back = yields ? clamp(gap * (1.0 / AVOID_EASE), -AVOID_PUSH_SPEED * q.legLength, 0.0) : 0.0;
   float loose = max(0.0, AVOID_LOOSE * radii - d);
   float near = max(0.0, gap - AVOID_NEAR * lesser) * share + loose;
   float deep = max(0.0, gap - AVOID_DEEP * lesser) * share + loose;
   float slack = AVOID_SLACK * q.legLength, atOnce = deep / q.dt;
-  return CellSide(n, min(near / q.dt, near * (1.0 / AVOID_EASE) + away), atOnce + slack,
+  return CellSide(n, min(near / q.dt, near * (1.0 / AVOID_EASE) + away) + back, atOnce + slack,
                   min(atOnce, deep * (1.0 / AVOID_EASE) + away) + slack);
 }
 
 // The speed along a unit vector at which the body stays on that side. It reaches what is free before the divisor is 0.
 float speedToward(CellSide side, vec2 along) { return side.eased / max(dot(side.n, along), 1e-6); }
 
-// The velocity, moved to each side that it is beyond, the nearest neighbour's last, and then shortened.
-vec2 withinCell(CellSide sides[NEIGHBOURS], vec2 v) {
-  [[unroll]] for (int sweep = 0; sweep < AVOID_CELL_SWEEPS; ++sweep)
-    [[unroll]] for (int k = NEIGHBOURS - 1; k >= 0; --k)
-      v -= max(0.0, dot(sides[k].n, v) - sides[k].near) * sides[k].n;
+// The velocity, moved to each side that it is beyond, the nearest neighbour's last.
+vec2 ontoSides(CellSide sides[NEIGHBOURS], vec2 v) {
+  [[unroll]] for (int k = NEIGHBOURS - 1; k >= 0; --k)
+    v -= max(0.0, dot(sides[k].n, v) - sides[k].near) * sides[k].n;
+  return v;
+}
+
+// The velocity, so much shorter that no side is crossed.
+vec2 shortened(CellSide sides[NEIGHBOURS], vec2 v) {
   float part = 1.0;
   [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
     float toward = dot(sides[k].n, v);

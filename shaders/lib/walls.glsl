@@ -83,4 +83,11 @@ vec2 solveAmongWalls(HalfPlane planes[NEIGHBOURS], Walls walls, vec2 v) {
   return v;
 }
 
+// 6. The velocity, moved to each obstacle that it is beyond; out of one no faster than `most`.
+vec2 besideWalls(Walls walls, float most, vec2 v) {
+  [[unroll]] for (int k = 0; k < NEAREST_WALLS; ++k)
+    v += max(0.0, min(walls.planes[k].bound, most) - dot(walls.planes[k].n, v)) * walls.planes[k].n;
+  return v;
+}
+
 #endif

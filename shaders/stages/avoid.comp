@@ -96,8 +96,9 @@ void main() {
     float share = other.w != 0.0 ? 0.5 : 1.0;
     planes[k] = halfPlaneOf(p, d, r, float(power) * (metres * metres), going.xy, going.xy - moves.xy, share,
                             partingLine(number, nearest.number[k]));
+    bool yields = other.w == 0.0 || goesFirst(nearest.number[k], number, constants.tick);
     sides[k] = cellSideOf(p, d, r, float(min(self.z, other.z)) * metres, wanted / max(speed, 1e-6),
-                          moves.xy, share, parameters);
+                          moves.xy, share, yields, parameters);
     sides[k].n = there ? sides[k].n : vec2(0.0);
     most = there ? min(most, speedToward(sides[k], moving.xy)) : most;
     // Nobody forbids anything.
@@ -124,7 +125,13 @@ void main() {
   float steady = AVOID_STEADY_SPEED * parameters.legLength * near;
   // Devices need not divide a number by itself exactly.
   velocity = near > 0.0 ? (velocity + steady * moving.xy) * (moved / max(moved + steady, 1e-6)) : velocity;
-  velocity = withinCell(sides, velocity);
+  [[unroll]] for (int sweep = 0; sweep < AVOID_CELL_SWEEPS; ++sweep) {
+    velocity = ontoSides(sides, velocity);
+#ifdef WALLS
+    velocity = besideWalls(around, AVOID_PUSH_SPEED * parameters.legLength, velocity);
+#endif
+  }
+  velocity = shortened(sides, velocity);
   bool asleep = steer.z != 0.0 && length(velocity) < 1e-2 * parameters.legLength;
   STORE4(avoidsOut, agent, vec4(velocity, asleep ? 1.0 + float(seen) : -float(seen), most));
 }

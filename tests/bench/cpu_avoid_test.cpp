@@ -96,7 +96,7 @@ Comparison compare(const Walkers& walkers, const std::vector<float>& records) {
   const std::vector<reference::Walker> all = referenceOf(walkers);
   for (size_t i = 0; i < walkers.size(); ++i) {
     const reference::AvoidResult expected =
-        reference::avoid(tuning, double{walkers.dt}, bodyOf(walkers, i), all[i], all,
+        reference::avoid(tuning, {walkers.tick, double{walkers.dt}}, bodyOf(walkers, i), all[i], all,
                          {walkers.wantedX[i], walkers.wantedZ[i]}, false);
     const bool isDecided = std::ranges::all_of(
         expected.planes, [](const reference::HalfPlane& plane) { return plane.sideMargin > 1e-5; });

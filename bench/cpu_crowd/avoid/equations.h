@@ -37,8 +37,9 @@ struct Neighbour {
   F radii;    // of both
   F lesser;   // the smaller of both
   F power;
-  Vec2<F> v;     // the agent's velocity less its own
-  F share;       // of the change that the agent takes
+  Vec2<F> v;  // the agent's velocity less its own
+  F share;    // of the change that the agent takes
+  Mask<F> goesFirst;
   Vec2<F> part;  // where the agent goes if p is 0
 };
 
@@ -76,7 +77,7 @@ struct HalfPlane {
 // "3. Half-planes". As n . u, of a neighbour's u, is all that a bound needs, u is that number here.
 template <class F>
 HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own) {
-  const auto& [isThere, p, d, radii, lesser, power, v, share, part] = other;
+  const auto& [isThere, p, d, radii, lesser, power, v, share, goesFirst, part] = other;
   const Vec2<F> w{v.x - p.x * F(1 / horizon), v.z - p.z * F(1 / horizon)};
   const F along = dot(w, p), speed2 = dot(w, w), speed = squareRoot(speed2);
   // one of the cone's sides
@@ -144,13 +145,16 @@ CellSide<F> cellSideOf(const Neighbour<F>& other, const Vec2<F>& own, const Wish
   const Vec2<F> n{select(other.isThere, other.p.x * inverse, F(0)),
                   select(other.isThere, other.p.z * inverse, F(0))};
   const F ahead = dot(n, wish.desired) / larger(wish.speed, F(1e-6f));
-  const F gap = d - other.radii * (F(1) + F(frontRoom) * clamp(F(2) * ahead, 0, 1));
+  const F room = select(other.goesFirst, F(frontRoom) * clamp(F(2) * ahead, 0, 1), F(0));
+  const F gap = d - other.radii * (F(1) + room);
+  const F lacking = select(other.goesFirst, larger(F(0), F(0) - gap), F(0));
+  const F back = smaller(lacking * F(1 / easeTime), F(pushSpeed * legLength));
   const F leaves = larger(F(0), dot(n, own) - dot(n, other.v));
   const F loose = larger(F(0), F(looseBelow) * other.radii - d);
   const F near = larger(F(0), gap - F(nearRoom) * other.lesser) * other.share + loose;
   const F deep = larger(F(0), gap - F(deepRoom) * other.lesser) * other.share + loose;
   const F aTick(1 / dt), aTime(1 / easeTime), slack(slackSpeed * legLength);
-  return {n, smaller(near * aTick, near * aTime + leaves), deep * aTick + slack,
+  return {n, smaller(near * aTick, near * aTime + leaves) - back, deep * aTick + slack,
           smaller(deep * aTick, deep * aTime + leaves) + slack};
 }
 

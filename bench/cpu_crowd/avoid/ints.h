@@ -23,6 +23,7 @@ struct IntLanes {
 inline IntLanes operator+(IntLanes a, IntLanes b) { return a.v + b.v; }
 inline IntLanes operator-(IntLanes a, IntLanes b) { return a.v - b.v; }
 inline IntLanes operator*(IntLanes a, IntLanes b) { return a.v * b.v; }
+inline IntLanes operator^(IntLanes a, IntLanes b) { return a.v ^ b.v; }
 
 template <class F>
 struct IntsOf {
@@ -69,6 +70,16 @@ inline IntLanes lookUp(const int32_t* table, IntLanes at) {
   RawWholes found;
   for (int i = 0; i < kLanes; ++i) found[i] = static_cast<uint32_t>(table[at.v[i]]);
   return found;
+#endif
+}
+
+// Whether a < b, of numbers from 0 to 2^32 - 1.
+inline bool isBelow(int32_t a, int32_t b) { return static_cast<uint32_t>(a) < static_cast<uint32_t>(b); }
+inline LaneMask isBelow(IntLanes a, IntLanes b) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  return {_mm512_cmplt_epu32_mask((__m512i)a.v, (__m512i)b.v)};
+#else
+  return {(RawInts)(a.v < b.v)};
 #endif
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "bench/cpu_crowd/avoid/equations.h"
@@ -33,6 +34,9 @@ class SoftAvoider final : public Avoider {
         pool_(threads) {}
 
   void tick() override {
+    const int64_t turn =
+        walkers_.tick / std::max<int64_t>(1, std::llround(secondsATurn / double{walkers_.dt}));
+    order_ = static_cast<int32_t>(static_cast<uint32_t>(turn) * 0x9E3779B1u);
     overChunks([this](size_t chunk) { grid_.count(chunk); });
     overChunks([this](size_t chunk) { grid_.sum(chunk); });
     grid_.begin();
@@ -54,6 +58,7 @@ class SoftAvoider final : public Avoider {
  private:
   enum { stageGrid, stageAvoid };
   static constexpr int width = kWidth<F>;
+  static constexpr double secondsATurn = 2;
   struct alignas(64) Scratch {
     Nearest<F> nearest;
     cpu_crowd::Seconds seconds{};
@@ -84,6 +89,9 @@ class SoftAvoider final : public Avoider {
     other.power = toFloats(power) * (metres * metres);
     other.v = {own.x - lookUp(grid_.velocityX.data(), at), own.z - lookUp(grid_.velocityZ.data(), at)};
     other.share = lookUp(grid_.share.data(), at);
+    const Ints<F> order(order_);
+    other.goesFirst = (F(0.75f) < other.share) | isBelow(lookUp(grid_.number.data(), at) ^ order,
+                                                         load<Ints<F>>(&grid_.number[first]) ^ order);
     other.part = {F(0), F(0)};
     if (const Mask<F> together = other.isThere & (other.d <= F(0)); any(together)) {
       for (int i = 0; i < width; ++i) {
@@ -132,6 +140,7 @@ class SoftAvoider final : public Avoider {
 
   const Walkers& walkers_;
   size_t chunks_;
+  int32_t order_ = 0;  // of who goes first
   Grid<F> grid_;
   size_t blocks_;
   std::vector<Scratch> scratch_;

@@ -19,6 +19,7 @@ struct Walkers {
   int32_t look = 0;      // quanta beyond footprints
   float legLength = 1;   // metres
   float dt = 1.0f / 60;  // of a tick, seconds
+  int64_t tick = 1;      // of the crowd, which decides whose turn it is
 
   std::vector<float> tileX, tileZ, localX, localZ;  // of the body
   std::vector<float> headingX, headingZ, speed;     // of the body, m/s
