@@ -21,6 +21,7 @@ std::vector<ReportFile> reportOf(const Results& results, const Settings& setting
   showPlacement(results.placement, report);
   showFidelity(results.fidelity, settings, report);
   showGait(results.gait, report);
+  showDamage(results.damage, settings, report);
   report.files.push_back({"index.html", report.page.html()});
   return std::move(report.files);
 }

@@ -14,9 +14,9 @@ Results measureAll(Device& device, const std::vector<Ground>& grounds, const Set
   };
   made.sweeps = bench::measureSweeps(device, settings.solves, solving(0, 0.6));
   made.instances = bench::measureInstances(device, settings.solves, solving(0.6, 0.4));
-  course.begin(0.30);
+  course.begin(0.25);
   made.simulated = measureBudget(device, rolling, settings, false, course);
-  course.begin(0.20);
+  course.begin(0.15);
   made.drawn = measureBudget(device, rolling, settings, true, course);
   course.begin(0.04);
   made.collection = measureCollection(device, rolling, settings, course);
@@ -30,6 +30,8 @@ Results measureAll(Device& device, const std::vector<Ground>& grounds, const Set
   made.fidelity = measureFidelity(device, grounds, settings, course);
   course.begin(0.08);
   made.gait = measureGait(device, settings, course);
+  course.begin(0.10);
+  made.damage = measureDamage(device, settings, course);
   course.at(1);
   return made;
 }

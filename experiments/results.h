@@ -7,6 +7,7 @@
 #include "experiments/arcs.h"
 #include "experiments/budget.h"
 #include "experiments/collection.h"
+#include "experiments/damage.h"
 #include "experiments/fidelity.h"
 #include "experiments/gait.h"
 #include "experiments/iteration.h"
@@ -27,6 +28,7 @@ struct Results {
   std::vector<PlacementPicture> placement;  // Figures 12 to 14
   FidelityStudy fidelity;
   GaitStudy gait;
+  DamageStudy damage;  // beyond the dissertation
 };
 
 // In the order of the struct, but for the times: they come first, before the machine is warm with pictures.

@@ -30,6 +30,7 @@ Settings Settings::quick() {
   s.gaitAgents = 8;
   s.gaitTicks = 200;
   s.gaitSpeeds = {0.25, 0.5, 1, 1.5, 2, 3};
+  s.damageEvaluations = 1u << 15;
   return s;
 }
 
@@ -60,6 +61,9 @@ Settings Settings::trial(uint32_t ticks) {
   s.gaitAgents = 2;
   s.gaitTicks = std::min(s.gaitTicks, ticks);
   s.gaitSpeeds = {0.5, 1};
+  s.damageEvaluations = 128;
+  s.damagedCreatures = 2;
+  s.damageSeconds = ticks * s.dt;
   return s;
 }
 

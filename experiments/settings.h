@@ -41,6 +41,10 @@ struct Settings {
   uint32_t gaitAgents = 16, gaitTicks = 360;
   std::vector<double> gaitSpeeds = {0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3};  // leg lengths a second
 
+  uint32_t damageEvaluations = 1u << 18;  // of the search for gaits
+  uint32_t damagedCreatures = 100;        // that look for one by trial and error
+  double damageSeconds = 20;              // for which each pattern of lost legs is judged
+
   static Settings full() { return {}; }
   static Settings quick();
   // No experiment of more than `ticks` ticks or of more than a few agents: to try the command out.

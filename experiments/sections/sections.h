@@ -17,5 +17,6 @@ void showArcs(const std::vector<FootArcs>& arcs, Report& report);
 void showPlacement(const std::vector<PlacementPicture>& pictures, Report& report);
 void showFidelity(const FidelityStudy& study, const Settings& settings, Report& report);
 void showGait(const GaitStudy& study, Report& report);
+void showDamage(const DamageStudy& study, const Settings& settings, Report& report);
 
 }  // namespace skitter::experiments
