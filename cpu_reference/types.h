@@ -100,6 +100,8 @@ struct Creature {
   // speed.
   glm::dvec3 shift{0};
   double speed = 1;
+  // From its own centre of mass to that of it and what it carries, model space.
+  glm::dvec3 centre{0};
   // Where it reacts (cpu_reference/stages/react.h).
   std::optional<Reaction> reaction = {};
 

@@ -256,7 +256,8 @@ bool compareSums(const Setting& setting, const Legs& legs, const reference::Meas
   metric.count("crossings", &Metric::crossings, bounds.crossings);
 
   const double turned = nearestPair(legs.feet, legs.chains, 2 * unit);
-  const double margin = 16 * tolerance::roundoff * 2 * unit * (1 + 2 * unit / turned);
+  const double farthest = 2 * unit + glm::length(setting.creature.centre);  // a tip, from the centre of mass
+  const double margin = 16 * tolerance::roundoff * farthest * (1 + farthest / turned);
   metric.count("ticks with a support", &Metric::supported);
   metric.count("unstable ticks", &Metric::unstable,
                expected.supported && std::abs(expected.margin) <= margin ? 1 : 0);

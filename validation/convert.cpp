@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cpu_reference/stages/hurt.h"
 #include "skitter/records.h"
 #include "validation/vec4s.h"
 
@@ -139,6 +140,11 @@ reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs) {
                          .lostFrom = static_cast<size_t>(shared::packedBone(packed, l))});
   }
   return hurt;
+}
+
+glm::dvec3 centreOf(const HerdState& state, size_t agent, double legLength) {
+  const glm::dvec4 load = validation::load(state.carried, at(agent, shared::CARRIED_STRIDE));
+  return reference::centreWith(load.w, legLength * glm::dvec3(load));
 }
 
 reference::Reaction reactionOf(const HerdState& state, size_t agent) {

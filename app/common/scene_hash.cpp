@@ -296,6 +296,15 @@ void add(Hash& hash, const Push& push) {
   hash.add(velocity);
 }
 
+void add(Hash& hash, const LoadChange& change) {
+  const auto& [herd, agents, share, load] = change;
+  const auto& [mass, offset] = load;
+  add(hash, "load", herd, agents);
+  hash.add(share.value_or(-1));
+  hash.add(mass);
+  hash.add(offset);
+}
+
 // Most events name no file.
 template <class What>
 void add(Hash& hash, FileHashes&, const What& what) {

@@ -7,6 +7,7 @@
 #include "crowd/damage.h"
 #include "crowd/events.h"
 #include "crowd/herd.h"
+#include "crowd/load.h"
 #include "crowd/readback.h"
 #include "skitter/decode.h"
 #include "skitter/records.h"
@@ -54,8 +55,9 @@ double speedOf(const BodyState& body) { return double{glm::length(body.velocity)
 
 HurtAgent hurtAgentOf(const HerdState& state, size_t agent, const crowd::Damage& damage, const Rig& rig) {
   const BodyState body = bodyOf(recordOf(state.body, agent, shared::BODY_STRIDE));
-  const glm::dvec3 centre =
-      body.position + glm::dquat(body.rotation) * glm::dvec3(0, double{rig.bodyHeight}, 0);
+  const Load load = crowd::loadOf(recordOf(state.carried, agent, shared::CARRIED_STRIDE));
+  const glm::dvec3 mass(glm::vec3(0, rig.bodyHeight, 0) + rig.legLength * crowd::combinedCentre(load));
+  const glm::dvec3 centre = body.position + glm::dquat(body.rotation) * mass;
   HurtAgent made{.legLength = double{rig.legLength}, .centre = {centre.x, centre.z}};
   const uint32_t idle = damage.pattern().idle;
   for (size_t leg = 0; leg < rig.legs.size(); ++leg) {
@@ -98,7 +100,7 @@ void DamageWatch::stepWhole() {
 }
 
 void DamageWatch::lookAt(const Crowd& crowd, uint32_t herd) {
-  constexpr std::array records = {Record::body, Record::foot, Record::tip, Record::hurt};
+  constexpr std::array records = {Record::body, Record::foot, Record::tip, Record::hurt, Record::carried};
   constexpr std::array bodies = {Record::body};
   const HerdState state = crowd::downloadRecords(implOf(crowd), herd, records);
   HerdState whole;

@@ -378,6 +378,21 @@ SKITTER_C skitter_result skitter_crowd_heal(skitter_crowd* crowd, skitter_agent_
 SKITTER_C skitter_result skitter_crowd_leg_state(const skitter_crowd* crowd, skitter_agent_id agent,
                                                  uint32_t leg, skitter_leg_state* state);
 
+/* What agents of such herds carry (docs/loads.md): from the next tick on, in place of what they carried.
+ * `load`: as was said last, of mass 0 where the agent carries nothing. */
+typedef struct skitter_load {
+  float mass;      /* times the agent's own, 0 to 4; 0: it carries nothing */
+  float offset[3]; /* of the load's centre from the body's: left, up and forward, -2 to 2 leg lengths */
+} skitter_load;
+typedef struct skitter_agent_load {
+  skitter_agent_id agent;
+  skitter_load load;
+} skitter_agent_load;
+SKITTER_C skitter_result skitter_crowd_carry(skitter_crowd* crowd, const skitter_agent_load* loads,
+                                             size_t count);
+SKITTER_C skitter_result skitter_crowd_carried(const skitter_crowd* crowd, skitter_agent_id agent,
+                                               skitter_load* load);
+
 /* A threat of that number, 0 to 63, comes, moves or, with radius 0, goes: a disc about x, z, metres, that
  * agents of herds with ways keep off (docs/ways.md). */
 SKITTER_C skitter_result skitter_crowd_set_threat(skitter_crowd* crowd, uint32_t number,

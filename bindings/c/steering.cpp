@@ -220,6 +220,25 @@ skitter_result skitter_crowd_leg_state(const skitter_crowd* crowd, skitter_agent
   });
 }
 
+skitter_result skitter_crowd_carry(skitter_crowd* crowd, const skitter_agent_load* loads, size_t count) {
+  return guarded([&] {
+    Crowd& told = crowdOf(crowd);
+    std::vector<AgentLoad> all;
+    for (const auto& [agent, load] : listOf(loads, count, "loads"))
+      all.push_back({AgentId::ofBits(agent), {load.mass, {load.offset[0], load.offset[1], load.offset[2]}}});
+    told.carry(all);
+  });
+}
+
+skitter_result skitter_crowd_carried(const skitter_crowd* crowd, skitter_agent_id agent, skitter_load* load) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(load, "load");
+    const auto [mass, offset] = asked.carried(AgentId::ofBits(agent));
+    *load = {mass, {offset.x, offset.y, offset.z}};
+  });
+}
+
 skitter_result skitter_crowd_set_threat(skitter_crowd* crowd, uint32_t number, const float centre[2],
                                         float radius) {
   return guarded([&] {

@@ -183,6 +183,28 @@ void bindLegs(py::module_& module) {
   defineTuple(change, "agents", &LegChange::agents, agentsText);
 }
 
+void bindLoads(py::module_& module) {
+  py::class_<Load>(module, "Load", "What an agent carries.")
+      .def(py::init([](float mass, const glm::vec3& offset) {
+             return Load{mass, offset};
+           }),
+           "mass"_a = Load{}.mass, "offset"_a = Load{}.offset)
+      .def_readwrite("mass", &Load::mass, "Times the agent's own, 0 to 4; 0: it carries nothing.")
+      .def_readwrite("offset", &Load::offset,
+                     "Of the load's centre from the body's: left, up and forward, -2 to 2 leg lengths.");
+  py::class_<LoadChange> change(module, "LoadChange", "A load of some agents, of a herd that can be hurt.");
+  change
+      .def(py::init([](const Load& load, uint32_t herd, Places agents, std::optional<float> share) {
+             return LoadChange{.herd = herd, .agents = std::move(agents), .share = share, .load = load};
+           }),
+           "load"_a, "herd"_a = 0, "agents"_a = Places{}, "share"_a = py::none())
+      .def_readwrite("herd", &LoadChange::herd, herdText)
+      .def_readwrite("load", &LoadChange::load, "The load; of mass 0: it is laid down.")
+      .def_readwrite("share", &LoadChange::share,
+                     "Each agent is drawn with this chance, 0 to 1; None: all of `agents`.");
+  defineTuple(change, "agents", &LoadChange::agents, agentsText);
+}
+
 void bindPushes(py::module_& module) {
   py::class_<Push> push(module, "Push", "A push of some agents, of a herd with reactions.");
   push.def(py::init([](const glm::vec2& velocity, uint32_t herd, Places agents, std::optional<float> share) {
@@ -232,7 +254,7 @@ std::vector<Event> eventsIn(const py::list& events) {
     if (!isTaken(event.what, one.what))
       fail(".what", event.what,
            "a Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition, "
-           "HerdRemoval, ThreatChange, LegChange or Push");
+           "HerdRemoval, ThreatChange, LegChange, LoadChange or Push");
     made.push_back(std::move(one));
   }
   return made;
@@ -244,6 +266,7 @@ void bindEvents(py::module_& module) {
   bindComing(module);
   bindThreats(module);
   bindLegs(module);
+  bindLoads(module);
   bindPushes(module);
   py::class_<PythonEvent, std::shared_ptr<PythonEvent>>(
       module, "Event", "What happens to a crowd while it runs, at a time (docs/scene.md).")
@@ -255,7 +278,7 @@ void bindEvents(py::module_& module) {
                      "Seconds from the start: before the first tick that ends then or later.")
       .def_readwrite("what", &PythonEvent::what,
                      "A Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, "
-                     "HerdAddition, HerdRemoval, ThreatChange, LegChange or Push.")
+                     "HerdAddition, HerdRemoval, ThreatChange, LegChange, LoadChange or Push.")
       .def("__repr__", [](const PythonEvent& self) {
         return fmt::format("<skitter.Event at {} s: {}>", self.at,
                            py::type::of(self.what).attr("__name__").cast<std::string>());

@@ -414,6 +414,28 @@ class LegChange:
         bone: Optional[int] = None,
     ) -> None: ...
 
+class Load:
+    """What an agent carries."""
+
+    mass: float
+    offset: Sequence[float]
+    def __init__(self, mass: float = 0, offset: Sequence[float] = (0, 0, 0)) -> None: ...
+
+class LoadChange:
+    """A load of some agents, of a herd that can be hurt."""
+
+    herd: int
+    load: Load
+    agents: Sequence[int]
+    share: Optional[float]
+    def __init__(
+        self,
+        load: Load,
+        herd: int = 0,
+        agents: Sequence[int] = (),
+        share: Optional[float] = None,
+    ) -> None: ...
+
 class Push:
     """A push of some agents, of a herd with reactions."""
 
@@ -461,6 +483,7 @@ _What = Union[
     HerdRemoval,
     ThreatChange,
     LegChange,
+    LoadChange,
     Push,
 ]
 
@@ -579,6 +602,8 @@ class Crowd:
     ) -> None: ...
     def heal(self, agents: _Agents) -> None: ...
     def leg_state(self, agent: int, leg: Union[int, str]) -> str: ...
+    def carry(self, agents: _Agents, load: Load) -> None: ...
+    def carried(self, agent: int) -> Load: ...
     def set_threat(self, number: int, centre: Sequence[float] = (0, 0), radius: float = 1) -> None: ...
     def add_herd(self, herd: Herd) -> Tuple[int, int]: ...
     def remove_herd(self, herd: Tuple[int, int]) -> None: ...

@@ -138,6 +138,18 @@ std::string legState(PythonCrowd& self, uint64_t agent, const LegOf& leg) {
   return self.told([&](const Crowd& crowd) { return nameOf(crowd.legState(id, legOf(crowd, id, leg))); });
 }
 
+void carry(PythonCrowd& self, const Ids& agents, const Load& load) {
+  self.told([&](Crowd& crowd) {
+    std::vector<AgentLoad> loads;
+    for (const AgentId agent : agentsOf(agents)) loads.push_back({agent, load});
+    crowd.carry(loads);
+  });
+}
+
+Load carried(PythonCrowd& self, uint64_t agent) {
+  return self.told([&](const Crowd& crowd) { return crowd.carried(AgentId::ofBits(agent)); });
+}
+
 void push(PythonCrowd& self, const Ids& agents, const Floats& velocities) {
   const std::vector<glm::vec2> by = pairsOf(velocities, "velocities");
   expectOneEach(by.size(), "velocities", agents);
@@ -260,7 +272,11 @@ void bindDamage(CrowdClass& bound) {
            "counted "
            "from the root; None: the second one. The other legs regroup in the next tick.")
       .def("heal", &heal, "agents"_a, "Makes all legs of the agents of one or more handles whole.")
-      .def("leg_state", &legState, "agent"_a, "leg"_a, "What a leg of the agent of that handle is.");
+      .def("leg_state", &legState, "agent"_a, "leg"_a, "What a leg of the agent of that handle is.")
+      .def("carry", &carry, "agents"_a, "load"_a,
+           "Gives the agents of one or more handles a Load, in herds with `hurt`, in place of what they "
+           "carried; Load() takes it away.")
+      .def("carried", &carried, "agent"_a, "What the agent of that handle carries.");
 }
 
 void bindHerds(CrowdClass& bound) {

@@ -24,6 +24,8 @@ Creature hurtCreature(const Creature& whole, const Hurt& hurt) {
   return creature;
 }
 
+glm::dvec3 centreWith(double mass, const glm::dvec3& place) { return mass * place / (1 + mass); }
+
 Foot idleFoot() { return {.target = glm::dvec3(0), .progress = 0}; }
 
 Chain heldLeg(const Limb& limb, const AgentBody& body, const Chain& previous) {

@@ -25,6 +25,10 @@ struct Hurt {
 // The creature that such an agent is.
 Creature hurtCreature(const Creature& whole, const Hurt& hurt);
 
+// Where the centre of mass of a body, which is at 0 and has mass 1, is with a load of that mass at that
+// place.
+glm::dvec3 centreWith(double mass, const glm::dvec3& place);
+
 // A leg that does not carry has no target, and keeps its pose.
 Foot idleFoot();
 Chain heldLeg(const Limb& limb, const AgentBody& body, const Chain& previous);

@@ -137,15 +137,15 @@ double addWindow(const Tuning& tuning, const Trail& trail, double& jerk, double&
 }
 
 // The planted tips as seen from above, about the body.
-void addSupport(const Tuning& tuning, const AgentBody& body, const std::vector<glm::dvec2>& support,
-                Measured& result) {
+void addSupport(const Tuning& tuning, const Creature& creature, const AgentBody& body,
+                const std::vector<glm::dvec2>& support, Measured& result) {
   Metric& metric = result.metric;
   result.supported = !support.empty();
   if (!result.supported) {
     metric.unstable += 1;
     return;
   }
-  const glm::dvec3 centre = body.orientation * glm::dvec3(0, tuning.bodyHeight, 0);
+  const glm::dvec3 centre = body.orientation * (glm::dvec3(0, tuning.bodyHeight, 0) + creature.centre);
   result.margin = stabilityMargin(support, {centre.x, centre.z});
   metric.leastMargin = metric.supported > 0 ? std::min(metric.leastMargin, result.margin) : result.margin;
   metric.supported += 1;
@@ -276,7 +276,7 @@ Measured measure(const Tuning& tuning, const Heights& heights, const Creature& c
     }
     result.legs.push_back(decisions);
   }
-  addSupport(tuning, body, support, result);
+  addSupport(tuning, creature, body, support, result);
   return result;
 }
 

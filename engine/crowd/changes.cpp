@@ -99,8 +99,8 @@ class Standing {
     for (const PageBuffer& each : pageBuffers(crowd, kind)) {
       if (!each.record || !keeps(kind, crowd.options, *each.record)) continue;
       // The host says these by themselves, and a block has one rate.
-      if (*each.record == Record::goal || *each.record == Record::hurt || *each.record == Record::push ||
-          *each.record == Record::rate)
+      if (*each.record == Record::goal || *each.record == Record::hurt || *each.record == Record::carried ||
+          *each.record == Record::push || *each.record == Record::rate)
         continue;
       const RecordInfo info = infoOf(*each.record);
       // What every tick makes anew can stay, and what measure has summed up shall.
@@ -189,10 +189,12 @@ void list(const Kind& kind, const Page& page, std::span<const uint32_t> agents, 
   writes.add(page.counters, sizeof(uint32_t) * shared::COUNTER_IK_LISTED, std::span(&listed, 1));
 }
 
-// The agent's legs.
+// The agent's legs, and what it carries.
 void writeLegs(const AgentChange& change, const Page& page, uint32_t agent, Kind& kind, Writes& writes) {
   const std::vector<float> record = kind.hurtRecordOf(change.agent);
   writes.add(page.hurt, uint64_t{agent} * record.size() * sizeof(float), record);
+  const CarriedRecord carried = carriedRecord(kind.carriedBy(change.agent));
+  writes.add(page.carried, uint64_t{agent} * sizeof carried, carried);
 }
 
 // Who does not begin anew stirs: a sleeper would not see what happens to it.

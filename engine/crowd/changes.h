@@ -18,7 +18,7 @@ struct AgentChange {
   uint32_t agent = 0;                                   // of the kind
   bool goal = false, speed = false;                     // all of the goal, or its speed
   bool leaves = false;                                  // its place is empty then
-  bool hurt = false;                                    // its legs are as Kind::damages has them
+  bool hurt = false;                                    // its legs and its load are as its kind has them
   std::array<float, 4 * shared::GOAL_STRIDE> record{};  // the goal's
   std::optional<Place> stands{};                        // anew, there
   std::optional<glm::vec2> push{};                      // m/s, in the next tick

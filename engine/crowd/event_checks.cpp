@@ -162,6 +162,14 @@ void check(const LegChange& change, const Where& at) {
   if (const Rig* rig = knownRig(herd, at)) legOf(name, *rig, change);
 }
 
+void check(const LoadChange& change, const Where& at) {
+  const skitter::Herd& herd = herdOf("herd", change.herd, at);
+  expectCarries([&] { return fmt::format("{}: herd {}", at.event, change.herd); },
+                herd.hurt || herd.reactions);
+  checkWhom(change, herd, at);
+  expectLoad([&] { return at.event; }, change.load);
+}
+
 void check(const HerdAddition& addition, const Where& at) {
   const std::string name = at.event + ".addHerd";
   checkHerd(addition.herd, name);

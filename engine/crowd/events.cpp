@@ -101,6 +101,11 @@ class Rehearsal {
                  herdAt(push.herd, name).reactions);
     for (const uint32_t agent : push.agents) expectSomebody(push.herd, agent, name);
   }
+  void play(const LoadChange& change, const std::string& name) {
+    const skitter::Herd& herd = herdAt(change.herd, name);
+    expectCarries([&] { return fmt::format("{}: herd {}", name, change.herd); }, herd.hurt || herd.reactions);
+    for (const uint32_t agent : change.agents) expectSomebody(change.herd, agent, name);
+  }
   void play(const Teleport& teleport, const std::string& name) {
     for (const Teleport::Move& move : teleport.moves) expectSomebody(teleport.herd, move.agent, name);
   }
@@ -228,6 +233,12 @@ class Happening {
       pushes.push_back({crowd_.agentId(push.herd, agent), push.velocity});
     crowd_.push(pushes);
   }
+  void operator()(const LoadChange& change) const {
+    std::vector<AgentLoad> loads;
+    for (const uint32_t agent : meantBy(change))
+      loads.push_back({crowd_.agentId(change.herd, agent), change.load});
+    crowd_.carry(loads);
+  }
   void operator()(const HerdAddition&) const { addComing(implOf(crowd_), number_); }
   void operator()(const HerdRemoval& removal) const { crowd_.removeHerd(crowd_.herdId(removal.herd)); }
   void operator()(const ThreatChange& change) const { crowd_.setThreat(change.number, change.threat); }
@@ -285,6 +296,7 @@ bool namesAgents(const Event& event) {
   if (const auto* change = std::get_if<SpeedChange>(&event.what)) return !change->agents.empty();
   if (const auto* change = std::get_if<LegChange>(&event.what)) return !change->agents.empty();
   if (const auto* push = std::get_if<Push>(&event.what)) return !push->agents.empty();
+  if (const auto* change = std::get_if<LoadChange>(&event.what)) return !change->agents.empty();
   return std::holds_alternative<Teleport>(event.what) || std::holds_alternative<Removal>(event.what);
 }
 

@@ -15,9 +15,23 @@ const Regait& Kind::regaitOf(const LegPattern& pattern) {
   return regaits.emplace(pattern, regaitFor(rig, tuning, pattern)).first->second;
 }
 
+Load Kind::carriedBy(uint32_t agent) const {
+  const auto load = loads.find(agent);
+  return load == loads.end() ? Load{} : load->second;
+}
+
+void Kind::setLoad(uint32_t agent, const Load& load) {
+  if (load.mass == 0)
+    loads.erase(agent);
+  else
+    loads[agent] = load;
+}
+
 std::vector<float> Kind::hurtRecordOf(uint32_t agent) {
   const auto hurt = damages.find(agent);
-  return hurt == damages.end() ? wholeRecord : hurtRecord(hurt->second, regaitOf(hurt->second.pattern()));
+  const Damage damage = hurt == damages.end() ? Damage{} : hurt->second;
+  const LegPattern pattern = damage.pattern();
+  return hurtRecord(damage, loaded(regaitOf(pattern), carriedBy(agent), rig, tuning, pattern));
 }
 
 const SizeRun& Herd::runOf(uint32_t agent) const {

@@ -16,6 +16,7 @@
 #include "crowd/edit.h"
 #include "crowd/key_poses.h"
 #include "crowd/levels.h"
+#include "crowd/load.h"
 #include "crowd/regait.h"
 #include "crowd/size_run.h"
 #include "crowd/stage.h"
@@ -79,13 +80,14 @@ struct Kind {
   gpu::Buffer clipHeads, clipTimes, clipRows, clipLegs, clipBones;
   KeyPoses keyPoses;  // of controller key-poses
   gpu::Buffer keyBuffer;
-  gpu::Buffer wallBuffer;                // the scene's obstacles, where its herds avoid
-  bool reachTriggered = false;           // legs step when out of reach, without a rhythm
-  bool tinted = false;                   // some herd of it has a colour or a tint of its own
-  bool hurts = false;                    // legs of its agents can be hurt
-  bool reacts = false;                   // its agents have reactions
-  std::vector<float> wholeRecord;        // where it hurts: the `hurt` record of an agent whose legs are whole
-  std::map<uint32_t, Damage> damages;    // of its agents, those that are hurt, as the host has said
+  gpu::Buffer wallBuffer;              // the scene's obstacles, where its herds avoid
+  bool reachTriggered = false;         // legs step when out of reach, without a rhythm
+  bool tinted = false;                 // some herd of it has a colour or a tint of its own
+  bool hurts = false;                  // legs of its agents can be hurt, and they can carry loads
+  bool reacts = false;                 // its agents have reactions
+  std::vector<float> wholeRecord;      // where it hurts: the `hurt` record of an agent that is whole and free
+  std::map<uint32_t, Damage> damages;  // of its agents, those that are hurt, as the host has said
+  std::map<uint32_t, Load> loads;      // of its agents, those that carry, as the host has said
   std::map<LegPattern, Regait> regaits;  // those that were asked for
   shared::Parameters parameters{};
   gpu::HostBuffer parameterBlock;  // Parameters; written once, before the first tick
@@ -104,7 +106,9 @@ struct Kind {
   uint32_t herdOf(uint64_t agent) const;
   // The gait of a pattern, made when it is first asked for.
   const Regait& regaitOf(const LegPattern& pattern);
-  // The `hurt` record of an agent, as the host has said.
+  // What an agent carries and its `hurt` record, as the host has said.
+  Load carriedBy(uint32_t agent) const;
+  void setLoad(uint32_t agent, const Load& load);
   std::vector<float> hurtRecordOf(uint32_t agent);
   bool findsWay() const { return wayfaring && !wayfaring->forage; }
   bool forages() const { return wayfaring && wayfaring->forage; }

@@ -106,6 +106,8 @@ bool keeps(const Kind& kind, const CrowdOptions& options, Record record) {
       return true;
     case Kept::bound:
       return read || written;
+    case Kept::hurt:
+      return kind.hurts;
     case Kept::exchanged:
       break;
   }

@@ -9,7 +9,7 @@
 namespace skitter::crowd {
 
 enum class Per { agent, leg, watched };
-enum class Kept { always, bound, exchanged };
+enum class Kept { always, bound, hurt, exchanged };
 
 struct RecordInfo {
   const char* name;

@@ -125,6 +125,16 @@ struct Choice {
   }
 };
 
+bool isIn(uint32_t mask, size_t leg) { return (mask >> leg & 1u) != 0; }
+
+// The legs that carry, as they lie around the body.
+std::vector<size_t> carriersOf(const Rig& rig, uint32_t idle) {
+  std::vector<size_t> carriers;
+  for (const size_t leg : legsAround(rig))
+    if (!isIn(idle, leg)) carriers.push_back(leg);
+  return carriers;
+}
+
 glm::dvec2 homeOf(const Leg& leg) { return {leg.home.x, leg.home.z}; }
 
 // How much lower the body must be for every leg to reach its home as well as before, or comfortably. Metres.
@@ -288,11 +298,12 @@ void takeOwnGait(const Rig& rig, Regait& gait) {
 
 }  // namespace
 
+float loweringFor(const Rig& rig, const Tuning& tuning, const LegPattern& pattern, const glm::vec2& shift) {
+  return loweringFor(rig, tuning, carriersOf(rig, pattern.idle), -shift);
+}
+
 Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& pattern) {
-  const auto isIn = [](uint32_t mask, size_t leg) { return (mask >> leg & 1u) != 0; };
-  std::vector<size_t> carriers;
-  for (const size_t l : legsAround(rig))
-    if (!isIn(pattern.idle, l)) carriers.push_back(l);
+  const std::vector<size_t> carriers = carriersOf(rig, pattern.idle);
   Regait gait;
   gait.legs.resize(rig.legs.size());
   size_t lame = 0;
@@ -313,8 +324,6 @@ Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& patt
 
 namespace {
 
-bool isIdle(uint32_t idle, size_t leg) { return (idle >> leg & 1u) != 0; }
-
 // Turns between the phases of two legs, the shorter way around the cycle.
 float turnsApart(const RigGait& gait, size_t a, size_t b) {
   const float apart = std::abs(gait.turns[a].phase - gait.turns[b].phase);
@@ -334,9 +343,7 @@ Regait regaitOf(const Rig& rig, const RigGait& found, const LegPattern& pattern)
   gait.shift = found.shift * rig.legLength;
   gait.speed = found.speed;
   gait.legs.resize(rig.legs.size());
-  std::vector<size_t> carriers;
-  for (const size_t leg : legsAround(rig))
-    if (!isIdle(found.idle, leg)) carriers.push_back(leg);
+  const std::vector<size_t> carriers = carriersOf(rig, found.idle);
   size_t lame = 0;
   for (size_t k = 0; k < carriers.size(); ++k) {
     const size_t leg = carriers[k];
@@ -345,7 +352,7 @@ Regait regaitOf(const Rig& rig, const RigGait& found, const LegPattern& pattern)
     turn.group = std::min(static_cast<int>(turns), gait.groups - 1);
     turn.within = turns - static_cast<float>(turn.group);
     turn.slowness = found.turns[leg].slowness;
-    if (isIdle(pattern.lame, leg)) turn.slowness *= lameSlowness, ++lame;
+    if (isIn(pattern.lame, leg)) turn.slowness *= lameSlowness, ++lame;
     for (size_t m = 0; m < carriers.size(); ++m) {
       const size_t between = m > k ? m - k : k - m;
       const bool isNext = between == 1 || between + 1 == carriers.size();

@@ -45,6 +45,10 @@ Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& patt
 // As the rig's table has it for the pattern or for its mirror image (docs/evolve.md); else by rule.
 Regait regaitFor(const Rig& rig, const Tuning& tuning, const LegPattern& pattern);
 
+// How much lower the body must be for every leg that carries to reach its home, shifted by so much (model x
+// and z, metres), as well as the rig's legs reach theirs, or comfortably. Metres.
+float loweringFor(const Rig& rig, const Tuning& tuning, const LegPattern& pattern, const glm::vec2& shift);
+
 // What a gait of a table is for a pattern whose idle legs are the gait's. Lame legs are slower, as by rule.
 Regait regaitOf(const Rig& rig, const RigGait& gait, const LegPattern& pattern);
 

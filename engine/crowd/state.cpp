@@ -255,19 +255,23 @@ void giveGenerations(Impl& crowd, uint32_t kind, std::span<const uint32_t> all) 
 std::vector<StateChange> changesOf(const Kind& kind) {
   std::vector<StateChange> all;
   for (const auto& [agent, goal, speed, leaves, hurt, record, stands, push] : kind.changes.all()) {
-    all.push_back({agent, goal, speed, leaves, record, {}, {}, {}});
+    all.push_back({agent, goal, speed, leaves, record, {}, {}, {}, {}});
     if (push) all.back().push = {push->x, push->y};
     if (stands) all.back().stands = {stands->position.x, stands->position.y, stands->heading};
     if (!hurt) continue;
     const auto damage = kind.damages.find(agent);
     const auto values = (damage == kind.damages.end() ? Damage{} : damage->second).values();
     all.back().hurt.assign(values.begin(), values.end());
+    const Load load = kind.carriedBy(agent);
+    if (load.mass == 0) continue;
+    const CarriedRecord carried = carriedRecord(load);
+    all.back().load.assign(carried.begin(), carried.end());
   }
   return all;
 }
 
 void giveChanges(const std::vector<StateChange>& all, Kind& kind) {
-  for (const auto& [agent, goal, speed, leaves, record, stands, hurt, push] : all) {
+  for (const auto& [agent, goal, speed, leaves, record, stands, hurt, load, push] : all) {
     if (agent >= kind.agents) continue;
     AgentChange& change = kind.changes.of(agent, kind.agents);
     change = {agent, goal, speed, leaves, kind.hurts && hurt.size() == Damage::floats, record, {}, {}};
@@ -346,19 +350,26 @@ void setDamage(Kind& kind, uint32_t agent, const Damage& damage) {
     kind.damages[agent] = damage;
 }
 
-// As the records have it, or what waits to be written.
+// Damage and loads, as the records have them or as wait to be written.
 void giveDamages(const Impl& crowd, const std::vector<StateChange>& waiting, Kind& kind) {
   if (!kind.hurts) return;
   const auto floats = 4 * static_cast<size_t>(shared::hurtStride(kind.legs));
   for (const Page& page : kind.pages) {
     const std::vector<float> records = gpu::download<float>(*crowd.context, page.hurt);
-    for (uint32_t agent = 0; agent < page.agents; ++agent)
+    const std::vector<float> carried = gpu::download<float>(*crowd.context, page.carried);
+    for (uint32_t agent = 0; agent < page.agents; ++agent) {
       setDamage(kind, page.firstAgent + agent,
                 Damage::ofValues(std::span(records).subspan(agent * floats, Damage::floats)));
+      kind.setLoad(page.firstAgent + agent,
+                   loadOf(std::span(carried).subspan(agent * std::tuple_size_v<CarriedRecord>)));
+    }
   }
-  for (const StateChange& change : waiting)
-    if (change.agent < kind.agents && change.hurt.size() == Damage::floats)
-      setDamage(kind, change.agent, Damage::ofValues(change.hurt));
+  for (const StateChange& change : waiting) {
+    if (change.agent >= kind.agents || change.hurt.size() != Damage::floats) continue;
+    setDamage(kind, change.agent, Damage::ofValues(change.hurt));
+    kind.setLoad(change.agent,
+                 change.load.size() == std::tuple_size_v<CarriedRecord> ? loadOf(change.load) : Load{});
+  }
 }
 
 StateHead headNow(const Impl& crowd, const std::vector<std::vector<Event>>& footfalls,
@@ -443,6 +454,7 @@ const std::vector<Derived>& allDerived() {
       {{Record::foot, Record::tip}, {swing, StageSet{swing, ik}, ik}},
       {{Record::pose}, {clip, pose}},  // clip lists who fades from one clip to another
       {{Record::flight}, {footfall}},
+      {{Record::carried}, {}},  // in states from before there were loads nobody has one
   };
   return all;
 }

@@ -31,7 +31,7 @@ void eachKey(StateChunk& chunk, const Visit& visit) {
 }
 template <class Visit>
 void eachKey(StateChange& change, const Visit& visit) {
-  auto& [agent, goal, speed, leaves, record, stands, hurt, push] = change;
+  auto& [agent, goal, speed, leaves, record, stands, hurt, load, push] = change;
   visit("agent", agent);
   visit("goal", goal);
   visit("speed", speed);
@@ -40,6 +40,8 @@ void eachKey(StateChange& change, const Visit& visit) {
   visit("stands", stands);
   IfAny legs{hurt};
   visit("hurt", legs);
+  IfAny loads{load};
+  visit("load", loads);
   IfAny pushes{push};
   visit("push", pushes);
 }

@@ -31,7 +31,8 @@ struct StateChange {
   bool goal = false, speed = false, leaves = false;
   std::array<float, 4 * shared::GOAL_STRIDE> record{};
   std::vector<float> stands;  // x, z, heading; empty: where it is
-  std::vector<float> hurt;    // Damage::values; empty: its legs are as before
+  std::vector<float> hurt;    // Damage::values; empty: its legs and its load are as before
+  std::vector<float> load;    // the `carried` record; empty: none, where `hurt` is there
   std::vector<float> push;    // x, z; empty: none
 };
 

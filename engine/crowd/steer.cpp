@@ -16,7 +16,8 @@ namespace skitter {
 namespace {
 
 using crowd::AgentChange, crowd::SizeRun, crowd::expectGoal, crowd::expectHurts, crowd::expectLeg,
-    crowd::expectPlace, crowd::expectPush, crowd::expectReacts, crowd::expectSpeed;
+    crowd::expectCarries, crowd::expectLoad, crowd::expectPlace, crowd::expectPush, crowd::expectReacts,
+    crowd::expectSpeed;
 
 std::string nameOf(uint32_t herd) { return fmt::format("herd {}", herd); }
 std::string nameOf(uint32_t herd, uint32_t agent) { return fmt::format("herd {}, agent {}", herd, agent); }
@@ -222,6 +223,31 @@ LegState Crowd::legState(AgentId id, uint32_t leg) const {
   return hurt == kind.damages.end() ? LegState::whole : hurt->second.of(leg);
 }
 
+void Crowd::carry(std::span<const AgentLoad> loads) {
+  for (const auto& [id, load] : loads) {
+    expectSomebody(*impl_, id);
+    const auto name = [&] { return nameOf(id.herd(), id.agent()); };
+    expectCarries(name, impl_->kindOf(id.herd(), id.agent()).hurts);
+    expectLoad(name, load);
+  }
+  for (const auto& [id, load] : loads) {
+    const SizeRun& run = impl_->herds[id.herd()].runOf(id.agent());
+    impl_->kinds[run.kind].setLoad(run.ofKind(id.agent()), load);
+    changeOf(*impl_, run, id.agent()).hurt = true;
+  }
+}
+
+void Crowd::carry(AgentId agent, const Load& load) {
+  const AgentLoad one{agent, load};
+  carry(std::span(&one, 1));
+}
+
+Load Crowd::carried(AgentId id) const {
+  expectSomebody(*impl_, id);
+  return impl_->kindOf(id.herd(), id.agent())
+      .carriedBy(impl_->herds[id.herd()].runOf(id.agent()).ofKind(id.agent()));
+}
+
 void Crowd::push(std::span<const AgentPush> pushes) {
   for (const auto& [id, velocity] : pushes) {
     expectSomebody(*impl_, id);
@@ -288,6 +314,7 @@ AgentId Crowd::add(uint32_t number, const Place& place, const Goal& goal) {
   change.leaves = false;
   crowd::Kind& kind = impl_->kinds[run.kind];
   kind.damages.erase(run.ofKind(*empty));
+  kind.setLoad(run.ofKind(*empty), {});
   change.hurt = kind.hurts;
   change.push = {};
   return agentId(number, *empty);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -99,6 +100,19 @@ template <class Name>
 void expectHurts(const Name& name, bool hurts) {
   if (!hurts)
     throw inputError(fmt::format("{}: hurt is false, expected a herd whose legs can be hurt", name()));
+}
+
+template <class Name>
+void expectCarries(const Name& name, bool hurts) {
+  if (!hurts) throw inputError(fmt::format("{}: hurt is false, expected true where agents carry", name()));
+}
+
+template <class Name>
+void expectLoad(const Name& name, const Load& load) {
+  expectWithin(name, "load.mass", double{load.mass}, 0, double{Load::maxMass}, "of the agent's mass");
+  for (int i = 0; i < 3; ++i)
+    expectWithin(name, std::array{"load.offset x", "load.offset y", "load.offset z"}[static_cast<size_t>(i)],
+                 double{load.offset[i]}, -double{Load::maxOffset}, double{Load::maxOffset}, "leg lengths");
 }
 
 // And the bone, if any, from which it is lost.

@@ -193,8 +193,8 @@ class SKITTER_API Crowd {
   // a barrier against earlier reads of the crowd's buffers and ends with one that makes its results visible
   // to vertex, fragment, compute and transfer work recorded after it. Each recorded tick must be submitted
   // once, in order. What Scene::events has for that time happens first, as if the caller had called
-  // editHeights, steer, setSpeed, teleport, add, remove, hurt, push, addHerd, removeHerd or setThreat just
-  // before; no file is read for that. A tick before which a herd comes or goes takes the queue's lock,
+  // editHeights, steer, setSpeed, teleport, add, remove, hurt, carry, push, addHerd, removeHerd or setThreat
+  // just before; no file is read for that. A tick before which a herd comes or goes takes the queue's lock,
   // allocates, submits and waits for the device, and is recorded when all that was recorded before it is
   // submitted; one for which fields are computed anew does so, too, and allocates nothing. The buffers of a
   // herd that goes are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
@@ -283,6 +283,16 @@ class SKITTER_API Crowd {
   void heal(AgentId agent);  // all its legs are whole
   // As the host has said. Throws Error(input) for a handle of nobody, and for a leg that the rig lacks.
   LegState legState(AgentId agent, uint32_t leg) const;
+
+  // Loads, in herds that can be hurt (docs/loads.md): an agent has at most one, and a new one takes the place
+  // of the one before. Who carries goes slower and lower from the next recorded tick on, with its feet below
+  // the centre of body and load, and wakes.
+  //
+  // Throws Error(input) where a herd cannot be hurt, and for a load out of its range.
+  void carry(std::span<const AgentLoad> loads);
+  void carry(AgentId agent, const Load& load);
+  // As the host has said; of mass 0 where it carries nothing. Throws Error(input) for a handle of nobody.
+  Load carried(AgentId agent) const;
 
   // Pushes, for herds with reactions (Herd::reactions, docs/reactions.md). Several of one agent before the
   // next recorded tick add up. A pushed agent wakes.

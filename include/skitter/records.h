@@ -282,6 +282,11 @@ SKITTER_INLINE int packedBone(float packed, int leg) {
   return SKITTER_INT(SKITTER_UINT(packed) >> SKITTER_UINT(4 * (leg % HURT_BONES_LEGS))) % HURT_BONES;
 }
 
+// carried, per agent of a herd that can be hurt, written by the host alone (Crowd::carry, docs/loads.md). What
+// its walk depends on is in its `hurt` record.
+//   [0] offset of the load's centre from the body's x, y, z (model, leg lengths), mass (of the body's mass)
+SKITTER_CONST int CARRIED_STRIDE = 1;
+
 // push, per agent of a herd with reactions, written by the host alone (Crowd::push).
 //   [0] change of the velocity x, z (m/s), unused, the tick in which it counts
 SKITTER_CONST int PUSH_STRIDE = 1;
@@ -386,9 +391,10 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
 //   per      agent; leg, in blocks; watched: agents that measure looks at
 //   stride   vec4 of each, where the longest of `legs` legs has so many `bones`, and clips played have so
 //            many `joints` (0: none are)
-//   kept     always; bound: where a stage of the herd binds it; exchanged: where one stage writes it and
-//            another reads it, or the host asks for it (CrowdOptions::feet): else there is room for one, for
-//            shaders bind it all the same
+//   kept     always; bound: where a stage of the herd binds it; hurt: where the herd can be hurt, whoever
+//            binds it, for it is all that a state has of it; exchanged: where one stage writes it and another
+//            reads it, or the host asks for it (CrowdOptions::feet): else there is room for one, for shaders
+//            bind it all the same
 //   spawned  whether agents begin with it (Spawner); others begin as zeros
 //   hashed   where the next tick depends on it (Crowd::stateHash), by the herd's `controller`
 // clang-format off
@@ -418,7 +424,9 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
   RECORD(REACTION, reaction, 52, agent, REACTION_STRIDE,               bound,      false, true) \
   /* It counts in the tick that it names alone. */ \
   RECORD(PUSH,   push,   54, agent,   PUSH_STRIDE,                     bound,      false, false) \
-  RECORD(RATE,   rate,   56, agent,   RATE_STRIDE,                     bound,      false, true)
+  RECORD(RATE,   rate,   56, agent,   RATE_STRIDE,                     bound,      false, true) \
+  /* Only measure looks at it. */ \
+  RECORD(CARRIED, carried, 58, agent, CARRIED_STRIDE,                  hurt,       false, false)
 // clang-format on
 
 #ifdef __cplusplus

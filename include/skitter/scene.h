@@ -105,8 +105,9 @@ struct Herd {
   std::optional<glm::vec3> colour = {};
   // How much agents differ in colour, by the seed: 0 not at all, 1 by most; none: half, by their numbers.
   std::optional<float> tint = {};
-  // Whether legs of its agents can be hurt (Crowd::hurt): such a herd has a record more per agent, and
-  // pipelines of its own. Of controllers adaptive, loop and planted, with the solver activeSet.
+  // Whether legs of its agents can be hurt (Crowd::hurt), and whether they can carry loads (Crowd::carry):
+  // such a herd has two records more per agent, and pipelines of its own. Of controllers adaptive, loop and
+  // planted, with the solver activeSet.
   bool hurt = false;
   // Whether its agents stumble, fall and get up (Crowd::push, docs/reactions.md). Their legs can be hurt
   // then, too. Of controller adaptive, with the solver activeSet.
@@ -229,6 +230,27 @@ struct LegChange {
   bool operator==(const LegChange&) const = default;
 };
 
+// What an agent carries (docs/loads.md).
+struct Load {
+  static constexpr float maxMass = 4, maxOffset = 2;
+
+  float mass = 0;       // times its own mass, 0 to maxMass; 0: it carries nothing
+  glm::vec3 offset{0};  // of the load's centre from the body's: x to the left, y up, z forward, each at most
+                        // maxOffset leg lengths either way
+
+  bool operator==(const Load&) const = default;
+};
+// A load that some agents of a herd that can be hurt (Herd::hurt) take up or, of mass 0, lay down, as
+// Crowd::carry has it.
+struct LoadChange {
+  uint32_t herd = 0;
+  std::vector<uint32_t> agents = {};  // empty: all who are there, or a share of them
+  std::optional<float> share = {};    // 0 to 1: each is drawn by the seed; without `agents`
+  Load load = {};
+
+  bool operator==(const LoadChange&) const = default;
+};
+
 // A push of some agents of a herd with reactions, as Crowd::push has it.
 struct Push {
   static constexpr float most = 100;  // metres per second
@@ -271,7 +293,7 @@ struct Event {
 
   float at = 0;  // seconds
   std::variant<Mound, HeightSamples, GoalChange, SpeedChange, Teleport, Addition, Removal, HerdAddition,
-               HerdRemoval, ThreatChange, LegChange, Push>
+               HerdRemoval, ThreatChange, LegChange, Push, LoadChange>
       what;
 
   bool operator==(const Event&) const = default;

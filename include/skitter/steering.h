@@ -67,6 +67,12 @@ struct AgentLeg {
   std::optional<uint32_t> bone = {};
 };
 
+// A load, and who carries it.
+struct AgentLoad {
+  AgentId agent;
+  Load load = {};
+};
+
 // A push: an impulse over the agent's mass, which is a change of its velocity.
 struct AgentPush {
   AgentId agent;

@@ -15,6 +15,9 @@ LOAD4_BUFFER(BINDING_TIP, tips);
 LOAD4_BUFFER(BINDING_WATCH, watches);
 STORE4_BUFFER(BINDING_WATCH_OUT, watchesOut);
 LOAD4_BUFFER(BINDING_METRIC, metrics);
+#ifdef HURT
+LOAD4_BUFFER(BINDING_CARRIED, loads);
+#endif
 STORE4_BUFFER(BINDING_METRIC_OUT, metricsOut);
 #include "stages/counters.glsl"
 #include "stages/absent.glsl"
@@ -125,7 +128,12 @@ void measure(int slot, int agent) {
   int firstLeg = legRecord(agent, 0, LEGS), watchAt = slot * watchStride(LEGS);
   Body body = LOAD_BODY(agent);
   vec2 world = worldOf(body.local, body.tile);
-  vec2 centre = rotate(body.orientation, vec3(0.0, parameters.bodyHeight, 0.0)).xz;
+  vec3 mass = vec3(0.0, parameters.bodyHeight, 0.0);  // its centre, model space
+#ifdef HURT
+  vec4 load = LOAD4(loads, agent * CARRIED_STRIDE);
+  mass += load.w / (1.0 + load.w) * parameters.legLength * load.xyz;
+#endif
+  vec2 centre = rotate(body.orientation, mass).xz;
   uint watched = constants.watched, ticks = uint(parameters.jerkTicks);
   uint place = watched >= 3u ? (watched - 3u) % ticks : 0u;
   bool closes = watched >= 3u && place + 1u == ticks;

@@ -148,7 +148,9 @@ TEST(Scene, EventsOfEveryKind) {
     {"at": 9, "share": 0.25, "leg": "R2", "state": "lame"},
     {"at": 9, "leg": "R1", "state": "lost", "bone": 3},
     {"at": 10, "herd": 1, "agents": [2], "push": [1, -2]},
-    {"at": 11, "share": 0.5, "push": [0, 3]}
+    {"at": 11, "share": 0.5, "push": [0, 3]},
+    {"at": 12, "herd": 1, "agents": [2], "load": {"mass": 0.5, "offset": [0, 0.1, -0.2]}},
+    {"at": 13, "share": 0.5, "load": {}}
   ]})",
                                  "events.json", "folder");
   const Goal none{.kind = Goal::Kind::none}, point{.kind = Goal::Kind::point, .target = {5, 6}};
@@ -172,6 +174,8 @@ TEST(Scene, EventsOfEveryKind) {
       {9, LegChange{.leg = "R1", .bone = 3}},
       {10, Push{.herd = 1, .agents = {2}, .velocity = {1, -2}}},
       {11, Push{.share = 0.5f, .velocity = {0, 3}}},
+      {12, LoadChange{.herd = 1, .agents = {2}, .load = {.mass = 0.5f, .offset = {0, 0.1f, -0.2f}}}},
+      {13, LoadChange{.share = 0.5f}},
   };
   ASSERT_EQ(scene.events.size(), expected.size());
   for (size_t e = 0; e < expected.size(); ++e) EXPECT_TRUE(scene.events[e] == expected[e]) << e;
@@ -317,7 +321,7 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": [{"at": -1, "mound": {}}]})", "events[0].at is -1"},
       {R"({"events": [{"at": 1}]})",
        "events[0] has 0 of mound, edit, goal, speed, teleport, add, remove, addHerd, removeHerd, threat, "
-       "leg, push, expected one"},
+       "leg, push, load, expected one"},
       {R"({"events": [{"mound": {}, "edit": {"columns": 1, "rows": 1, "heights": [0]}}]})",
        "events[0] has 2 of mound, edit"},
       {R"({"events": [{"mond": {}, "mound": {}}]})", "events[0].mond is no known key; did you mean mound?"},
@@ -354,6 +358,12 @@ TEST(Scene, FaultsNameFileAndField) {
        "events[0].state is \"lots\"; did you mean lost? Expected one of \"whole\""},
       {R"({"events": [{"leg": "R2", "share": 2}]})", "events[0].share is 2, expected a number from 0 to 1"},
       {R"({"events": [{"leg": "R2", "share": 1, "agents": [2]}]})", "events[0] has agents and a share"},
+      {R"({"events": [{"load": {"mass": 5}}]})", "events[0].load.mass is 5, expected a number from 0 to 4"},
+      {R"({"events": [{"load": {"mass": -1}}]})", "events[0].load.mass is -1, expected a number from 0 to 4"},
+      {R"({"events": [{"load": 1}]})", "events[0].load is 1, expected an object"},
+      {R"({"events": [{"load": {"mass": 1, "offset": [0, 3, 0]}}]})", "events[0].load.offset[1] is 3"},
+      {R"({"events": [{"load": {"weight": 1}}]})", "events[0].load.weight is no known key"},
+      {R"({"events": [{"load": {}, "share": 1, "agents": [2]}]})", "events[0] has agents and a share"},
       {R"({"herds": [{"hurt": 1}]})", "herds[0].hurt is 1, expected true or false"},
       {R"({"events": [{"add": {}}]})",
        "events[0].add is an object, expected an array of at most 65536 agents"},
@@ -691,7 +701,7 @@ class RandomScenes {
     return made;
   }
   decltype(Event::what) happening() {
-    switch (whole(0, 11)) {
+    switch (whole(0, 12)) {
       case 0:
         return mound();
       case 1:
@@ -768,6 +778,19 @@ class RandomScenes {
         return made;
       }
       case 10: {
+        LoadChange made;
+        auto& [herd, agents, share, load] = made;
+        auto& [mass, offset] = load;
+        herd = someHerd();
+        if (coin())
+          maybe(share, 0, 1);
+        else
+          agents = numbers(0);
+        mass = real(0, 4);
+        offset = {real(-2, 2), real(-2, 2), real(-2, 2)};
+        return made;
+      }
+      case 11: {
         HerdRemoval made;
         auto& [herd] = made;
         herd = someHerd();

@@ -545,7 +545,9 @@ static void testLegs(void) {
   skitter_agent_id ids[4], other;
   skitter_leg_state state;
   size_t count = 0;
-  static float hurt[4 * 11 * 4];
+  static float hurt[4 * 11 * 4], carried[4 * 4];
+  skitter_agent_load loads[2] = {{0, {0.5f, {0, 0, 0}}}, {0, {2, {0, 0.5f, -1}}}};
+  skitter_load load;
   OK(skitter_crowd_agent_ids(crowd, 0, ids, 4));
   OK(skitter_crowd_agent_id(crowd, 1, 0, &other));
   CHECK(legOf(crowd, ids[1], 3) == SKITTER_LEG_WHOLE);
@@ -563,6 +565,29 @@ static void testLegs(void) {
   OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_HURT, hurt, COUNT(hurt), &count));
   CHECK(count == COUNT(hurt));
   CHECK(hurt[4 * 11] == 0 && hurt[2 * 4 * 11 + 1] == 16);
+
+  /* Loads. */
+  loads[0].agent = ids[0];
+  loads[1].agent = ids[1];
+  OK(skitter_crowd_carry(crowd, loads, 2));
+  OK(skitter_crowd_carry(crowd, NULL, 0));
+  OK(skitter_crowd_carried(crowd, ids[1], &load));
+  CHECK(load.mass == 2 && load.offset[0] == 0 && load.offset[1] == 0.5f && load.offset[2] == -1);
+  OK(skitter_crowd_carried(crowd, ids[2], &load));
+  CHECK(load.mass == 0);
+  OK(skitter_crowd_step(crowd, 1, dt));
+  OK(skitter_crowd_records(crowd, 0, SKITTER_RECORD_CARRIED, carried, COUNT(carried), &count));
+  CHECK(count == COUNT(carried) && carried[3] == 0.5f && carried[6] == -1 && carried[7] == 2);
+  loads[0].load.mass = 1;
+  loads[1].load.mass = 5;
+  REFUSED(skitter_crowd_carry(crowd, loads, 2), "load.mass is 5");
+  OK(skitter_crowd_carried(crowd, ids[0], &load));
+  CHECK(load.mass == 0.5f);
+  loads[0].agent = other;
+  REFUSED(skitter_crowd_carry(crowd, loads, 1), "hurt is false");
+  REFUSED(skitter_crowd_carry(crowd, NULL, 1), "loads is NULL");
+  REFUSED(skitter_crowd_carried(crowd, ids[0], NULL), "load is NULL");
+  REFUSED(skitter_crowd_carried(crowd, SKITTER_NO_AGENT, &load), "herd");
 
   /* Nothing is changed where something cannot be. */
   legs[0].state = SKITTER_LEG_LAME;

@@ -1,6 +1,7 @@
 #include "crowd/situations.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -373,6 +374,33 @@ Results losingLegs(Device& device, Controller controller, const CrowdOptions& op
   return replay.results();
 }
 
+// Loads of every weight and to every side, some of agents that lose a leg; later some are laid down, and
+// others shifted.
+Results carryingLoads(Device& device, Controller controller, const CrowdOptions& options) {
+  constexpr uint32_t agents = 24;
+  const Heightfield ground = rollingGround();
+  Scene scene = sceneOf(agents, 1, 1, controller);
+  scene.herds[0].hurt = true;
+  Crowd crowd(device, ground, scene, options);
+  simulate(device, crowd, 40);
+  validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
+  const auto load = [&](uint32_t agent, float turn) {
+    const float angle = static_cast<float>(agent) + turn, far = static_cast<float>(agent % 5) / 2;
+    return AgentLoad{crowd.agentId(0, agent),
+                     {.mass = 0.25f * static_cast<float>(1 + agent % 16),
+                      .offset = {far * std::sin(angle), 0.3f, far * std::cos(angle)}}};
+  };
+  std::vector<AgentLoad> loads;
+  for (uint32_t agent = 1; agent < agents; ++agent) loads.push_back(load(agent, 0));
+  crowd.carry(loads);
+  for (uint32_t agent = 0; agent < agents; agent += 5) crowd.hurt(crowd.agentId(0, agent), agent % 8);
+  replayTicks(device, crowd, replay, 45);
+  for (uint32_t agent = 0; agent < agents; agent += 3) crowd.carry(crowd.agentId(0, agent), {});
+  for (uint32_t agent = 1; agent < agents; agent += 3) crowd.carry(std::array{load(agent, 2)});
+  replayTicks(device, crowd, replay, 45);
+  return replay.results();
+}
+
 // Pushes of every strength and to every side, ground that is gone under some, and a leg that others lose;
 // some are pushed again as they lie or rise.
 Results gettingPushed(Device& device, Controller controller, const CrowdOptions& options) {
@@ -474,6 +502,7 @@ const std::vector<Situation>& situations() {
       {"gettingPushed", {Controller::adaptive}, gettingPushed},
       {"atRatesOfTheirOwn", {Controller::adaptive, Controller::loop}, atRatesOfTheirOwn},
       {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs},
+      {"carryingLoads", {Controller::adaptive, Controller::loop, Controller::planted}, carryingLoads},
   };
   return all;
 }

@@ -390,6 +390,36 @@ TEST_F(PublicCrowd, LeavesThreats) {
   EXPECT_TRUE(crowd.threats().empty());
 }
 
+TEST_F(PublicCrowd, GivesLoadsAndTakesThem) {
+  Scene scene = standingScene(3);
+  scene.herds[0].hurt = true;
+  scene.herds.push_back(standingScene(1).herds[0]);
+  scene.herds[1].hurt = false;
+  scene.herds[0].goal = goingBy(0, 1);
+  Crowd crowd(device(), flatGround(), scene);
+  const AgentId free = crowd.agentId(0, 0), laden = crowd.agentId(0, 1);
+  const Load own{.mass = 1, .offset = {0, 0.1f, -0.2f}};
+  crowd.carry(laden, own);
+  const AgentLoad light{.agent = crowd.agentId(0, 2), .load = {.mass = 0.1f}};
+  crowd.carry({&light, 1});
+  EXPECT_EQ(crowd.carried(free), Load{});
+  EXPECT_EQ(crowd.carried(laden), own);
+  EXPECT_EQ(crowd.carried(light.agent), light.load);
+  walk(device(), crowd, 60);
+  const double freeBegan = bodyIn(crowd, 0, 0).position.z, began = bodyIn(crowd, 0, 1).position.z;
+  walk(device(), crowd, 120);
+  EXPECT_NEAR(bodyIn(crowd, 0, 1).position.z - began, (bodyIn(crowd, 0, 0).position.z - freeBegan) / 2, 0.1);
+  crowd.carry(laden, {});
+  EXPECT_EQ(crowd.carried(laden), Load{});
+  walk(device(), crowd, 1);
+
+  const uint64_t before = crowd.stateHash();
+  expectRefused("herd 1, agent 0: hurt is false", [&] { crowd.carry(crowd.agentId(1, 0), own); });
+  expectRefused("load.mass is 5", [&] { crowd.carry(laden, {.mass = 5}); });
+  expectRefused("nobody", [&] { crowd.carried(AgentId(0, 9)); });
+  EXPECT_EQ(crowd.stateHash(), before);
+}
+
 TEST_F(PublicCrowd, HurtsLegsAndHealsThem) {
   Scene scene = standingScene(3);
   scene.herds[0].hurt = true;

@@ -190,6 +190,19 @@ def test_pushes_are_events(scene):
     assert again.events[1].what.agents == (4,)
 
 
+def test_loads_are_events(scene):
+    scene.herds[0].hurt = True
+    scene.events = [
+        skitter.Event(1, skitter.LoadChange(skitter.Load(0.5, (0, 0.25, -1)), share=0.5)),
+        skitter.Event(2, skitter.LoadChange(skitter.Load(), 0, [4])),
+    ]
+    written = json.loads(scene.to_json())
+    assert written["events"][0] == {"at": 1, "herd": 0, "share": 0.5, "load": {"mass": 0.5, "offset": [0, 0.25, -1]}}
+    again = skitter.Scene.parse(scene.to_json())
+    assert [event.what.load.mass for event in again.events] == [0.5, 0]
+    assert again.events[1].what.agents == (4,)
+
+
 def test_goals_in_series_are_as_in_scene_files(scene):
     herd = scene.herds[0]
     herd.ways = skitter.Ways()

@@ -271,6 +271,25 @@ def test_legs_are_hurt_and_heal(device, standing):
         whole.hurt(whole.agent_id(0), "R2")
 
 
+def test_agents_carry_loads(device, standing):
+    standing.herds[0].hurt = True
+    crowd = skitter.Crowd(device, standing)
+    ids = crowd.agent_ids()[:3]
+    crowd.carry(ids[0], skitter.Load(0.5, (0, 0.25, -1)))
+    crowd.carry(ids[1:], skitter.Load(2))
+    crowd.carry(ids[2], skitter.Load())
+    crowd.step()
+    assert [crowd.carried(agent).mass for agent in ids] == [0.5, 2, 0]
+    assert tuple(crowd.carried(ids[0]).offset) == (0, 0.25, -1)
+    assert crowd.records()["carried"][0].tolist() == [0, 0.25, -1, 0.5]
+    with pytest.raises(skitter.InputError, match="load.mass is 5"):
+        crowd.carry(ids[0], skitter.Load(5))
+    standing.herds[0].hurt = False
+    free = skitter.Crowd(device, standing)
+    with pytest.raises(skitter.InputError, match="hurt is false, expected true where agents carry"):
+        free.carry(free.agent_id(0), skitter.Load(1))
+
+
 def test_herds_come_and_go(device, standing):
     crowd = skitter.Crowd(device, standing)
     crowd.step()

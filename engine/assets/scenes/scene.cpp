@@ -410,11 +410,26 @@ void keysOf(Fields& fields, const char* key, Push& push) {
 }
 
 template <class Fields>
+void keysOf(Fields& fields, Load& load) {
+  auto& [mass, offset] = load;
+  fields.key("mass", mass, 0, double{Load::maxMass});
+  fields.key("offset", offset, double{Load::maxOffset});
+}
+template <class Fields>
+void keysOf(Fields& fields, const char* key, LoadChange& change) {
+  auto& [herd, agents, share, load] = change;
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+  fields.key("share", share, 0, 1);
+  fields.object(key, load);
+}
+
+template <class Fields>
 void keysOf(Fields& fields, Event& event) {
   auto& [at, what] = event;
   fields.key("at", at, 0, Event::maxTime);
   fields.oneOf({"mound", "edit", "goal", "speed", "teleport", "add", "remove", "addHerd", "removeHerd",
-                "threat", "leg", "push"},
+                "threat", "leg", "push", "load"},
                what);
 }
 void checkKeys(const Event& event, const std::string& file, const std::string& path) {
@@ -433,6 +448,7 @@ void checkKeys(const Event& event, const std::string& file, const std::string& p
   };
   expectOne(leg);
   expectOne(std::get_if<Push>(&event.what));
+  expectOne(std::get_if<LoadChange>(&event.what));
 }
 
 template <class Fields>

@@ -26,7 +26,8 @@ Stage measureStage() {
                          {BINDING_COUNTERS, store},
                          {BINDING_HISTOGRAM, store}},
                         Stage::Over::watched},
-                  {embedded::measure_hurt_comp_texel(), embedded::measure_hurt_comp_storage()});
+                  {embedded::measure_hurt_comp_texel(), embedded::measure_hurt_comp_storage()},
+                  {{BINDING_CARRIED, load4}});
 }
 
 }  // namespace skitter::crowd
