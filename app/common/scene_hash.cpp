@@ -81,8 +81,16 @@ void add(Hash& hash, const Goal& goal) {
   }
 }
 
+void add(Hash& hash, const Load& load) {
+  const auto& [mass, offset] = load;
+  hash.add("load");
+  hash.add(mass);
+  hash.add(offset);
+}
+
 void add(Hash& hash, const Forage& forage) {
-  const auto& [nest, food, branches, cell, threshold, power, layHome, layOut, life, patience, rest] = forage;
+  const auto& [nest, food, branches, cell, threshold, power, layHome, layOut, life, patience, rest, load] =
+      forage;
   const auto addDisc = [&](const glm::vec2& centre, float radius) {
     hash.add(centre);
     hash.add(radius);
@@ -98,6 +106,7 @@ void add(Hash& hash, const Forage& forage) {
   for (const float each : {cell, threshold, layHome, layOut, life, rest}) hash.add(each);
   hash.add(uint64_t{power});
   hash.add(uint64_t{patience});
+  if (load.mass > 0) add(hash, load);
 }
 
 void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
@@ -298,11 +307,9 @@ void add(Hash& hash, const Push& push) {
 
 void add(Hash& hash, const LoadChange& change) {
   const auto& [herd, agents, share, load] = change;
-  const auto& [mass, offset] = load;
-  add(hash, "load", herd, agents);
+  add(hash, "loads", herd, agents);
   hash.add(share.value_or(-1));
-  hash.add(mass);
-  hash.add(offset);
+  add(hash, load);
 }
 
 // Most events name no file.

@@ -184,14 +184,6 @@ void bindLegs(py::module_& module) {
 }
 
 void bindLoads(py::module_& module) {
-  py::class_<Load>(module, "Load", "What an agent carries.")
-      .def(py::init([](float mass, const glm::vec3& offset) {
-             return Load{mass, offset};
-           }),
-           "mass"_a = Load{}.mass, "offset"_a = Load{}.offset)
-      .def_readwrite("mass", &Load::mass, "Times the agent's own, 0 to 4; 0: it carries nothing.")
-      .def_readwrite("offset", &Load::offset,
-                     "Of the load's centre from the body's: left, up and forward, -2 to 2 leg lengths.");
   py::class_<LoadChange> change(module, "LoadChange", "A load of some agents, of a herd that can be hurt.");
   change
       .def(py::init([](const Load& load, uint32_t herd, Places agents, std::optional<float> share) {

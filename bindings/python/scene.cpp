@@ -72,6 +72,14 @@ void bindHerd(py::module_& module) {
       .def_readwrite("centre", &FoodSource::centre, "x and z, metres.")
       .def_readwrite("radius", &FoodSource::radius, "Metres.")
       .def_readwrite("amount", &FoodSource::amount, "Loads.");
+  py::class_<Load>(module, "Load", "What an agent carries.")
+      .def(py::init([](float mass, const glm::vec3& offset) {
+             return Load{mass, offset};
+           }),
+           "mass"_a = Load{}.mass, "offset"_a = Load{}.offset)
+      .def_readwrite("mass", &Load::mass, "Times the agent's own, 0 to 4; 0: it carries nothing.")
+      .def_readwrite("offset", &Load::offset,
+                     "Of the load's centre from the body's: left, up and forward, -2 to 2 leg lengths.");
   py::class_<Forage>(module, "Forage", "How the agents of a herd forage (docs/foraging.md).")
       .def(py::init<>())
       .def_readwrite("nest", &Forage::nest, "Where they carry food.")
@@ -90,7 +98,8 @@ void bindHerd(py::module_& module) {
       .def_readwrite("layOut", &Forage::layOut, "Units laid in each cell on a search.")
       .def_readwrite("life", &Forage::life, "Seconds, mean life of pheromone.")
       .def_readwrite("patience", &Forage::patience, "Cells after which a search is given up.")
-      .def_readwrite("rest", &Forage::rest, "Seconds, mean stay in the nest.");
+      .def_readwrite("rest", &Forage::rest, "Seconds, mean stay in the nest.")
+      .def_readwrite("load", &Forage::load, "A Load: what food is to who carries it.");
 
   py::class_<Herd, std::shared_ptr<Herd>> herd(module, "Herd", "Agents with one rig, controller and spawn.");
   herd.def(py::init([](uint32_t agents) {

@@ -173,6 +173,13 @@ class FoodSource:
     amount: int
     def __init__(self) -> None: ...
 
+class Load:
+    """What an agent carries."""
+
+    mass: float
+    offset: Sequence[float]
+    def __init__(self, mass: float = 0, offset: Sequence[float] = (0, 0, 0)) -> None: ...
+
 class Forage:
     """How the agents of a herd forage (docs/foraging.md)."""
 
@@ -187,6 +194,7 @@ class Forage:
     life: float
     patience: int
     rest: float
+    load: Load
     def __init__(self) -> None: ...
 
 class Herd:
@@ -413,13 +421,6 @@ class LegChange:
         share: Optional[float] = None,
         bone: Optional[int] = None,
     ) -> None: ...
-
-class Load:
-    """What an agent carries."""
-
-    mass: float
-    offset: Sequence[float]
-    def __init__(self, mass: float = 0, offset: Sequence[float] = (0, 0, 0)) -> None: ...
 
 class LoadChange:
     """A load of some agents, of a herd that can be hurt."""

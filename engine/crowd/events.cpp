@@ -13,6 +13,7 @@
 #include "crowd/setup.h"
 #include "crowd/spawn.h"
 #include "crowd/steer.h"
+#include "crowd/ways/look.h"
 #include "skitter/error.h"
 
 namespace skitter::crowd {
@@ -304,6 +305,7 @@ void letEventsHappen(Crowd& crowd) {
   Crowd::Impl& impl = implOf(crowd);
   const uint64_t tick = impl.tick + 1;
   if (impl.happened == tick) return;
+  loadForagers(impl);
   const std::span<const Event> events = eventsAt(impl.events, tick, double{impl.dt}).subspan(impl.begun);
   if (!events.empty()) {
     Rehearsal rehearsal(impl);

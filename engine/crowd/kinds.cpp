@@ -129,6 +129,9 @@ void checkForage(const skitter::Herd& herd, const std::string& what) {
   expect("life", forage.life, Forage::minLife, Forage::maxLife);
   expect("patience", forage.patience, 1, Forage::maxPatience);
   expect("rest", forage.rest, 0, Forage::maxRest);
+  if (forage.load.mass == 0) return;
+  expectLoad([&] { return what + ".forage"; }, forage.load);
+  expectCarries([&] { return what; }, herd.hurt || herd.reactions);
 }
 
 }  // namespace

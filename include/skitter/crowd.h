@@ -196,13 +196,13 @@ class SKITTER_API Crowd {
   // editHeights, steer, setSpeed, teleport, add, remove, hurt, carry, push, addHerd, removeHerd or setThreat
   // just before; no file is read for that. A tick before which a herd comes or goes takes the queue's lock,
   // allocates, submits and waits for the device, and is recorded when all that was recorded before it is
-  // submitted; one for which fields are computed anew does so, too, and allocates nothing. The buffers of a
-  // herd that goes are freed: what reads them (Readback, Palettes, the caller's shaders) must be gone before.
-  // Throws Error(input) where dt is not what it was before, for steps are timed in ticks, or, of an adaptive
-  // herd, below 22 microseconds; and where an event cannot happen, because a herd or an agent is not there or
-  // no place is left: then none of the tick's events has, and the tick can be recorded again. Throws
-  // Error(device) where memory does not suffice for a herd that comes: then what comes before it has
-  // happened, and the tick, recorded again, goes on with it.
+  // submitted; one for which fields are computed anew, or foragers that carry loads are looked at, does so,
+  // too, and allocates nothing. The buffers of a herd that goes are freed: what reads them (Readback,
+  // Palettes, the caller's shaders) must be gone before. Throws Error(input) where dt is not what it was
+  // before, for steps are timed in ticks, or, of an adaptive herd, below 22 microseconds; and where an event
+  // cannot happen, because a herd or an agent is not there or no place is left: then none of the tick's
+  // events has, and the tick can be recorded again. Throws Error(device) where memory does not suffice for a
+  // herd that comes: then what comes before it has happened, and the tick, recorded again, goes on with it.
   void record(VkCommandBuffer commandBuffer, float dt);
 
   // Replaces a rectangle of the terrain's samples while the crowd walks: columns [x0, x0 + columns), rows
@@ -291,7 +291,8 @@ class SKITTER_API Crowd {
   // Throws Error(input) where a herd cannot be hurt, and for a load out of its range.
   void carry(std::span<const AgentLoad> loads);
   void carry(AgentId agent, const Load& load);
-  // As the host has said; of mass 0 where it carries nothing. Throws Error(input) for a handle of nobody.
+  // As the host has said, or has seen of a forager; of mass 0 where it carries nothing. Throws Error(input)
+  // for a handle of nobody.
   Load carried(AgentId agent) const;
 
   // Pushes, for herds with reactions (Herd::reactions, docs/reactions.md). Several of one agent before the

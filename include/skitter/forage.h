@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "skitter/load.h"
 #include "skitter/ways.h"
 
 // Herds that forage (docs/foraging.md). Places are world x, z in metres.
@@ -39,6 +40,9 @@ struct Forage {
   float life = 90;         // seconds, mean life of pheromone, minLife to maxLife
   uint32_t patience = 60;  // cells after which a search is given up, 1 to maxPatience
   float rest = 5;          // seconds, mean stay in the nest, 0 to maxRest
+  // What food is to who carries it (docs/loads.md); of mass 0: nothing. Of herds that can be hurt
+  // (Herd::hurt).
+  Load load = {};
 
   bool operator==(const Forage&) const = default;
 };

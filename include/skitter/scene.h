@@ -16,6 +16,7 @@
 #include "skitter/leg_state.h"
 #include "skitter/levels.h"
 #include "skitter/light.h"
+#include "skitter/load.h"
 #include "skitter/solver.h"
 #include "skitter/tuning.h"
 #include "skitter/ways.h"
@@ -230,16 +231,6 @@ struct LegChange {
   bool operator==(const LegChange&) const = default;
 };
 
-// What an agent carries (docs/loads.md).
-struct Load {
-  static constexpr float maxMass = 4, maxOffset = 2;
-
-  float mass = 0;       // times its own mass, 0 to maxMass; 0: it carries nothing
-  glm::vec3 offset{0};  // of the load's centre from the body's: x to the left, y up, z forward, each at most
-                        // maxOffset leg lengths either way
-
-  bool operator==(const Load&) const = default;
-};
 // A load that some agents of a herd that can be hurt (Herd::hurt) take up or, of mass 0, lay down, as
 // Crowd::carry has it.
 struct LoadChange {

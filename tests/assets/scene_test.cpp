@@ -360,6 +360,7 @@ TEST(Scene, FaultsNameFileAndField) {
       {R"({"events": [{"leg": "R2", "share": 1, "agents": [2]}]})", "events[0] has agents and a share"},
       {R"({"events": [{"load": {"mass": 5}}]})", "events[0].load.mass is 5, expected a number from 0 to 4"},
       {R"({"events": [{"load": {"mass": -1}}]})", "events[0].load.mass is -1, expected a number from 0 to 4"},
+      {R"({"herds": [{"forage": {"load": {"mass": 5}}}]})", "herds[0].forage.load.mass is 5"},
       {R"({"events": [{"load": 1}]})", "events[0].load is 1, expected an object"},
       {R"({"events": [{"load": {"mass": 1, "offset": [0, 3, 0]}}]})", "events[0].load.offset[1] is 3"},
       {R"({"events": [{"load": {"weight": 1}}]})", "events[0].load.weight is no known key"},
@@ -665,9 +666,16 @@ class RandomScenes {
     reactions = coin();
     return made;
   }
+  Load load() {
+    Load made;
+    auto& [mass, offset] = made;
+    mass = real(0, 4);
+    offset = {real(-2, 2), real(-2, 2), real(-2, 2)};
+    return made;
+  }
   Forage forage() {
     Forage made;
-    auto& [nest, food, branches, cell, threshold, power, layHome, layOut, life, patience, rest] = made;
+    auto& [nest, food, branches, cell, threshold, power, layHome, layOut, life, patience, rest, load] = made;
     nest = {place(), real(0.1, 10)};
     food.resize(whole(0, 3));
     for (FoodSource& source : food)
@@ -682,6 +690,7 @@ class RandomScenes {
     life = real(1, 1000);
     patience = static_cast<uint32_t>(whole(1, 1000));
     rest = real(0, 100);
+    load = this->load();
     return made;
   }
   Goal goal() {
@@ -780,14 +789,12 @@ class RandomScenes {
       case 10: {
         LoadChange made;
         auto& [herd, agents, share, load] = made;
-        auto& [mass, offset] = load;
         herd = someHerd();
         if (coin())
           maybe(share, 0, 1);
         else
           agents = numbers(0);
-        mass = real(0, 4);
-        offset = {real(-2, 2), real(-2, 2), real(-2, 2)};
+        load = this->load();
         return made;
       }
       case 11: {

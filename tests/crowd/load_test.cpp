@@ -4,11 +4,13 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <set>
 
 #include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/measure.h"
 #include "crowd/damage.h"
 #include "crowd/simulation.h"
+#include "shared/forage.h"
 #include "skitter/error.h"
 #include "skitter/state.h"
 #include "validation/convert.h"
@@ -359,6 +361,76 @@ TEST_F(LoadReplayTest, HerdsWithReactionsCarry) {
     lockstep.end();
   }
   expectAllPass(lockstep.results());
+}
+
+// Food between two places that are near to each other, so that many carry some home in a short while.
+Scene colonyScene(const Load& load) {
+  Scene scene = loadScene(30);
+  scene.herds[0].goal.speed = 2;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f};
+  scene.herds[0].forage = Forage{.nest = {.centre = {0, 0}, .radius = 2},
+                                 .food = {{.centre = {0, 5}, .radius = 3, .amount = 1000}},
+                                 .cell = 1,
+                                 .rest = 0.5f,
+                                 .load = load};
+  return scene;
+}
+bool isLaden(const HerdState& state, size_t agent) {
+  const auto packed = static_cast<int>(state.forager[agent * 4 * shared::FORAGER_STRIDE + 3]);
+  return packed % shared::FORAGE_STATES == shared::FORAGE_LADEN;
+}
+
+TEST_F(LoadReplayTest, ForagersCarryWhatTheyFind) {
+  const Load food{.mass = 0.5f, .offset = {0, 0, 0.4f}};
+  const Scene scene = colonyScene(food);
+  Crowd crowd(device(), smallRollingGround(), scene, kSeen);
+  validation::Lockstep lockstep(crowd, scene, kTick);
+  std::set<uint32_t> carried, laidDown;
+  constexpr int ticks = 600, look = 15;  // a look each quarter of a second
+  for (int i = 0; i < ticks; ++i) {
+    const HerdState before = crowd.download(0);
+    lockstep.begin();
+    simulate(device(), crowd, 1);
+    lockstep.end();
+    if (i % look != 0) continue;
+    const HerdState after = crowd.download(0);
+    for (uint32_t agent = 0; agent < 30; ++agent) {
+      const bool laden = isLaden(before, agent);
+      EXPECT_EQ(crowd.carried(crowd.agentId(0, agent)), laden ? food : Load{}) << agent;
+      EXPECT_EQ(recordOf(after, Record::carried, agent)[3], laden ? 0.5f : 0) << agent;
+      if (laden) carried.insert(agent);
+      if (!laden && carried.contains(agent)) laidDown.insert(agent);
+    }
+  }
+  expectAllPass(lockstep.results());
+  EXPECT_GT(carried.size(), 3u);
+  EXPECT_GT(laidDown.size(), 1u);
+  EXPECT_GT(crowd.foraging(0).brought, 0u);
+}
+
+TEST_F(LoadGaitTest, AColonyGoesOnFromAState) {
+  const Heightfield ground = smallRollingGround();
+  Crowd crowd(device(), ground, colonyScene({.mass = 2}));
+  simulate(device(), crowd, 415);
+  Crowd again(device(), parseState(crowd.saveToMemory(), "colony.state"));
+  uint32_t laden = 0;
+  for (uint32_t agent = 0; agent < 30; ++agent) {
+    laden += crowd.carried(crowd.agentId(0, agent)).mass > 0;
+    EXPECT_EQ(again.carried(again.agentId(0, agent)), crowd.carried(crowd.agentId(0, agent)));
+  }
+  EXPECT_GT(laden, 3u);
+  for (Crowd* each : {&crowd, &again}) simulate(device(), *each, 100);
+  EXPECT_EQ(crowd.stateHash(), again.stateHash());
+}
+
+TEST_F(LoadInputTest, WhoForagesWithALoadCanBeHurt) {
+  Scene scene = colonyScene({.mass = 1});
+  scene.herds[0].hurt = false;
+  EXPECT_EQ(inputFault([&] { Crowd(device(), flatGround(), scene); }),
+            scene.name + ": herds[0]: hurt is false, expected true where agents carry");
+  scene = colonyScene({.mass = 7});
+  EXPECT_EQ(inputFault([&] { Crowd(device(), flatGround(), scene); }),
+            scene.name + ": herds[0].forage: load.mass is 7 of the agent's mass, expected 0 to 4");
 }
 
 TEST_F(LoadInputTest, NamesWhatIsWrong) {

@@ -158,8 +158,14 @@ void keysOf(Fields& fields, FoodSource& source) {
   fields.integer("amount", amount, 0, FoodSource::maxAmount);
 }
 template <class Fields>
+void keysOf(Fields& fields, Load& load) {
+  auto& [mass, offset] = load;
+  fields.key("mass", mass, 0, double{Load::maxMass});
+  fields.key("offset", offset, double{Load::maxOffset});
+}
+template <class Fields>
 void keysOf(Fields& fields, Forage& forage) {
-  auto& [nest, food, branches, cell, threshold, power, layHome, layOut, life, patience, rest] = forage;
+  auto& [nest, food, branches, cell, threshold, power, layHome, layOut, life, patience, rest, load] = forage;
   fields.object("nest", nest);
   fields.objects("food", food, Forage::maxSources, "sources");
   fields.objects("branches", branches, Forage::maxBranches, "discs");
@@ -171,6 +177,7 @@ void keysOf(Fields& fields, Forage& forage) {
   fields.key("life", life, Forage::minLife, Forage::maxLife);
   fields.integer("patience", patience, 1, Forage::maxPatience);
   fields.key("rest", rest, 0, Forage::maxRest);
+  fields.object("load", load);
 }
 // The keys of an obstacle, of which `key` says what it is.
 template <class Fields, class Shape>
@@ -409,12 +416,6 @@ void keysOf(Fields& fields, const char* key, Push& push) {
   fields.key(key, velocity, double{Push::most});
 }
 
-template <class Fields>
-void keysOf(Fields& fields, Load& load) {
-  auto& [mass, offset] = load;
-  fields.key("mass", mass, 0, double{Load::maxMass});
-  fields.key("offset", offset, double{Load::maxOffset});
-}
 template <class Fields>
 void keysOf(Fields& fields, const char* key, LoadChange& change) {
   auto& [herd, agents, share, load] = change;

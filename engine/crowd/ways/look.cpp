@@ -11,6 +11,7 @@
 #include "assets/scenes/obstacles.h"
 #include "crowd/readback.h"
 #include "gpu/context.h"
+#include "shared/forage.h"
 #include "skitter/decode.h"
 #include "skitter/error.h"
 #include "skitter/records.h"
@@ -112,6 +113,35 @@ bool threatsHaveMoved(Crowd::Impl& crowd) {
   moved = moved || seen != crowd.seen;
   crowd.seen = std::move(seen);
   return moved;
+}
+
+void loadForagers(Crowd::Impl& crowd) {
+  const auto carries = [&](uint32_t number) {
+    const std::optional<Forage>& forage = crowd.herds[number].from.forage;
+    return forage && forage->load.mass > 0 && hasAgents(crowd, number);
+  };
+  if (!isTimeToLook(crowd)) return;
+  bool waits = false;
+  for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
+    if (!carries(h)) continue;
+    if (!std::exchange(waits, true)) crowd.context->waitIdle();
+    const Herd& herd = crowd.herds[h];
+    const HerdState state = downloadRecords(crowd, h, std::array{Record::forager});
+    const SizeRun& run = herd.runs.front();  // who forages is of one size
+    Kind& kind = crowd.kinds[run.kind];
+    // Who is put elsewhere begins at rest.
+    const std::map<uint32_t, glm::vec2> told = toldPlaces(kind);
+    for (uint32_t place = 0; place < run.agents; ++place) {
+      if (!herd.presence.has(place)) continue;
+      const uint32_t agent = run.ofKind(place);
+      const auto packed = static_cast<int>(state.forager[size_t{place} * 4 * shared::FORAGER_STRIDE + 3]);
+      const bool isLaden = packed % shared::FORAGE_STATES == shared::FORAGE_LADEN && !told.contains(agent);
+      const Load load = isLaden ? herd.from.forage->load : Load{};
+      if (kind.carriedBy(agent) == load) continue;
+      kind.setLoad(agent, load);
+      kind.changes.of(agent, kind.agents).hurt = true;
+    }
+  }
 }
 
 std::optional<glm::vec2> leaderOf(const Crowd::Impl& crowd, const Goal& goal) {

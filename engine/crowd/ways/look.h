@@ -5,8 +5,8 @@
 
 #include "crowd/herd.h"
 
-// The host looks where agents are that are threats or are followed, a few times per second, for herds with
-// ways (docs/ways.md).
+// The host looks at agents a few times per second: where those are that are threats or are followed, for
+// herds with ways (docs/ways.md), and who carries food (docs/foraging.md).
 namespace skitter::crowd {
 
 bool isTimeToLook(const Crowd::Impl& crowd);
@@ -20,6 +20,10 @@ bool threatsHaveMoved(Crowd::Impl& crowd);
 // The agent or the middle of the herd that the goal follows; none where nobody is there. Waits for the
 // device.
 std::optional<glm::vec2> leaderOf(const Crowd::Impl& crowd, const Goal& goal);
+
+// Gives foragers what they carry now, and takes it from those who have brought it home. Where it looks, it
+// waits for the device.
+void loadForagers(Crowd::Impl& crowd);
 
 // World x, z of a body record.
 glm::vec2 placeOf(const float* body);
