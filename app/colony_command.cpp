@@ -219,9 +219,7 @@ int searchByColonies(const ColonyOptions& options) {
   files.writes("--json", options.json);
   files.check();
   std::optional<StopDeadline> opening(std::in_place);
-  DeviceRequest request;
-  request.device = options.device;
-  Device device = Device::create(request);
+  Device device = Device::create({.device = options.device});
   opening.reset();
   Manifest manifest{.seed = options.map ? std::nullopt : std::optional(options.colony.seed)};
   manifest.add(device.report());

@@ -225,11 +225,7 @@ struct AdaptationFigures {
 
 Rig rigFor(const EvolveCommand& options) { return options.isBuiltin() ? spiderRig() : loadRig(options.rig); }
 
-Device deviceFor(const EvolveCommand& options) {
-  DeviceRequest request;
-  request.device = options.device;
-  return Device::create(request);
-}
+Device deviceFor(const EvolveCommand& options) { return Device::create({.device = options.device}); }
 
 // Judges the table that the rig has.
 int judgeTable(const EvolveCommand& options) {

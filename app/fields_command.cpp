@@ -387,9 +387,7 @@ int writeFields(const FieldsOptions& options) {
   files.check();
   std::optional<StopDeadline> deadline(std::in_place);
   const Heightfield terrain = scene.loadTerrain();
-  DeviceRequest request;
-  request.device = options.scene.device;
-  Device device = Device::create(request);
+  Device device = Device::create({.device = options.scene.device});
   Crowd crowd(device, terrain, scene, {.pose = false, .measure = false});
   files.check();
   deadline.reset();

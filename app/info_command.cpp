@@ -157,9 +157,7 @@ int info(const InfoOptions& options) {
   files.writes("--json", options.json);
   files.check();
   std::optional<StopDeadline> deadline(std::in_place);
-  DeviceRequest request;
-  request.device = options.device;
-  std::vector<DeviceReport> reports = listDevices(request);
+  std::vector<DeviceReport> reports = listDevices({.device = options.device});
 
   nlohmann::ordered_json devices = nlohmann::ordered_json::array(), chosen = nullptr;
   Manifest manifest;

@@ -94,9 +94,7 @@ int reproduce(const ReproduceOptions& options) {
   std::optional<StopDeadline> deadline(std::in_place);
   const Settings settings = settingsOf(options);
   const std::vector<Ground> grounds = allGrounds(terrainsOf(options));
-  DeviceRequest request;
-  request.device = options.device;
-  Device device = Device::create(request);
+  Device device = Device::create({.device = options.device});
   const OtherWork others;
   const Results results = measure(device, grounds, settings, options.quiet);
 

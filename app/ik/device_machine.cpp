@@ -14,9 +14,7 @@ uint64_t bytesFor(const ik::Chain& chain, uint32_t chains) {
 }
 
 Device makeDevice(const std::optional<std::string>& wanted, const ik::Chain& chain, uint32_t chains) {
-  DeviceRequest request;
-  request.device = wanted;
-  Device device = Device::create(request);
+  Device device = Device::create({.device = wanted});
   const uint64_t needed = bytesFor(chain, chains), available = device.report().limits.availableBytes;
   if (needed <= available) return device;
   throw inputError(fmt::format("--chains {}: they need about {} MiB of memory, {} has {} MiB free", chains,
