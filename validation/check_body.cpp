@@ -1,4 +1,7 @@
 #include "cpu_reference/stages/body.h"
+
+#include <vector>
+
 #include "cpu_reference/stages/react.h"
 #include "cpu_reference/stages/tolerances.h"
 #include "skitter/records.h"
@@ -20,6 +23,19 @@ double blendError(const Moment& moment) {
 
 // Cosine to straight backward below which either way round is right.
 constexpr double eitherWay = 16 * tolerance::roundoff;
+// Share of the speed above which a body goes where it is led, by which a root and two products may be off.
+// Who is shut in by others is led at just this speed.
+constexpr double goesOrNot = 4 * tolerance::roundoff;
+
+// What rounding may decide otherwise.
+std::vector<reference::BodyChoices> tiesOf(const reference::BodyResult& result) {
+  std::vector<reference::BodyChoices> ties;
+  const bool mayGo = result.goMargin < goesOrNot, mayTurn = result.turnMargin < eitherWay;
+  for (const int goes : mayGo ? std::vector{0, 1} : std::vector{-1})
+    for (const int sign : mayTurn ? std::vector{-1, 1} : std::vector{0})
+      ties.push_back({.follow = {}, .turnSign = sign, .goes = goes});
+  return ties;
+}
 
 // Components of q and -q are the same rotation; the sign rule makes them the same numbers too, but for a dot
 // product near 0 it may fall either way.
@@ -137,7 +153,7 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
   if (sample.passes()) return judge.add(moment.n, moment.number(), -1, sample);
 
   // A leg square to the way counts or not; a desired velocity straight backward is turned to either way
-  // round.
+  // round; one that is hardly any is followed or not.
   double without = 1, with = 1;
   const double square = 4 * tolerance::footDistance(2 * setting.tuning.legLength) / setting.tuning.legLength;
   for (const reference::LegFollow& leg : result.follow) {
@@ -148,11 +164,8 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
     if (leg.behind > square) without = std::min(without, leg.factor);
   }
   for (const double follow : {with, without}) {
-    for (const int sign : {-1, 1}) {
-      if (with == without && !(result.turnMargin < eitherWay)) continue;
-      reference::BodyChoices choices;
+    for (reference::BodyChoices choices : tiesOf(result)) {
       if (with != without) choices.follow = follow;
-      if (result.turnMargin < eitherWay) choices.turnSign = sign;
       const Sample other = compare(setting, moment, previous, inputs, run(choices));
       if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
     }
@@ -165,17 +178,15 @@ void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) 
   const reference::Wish wish{velocityOf(moment.after, moment.agent), mostSpeedOf(moment.after, moment.agent)};
   auto inputs = tolerance::blindGround(setting.heights, setting.extent, setting.creature, previous);
   inputs.blend = blendError(moment);
-  const auto run = [&](int turnSign) {
-    return reference::blindBody(setting.tuning, setting.heights, setting.creature, previous, wish,
-                                {.follow = {}, .turnSign = turnSign});
+  const auto run = [&](const reference::BodyChoices& choices) {
+    return reference::blindBody(setting.tuning, setting.heights, setting.creature, previous, wish, choices);
   };
-  const reference::BodyResult result = run(0);
+  const reference::BodyResult result = run({});
   const Sample sample = compare(setting, moment, previous, inputs, result);
-  if (!sample.passes() && result.turnMargin < eitherWay) {
-    for (const int sign : {-1, 1}) {
-      const Sample other = compare(setting, moment, previous, inputs, run(sign));
-      if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
-    }
+  if (sample.passes()) return judge.add(moment.n, moment.number(), -1, sample);
+  for (const reference::BodyChoices& choices : tiesOf(result)) {
+    const Sample other = compare(setting, moment, previous, inputs, run(choices));
+    if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
   }
   judge.add(moment.n, moment.number(), -1, sample);
 }

@@ -9,6 +9,8 @@
 namespace skitter::reference {
 namespace {
 
+constexpr double leastWanted = 1e-4;  // leg lengths a second; who wants less goes nowhere
+
 LegFollow followOf(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Step& step,
                    const glm::dvec2& desired, double miss, double tick) {
   LegFollow follow;
@@ -24,12 +26,18 @@ LegFollow followOf(const Tuning& tuning, const Limb& limb, const AgentBody& body
   return follow;
 }
 
+// Whether a velocity has a direction that counts.
+bool goes(const Tuning& tuning, double wantedSpeed, const BodyChoices& choices) {
+  return choices.goes >= 0 ? choices.goes == 1 : wantedSpeed > leastWanted * tuning.legLength;
+}
+
 void turn(const Tuning& tuning, const glm::dvec2& desired, const BodyChoices& choices, BodyResult& result) {
   AgentBody& body = result.body;
   const glm::dvec2 h = body.heading;
   double e = 0;
   result.turnMargin = std::numeric_limits<double>::infinity();
-  if (glm::length(desired) > 1e-4 * tuning.legLength) {
+  result.goMargin = std::abs(glm::length(desired) / (leastWanted * tuning.legLength) - 1);
+  if (goes(tuning, glm::length(desired), choices)) {
     const glm::dvec2 w = glm::normalize(desired);
     const double c = w.x * h.y - w.y * h.x, d = glm::dot(w, h);
     if (d > 0) {
@@ -72,10 +80,10 @@ glm::dvec2 besideOthers(const Tuning& tuning, double most, const glm::dvec2& w, 
 
 // Returns the velocity with which the body went. Its heading was `before` the turn.
 glm::dvec2 walk(const Tuning& tuning, const Wish& wish, const glm::dvec2& before, const glm::dvec2& pushed,
-                BodyResult& result) {
+                const BodyChoices& choices, BodyResult& result) {
   AgentBody& body = result.body;
   result.wantedSpeed = glm::length(wish.velocity);
-  const glm::dvec2 w = result.wantedSpeed > 1e-4 * tuning.legLength ? glm::normalize(wish.velocity) : before;
+  const glm::dvec2 w = goes(tuning, result.wantedSpeed, choices) ? glm::normalize(wish.velocity) : before;
   const double wanted = body.follow * result.wantedSpeed * std::max(0.0, glm::dot(w, body.heading));
   body.speed += std::clamp(wanted - body.speed, -tuning.braking * tuning.dt, tuning.acceleration * tuning.dt);
   result.ways = waysToEdges(tuning, body, body.heading);
@@ -175,7 +183,7 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
           const BodyChoices& choices, BodyResult& result) {
   AgentBody& next = result.body;
   turn(tuning, wish.velocity, choices, result);
-  const glm::dvec2 moves = walk(tuning, wish, previous.heading, pushed, result);
+  const glm::dvec2 moves = walk(tuning, wish, previous.heading, pushed, choices, result);
   const glm::dvec3 way((next.tileX - previous.tileX) * tileSize + next.localX - previous.localX, 0,
                        (next.tileZ - previous.tileZ) * tileSize + next.localZ - previous.localZ);
   for (glm::dvec3& point : points) point -= way;

@@ -29,6 +29,7 @@ struct BodyResult {
   AgentBody body;
   std::vector<LegFollow> follow;
   double turnMargin = 0;  // |c| where its sign chose the way round (d <= 0), infinite elsewhere
+  double goMargin = 0;    // of |v| from what counts as going anywhere, as a share of it
   SupportPlane plane;
   double wantedSpeed = 0;  // |v|
   double rise = 0;         // |y_want - y_pred|
@@ -41,6 +42,7 @@ struct BodyResult {
 struct BodyChoices {
   std::optional<double> follow;
   int turnSign = 0;  // +1, -1: forced
+  int goes = -1;     // 0, 1: whether |v| counts as going anywhere
 };
 
 // What a body is steered to.

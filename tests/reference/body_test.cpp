@@ -69,6 +69,21 @@ TEST_F(Body, wishesTooSmallToTurnToAreAlongTheOldHeading) {
   EXPECT_NEAR(body.speed, wish * body.heading.y, 1e-12);
 }
 
+// Rounding decides whether a wish of just so much has a direction, so either choice can be asked for.
+TEST_F(Body, wishesOnTheVergeOfADirectionCanBeDecidedEitherWay) {
+  walk({0, 0}, 1, flat);
+  const auto turned = [&](double wish, int goes) {
+    return reference::body(tuning, heights, creature, body, glm::dvec2(wish * tuning.legLength, 0), steps,
+                           misses, tick + 1, breathPhase, {.follow = {}, .turnSign = 0, .goes = goes});
+  };
+  EXPECT_LT(turned(1e-4, -1).goMargin, 1e-12);
+  EXPECT_NEAR(turned(1.5e-4, -1).goMargin, 0.5, 1e-9);
+  EXPECT_NE(turned(1e-4, 1).body.turnRate, 0);
+  EXPECT_EQ(turned(1e-4, 0).body.turnRate, 0);
+  EXPECT_NE(turned(1.001e-4, -1).body.turnRate, 0);
+  EXPECT_EQ(turned(0.999e-4, -1).body.turnRate, 0);
+}
+
 TEST_F(Body, brakesBeforeTheEdgeAndNoEarlier) {
   tuning.halfExtentX = tuning.halfExtentZ = 20;
   for (const double side : {1.0, -1.0}) {
