@@ -23,9 +23,10 @@ double blendError(const Moment& moment) {
 
 // Cosine to straight backward below which either way round is right.
 constexpr double eitherWay = 16 * tolerance::roundoff;
-// Share of the speed above which a body goes where it is led, by which a root and two products may be off.
-// Who is shut in by others is led at just this speed.
-constexpr double goesOrNot = 4 * tolerance::roundoff;
+// Share of the speed above which a body goes where it is led, by which both may be off: two squares, a sum, a
+// root, and a product with a number that is rounded itself. Who is shut in by others is led at just this
+// speed.
+constexpr double goesOrNot = 8 * tolerance::roundoff;
 
 // What rounding may decide otherwise.
 std::vector<reference::BodyChoices> tiesOf(const reference::BodyResult& result) {
