@@ -6,13 +6,14 @@
 #include <bit>
 
 #include "base/clock.h"
+#include "bench/statistics.h"
 #include "skitter/rig.h"
 
 namespace skitter::experiments {
 namespace {
 
 constexpr int mostLost = 4;
-// Of a search, so that an interruption waits for a small one alone.
+// An interruption waits for the search's batch, so this one is small.
 constexpr uint32_t batch = 1024;
 
 std::vector<uint32_t> patternsOf(const Rig& rig) {
@@ -36,10 +37,9 @@ std::vector<LostLegs> judged(Device& device, const Rig& rig, const Settings& set
       kept.push_back(intact > 0 ? each.speed / intact : 0);
       row.unstable += each.unstable;
     }
-    std::ranges::sort(kept);
     row.patterns = kept.size();
-    row.kept = kept[(kept.size() - 1) / 2];
-    row.keptLeast = kept.front();
+    row.kept = bench::quantile(kept, 0.5);
+    row.keptLeast = bench::quantile(kept, 0);
     row.unstable /= static_cast<double>(kept.size());
     rows.push_back(row);
   }

@@ -45,7 +45,7 @@ struct BodyChoices {
   int goes = -1;     // 0, 1: whether |v| counts as going anywhere
 };
 
-// What a body is steered to.
+// Where a body is steered, and how fast it may go.
 struct Wish {
   glm::dvec2 velocity;              // m/s
   std::optional<double> mostSpeed;  // m/s, along the heading, where the herd avoids

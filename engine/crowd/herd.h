@@ -106,7 +106,7 @@ struct Kind {
   uint32_t herdOf(uint64_t agent) const;
   // The gait of a pattern, made when it is first asked for.
   const Regait& regaitOf(const LegPattern& pattern);
-  // What an agent carries and its `hurt` record, as the host has said.
+  // These follow from what the host has said: what an agent carries, and its `hurt` record.
   Load carriedBy(uint32_t agent) const;
   void setLoad(uint32_t agent, const Load& load);
   std::vector<float> hurtRecordOf(uint32_t agent);

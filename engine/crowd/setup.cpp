@@ -167,7 +167,7 @@ void expectMemory(const gpu::Context& context, uint64_t agents, uint64_t needed)
                       available.of + ")");
 }
 
-// Of the agents of a kind that some herd has coloured.
+// Writes the colours of the agents of a kind, where some herd of it has any.
 void uploadTints(const Impl& crowd, uint32_t kind) {
   const std::vector<crowd::HerdRun> runs = crowd::runsOf(crowd, kind);
   // Only a colour takes the mean, for which images are decoded.

@@ -291,8 +291,8 @@ class SKITTER_API Crowd {
   // Throws Error(input) where a herd cannot be hurt, and for a load out of its range.
   void carry(std::span<const AgentLoad> loads);
   void carry(AgentId agent, const Load& load);
-  // As the host has said, or has seen of a forager; of mass 0 where it carries nothing. Throws Error(input)
-  // for a handle of nobody.
+  // The load that the host gave the agent last, or saw a forager carry; it has mass 0 where the agent carries
+  // nothing. Throws Error(input) for a handle of nobody.
   Load carried(AgentId agent) const;
 
   // Pushes, for herds with reactions (Herd::reactions, docs/reactions.md). Several of one agent before the

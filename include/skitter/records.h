@@ -282,8 +282,8 @@ SKITTER_INLINE int packedBone(float packed, int leg) {
   return SKITTER_INT(SKITTER_UINT(packed) >> SKITTER_UINT(4 * (leg % HURT_BONES_LEGS))) % HURT_BONES;
 }
 
-// carried, per agent of a herd that can be hurt, written by the host alone (Crowd::carry, docs/loads.md). What
-// its walk depends on is in its `hurt` record.
+// carried, per agent of a herd that can be hurt, written by the host alone (Crowd::carry, docs/loads.md).
+// What its walk depends on is in its `hurt` record.
 //   [0] offset of the load's centre from the body's x, y, z (model, leg lengths), mass (of the body's mass)
 SKITTER_CONST int CARRIED_STRIDE = 1;
 

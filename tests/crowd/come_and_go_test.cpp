@@ -26,7 +26,6 @@ Scene withReserve(uint32_t agents, uint32_t reserve, Controller controller = Con
   scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {3, 4}};
   return scene;
 }
-const CrowdOptions kWatched{.watchEvery = 1, .feet = true, .footfalls = UINT32_MAX};
 
 // Of agent i of one state and agent j of another, of the same herd but for its number of agents.
 bool sameRecords(const HerdState& a, size_t i, const HerdState& b, size_t j) {
@@ -42,8 +41,8 @@ bool sameRecords(const HerdState& a, size_t i, const HerdState& b, size_t j) {
 
 TEST_P(ComeAndGoTest, AReserveThatNobodyUsesShowsNowhere) {
   const Heightfield ground = rollingGround();
-  Crowd crowd(device(), ground, withReserve(21, 30, GetParam()), kWatched);
-  Crowd plain(device(), ground, withReserve(21, 0, GetParam()), kWatched);
+  Crowd crowd(device(), ground, withReserve(21, 30, GetParam()), kAllWatched);
+  Crowd plain(device(), ground, withReserve(21, 0, GetParam()), kAllWatched);
   for (Crowd* each : {&crowd, &plain}) simulate(device(), *each, 60);
   const HerdState ours = crowd.download(0), theirs = plain.download(0);
   ASSERT_EQ(ours.agents, 51u);
@@ -58,8 +57,8 @@ TEST_P(ComeAndGoTest, AReserveThatNobodyUsesShowsNowhere) {
 // Before the first tick, to where another crowd's agents begin.
 TEST_P(ComeAndGoTest, WhoComesIsAsIfItHadBegunThere) {
   const Heightfield ground = rollingGround();
-  Crowd added(device(), ground, withReserve(0, 37, GetParam()), kWatched);
-  Crowd began(device(), ground, withReserve(37, 0, GetParam()), kWatched);
+  Crowd added(device(), ground, withReserve(0, 37, GetParam()), kAllWatched);
+  Crowd began(device(), ground, withReserve(37, 0, GetParam()), kAllWatched);
   const Herd& herd = implOf(began).herds[0].from;
   const crowd::Spawner spawner(herd, implOf(began).kindOf(0), ground, 1);
   for (uint32_t i = 0; i < 37; ++i) {
@@ -74,7 +73,7 @@ TEST_P(ComeAndGoTest, WhoComesIsAsIfItHadBegunThere) {
 }
 
 TEST_P(ComeAndGoTest, TheReferenceFollows) {
-  Crowd crowd(device(), rollingGround(), withReserve(20, 12, GetParam()), kWatched);
+  Crowd crowd(device(), rollingGround(), withReserve(20, 12, GetParam()), kAllWatched);
   simulate(device(), crowd, 30);
   validation::Replay replay(validation::herdFacts(implOf(crowd).kindOf(0), crowd.terrain()));
   std::vector<AgentId> here;
@@ -139,7 +138,7 @@ TEST_F(ComeAndGoInputTest, HandlesDoNotDangle) {
 }
 
 TEST_F(ComeAndGoInputTest, WhoIsGoneDoesNothing) {
-  Crowd crowd(device(), rollingGround(), withReserve(30, 1), kWatched);
+  Crowd crowd(device(), rollingGround(), withReserve(30, 1), kAllWatched);
   simulate(device(), crowd, 25);
   const uint64_t ticks = crowd.fidelity().agentTicks;
   for (uint32_t i = 0; i < 30; i += 2) crowd.remove(crowd.agentId(0, i));
@@ -223,7 +222,7 @@ TEST_F(ComeAndGoInputTest, AHerdThatComesIsAsOneThatWasThere) {
   two.herds[1].controller = Controller::loop;
   Scene one = two;
   one.herds.pop_back();
-  Crowd there(device(), ground, two, kWatched), came(device(), ground, one, kWatched);
+  Crowd there(device(), ground, two, kAllWatched), came(device(), ground, one, kAllWatched);
   const HerdId herd = came.addHerd(two.herds[1]);
   EXPECT_EQ(herd, (HerdId{1, 0}));
   for (Crowd* crowd : {&there, &came}) simulate(device(), *crowd, 20);

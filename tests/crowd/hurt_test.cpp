@@ -8,12 +8,12 @@
 #include "assets/files.h"
 #include "cpu_reference/stages/measure.h"
 #include "crowd/changes.h"
+#include "crowd/follow.h"
 #include "crowd/herd.h"
 #include "crowd/simulation.h"
 #include "skitter/error.h"
 #include "skitter/state.h"
 #include "validation/convert.h"
-#include "validation/lockstep/lockstep.h"
 
 namespace skitter::test {
 namespace {
@@ -22,13 +22,6 @@ class HurtTest : public GpuTest, public ::testing::WithParamInterface<Controller
 using HurtGaitTest = GpuTest;
 using HurtReplayTest = GpuTest;
 using HurtInputTest = GpuTest;
-
-Scene hurtScene(uint32_t agents, Controller controller = Controller::adaptive) {
-  Scene scene = sceneOf(agents, 1, 1, controller);
-  scene.herds[0].hurt = true;
-  return scene;
-}
-const CrowdOptions kAll{.watchEvery = 1, .feet = true, .footfalls = UINT32_MAX};
 
 uint32_t legNamed(const Crowd& crowd, const char* name) {
   const std::vector<Leg>& legs = crowd.rig(0).legs;
@@ -52,7 +45,7 @@ double marginOf(const HerdState& state, size_t agent, size_t legs, double bodyHe
 }
 
 TEST_P(HurtTest, ALegThatIsLostIsNeitherSolvedNorCountedNorDrawn) {
-  Crowd crowd(device(), rollingGround(), hurtScene(12, GetParam()), kAll);
+  Crowd crowd(device(), rollingGround(), hurtScene(12, GetParam()), kAllWatched);
   simulate(device(), crowd, 30);
   const uint32_t leg = legNamed(crowd, "R2"), legs = 8;
   const HerdState before = crowd.download(0);
@@ -83,8 +76,8 @@ TEST_P(HurtTest, ALegThatIsLostIsNeitherSolvedNorCountedNorDrawn) {
 // The same records but for what the others of its herd are.
 TEST_P(HurtTest, OthersDoNotNotice) {
   const Heightfield ground = rollingGround();
-  Crowd crowd(device(), ground, hurtScene(24, GetParam()), kAll),
-      same(device(), ground, hurtScene(24, GetParam()), kAll);
+  Crowd crowd(device(), ground, hurtScene(24, GetParam()), kAllWatched),
+      same(device(), ground, hurtScene(24, GetParam()), kAllWatched);
   for (Crowd* each : {&crowd, &same}) simulate(device(), *each, 20);
   crowd.hurt(crowd.agentId(0, 9), 3);
   crowd.hurt(crowd.agentId(0, 10), 2, LegState::lame);
@@ -104,7 +97,7 @@ TEST_P(HurtTest, WhoCannotBeHurtHasNoRecord) {
   scene.herds[1].hurt = false;
   Scene alone = scene;
   alone.herds[0].hurt = false;
-  Crowd crowd(device(), ground, scene, kAll), plain(device(), ground, alone, kAll);
+  Crowd crowd(device(), ground, scene, kAllWatched), plain(device(), ground, alone, kAllWatched);
   for (Crowd* each : {&crowd, &plain}) simulate(device(), *each, 10);
   crowd.hurt(crowd.agentId(0, 3), 1);
   for (Crowd* each : {&crowd, &plain}) simulate(device(), *each, 30);
@@ -124,7 +117,7 @@ TEST_P(HurtTest, WhoCannotBeHurtHasNoRecord) {
 // All states of legs, at once and one after the other, on both ways.
 TEST_P(HurtTest, LegsThatHealAreUsedAgain) {
   const Heightfield ground = flatGround();
-  Crowd crowd(device(), ground, hurtScene(8, GetParam()), kAll);
+  Crowd crowd(device(), ground, hurtScene(8, GetParam()), kAllWatched);
   simulate(device(), crowd, 20);
   std::vector<AgentLeg> legs;
   for (uint32_t agent = 0; agent < 8; ++agent) {
@@ -154,7 +147,7 @@ TEST_P(HurtTest, AStateHasItsLegs) {
   const Heightfield ground = rollingGround();
   Scene scene = hurtScene(14, GetParam());
   scene.herds[0].reserve = 4;
-  Crowd crowd(device(), ground, scene, kAll);
+  Crowd crowd(device(), ground, scene, kAllWatched);
   simulate(device(), crowd, 20);
   crowd.hurt(crowd.agentId(0, 3), 1, LegState::lost, 3);
   crowd.hurt(crowd.agentId(0, 4), 2, LegState::stuck);
@@ -177,7 +170,7 @@ TEST_P(HurtTest, AStateHasItsLegs) {
 TEST_P(HurtTest, TeleportKeepsDamageAndNewcomersAreWhole) {
   Scene scene = hurtScene(6, GetParam());
   scene.herds[0].reserve = 1;
-  Crowd crowd(device(), rollingGround(), scene, kAll);
+  Crowd crowd(device(), rollingGround(), scene, kAllWatched);
   simulate(device(), crowd, 10);
   const AgentId agent = crowd.agentId(0, 2);
   crowd.hurt(agent, 4);
@@ -198,7 +191,7 @@ TEST_P(HurtTest, TeleportKeepsDamageAndNewcomersAreWhole) {
 TEST_P(HurtTest, WhoSleepsWakes) {
   Scene scene = hurtScene(6, GetParam());
   scene.herds[0].goal.kind = Goal::Kind::none;
-  CrowdOptions options = kAll;
+  CrowdOptions options = kAllWatched;
   options.sleep = true;
   Crowd crowd(device(), flatGround(), scene, options);
   simulate(device(), crowd, 300);
@@ -221,7 +214,7 @@ TEST_P(HurtTest, PagesAndFusionDoNotShow) {
   EXPECT_EQ(whole, hashOf({}));
   EXPECT_EQ(whole, hashOf({.pageAgents = 7}));
   EXPECT_EQ(whole, hashOf({.fuse = false}));
-  EXPECT_EQ(whole, hashOf(kAll));
+  EXPECT_EQ(whole, hashOf(kAllWatched));
 }
 
 INSTANTIATE_TEST_SUITE_P(, HurtTest,
@@ -234,7 +227,7 @@ TEST_F(HurtGaitTest, ASpiderWithoutTwoLegsIsNeverAboutToFall) {
   Scene scene = hurtScene(agents);
   scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
   scene.herds[0].goal = {.kind = Goal::Kind::velocity, .velocity = {0, 1}};
-  Crowd crowd(device(), flatGround(), scene, kAll);
+  Crowd crowd(device(), flatGround(), scene, kAllWatched);
   simulate(device(), crowd, 60);
   uint32_t agent = 0;
   std::vector<AgentLeg> lost;
@@ -263,16 +256,9 @@ TEST_F(HurtGaitTest, ASpiderWithoutTwoLegsIsNeverAboutToFall) {
   EXPECT_GT(speeds[agents / 2], 0.75);
 }
 
-// Runs a scene in lock step with the reference, event by event.
-void expectFollowed(Device& device, const Heightfield& ground, const Scene& scene, int ticks) {
-  Crowd crowd(device, ground, scene, kAll);
-  validation::Lockstep lockstep(crowd, scene, kTick);
-  for (int i = 0; i < ticks; ++i) {
-    lockstep.begin();
-    simulate(device, crowd, 1);
-    lockstep.end();
-  }
-  expectAllPass(lockstep.results());
+void expectEventsFollowed(Device& device, const Heightfield& ground, const Scene& scene, int ticks) {
+  Crowd crowd(device, ground, scene, kAllWatched);
+  expectFollowed(device, crowd, scene, ticks);
 }
 
 Event hurtAll(float at, const char* leg, LegState state = LegState::lost) {
@@ -293,7 +279,7 @@ TEST_F(HurtReplayTest, ForagersAndThoseWhoAvoidLoseLegs) {
                   hurtAll(1.8f, "L1", LegState::whole)};
   // Obstacles change nothing, but an edit gives the reference a new ground to forage on.
   scene.events.insert(scene.events.begin() + 2, {0.8f, Mound{.centre = {3, 0}, .radius = 1, .height = 0.5f}});
-  expectFollowed(device(), smallRollingGround(), scene, 150);
+  expectEventsFollowed(device(), smallRollingGround(), scene, 150);
 }
 
 // The fields are others after a threat has come, and so are those that the reference goes by.
@@ -306,7 +292,7 @@ TEST_F(HurtReplayTest, ThoseWhoFindTheirWayLoseLegs) {
                   hurtAll(0.4f, "L3"),
                   {0.8f, ThreatChange{.number = 0, .threat = {.centre = {0, 2}, .radius = 2}}},
                   hurtAll(1.6f, "L4", LegState::lame)};
-  expectFollowed(device(), smallRollingGround(), scene, 150);
+  expectEventsFollowed(device(), smallRollingGround(), scene, 150);
 }
 
 TEST_F(HurtGaitTest, AForagerWithoutTwoLegsCarriesFoodHome) {
@@ -325,7 +311,7 @@ TEST_F(HurtGaitTest, AForagerWithoutTwoLegsCarriesFoodHome) {
 
 TEST_F(HurtGaitTest, ASpiderWithoutLegsLiesOnItsBelly) {
   Scene scene = hurtScene(3);
-  Crowd crowd(device(), flatGround(), scene, kAll);
+  Crowd crowd(device(), flatGround(), scene, kAllWatched);
   simulate(device(), crowd, 60);
   for (uint32_t leg = 0; leg < 8; ++leg) {
     crowd.hurt(crowd.agentId(0, 0), leg, LegState::lost, 0);
@@ -349,7 +335,7 @@ TEST_F(HurtGaitTest, WhoHasNoLegsLiesStill) {
     const bool spider = controller == Controller::planted;
     if (!spider) scene.herds[0].rig = SKITTER_ROOT "/assets/quadruped.glb";
     const uint32_t legs = spider ? 8 : 4;
-    Crowd crowd(device(), rollingGround(), scene, kAll);
+    Crowd crowd(device(), rollingGround(), scene, kAllWatched);
     simulate(device(), crowd, 60);
     // Agent 0 loses none, and the others one, all but one, and all.
     for (uint32_t leg = 0; leg < legs; ++leg) {

@@ -9,6 +9,7 @@
 #include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/measure.h"
 #include "crowd/damage.h"
+#include "crowd/follow.h"
 #include "crowd/simulation.h"
 #include "shared/forage.h"
 #include "skitter/error.h"
@@ -105,12 +106,6 @@ using LoadGaitTest = GpuTest;
 using LoadReplayTest = GpuTest;
 using LoadInputTest = GpuTest;
 
-Scene loadScene(uint32_t agents, Controller controller = Controller::adaptive) {
-  Scene scene = sceneOf(agents, 1, 1, controller);
-  scene.herds[0].hurt = true;
-  return scene;
-}
-const CrowdOptions kSeen{.watchEvery = 1, .feet = true, .footfalls = UINT32_MAX};
 const Load kBehind{.mass = 1, .offset = {0, 0.1f, -0.4f}};
 
 std::vector<float> recordOf(const HerdState& state, Record record, size_t agent) {
@@ -122,8 +117,8 @@ std::vector<float> recordOf(const HerdState& state, Record record, size_t agent)
 
 TEST_P(LoadTest, OthersDoNotNotice) {
   const Heightfield ground = rollingGround();
-  Crowd crowd(device(), ground, loadScene(24, GetParam()), kSeen),
-      same(device(), ground, loadScene(24, GetParam()), kSeen);
+  Crowd crowd(device(), ground, hurtScene(24, GetParam()), kAllWatched),
+      same(device(), ground, hurtScene(24, GetParam()), kAllWatched);
   for (Crowd* each : {&crowd, &same}) simulate(device(), *each, 20);
   crowd.carry(crowd.agentId(0, 9), kBehind);
   for (Crowd* each : {&crowd, &same}) simulate(device(), *each, 40);
@@ -137,7 +132,7 @@ TEST_P(LoadTest, OthersDoNotNotice) {
 
 // A load that is laid down leaves the gait as it was.
 TEST_P(LoadTest, WhoLaysItDownWalksAsBefore) {
-  Crowd crowd(device(), flatGround(), loadScene(4, GetParam()), kSeen);
+  Crowd crowd(device(), flatGround(), hurtScene(4, GetParam()), kAllWatched);
   simulate(device(), crowd, 20);
   const HerdState before = crowd.download(0);
   const AgentId agent = crowd.agentId(0, 1);
@@ -158,9 +153,9 @@ TEST_P(LoadTest, WhoLaysItDownWalksAsBefore) {
 
 TEST_P(LoadTest, AStateHasWhatTheyCarry) {
   const Heightfield ground = rollingGround();
-  Scene scene = loadScene(14, GetParam());
+  Scene scene = hurtScene(14, GetParam());
   scene.herds[0].reserve = 4;
-  CrowdOptions options = kSeen;
+  CrowdOptions options = kAllWatched;
   for (const bool measured : {true, false}) {
     options.measure = measured;  // nobody looks at the record then
     Crowd crowd(device(), ground, scene, options);
@@ -186,9 +181,9 @@ TEST_P(LoadTest, AStateHasWhatTheyCarry) {
 }
 
 TEST_P(LoadTest, TeleportKeepsItAndNewcomersCarryNothing) {
-  Scene scene = loadScene(6, GetParam());
+  Scene scene = hurtScene(6, GetParam());
   scene.herds[0].reserve = 1;
-  Crowd crowd(device(), rollingGround(), scene, kSeen);
+  Crowd crowd(device(), rollingGround(), scene, kAllWatched);
   const AgentId agent = crowd.agentId(0, 2);
   crowd.carry(agent, kBehind);
   simulate(device(), crowd, 10);
@@ -207,7 +202,7 @@ TEST_P(LoadTest, TeleportKeepsItAndNewcomersCarryNothing) {
 
 TEST_P(LoadTest, PagesAndFusionDoNotShow) {
   const auto hashOf = [&](const CrowdOptions& options) {
-    Crowd crowd(device(), rollingGround(), loadScene(40, GetParam()), options);
+    Crowd crowd(device(), rollingGround(), hurtScene(40, GetParam()), options);
     simulate(device(), crowd, 10);
     for (uint32_t agent = 0; agent < 40; agent += 3) crowd.carry(crowd.agentId(0, agent), kBehind);
     simulate(device(), crowd, 40);
@@ -216,7 +211,7 @@ TEST_P(LoadTest, PagesAndFusionDoNotShow) {
   const uint64_t whole = hashOf({});
   EXPECT_EQ(whole, hashOf({.pageAgents = 7}));
   EXPECT_EQ(whole, hashOf({.fuse = false}));
-  EXPECT_EQ(whole, hashOf(kSeen));
+  EXPECT_EQ(whole, hashOf(kAllWatched));
 }
 
 INSTANTIATE_TEST_SUITE_P(, LoadTest,
@@ -224,9 +219,9 @@ INSTANTIATE_TEST_SUITE_P(, LoadTest,
                          [](const auto& param) { return testNameOf(param.param); });
 
 TEST_F(LoadGaitTest, WhoSleepsWakes) {
-  Scene scene = loadScene(6);
+  Scene scene = hurtScene(6);
   scene.herds[0].goal.kind = Goal::Kind::none;
-  CrowdOptions options = kSeen;
+  CrowdOptions options = kAllWatched;
   options.sleep = true;
   Crowd crowd(device(), flatGround(), scene, options);
   simulate(device(), crowd, 300);
@@ -242,10 +237,10 @@ struct Walk {
 };
 std::vector<Walk> walksWith(Device& device, const std::vector<Load>& loads) {
   const auto agents = static_cast<uint32_t>(loads.size());
-  Scene scene = loadScene(agents);
+  Scene scene = hurtScene(agents);
   scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 3};
   scene.herds[0].goal = {.kind = Goal::Kind::velocity, .velocity = {0, 1}};
-  Crowd crowd(device, flatGround(), scene, kSeen);
+  Crowd crowd(device, flatGround(), scene, kAllWatched);
   for (uint32_t a = 0; a < agents; ++a) crowd.carry(crowd.agentId(0, a), loads[a]);
   simulate(device, crowd, 180);
   const HerdState before = crowd.download(0);
@@ -310,9 +305,9 @@ TEST_F(LoadGaitTest, TheMarginIsThatOfTheCombinedCentre) {
 // An agent that stands: by how much its margin becomes less is how far its centre goes, where the homes do
 // not follow it.
 TEST_F(LoadGaitTest, ALoadBeyondTheLeanUpsetsWhoStands) {
-  Scene scene = loadScene(2);
+  Scene scene = hurtScene(2);
   scene.herds[0].goal.kind = Goal::Kind::none;
-  Crowd crowd(device(), flatGround(), scene, kSeen);
+  Crowd crowd(device(), flatGround(), scene, kAllWatched);
   crowd.carry(crowd.agentId(0, 1), {.mass = 4, .offset = {0, 0, 2}});  // its centre is 1.6 leg lengths ahead
   simulate(device(), crowd, 240);
   const HerdState before = crowd.download(0);
@@ -329,20 +324,14 @@ TEST_F(LoadGaitTest, ALoadBeyondTheLeanUpsetsWhoStands) {
 // In lock step with the reference, event by event.
 TEST_F(LoadReplayTest, EventsAreFollowed) {
   for (const Controller controller : {Controller::adaptive, Controller::loop, Controller::planted}) {
-    Scene scene = loadScene(30, controller);
+    Scene scene = hurtScene(30, controller);
     scene.herds[0].sizes = {0.7f, 1};
     scene.events = {{0.2f, LoadChange{.share = 0.5f, .load = kBehind}},
                     {0.6f, LegChange{.leg = "L3"}},
                     {0.9f, LoadChange{.load = {.mass = 0.4f, .offset = {0.5f, 0.3f, 0.2f}}}},
                     {1.4f, LoadChange{.agents = {3, 4, 20}}}};
-    Crowd crowd(device(), smallRollingGround(), scene, kSeen);
-    validation::Lockstep lockstep(crowd, scene, kTick);
-    for (int i = 0; i < 110; ++i) {
-      lockstep.begin();
-      simulate(device(), crowd, 1);
-      lockstep.end();
-    }
-    expectAllPass(lockstep.results());
+    Crowd crowd(device(), smallRollingGround(), scene, kAllWatched);
+    expectFollowed(device(), crowd, scene, 110);
     EXPECT_EQ(crowd.carried(crowd.agentId(0, 3)), Load{});
     EXPECT_EQ(crowd.carried(crowd.agentId(0, 5)).mass, 0.4f);
   }
@@ -353,19 +342,13 @@ TEST_F(LoadReplayTest, HerdsWithReactionsCarry) {
   Scene scene = sceneOf(24);
   scene.herds[0].reactions = true;
   scene.events = {{0.2f, LoadChange{.share = 0.5f, .load = kBehind}}, {0.5f, Push{.velocity = {3, 1}}}};
-  Crowd crowd(device(), smallRollingGround(), scene, kSeen);
-  validation::Lockstep lockstep(crowd, scene, kTick);
-  for (int i = 0; i < 110; ++i) {
-    lockstep.begin();
-    simulate(device(), crowd, 1);
-    lockstep.end();
-  }
-  expectAllPass(lockstep.results());
+  Crowd crowd(device(), smallRollingGround(), scene, kAllWatched);
+  expectFollowed(device(), crowd, scene, 110);
 }
 
 // Food between two places that are near to each other, so that many carry some home in a short while.
 Scene colonyScene(const Load& load) {
-  Scene scene = loadScene(30);
+  Scene scene = hurtScene(30);
   scene.herds[0].goal.speed = 2;
   scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f};
   scene.herds[0].forage = Forage{.nest = {.centre = {0, 0}, .radius = 2},
@@ -383,7 +366,7 @@ bool isLaden(const HerdState& state, size_t agent) {
 TEST_F(LoadReplayTest, ForagersCarryWhatTheyFind) {
   const Load food{.mass = 0.5f, .offset = {0, 0, 0.4f}};
   const Scene scene = colonyScene(food);
-  Crowd crowd(device(), smallRollingGround(), scene, kSeen);
+  Crowd crowd(device(), smallRollingGround(), scene, kAllWatched);
   validation::Lockstep lockstep(crowd, scene, kTick);
   std::set<uint32_t> carried, laidDown;
   constexpr int ticks = 600, look = 15;  // a look each quarter of a second
@@ -434,7 +417,7 @@ TEST_F(LoadInputTest, WhoForagesWithALoadCanBeHurt) {
 }
 
 TEST_F(LoadInputTest, NamesWhatIsWrong) {
-  Scene scene = loadScene(5);
+  Scene scene = hurtScene(5);
   scene.herds.push_back(scene.herds[0]);
   scene.herds[1].hurt = false;
   Crowd crowd(device(), rollingGround(), scene);
@@ -462,7 +445,7 @@ TEST_F(LoadInputTest, NamesWhatIsWrong) {
 }
 
 TEST_F(LoadInputTest, EventsLoadWhomTheyName) {
-  Scene scene = loadScene(200);
+  Scene scene = hurtScene(200);
   scene.events = {{0.1f, LoadChange{.agents = {3, 7}, .load = kBehind}},
                   {0.2f, LoadChange{.share = 0.3f, .load = {.mass = 2}}}};
   Crowd crowd(device(), rollingGround(), scene), twice(device(), rollingGround(), scene);

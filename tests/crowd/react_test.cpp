@@ -26,7 +26,6 @@ Scene reactingScene(uint32_t agents) {
   scene.herds[0].reactions = true;
   return scene;
 }
-const CrowdOptions kAllWatched{.watchEvery = 1, .feet = true, .footfalls = UINT32_MAX};
 
 uint32_t fallenIn(const std::vector<Reaction>& all) {
   return static_cast<uint32_t>(

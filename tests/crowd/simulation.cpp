@@ -21,6 +21,12 @@ Scene sceneOf(uint32_t agents, float speed, uint64_t seed, Controller controller
   return scene;
 }
 
+Scene hurtScene(uint32_t agents, Controller controller) {
+  Scene scene = sceneOf(agents, 1, 1, controller);
+  scene.herds[0].hurt = true;
+  return scene;
+}
+
 Heightfield rollingGround() { return generateHeightfield({}); }
 
 Heightfield smallRollingGround() {

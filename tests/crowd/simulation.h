@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,14 @@
 namespace skitter::test {
 
 constexpr float kTick = 1.0f / 60;
+// Every agent is measured in every tick, and all that may be written is.
+const CrowdOptions kAllWatched{.watchEvery = 1, .feet = true, .footfalls = UINT32_MAX};
 
 // A scene of one herd on generated ground.
 Scene sceneOf(uint32_t agents, float speed = 1, uint64_t seed = 1,
               Controller controller = Controller::adaptive);
+// The same, of a herd that can be hurt.
+Scene hurtScene(uint32_t agents, Controller controller = Controller::adaptive);
 Heightfield rollingGround();
 // 32 m a side: soon crossed.
 Heightfield smallRollingGround();

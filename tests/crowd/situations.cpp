@@ -345,15 +345,31 @@ void replayTicks(Device& device, Crowd& crowd, validation::Replay& replay, int t
   }
 }
 
+// A crowd that has walked for a while, to be replayed from then on.
+struct Underway {
+  Crowd crowd;
+  validation::Replay replay;
+
+  Underway(Device& device, const Scene& scene, const CrowdOptions& options)
+      : Underway(device, rollingGround(), scene, options) {}
+
+ private:
+  Underway(Device& device, const Heightfield& ground, const Scene& scene, const CrowdOptions& options)
+      : crowd(walked(device, ground, scene, options)), replay(validation::herdFacts(kindOf(crowd), ground)) {}
+
+  static Crowd walked(Device& device, const Heightfield& ground, const Scene& scene,
+                      const CrowdOptions& options) {
+    Crowd crowd(device, ground, scene, options);
+    simulate(device, crowd, 40);
+    return crowd;
+  }
+};
+
 // Every agent is hurt in a way of its own, some to where they lie down; later half of them heal.
 Results losingLegs(Device& device, Controller controller, const CrowdOptions& options) {
   constexpr uint32_t agents = 24, legs = 8;
-  const Heightfield ground = rollingGround();
-  Scene scene = sceneOf(agents, 1, 1, controller);
-  scene.herds[0].hurt = true;
-  Crowd crowd(device, ground, scene, options);
-  simulate(device, crowd, 40);
-  validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
+  Underway underway(device, hurtScene(agents, controller), options);
+  auto& [crowd, replay] = underway;
   const auto run = [&](int ticks) { replayTicks(device, crowd, replay, ticks); };
   std::vector<AgentLeg> hurt;
   const auto add = [&](uint32_t agent, uint32_t leg, LegState state) {
@@ -378,12 +394,8 @@ Results losingLegs(Device& device, Controller controller, const CrowdOptions& op
 // others shifted.
 Results carryingLoads(Device& device, Controller controller, const CrowdOptions& options) {
   constexpr uint32_t agents = 24;
-  const Heightfield ground = rollingGround();
-  Scene scene = sceneOf(agents, 1, 1, controller);
-  scene.herds[0].hurt = true;
-  Crowd crowd(device, ground, scene, options);
-  simulate(device, crowd, 40);
-  validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
+  Underway underway(device, hurtScene(agents, controller), options);
+  auto& [crowd, replay] = underway;
   const auto load = [&](uint32_t agent, float turn) {
     const float angle = static_cast<float>(agent) + turn, far = static_cast<float>(agent % 5) / 2;
     return AgentLoad{crowd.agentId(0, agent),
@@ -405,12 +417,10 @@ Results carryingLoads(Device& device, Controller controller, const CrowdOptions&
 // some are pushed again as they lie or rise.
 Results gettingPushed(Device& device, Controller controller, const CrowdOptions& options) {
   constexpr uint32_t agents = 24;
-  const Heightfield ground = rollingGround();
   Scene scene = sceneOf(agents, 1, 1, controller);
   scene.herds[0].reactions = true;
-  Crowd crowd(device, ground, scene, options);
-  simulate(device, crowd, 40);
-  validation::Replay replay(validation::herdFacts(kindOf(crowd), ground));
+  Underway underway(device, scene, options);
+  auto& [crowd, replay] = underway;
   const auto run = [&](int ticks) { replayTicks(device, crowd, replay, ticks); };
   const auto pushAll = [&](float strongest, uint32_t every) {
     for (uint32_t agent = 0; agent < agents; agent += every) {

@@ -349,18 +349,29 @@ template <class Fields>
 void keysOf(Fields& fields, const char* key, HeightSamples& samples) {
   fields.object(key, samples);
 }
+
+// The keys that say whom an event is about.
+template <class Fields>
+void keysOfWhom(Fields& fields, uint32_t& herd, std::vector<uint32_t>& agents) {
+  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
+  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+}
+template <class Fields>
+void keysOfWhom(Fields& fields, uint32_t& herd, std::vector<uint32_t>& agents, std::optional<float>& share) {
+  keysOfWhom(fields, herd, agents);
+  fields.key("share", share, 0, 1);
+}
+
 template <class Fields>
 void keysOf(Fields& fields, const char* key, GoalChange& change) {
   auto& [herd, agents, goal] = change;
-  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
-  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+  keysOfWhom(fields, herd, agents);
   fields.object(key, goal);
 }
 template <class Fields>
 void keysOf(Fields& fields, const char* key, SpeedChange& change) {
   auto& [herd, agents, speed] = change;
-  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
-  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
+  keysOfWhom(fields, herd, agents);
   fields.key(key, speed, 0, double{Goal::maxSpeed});
 }
 template <class Fields>
@@ -399,9 +410,7 @@ void keysOf(Fields& fields, const char* key, ThreatChange& change) {
 template <class Fields>
 void keysOf(Fields& fields, const char* key, LegChange& change) {
   auto& [herd, agents, share, leg, state, bone] = change;
-  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
-  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
-  fields.key("share", share, 0, 1);
+  keysOfWhom(fields, herd, agents, share);
   fields.key(key, leg);
   fields.named("state", state, allLegStates);
   fields.integer("bone", bone, 0, Leg::maxBones - 1);
@@ -410,18 +419,14 @@ void keysOf(Fields& fields, const char* key, LegChange& change) {
 template <class Fields>
 void keysOf(Fields& fields, const char* key, Push& push) {
   auto& [herd, agents, share, velocity] = push;
-  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
-  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
-  fields.key("share", share, 0, 1);
+  keysOfWhom(fields, herd, agents, share);
   fields.key(key, velocity, double{Push::most});
 }
 
 template <class Fields>
 void keysOf(Fields& fields, const char* key, LoadChange& change) {
   auto& [herd, agents, share, load] = change;
-  fields.integer("herd", herd, 0, Scene::maxHerds - 1);
-  fields.integers("agents", agents, Event::maxAgents, Scene::maxAgents - 1);
-  fields.key("share", share, 0, 1);
+  keysOfWhom(fields, herd, agents, share);
   fields.object(key, load);
 }
 

@@ -129,7 +129,7 @@ void loadForagers(Crowd::Impl& crowd) {
     const HerdState state = downloadRecords(crowd, h, std::array{Record::forager});
     const SizeRun& run = herd.runs.front();  // who forages is of one size
     Kind& kind = crowd.kinds[run.kind];
-    // Who is put elsewhere begins at rest.
+    // An agent that is put elsewhere begins at rest there, without a load.
     const std::map<uint32_t, glm::vec2> told = toldPlaces(kind);
     for (uint32_t place = 0; place < run.agents; ++place) {
       if (!herd.presence.has(place)) continue;
