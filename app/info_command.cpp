@@ -57,11 +57,11 @@ void printDevice(const DeviceReport& report, const std::optional<Choices>& choic
     row("records are read by", fmt::format("{}: {}", loadsName(loads.path), loads.why));
     if (loads.cost)
       row("reading a vec4",
-          fmt::format("texel {:.2f} ns, storage {:.2f} ns", loads.cost->texel, loads.cost->storage));
+          fmt::format("texel {:.3g} ns, storage {:.3g} ns", loads.cost->texel, loads.cost->storage));
     row("records are written by", fmt::format("{} bits: {}", bitsOf(stores.width), stores.why));
     if (stores.cost)
       row("writing a vec4",
-          fmt::format("by 32 bits {:.2f} ns, by 64 {:.2f} ns", stores.cost->bits32, stores.cost->bits64));
+          fmt::format("by 32 bits {:.3g} ns, by 64 {:.3g} ns", stores.cost->bits32, stores.cost->bits64));
   }
   row("subgroup", fmt::format("{} invocations", limits.subgroupSize));
   row("work group, at most", fmt::format("{} invocations", limits.maxComputeWorkGroupInvocations));

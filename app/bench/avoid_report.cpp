@@ -14,8 +14,8 @@ using namespace bench;
 void print(const AvoidMatch& match, uint32_t rounds, bool cpu) {
   fmt::print(
       "\ngrid and avoid, {} agents, {:.3f} m from each other in rows, {:.3f} per footprint's area, "
-      "{} rounds of {} ticks; speed by {}\n",
-      match.agents, match.spacing, match.density, rounds, match.ticks, cpu ? "CPU time" : "the wall clock");
+      "{} rounds; speed by {}\n",
+      match.agents, match.spacing, match.density, rounds, cpu ? "CPU time" : "the wall clock");
   fmt::print("neighbours    {:.2f} in reach of an agent, of which it keeps clear of {:.2f}\n", match.inReach,
              match.keptClear);
   printResults(match.agents, match.results, cpu);
@@ -40,9 +40,8 @@ void print(const std::vector<Growth>& growth) {
 ordered_json jsonOf(const AvoidMatch& match) {
   ordered_json results = ordered_json::array();
   for (const Result& result : match.results) results.push_back(jsonOf(result));
-  return {{"agents", match.agents},   {"ticksATurn", match.ticks}, {"spacing", match.spacing},
-          {"density", match.density}, {"inReach", match.inReach},  {"keptClear", match.keptClear},
-          {"results", results}};
+  return {{"agents", match.agents},   {"spacing", match.spacing},     {"density", match.density},
+          {"inReach", match.inReach}, {"keptClear", match.keptClear}, {"results", results}};
 }
 
 ordered_json jsonOf(const std::vector<Growth>& growth) {

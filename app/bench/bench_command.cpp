@@ -205,10 +205,9 @@ void benchDevice(const BenchOptions& options, const Heightfield& terrain, const 
             [] { return stopRequested(); });
       }
       if (stopRequested()) throw Interrupted(leave());
-      fmt::print("\n{}, {} agents{}, {} rounds of {} ticks, {:.0f} MiB of records; speed by {}\n",
-                 nameOf(controller), match.agents, contestOptions.crowd.pose ? " with poses" : "",
-                 contestOptions.rounds, match.ticks, static_cast<double>(match.memoryBytes) / (1 << 20),
-                 cpu ? "CPU time" : "the wall clock");
+      fmt::print("\n{}, {} agents{}, {} rounds, {:.0f} MiB of records; speed by {}\n", nameOf(controller),
+                 match.agents, contestOptions.crowd.pose ? " with poses" : "", contestOptions.rounds,
+                 static_cast<double>(match.memoryBytes) / (1 << 20), cpu ? "CPU time" : "the wall clock");
       printResults(match.agents, match.results, cpu);
       printStages(match, peaks, cpu);
       if (const std::string faults = faultsOf(match.results); !faults.empty())

@@ -54,6 +54,7 @@ ordered_json jsonOf(const Result& result) {
                       {"pass", check.pass}});
   return {{"name", result.name},
           {"threads", result.threads},
+          {"ticksATurn", result.ticks},
           {"wallMilliseconds", jsonOf(result.wall)},
           {"cpuMilliseconds", jsonOf(result.cpu)},
           {"stages", stages},
@@ -63,14 +64,15 @@ ordered_json jsonOf(const Result& result) {
 
 void printResults(uint64_t agentCount, const std::vector<Result>& results, bool cpu) {
   const auto agents = static_cast<double>(agentCount);
-  fmt::print("{:<22}{:>10}  {:<24}{:>8}{:>18}{:>8}\n", "", "ms a tick", "(quartiles)", "CPU ms",
+  fmt::print("{:<22}{:>7}{:>11}  {:<24}{:>8}{:>18}{:>8}\n", "", "ticks", "ms a tick", "(quartiles)", "CPU ms",
              "core-us an agent", "speed");
   const double device = costOf(results.front(), cpu);
   for (const Result& result : results) {
     const std::string range = fmt::format("({:.3f} to {:.3f})", result.wall.low, result.wall.high);
-    fmt::print("{:<22}{:>10.3f}  {:<24}{:>8.3f}{:>18.4f}{:>8.2f}{}\n", result.name, result.wall.median, range,
-               result.cpu.median, agents > 0 ? 1e3 * result.cpu.median / agents : 0,
-               device / costOf(result, cpu), result.pass ? "" : "  WRONG");
+    fmt::print("{:<22}{:>7}{:>11.3f}  {:<24}{:>8.3f}{:>18.4f}{:>8.2f}{}\n", result.name, result.ticks,
+               result.wall.median, range, result.cpu.median,
+               agents > 0 ? 1e3 * result.cpu.median / agents : 0, device / costOf(result, cpu),
+               result.pass ? "" : "  WRONG");
   }
 }
 
@@ -107,8 +109,11 @@ ordered_json jsonOf(Controller controller, const Match& match) {
   for (const Result& result : match.results) results.push_back(jsonOf(result));
   for (const StageDemand& demand : match.demands)
     demands.push_back({{"stage", demand.stage}, {"bytes", demand.bytes}, {"operations", demand.operations}});
-  return {{"controller", nameOf(controller)}, {"agents", match.agents}, {"ticksATurn", match.ticks},
-          {"memoryBytes", match.memoryBytes}, {"results", results},     {"demands", demands}};
+  return {{"controller", nameOf(controller)},
+          {"agents", match.agents},
+          {"memoryBytes", match.memoryBytes},
+          {"results", results},
+          {"demands", demands}};
 }
 
 std::string faultsOf(const std::vector<Result>& results) {

@@ -10,7 +10,6 @@
 #include <span>
 #include <thread>
 
-#include "base/clock.h"
 #include "base/split_mix.h"
 #include "bench/cpu_crowd/avoid/orca_check.h"
 #include "bench/cpu_crowd/avoid/walkers.h"
@@ -301,18 +300,6 @@ bool walk(Device& device, Crowd& crowd, const ContestOptions& options,
   return true;
 }
 
-// Seconds, the best of a few.
-double tickSecondsOf(Runner& runner) {
-  runner.timeStages(false);
-  double least = 1e30;
-  for (int i = 0; i < 4; ++i)
-    least = std::min(least, base::timed([&] {
-                              runner.tick();
-                              runner.finish();
-                            }).wall);
-  return least;
-}
-
 double meanOf(const std::vector<float>& records, double most) {
   double sum = 0;
   for (size_t i = 2; i < records.size(); i += 4) sum += std::min(double{-records[i]}, most);
@@ -363,12 +350,11 @@ AvoidMatch avoidContest(Device& device, const AvoidCrowd& made, const ContestOpt
       .density = std::numbers::pi * radius * radius / (rowSpacing * made.spacing * made.spacing)};
   const Walkers walkers = walkersOf(crowd);
   std::vector<Entrant> entrants = entrantsOf(device, crowd, walkers, options);
-  match.ticks = ticksATurn(options.turnSeconds, tickSecondsOf(*entrants.front().runner));
   std::vector<Corner> corners;
-  for (const Entrant& entrant : entrants) corners.push_back({*entrant.runner});
+  for (const Entrant& entrant : entrants)
+    corners.push_back({*entrant.runner, ticksATurn(*entrant.runner, options.turnSeconds)});
   if (!takeTurns(
-          corners, {options.rounds, match.ticks, options.seed},
-          [&](size_t i) { entrants[i].runner->forget(); },
+          corners, {options.rounds, options.seed}, [&](size_t i) { entrants[i].runner->forget(); },
           [&](size_t i) { entrants[i].records = entrants[i].runner->records(); },
           [&](double share) { step(0.3 + 0.6 * share); }, stopped))
     return {};

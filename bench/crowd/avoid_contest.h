@@ -24,7 +24,6 @@ AvoidCrowd avoidCrowdOf(const Scene& from, uint32_t agents);
 // algorithm of van den Berg et al. 2011, all of the same agents as they are after some ticks of walking.
 struct AvoidMatch {
   uint64_t agents = 0;
-  uint32_t ticks = 0;                // of a turn that are counted
   double spacing = 0;                // of AvoidCrowd
   double density = 0;                // agents per footprint's area, as they began
   double inReach = 0;                // others, of an agent on average

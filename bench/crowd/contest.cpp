@@ -4,7 +4,6 @@
 #include <memory>
 #include <thread>
 
-#include "base/clock.h"
 #include "bench/crowd/contestant.h"
 #include "crowd/herd.h"
 #include "crowd/stage.h"
@@ -77,31 +76,26 @@ Match contest(Device& device, const Heightfield& terrain, const Scene& scene, co
   Match match;
   match.agents = crowd.agentCount();
   match.memoryBytes = crowd.memoryBytes();
-  double tickSeconds = 0;
   {
     const std::unique_ptr<Contestant> warm = deviceContestant(device, crowd, static_cast<float>(options.dt));
     warm->timeStages(false);
     for (uint32_t i = 0; i < options.warmUp; ++i) {
       if (stopped()) return {};
-      const double seconds = base::timed([&] {
-                               warm->tick();
-                               warm->finish();
-                             }).wall;
-      tickSeconds = i == 0 ? seconds : std::min(tickSeconds, seconds);
+      warm->tick();
+      warm->finish();
       step(0.2 * (i + 1) / options.warmUp);
     }
   }
-  match.ticks = ticksATurn(options.turnSeconds, tickSeconds);
 
   std::vector<std::unique_ptr<Contestant>> contestants = contestantsOf(device, crowd, options);
   std::vector<Corner> corners;
-  for (const auto& contestant : contestants) corners.push_back({*contestant});
+  for (const auto& contestant : contestants)
+    corners.push_back({*contestant, ticksATurn(*contestant, options.turnSeconds)});
   std::vector<Witness> witnesses(corners.size());
   const uint64_t sample = crowd.tick();
   const auto states = [&](size_t i) { return statesOf(crowd, *contestants[i], sample, options.seed); };
   if (!takeTurns(
-          corners, {options.rounds, match.ticks, options.seed},
-          [&](size_t i) { witnesses[i].before = states(i); },
+          corners, {options.rounds, options.seed}, [&](size_t i) { witnesses[i].before = states(i); },
           [&](size_t i) { witnesses[i].after = states(i); }, [&](double share) { step(0.2 + 0.7 * share); },
           stopped))
     return {};

@@ -17,13 +17,12 @@ struct ContestOptions {
   double dt = 1.0 / 60;       // seconds a tick
   uint32_t warmUp = 60;       // ticks on the device before anybody starts, from the state that they lead to
   uint32_t rounds = 7;        // in each of which everybody has a turn
-  double turnSeconds = 0.25;  // about what the counted ticks of a turn of the device take
+  double turnSeconds = 0.25;  // about what the counted ticks of a turn take
   bool scalar = true;         // with the scalar opponent
   uint64_t seed = 1;          // decides which agents are checked
 };
 
 struct Match {
-  uint32_t ticks = 0;  // of a turn that are counted: two or more, after one that is not
   uint64_t agents = 0;
   uint64_t memoryBytes = 0;  // of the device's records
   std::vector<Result>

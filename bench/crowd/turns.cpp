@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <random>
 
@@ -13,6 +14,7 @@ namespace {
 
 // Counted ones; the tick before them fills the caches that the other contestants took.
 constexpr uint32_t kFewestTicksATurn = 2, kMostTicksATurn = 500;
+constexpr int kTicksToKnow = 2;  // of which the better one tells how long a tick takes
 // Stages are timed in ticks of their own, for their clocks cost: a timestamp takes lavapipe as long as a
 // small dispatch.
 constexpr uint32_t kTicksAWatchedOne = 4;
@@ -23,8 +25,9 @@ struct WitnessedTick {
   std::function<void()> before, after;
 };
 
-void takeTurn(Corner& corner, uint32_t ticks, const std::optional<WitnessedTick>& witness) {
+void takeTurn(Corner& corner, const std::optional<WitnessedTick>& witness) {
   Runner& runner = corner.runner;
+  const uint32_t ticks = corner.ticks;
   runner.timeStages(false);
   runner.tick();
   runner.finish();
@@ -69,7 +72,14 @@ void add(std::vector<StageTime>& sums, const std::string& stage, double millisec
     known->milliseconds += milliseconds;
 }
 
-uint32_t ticksATurn(double turnSeconds, double tickSeconds) {
+uint32_t ticksATurn(Runner& runner, double turnSeconds) {
+  runner.timeStages(false);
+  double tickSeconds = std::numeric_limits<double>::max();
+  for (int i = 0; i < kTicksToKnow; ++i)
+    tickSeconds = std::min(tickSeconds, base::timed([&] {
+                                          runner.tick();
+                                          runner.finish();
+                                        }).wall);
   return static_cast<uint32_t>(std::clamp(std::round(turnSeconds / std::max(tickSeconds, 1e-6)),
                                           double{kFewestTicksATurn}, double{kMostTicksATurn}));
 }
@@ -80,15 +90,17 @@ bool takeTurns(std::vector<Corner>& corners, const TurnPlan& plan, const std::fu
   // Drawn, so that no tick is known to be looked at.
   std::mt19937_64 random(plan.seed);
   const uint64_t witnessedRound = random() % plan.rounds;
-  const auto witnessedTick = static_cast<uint32_t>(random() % plan.ticks);
+  const uint64_t witnessedTick = random();  // modulo the ticks of a turn
   for (uint32_t round = 0; round < plan.rounds; ++round)
     for (size_t i = 0; i < corners.size(); ++i) {
       if (stopped()) return false;
       // Another one begins each round, so that nobody always follows the same one.
       const size_t at = (i + round) % corners.size();
       std::optional<WitnessedTick> witness;
-      if (round == witnessedRound) witness = {witnessedTick, [&] { before(at); }, [&] { after(at); }};
-      takeTurn(corners[at], plan.ticks, witness);
+      if (round == witnessedRound)
+        witness = {static_cast<uint32_t>(witnessedTick % corners[at].ticks), [&] { before(at); },
+                   [&] { after(at); }};
+      takeTurn(corners[at], witness);
       step((round + static_cast<double>(i + 1) / static_cast<double>(corners.size())) / plan.rounds);
     }
   return true;
@@ -98,6 +110,7 @@ Result resultOf(const Corner& corner, uint32_t rounds) {
   Result result;
   result.name = corner.runner.name();
   result.threads = corner.runner.threads();
+  result.ticks = corner.ticks;
   result.wall = spreadOf(corner.wall);
   result.cpu = spreadOf(corner.cpu);
   result.stages = corner.stages;

@@ -38,6 +38,7 @@ struct Result {
   int threads = 0;                              // of the CPU that it may use; 0: the device
   Spread wall, cpu;                             // cpu: of all threads of the process
   std::vector<StageTime> stages;                // a tick: the device's clock, or CPU time
+  uint32_t ticks = 0;                           // of a turn that are counted
   uint64_t checkedTick = 0;                     // a counted tick of one of the turns, drawn by the seed
   std::vector<validation::StageResult> checks;  // of that tick
   bool pass = false;                            // all of them
@@ -46,18 +47,18 @@ struct Result {
 // One who competes, and what its turns took, a tick; by stage the sum of the turns.
 struct Corner {
   Runner& runner;
+  uint32_t ticks;  // of a turn that are counted: two or more, after one that is not
   std::vector<double> wall = {}, cpu = {};
   std::vector<StageTime> stages = {};
 };
 
 struct TurnPlan {
   uint32_t rounds = 7;  // in each of which everybody has a turn
-  uint32_t ticks = 2;   // of a turn that are counted: two or more, after one that is not
   uint64_t seed = 1;    // draws the tick that is witnessed
 };
 
-// So many ticks as take about `turnSeconds`, of a tick that takes `tickSeconds`.
-uint32_t ticksATurn(double turnSeconds, double tickSeconds);
+// So many ticks of the runner as take about `turnSeconds`. Runs a few to know.
+uint32_t ticksATurn(Runner&, double turnSeconds);
 
 // Everybody's turns, round after round. One counted tick of each is witnessed: the clocks stop while
 // `before` and `after`, which are told the number of the corner, look at what it has. `step` is called with

@@ -1,6 +1,9 @@
 // What `skitter bench` rests on: the counts, the peaks, and that nobody is timed who is wrong.
 #include "bench/crowd/contest.h"
 
+#include <chrono>
+#include <thread>
+
 #include "bench/crowd/operations.h"
 #include "bench/crowd/peaks.h"
 #include "crowd/simulation.h"
@@ -61,7 +64,6 @@ TEST_F(ContestTest, EverybodyIsCheckedAndTimed) {
   const bench::Match match = contest(sceneOf(33), unmeasured());
   ASSERT_GE(match.results.size(), 3u);
   EXPECT_EQ(match.agents, 33u);
-  EXPECT_GE(match.ticks, 2u);  // of a turn however short, beside the one that is not counted
   for (const bench::Result& result : match.results) {
     SCOPED_TRACE(result.name);
     EXPECT_TRUE(result.pass);
@@ -71,11 +73,13 @@ TEST_F(ContestTest, EverybodyIsCheckedAndTimed) {
       // That no leg begins a step in a tick can be.
       EXPECT_TRUE(check.samples > 0 || check.name == "foothold") << check.name;
     }
-    // In each turn a tick goes before the counted ones, and others in which stages are timed follow.
-    const uint64_t turn = 1 + match.ticks + 2, since = result.checkedTick - kWarmUp - 1;
+    EXPECT_EQ(result.ticks, 2u);  // of a turn however short, beside the one that is not counted
+    // Two ticks tell how long one takes. In each turn a tick goes before the counted ones, and others in
+    // which stages are timed follow.
+    const uint64_t turn = 1 + result.ticks + 2, since = result.checkedTick - kWarmUp - 2 - 1;
     EXPECT_LT(since, kRounds * turn);
     EXPECT_GE(since % turn, 1u);
-    EXPECT_LE(since % turn, match.ticks);
+    EXPECT_LE(since % turn, result.ticks);
     EXPECT_GT(result.wall.median, 0);
     EXPECT_LE(result.wall.low, result.wall.high);
     EXPECT_FALSE(result.stages.empty());
@@ -92,6 +96,27 @@ TEST_F(ContestTest, BytesAreThoseOfTheRecords) {
   ASSERT_NE(swing, match.demands.end());
   EXPECT_EQ(swing->bytes, 16 * 16 * (4 + 8 * (4 + 1)));
   EXPECT_GT(swing->operations, 16 * 8 * 20);
+}
+
+class Sleeper : public bench::Runner {
+ public:
+  explicit Sleeper(int milliseconds) : milliseconds_(milliseconds) {}
+  std::string name() const override { return "sleeper"; }
+  int threads() const override { return 1; }
+  void tick() override { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds_)); }
+  void timeStages(bool) override {}
+  std::vector<StageTime> stageTimes() const override { return {}; }
+
+ private:
+  int milliseconds_;
+};
+
+// So a contestant that is a thousand times slower than the device does not hold the run up.
+TEST(Turns, HaveFewerTicksOfWhoIsSlower) {
+  Sleeper slow(10), quick(0);
+  EXPECT_EQ(bench::ticksATurn(slow, 0), 2u);
+  EXPECT_LE(bench::ticksATurn(slow, 0.3), 30u);
+  EXPECT_EQ(bench::ticksATurn(quick, 10), 500u);
 }
 
 TEST_F(ContestTest, ABrokenShaderIsFoundOut) {
