@@ -3,6 +3,7 @@
 #include "gpu/adopt.h"
 #include "gpu/device_memory.h"
 #include "gpu/pipeline.h"
+#include "gpu/spares.h"
 
 #include <fmt/format.h>
 
@@ -24,7 +25,10 @@ std::optional<uint32_t> findType(const vk::PhysicalDeviceMemoryProperties& memor
 
 }  // namespace
 
-Context::Context(Parts parts) : parts_(std::move(parts)), pipelines_(std::make_unique<Pipelines>()) {
+Context::Context(Parts parts)
+    : parts_(std::move(parts)),
+      pipelines_(std::make_unique<Pipelines>()),
+      spares_(std::make_unique<Spares>()) {
   guarded("device set-up", [&] {
     const std::vector<uint8_t> cached = std::exchange(parts_.pipelineCache, {});
     pipelineCache_ =

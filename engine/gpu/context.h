@@ -12,6 +12,7 @@
 namespace skitter::gpu {
 
 class Pipelines;
+class Spares;
 
 // The engine's view of a Device: the handles, and what everything made on it shares. Its address is stable,
 // so what is made on it keeps a pointer to it.
@@ -84,6 +85,8 @@ class Context {
   const vk::raii::PipelineCache& pipelineCache() const { return pipelineCache_; }
   // Those that were made before.
   Pipelines& pipelines() const { return *pipelines_; }
+  // For copies between host and device.
+  Spares& spares() const { return *spares_; }
   // Nearest, clamped to the edge: what heightfields are read with.
   vk::Sampler nearestSampler() const { return *nearestSampler_; }
 
@@ -111,6 +114,7 @@ class Context {
   vk::raii::PipelineCache pipelineCache_ = nullptr;
   std::unique_ptr<Pipelines> pipelines_;
   vk::raii::Sampler nearestSampler_ = nullptr;
+  std::unique_ptr<Spares> spares_;
 };
 
 // Runs `call`, and turns a Vulkan failure into an Error(device) that reads "<doing>: <the failure>".

@@ -1,5 +1,7 @@
 #include "gpu/submit.h"
 
+#include "gpu/spares.h"
+
 #include <array>
 #include <cassert>
 
@@ -98,9 +100,10 @@ uint64_t CommandRing::completed() const {
 }
 
 void submitAndWait(const Context& context, const std::function<void(vk::CommandBuffer)>& record) {
-  CommandRing ring(context, 1);
-  record(ring.begin());
-  ring.wait(ring.submit());
+  std::unique_ptr<CommandRing> ring = context.spares().commands(context);
+  record(ring->begin());
+  ring->wait(ring->submit());
+  context.spares().giveBack(std::move(ring));
 }
 
 }  // namespace skitter::gpu

@@ -1,5 +1,6 @@
 #include "gpu/transfer.h"
 
+#include "gpu/spares.h"
 #include "gpu/submit.h"
 
 #include <algorithm>
@@ -14,6 +15,21 @@ void inChunks(uint64_t total, uint64_t chunk, Step&& step) {
   assert(chunk > 0);
   for (uint64_t done = 0; done < total; done += chunk) step(done, std::min(chunk, total - done));
 }
+
+// Memory of the host for as long as a copy takes. After a failure it is not used again.
+class Staging {
+ public:
+  Staging(const Context& context, uint64_t bytes, HostUse use)
+      : context_(context), use_(use), buffer_(context.spares().staging(context, bytes, use)) {}
+  vk::Buffer handle() const { return buffer_->handle(); }
+  std::byte* data() const { return buffer_->bytes().data(); }
+  void giveBack() { context_.spares().giveBack(std::move(buffer_), use_); }
+
+ private:
+  const Context& context_;
+  HostUse use_;
+  std::unique_ptr<HostBuffer> buffer_;
+};
 
 // A level of an image goes by whole rows, at least one a chunk.
 struct Rows {
@@ -46,10 +62,9 @@ void uploadBytes(const Context& context, const Buffer& buffer, std::span<const s
                  uint64_t offset, uint64_t chunk) {
   assert(offset <= buffer.size() && data.size() <= buffer.size() - offset);
   if (data.empty()) return;
-  const HostBuffer staging(context, std::min<uint64_t>(chunk, data.size()), HostUse::upload,
-                           "upload staging");
+  Staging staging(context, std::min<uint64_t>(chunk, data.size()), HostUse::upload);
   inChunks(data.size(), chunk, [&](uint64_t done, uint64_t bytes) {
-    std::memcpy(staging.bytes().data(), data.data() + done, bytes);
+    std::memcpy(staging.data(), data.data() + done, bytes);
     submitAndWait(context, [&](vk::CommandBuffer cmd) {
       allToAll(cmd);
       cmd.copyBuffer(staging.handle(), buffer.handle(),
@@ -57,14 +72,14 @@ void uploadBytes(const Context& context, const Buffer& buffer, std::span<const s
       allToAll(cmd);
     });
   });
+  staging.giveBack();
 }
 
 void downloadBytes(const Context& context, const Buffer& buffer, std::span<std::byte> data, uint64_t offset,
                    uint64_t chunk) {
   assert(offset <= buffer.size() && data.size() <= buffer.size() - offset);
   if (data.empty()) return;
-  const HostBuffer staging(context, std::min<uint64_t>(chunk, data.size()), HostUse::readback,
-                           "download staging");
+  Staging staging(context, std::min<uint64_t>(chunk, data.size()), HostUse::readback);
   inChunks(data.size(), chunk, [&](uint64_t done, uint64_t bytes) {
     submitAndWait(context, [&](vk::CommandBuffer cmd) {
       allToAll(cmd);
@@ -72,8 +87,9 @@ void downloadBytes(const Context& context, const Buffer& buffer, std::span<std::
                      vk::BufferCopy{.srcOffset = offset + done, .dstOffset = 0, .size = bytes});
       transferToHost(cmd);
     });
-    std::memcpy(data.data() + done, staging.bytes().data(), bytes);
+    std::memcpy(data.data() + done, staging.data(), bytes);
   });
+  staging.giveBack();
 }
 
 void downloadPieces(const Context& context, const Buffer& buffer, std::span<std::byte> data,
@@ -82,7 +98,7 @@ void downloadPieces(const Context& context, const Buffer& buffer, std::span<std:
   const uint64_t pieces = offsets.size();
   if (pieces == 0) return;
   const uint64_t perChunk = std::clamp<uint64_t>(chunk / bytes, 1, pieces);
-  const HostBuffer staging(context, perChunk * bytes, HostUse::readback, "download staging");
+  Staging staging(context, perChunk * bytes, HostUse::readback);
   inChunks(pieces, perChunk, [&](uint64_t done, uint64_t count) {
     std::vector<vk::BufferCopy> copies(count);
     for (uint64_t i = 0; i < count; ++i)
@@ -92,8 +108,9 @@ void downloadPieces(const Context& context, const Buffer& buffer, std::span<std:
       cmd.copyBuffer(buffer.handle(), staging.handle(), copies);
       transferToHost(cmd);
     });
-    std::memcpy(data.data() + done * bytes, staging.bytes().data(), count * bytes);
+    std::memcpy(data.data() + done * bytes, staging.data(), count * bytes);
   });
+  staging.giveBack();
 }
 
 void clear(const Context& context, const Buffer& buffer) {
@@ -108,12 +125,12 @@ void uploadLevels(const Context& context, const Image& image,
                   std::span<const std::span<const std::byte>> levels, ImageState after, uint64_t chunk) {
   assert(levels.size() == image.info().levels);
   const Rows first = rowsOf(image, 0, chunk);
-  const HostBuffer staging(context, first.bytes * first.perChunk, HostUse::upload, "image upload staging");
+  Staging staging(context, first.bytes * first.perChunk, HostUse::upload);
   for (uint32_t level = 0; level < levels.size(); ++level) {
     const Rows rows = rowsOf(image, level, first.bytes * first.perChunk);
     assert(levels[level].size() == rows.bytes * rows.height);
     inChunks(rows.height, rows.perChunk, [&](uint64_t row, uint64_t count) {
-      std::memcpy(staging.bytes().data(), levels[level].data() + row * rows.bytes, count * rows.bytes);
+      std::memcpy(staging.data(), levels[level].data() + row * rows.bytes, count * rows.bytes);
       submitAndWait(context, [&](vk::CommandBuffer cmd) {
         const bool begins = level == 0 && row == 0;
         const bool ends = level + 1 == levels.size() && row + count == rows.height;
@@ -125,6 +142,7 @@ void uploadLevels(const Context& context, const Image& image,
       });
     });
   }
+  staging.giveBack();
 }
 
 void uploadImageBytes(const Context& context, const Image& image, std::span<const std::byte> data,
@@ -136,7 +154,7 @@ void downloadImageBytes(const Context& context, const Image& image, ImageState n
                         uint64_t chunk) {
   const Rows rows = rowsOf(image, 0, chunk);
   assert(data.size() == rows.bytes * rows.height);
-  const HostBuffer staging(context, rows.bytes * rows.perChunk, HostUse::readback, "image download staging");
+  Staging staging(context, rows.bytes * rows.perChunk, HostUse::readback);
   inChunks(rows.height, rows.perChunk, [&](uint64_t row, uint64_t count) {
     submitAndWait(context, [&](vk::CommandBuffer cmd) {
       allToAll(cmd);
@@ -146,8 +164,9 @@ void downloadImageBytes(const Context& context, const Image& image, ImageState n
       transition(cmd, image, ImageState::transferSrc, now);
       transferToHost(cmd);
     });
-    std::memcpy(data.data() + row * rows.bytes, staging.bytes().data(), count * rows.bytes);
+    std::memcpy(data.data() + row * rows.bytes, staging.data(), count * rows.bytes);
   });
+  staging.giveBack();
 }
 
 }  // namespace skitter::gpu

@@ -2,12 +2,15 @@
 
 #include "gpu/barrier.h"
 #include "gpu/buffer.h"
+#include "gpu/spares.h"
 #include "gpu/timer.h"
+#include "gpu/transfer.h"
 #include "support/gpu_fixture.h"
 
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <stdexcept>
 
 namespace skitter::gpu {
 namespace {
@@ -104,6 +107,62 @@ TEST_F(SubmitTest, DisabledTimerIsSilent) {
   });
   EXPECT_TRUE(off.milliseconds().empty());
   EXPECT_TRUE(none.milliseconds().empty());
+}
+
+TEST_F(SubmitTest, OneMayBeMadeWithinAnother) {
+  const Buffer outer(context(), 16, "outer"), inner(context(), 16, "inner");
+  submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+    cmd.fillBuffer(outer.handle(), 0, VK_WHOLE_SIZE, 1);
+    upload(context(), inner, std::vector<uint32_t>(4, 2));
+  });
+  EXPECT_THAT(download<uint32_t>(context(), outer), ::testing::Each(1u));
+  EXPECT_THAT(download<uint32_t>(context(), inner), ::testing::Each(2u));
+}
+
+TEST_F(SubmitTest, WhatFailsIsNotUsedAgain) {
+  const Buffer buffer(context(), 16, "filled");
+  upload(context(), buffer, std::vector<uint32_t>(4, 1));
+  EXPECT_THROW(submitAndWait(context(),
+                             [&](vk::CommandBuffer cmd) {
+                               cmd.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 2);
+                               throw std::runtime_error("recording failed");
+                             }),
+               std::runtime_error);
+  EXPECT_THAT(download<uint32_t>(context(), buffer), ::testing::Each(1u));
+}
+
+TEST_F(SubmitTest, SparesAreKeptForTheNextCopy) {
+  Spares spares;
+  std::unique_ptr<CommandRing> commands = spares.commands(context());
+  const CommandRing* const ring = commands.get();
+  spares.giveBack(std::move(commands));
+  commands = spares.commands(context());
+  EXPECT_EQ(commands.get(), ring);
+  EXPECT_NE(spares.commands(context()).get(), ring);
+
+  std::unique_ptr<HostBuffer> staging = spares.staging(context(), 100000, HostUse::upload);
+  const HostBuffer* const buffer = staging.get();
+  EXPECT_GE(staging->size(), 100000u);
+  spares.giveBack(std::move(staging), HostUse::upload);
+  EXPECT_NE(spares.staging(context(), 100, HostUse::readback).get(), buffer);
+  // A smaller one does not take the place of a larger one, and one that is too small is not taken.
+  staging = spares.staging(context(), 1 << 20, HostUse::upload);
+  EXPECT_NE(staging.get(), buffer);
+  EXPECT_GE(staging->size(), 1u << 20);
+  const HostBuffer* const larger = staging.get();
+  std::unique_ptr<HostBuffer> smaller = spares.staging(context(), 100, HostUse::upload);
+  EXPECT_EQ(smaller.get(), buffer);
+  spares.giveBack(std::move(staging), HostUse::upload);
+  spares.giveBack(std::move(smaller), HostUse::upload);
+  EXPECT_EQ(spares.staging(context(), 100, HostUse::upload).get(), larger);
+}
+
+TEST_F(SubmitTest, LargeStagingIsNotKept) {
+  Spares spares;
+  std::unique_ptr<HostBuffer> staging = spares.staging(context(), Spares::mostStaging + 1, HostUse::upload);
+  EXPECT_EQ(staging->size(), Spares::mostStaging + 1);
+  spares.giveBack(std::move(staging), HostUse::upload);
+  EXPECT_LE(spares.staging(context(), 16, HostUse::upload)->size(), Spares::mostStaging);
 }
 
 }  // namespace
