@@ -27,9 +27,8 @@
 namespace skitter::render {
 namespace {
 
-// The level that each list draws after the camera's: a shadow's outline forgives much. Contacts are no level.
-constexpr int kLastLod = shared::CAMERA_LODS - 1;
-constexpr int kOtherLod[shared::INSTANCE_LISTS - shared::CAMERA_LODS] = {2, 3, 3, kLastLod};
+// The level that each list of shadows draws: their outline forgives much.
+constexpr int kOtherLod[shared::CONTACTS - shared::CAMERA_LODS] = {2, 3, 4};
 // The first list of each cascade, and where the last one's end.
 constexpr int kCascadeLists[shared::SHADOW_CASCADES + 1] = {shared::NEAR_FINE, shared::FAR_SHADOWS,
                                                             shared::CONTACTS};
@@ -117,6 +116,8 @@ CrowdForms formsOf(const crowd::Kind& kind) {
       .matrices = crowd::traitsOf(kind.controller).playsClips, .tinted = kind.tinted, .stumps = kind.hurts};
 }
 
+// The lists that draw meshes.
+constexpr int kMeshLists = shared::CONTACTS;
 // The level that a list draws: of the camera's each its own.
 int levelOf(int list) { return list < shared::CAMERA_LODS ? list : kOtherLod[list - shared::CAMERA_LODS]; }
 
@@ -168,7 +169,7 @@ gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Mat
 }
 
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureStore& store)
-    : cull_(s.context) {
+    : cull_(s.context), splats_(s) {
   if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
   for (const crowd::Kind& source : crowd.kinds) {
     Kind kind;
@@ -186,6 +187,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
     kind.lit = drawPipeline(s, litShading(kind.mesh.influences, formsOf(source)));
     kind.shadow = {s.context, shadowInfo(s, kind.mesh.influences, formsOf(source))};
     kind.contact = Contact(s, source);
+    kind.splat = splats_.makeKind(s, source, kind.mesh.radius);
     if (textures) makeParts(s, source, *textures, kind);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
@@ -202,6 +204,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       page.shadow = kind.shadow.bind(s.context, shadow);
       page.draw = kind.draw.bind(s.context, draw);
       page.lit = kind.lit.bind(s.context, draw);
+      if (kind.splat) page.splat = splats_.bind(s, kind.splat, source, records, page.culled);
       if (kind.contact) page.contact = kind.contact.makePage(s, records);
       if (!kind.parts.empty()) bindParts(s, *textures, shadow, draw, kind, page);
       kind.pages.push_back(std::move(page));
@@ -258,7 +261,7 @@ void CrowdDrawing::bindParts(const Setting& s, const Textures& textures,
     page.shadowPart.push_back(bound(shadowOf(kind, p), kind.shadow, shadow));
   }
   std::vector<VkDrawIndexedIndirectCommand> draws;
-  for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
+  for (int list = 0; list < kMeshLists; ++list)
     for (const MeshPart& part : kind.mesh.parts) draws.push_back(commandOf(part.lods[size_t(levelOf(list))]));
   page.partDraws =
       gpu::Buffer(s.context, draws.size() * sizeof draws[0], "part draws", gpu::BufferUse::indirect);
@@ -268,16 +271,28 @@ void CrowdDrawing::bindParts(const Setting& s, const Textures& textures,
 void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
   for (const Kind& kind : kinds_)
     for (const Page& page : kind.pages) {
-      VkDrawIndexedIndirectCommand draws[shared::INSTANCE_LISTS];
-      for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
+      VkDrawIndexedIndirectCommand draws[shared::INSTANCE_LISTS] = {};
+      for (int list = 0; list < kMeshLists; ++list)
         draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
+      draws[shared::SPLATS].vertexOffset = 1, draws[shared::SPLATS].firstInstance = 1;  // groups in y and z
       cmd.updateBuffer(page.culled.commands.handle(), 0, sizeof draws, draws);
     }
+  if (hasSplats()) splats_.prepare(cmd);
 }
 
 void CrowdDrawing::cull(vk::CommandBuffer cmd) const {
   for (const Kind& kind : kinds_)
-    for (const Page& page : kind.pages) cull_.record(cmd, page.culled, kind.mesh.radius);
+    for (const Page& page : kind.pages) cull_.record(cmd, page.culled, kind.mesh.radius, bool(kind.splat));
+}
+
+void CrowdDrawing::splat(vk::CommandBuffer cmd) const {
+  if (!hasSplats()) return;
+  gpu::computeToIndirectAndCompute(cmd);
+  for (uint32_t k = 0; k < kinds_.size(); ++k)
+    if (kinds_[k].splat)
+      for (const Page& page : kinds_[k].pages)
+        splats_.record(cmd, kinds_[k].splat, page.splat, page.culled,
+                       constantsOf(k, page, shared::VIEW_CAMERA));
 }
 
 void CrowdDrawing::countParts(vk::CommandBuffer cmd) const {
@@ -288,7 +303,7 @@ void CrowdDrawing::countParts(vk::CommandBuffer cmd) const {
   gpu::computeToTransfer(cmd);
   for (const Kind& kind : kinds_) {
     std::vector<vk::BufferCopy> copies;
-    for (vk::DeviceSize list = 0; list < vk::DeviceSize(shared::INSTANCE_LISTS); ++list)
+    for (vk::DeviceSize list = 0; list < vk::DeviceSize(kMeshLists); ++list)
       for (vk::DeviceSize part = 0; part < kind.parts.size(); ++part)
         copies.push_back({.srcOffset = list * stride + count,
                           .dstOffset = (list * kind.parts.size() + part) * stride + count,
@@ -304,10 +319,7 @@ void CrowdDrawing::countParts(vk::CommandBuffer cmd) const {
 void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
   for (uint32_t k = 0; k < kinds_.size(); ++k)
     for (const Page& page : kinds_[k].pages) {
-      const shared::CrowdConstants constants{.view = uint32_t(shared::VIEW_CAMERA + 1 + cascade),
-                                             .palette = kinds_[k].palette,
-                                             .firstAgent = page.firstAgent,
-                                             .kind = k};
+      const shared::CrowdConstants constants = constantsOf(k, page, shared::VIEW_CAMERA + 1 + cascade);
       const int first = kCascadeLists[cascade], end = kCascadeLists[cascade + 1];
       const auto cutout = [](const Worn& worn) { return worn.cutout; };
       if (std::ranges::none_of(kinds_[k].worn, cutout)) {
@@ -324,6 +336,15 @@ void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
     }
 }
 
+shared::CrowdConstants CrowdDrawing::constantsOf(uint32_t kind, const Page& page, int view) const {
+  return {
+      .view = uint32_t(view), .palette = kinds_[kind].palette, .firstAgent = page.firstAgent, .kind = kind};
+}
+
+bool CrowdDrawing::hasSplats() const {
+  return std::ranges::any_of(kinds_, [](const Kind& kind) { return kind.splat && !kind.pages.empty(); });
+}
+
 bool CrowdDrawing::hasAgents() const {
   return std::ranges::any_of(kinds_, [](const Kind& kind) { return !kind.pages.empty(); });
 }
@@ -337,17 +358,17 @@ PictureCounts CrowdDrawing::counts(const gpu::Context& context) const {
         counts.agents += draws[lod].instanceCount;
         counts.triangles += uint64_t(draws[lod].instanceCount) * (draws[lod].indexCount / 3);
       }
+      counts.agents += draws[shared::SPLATS].instanceCount;
+      counts.splats += draws[shared::SPLATS].instanceCount;
     }
   return counts;
 }
 
 void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
+  if (hasSplats()) splats_.draw(cmd);
   for (uint32_t k = 0; k < kinds_.size(); ++k)
     for (const Page& page : kinds_[k].pages) {
-      const shared::CrowdConstants constants{.view = shared::VIEW_CAMERA,
-                                             .palette = kinds_[k].palette,
-                                             .firstAgent = page.firstAgent,
-                                             .kind = k};
+      const shared::CrowdConstants constants = constantsOf(k, page, shared::VIEW_CAMERA);
       if (kinds_[k].parts.empty()) {
         for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) {
           if (lod == 0) kinds_[k].draw.use(cmd, page.draw, gpu::bytesOf(constants));
@@ -369,6 +390,7 @@ void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
 }
 
 void CrowdDrawing::drawContacts(vk::CommandBuffer cmd) const {
+  if (hasSplats()) splats_.drawShades(cmd);
   for (const Kind& kind : kinds_)
     if (kind.contact)
       for (const Page& page : kind.pages) kind.contact.draw(cmd, page.contact, page.culled, kind.palette);

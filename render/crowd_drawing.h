@@ -5,6 +5,7 @@
 #include "render/cull.h"
 #include "render/mesh.h"
 #include "render/setting.h"
+#include "render/splats.h"
 #include "render/textures.h"
 #include "skitter/renderer.h"
 
@@ -31,8 +32,10 @@ class CrowdDrawing {
 
   // Outside rendering, before a transferToCompute(): empties the lists.
   void prepare(vk::CommandBuffer) const;
-  // Fills them; before a computeToGraphics().
+  // Fills them.
   void cull(vk::CommandBuffer) const;
+  // Draws small agents; after that, before a computeToGraphics().
+  void splat(vk::CommandBuffer) const;
   // Gives each part of a kind with materials, and contacts, their counts of agents; after the
   // computeToGraphics().
   void countParts(vk::CommandBuffer) const;
@@ -49,7 +52,7 @@ class CrowdDrawing {
   struct Page {
     uint32_t firstAgent = 0;
     CulledPage culled;
-    gpu::Bindings draw, lit, shadow;
+    gpu::Bindings draw, lit, shadow, splat;
     Contact::Page contact;
     // For a kind with materials: the indirect draws of each list, part by part, and each part's bindings.
     gpu::Buffer partDraws;
@@ -70,6 +73,7 @@ class CrowdDrawing {
     Mesh mesh;
     gpu::GraphicsPipeline draw, lit, shadow;
     Contact contact;
+    Splats::Kind splat;
     std::vector<Part> parts;  // as the mesh's
     std::vector<Worn> worn;
     std::vector<Page> pages;
@@ -83,7 +87,11 @@ class CrowdDrawing {
   void drawListPart(vk::CommandBuffer, const Kind&, const Page&, int list, size_t part) const;
   void bindBuffers(vk::CommandBuffer, const Kind&, const Page&, int list) const;
 
+  bool hasSplats() const;
+  shared::CrowdConstants constantsOf(uint32_t kind, const Page&, int view) const;
+
   Cull cull_;
+  Splats splats_;
   std::vector<Kind> kinds_;
 };
 

@@ -34,9 +34,13 @@ CulledPage Cull::makePage(const gpu::Context& context, const gpu::Buffer& pictur
   return page;
 }
 
-void Cull::record(vk::CommandBuffer cmd, const CulledPage& page, float radius) const {
-  shared::CullConstants constants{
-      .agents = page.agents, .radius = radius, .lodPixels = {}, .contactPixels = kContactPixels};
+void Cull::record(vk::CommandBuffer cmd, const CulledPage& page, float radius, bool splats) const {
+  shared::CullConstants constants{.agents = page.agents,
+                                  .radius = radius,
+                                  .lodPixels = {},
+                                  .contactPixels = kContactPixels,
+                                  .splatPixels = splats ? kSplatPixels : 0,
+                                  .shadePixels = splats ? kShadePixels : 0};
   std::copy(std::begin(kLodPixels), std::end(kLodPixels), constants.lodPixels);
   kernel_.dispatch(cmd, page.bindings, gpu::bytesOf(constants),
                    gpu::groupsFor(page.agents, shared::WORK_GROUP));

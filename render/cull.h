@@ -20,7 +20,8 @@ class Cull {
 
   CulledPage makePage(const gpu::Context&, const gpu::Buffer& picture, const gpu::Buffer& bodies,
                       uint32_t agents) const;
-  void record(vk::CommandBuffer, const CulledPage&, float radius) const;
+  // `splats`: whether small agents may be drawn as such.
+  void record(vk::CommandBuffer, const CulledPage&, float radius, bool splats) const;
 
  private:
   gpu::Kernel kernel_;

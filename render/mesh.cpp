@@ -238,13 +238,6 @@ void appendLods(MeshData& data, const Skin& skin) {
   }
 }
 
-// The rig with the colours that its textures give it: ribbons are drawn without textures.
-Rig coloured(Rig rig) {
-  const std::vector<glm::vec3> colours = wornColours(rig.vertices, rig.look);
-  for (size_t v = 0; v < colours.size(); ++v) rig.vertices[v].colour = colours[v];
-  return rig;
-}
-
 }  // namespace
 
 std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
@@ -258,11 +251,19 @@ std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
   return surfaces;
 }
 
+Rig colouredRig(const Rig& rig) {
+  Rig coloured = rig;
+  if (!rig.look) return coloured;
+  const std::vector<glm::vec3> colours = wornColours(rig.vertices, rig.look);
+  for (size_t v = 0; v < colours.size(); ++v) coloured.vertices[v].colour = colours[v];
+  return coloured;
+}
+
 MeshData makeMesh(const Rig& rig) {
   MeshData data;
   data.radius = crowd::radiusOf(rig);
-  const Rig worn = rig.look ? coloured(rig) : Rig();
-  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), rig.look, rig.look ? &worn : &rig});
+  const Rig coloured = colouredRig(rig);
+  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), rig.look, &coloured});
   return data;
 }
 

@@ -22,6 +22,10 @@ struct MeshVertex {
 
 // Pixels that an agent's radius covers, down to which each level of detail but the last serves.
 inline constexpr std::array<float, shared::CAMERA_LODS - 1> kLodPixels{150, 75, 25, 10};
+// The same of agents that are drawn as triangles, where there are splats for those that are smaller.
+inline constexpr float kSplatPixels = 25;
+// The same of agents whose shadow is triangles.
+inline constexpr float kShadePixels = 12;
 // The same for contacts.
 inline constexpr float kContactPixels = 40;
 // The same for surfaces without ribbons (surfacesOf).
@@ -58,6 +62,9 @@ struct Surface {
 // A skin at its levels of detail as surfaces alone, finest first; none of a skin without triangles.
 std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
                                 const std::vector<uint32_t>& indices);
+
+// The rig with the colours that its textures give it, for what is drawn without textures.
+Rig colouredRig(const Rig&);
 
 MeshData makeMesh(const Rig&);
 MeshData makeMesh(const ClipSet&);  // its palette holds matrices

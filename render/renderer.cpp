@@ -20,7 +20,7 @@ namespace {
 
 constexpr vk::Format kColour = vk::Format(Renderer::colourFormat);
 constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
-constexpr uint32_t kPasses = 6;  // cull, shadow, crowd, ground, sky, filter
+constexpr uint32_t kPasses = 7;  // cull, splats, shadow, crowd, ground, sky, filter
 
 vk::Extent2D checkedExtent(const gpu::Context& context, uint32_t width, uint32_t height) {
   const uint32_t most = context.limits().maxImageDimension2D;
@@ -103,17 +103,9 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       ground(render::makeGroundMap(c, source.terrain, glm::vec3(light.towards))),
       groundSampler(gpu::makeSampler(c, {.name = "ground map"})),
       shadow(c, height),
-      setting{c,
-              source.terrain,
-              source.heights,
-              picture,
-              ground,
-              *groundSampler,
-              shadow,
-              drawnFormat(),
-              kDepth,
-              samples,
-              render::lightConstants(light)},
+      setting{c,      source.terrain, source.heights,  picture,
+              ground, *groundSampler, shadow,          drawnFormat(),
+              kDepth, samples,        colour.extent(), render::lightConstants(light)},
       terrain(setting),
       obstacles(setting, source),
       crowd(setting, source, textures),
@@ -158,6 +150,8 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   gpu::transferToGraphics(cmd);
 
   crowd.cull(cmd);
+  timer.next(cmd, "splats");
+  crowd.splat(cmd);
   gpu::computeToGraphics(cmd);
   crowd.countParts(cmd);
 

@@ -19,6 +19,7 @@ struct Setting {
   const ShadowMap& shadow;
   vk::Format colour, depth;
   vk::SampleCountFlagBits samples;
+  vk::Extent2D extent;
   const std::vector<gpu::SpecConstant> light;  // lightConstants of the scene's
 
   // Constants of whatever is lit (shaders/render/light.glsl).

@@ -136,9 +136,10 @@ FrameTimes timeFrames(Device& device, const Heightfield& terrain, const Scene& s
 }
 
 void print(const FrameTimes& times) {
-  fmt::print("\n{} agents, {} in view: {:.2f} frames a second, {:.1f} ms of CPU a frame, {} triangles\n",
-             times.agents, times.counts.agents, times.framesPerSecond, times.cpuMilliseconds,
-             times.counts.triangles);
+  fmt::print(
+      "\n{} agents, {} in view: {:.2f} frames a second, {:.1f} ms of CPU a frame, {} splats, {} triangles\n",
+      times.agents, times.counts.agents, times.framesPerSecond, times.cpuMilliseconds, times.counts.splats,
+      times.counts.triangles);
   for (const StageTime& part : times.parts) fmt::print("{:<12}{:>10.3f} ms\n", part.stage, part.milliseconds);
 }
 
@@ -149,6 +150,7 @@ nlohmann::ordered_json jsonOf(const FrameTimes& times) {
           {"framesPerSecond", times.framesPerSecond},
           {"cpuMilliseconds", times.cpuMilliseconds},
           {"inView", times.counts.agents},
+          {"splats", times.counts.splats},
           {"triangles", times.counts.triangles},
           {"milliseconds", parts}};
 }

@@ -33,7 +33,8 @@ SKITTER_API View viewOf(const Scene& scene, const Crowd& crowd, double seconds);
 // What a picture consists of.
 struct PictureCounts {
   uint64_t agents = 0;     // in the camera's sight
-  uint64_t triangles = 0;  // of these, of the ground and of obstacles, without shadows
+  uint64_t splats = 0;     // of these, agents that are drawn without triangles
+  uint64_t triangles = 0;  // of the others, of the ground and of obstacles, without shadows
 };
 
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.

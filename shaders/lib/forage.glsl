@@ -15,6 +15,12 @@ int alongHeading(ivec2 heading, int direction) {
   return ((direction & 1) == 0 ? 512 : 362) * (by.x + by.y);
 }
 
+// How far the direction leads that leads furthest.
+int mostAlongHeading(ivec2 heading) {
+  ivec2 by = abs(heading);
+  return max(512 * max(by.x, by.y), 362 * (by.x + by.y));
+}
+
 // The heading after a move.
 ivec2 turnedHeading(ivec2 heading, int direction) {
   return ((3 * heading) >> 2) + 256 * forageStep(direction);
@@ -54,9 +60,7 @@ uint movesHome(uint moves, ivec2 cell, ivec2 nest) {
 
 // How much a forager prefers a move for its direction alone.
 uint preference(ivec2 heading, int direction, bool goesHome, ivec2 cell, ivec2 nest) {
-  int most = 0;
-  for (int d = 0; d < 8; ++d) most = max(most, alongHeading(heading, d));
-  uint ahead = 4 * alongHeading(heading, direction) > 3 * most ? 2u : 1u;
+  uint ahead = 4 * alongHeading(heading, direction) > 3 * mostAlongHeading(heading) ? 2u : 1u;
   int nearer = homeLength(cell, nest) - homeLength(cell + forageStep(direction), nest);
   int length = (direction & 1) == 0 ? 512 : 724;
   return goesHome && 2 * nearer > length ? 4u * ahead : ahead;

@@ -23,6 +23,10 @@ BINDING DRAW_TINT = 9;       // LOAD4, one an agent; read where CONSTANT_TINTED 
 BINDING DRAW_MATERIAL = 10;  // uniform block MaterialBlock (material.h)
 BINDING DRAW_TEXTURES = 11;  // the material's, in the order of TextureRole: five bindings
 
+BINDING DRAW_SPLAT_PARTS = 16;  // LOAD4, SplatPart (picture.h)
+BINDING DRAW_SPLATS = 17;       // uint a pixel (splat.glsl)
+BINDING DRAW_SPLAT_TILES = 18;  // uint a square of SPLAT_TILE pixels: whether there are any
+
 BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter
@@ -33,6 +37,7 @@ BINDING CONSTANT_STUMPS = 6;    // bones may be lost
 BINDING CONSTANT_DETAIL = 7;    // what of the ground may be seen: 1 clods, 2 grains and pebbles too
 BINDING CONSTANT_SHADED = 8;    // ground on which shadows may fall
 BINDING CONSTANT_STARS = 9;
+BINDING CONSTANT_SPLAT_PARTS = 10;
 // From here on the numbers of the light, in the order of `LightNumbers` in render/light.h. As numbers of the
 // picture's block they would cost a software device a fifth of what ground costs.
 BINDING CONSTANT_LIGHT = 16;

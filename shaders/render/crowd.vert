@@ -2,8 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "picture.glsl"
 #include "skin.glsl"
-#include "hash.glsl"
-#include "tint.h"
 #ifdef LIT
 #include "light.glsl"
 #include "shadow_map.glsl"
@@ -11,9 +9,8 @@
 #endif
 
 layout(location = 8) in vec3 colour;
-layout(constant_id = CONSTANT_TINTED) const bool TINTED = false;
 layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
-LOAD4_BUFFER(DRAW_TINT, tints)
+#include "variation.glsl"
 
 #ifdef LIT
 layout(location = 0) out vec3 outColour;  // as the picture shows it
@@ -60,26 +57,16 @@ void main() {
   float above = dot(s.position - s.body, normalize(vec3(-ground.x, 1.0, -ground.y)));
   float openness = ground.z * clamp(0.45 + 1.1 * above, 0.3, 1.0);
 
-  // No two alike: a little lighter or darker, redder or greyer.
-  uint h = hashed(uvec2(agent + constants.firstAgent, constants.kind));
-  float value = LEAST_VALUE + VALUE_RANGE * unitOf(h), warmth = unitOf(h * 0x9E3779B1u) - 0.5;
-  vec4 tint = vec4(1.0, 1.0, 1.0, 0.0);
-  if (TINTED) tint = LOAD4(tints, int(agent));
-  int flags = int(tint.w);
-  if ((flags & TINT_VARIED) != 0) value = 1.0, warmth = 0.0;
-  vec3 warm = vec3(1.0 + WARMTH_RANGE * warmth, 1.0, 1.0 - WARMTH_RANGE * warmth);
+  Variation variation = variationOf(agent, agent + constants.firstAgent, constants.kind);
 #ifdef WORN
   // The textures' colours come before all that.
   outColour = vec4(colour, opacity);
-  outTint = vec4(tint.xyz * value * warm, float(flags & TINT_LIGHTNESS));
+  outTint = vec4(variation.times, variation.lightness ? 1.0 : 0.0);
   outLight = vec2(openness, ground.w);
   outUv = uv;
   outTangent = vec4(s.tangent, tangent.w);
 #else
-  vec3 own = colour;
-  if ((flags & TINT_LIGHTNESS) != 0) own = vec3(dot(own, vec3(RED_LIGHTNESS, GREEN_LIGHTNESS, BLUE_LIGHTNESS)));
-  if (TINTED) own *= tint.xyz;
-  vec4 seen = vec4(own * value * warm, openness);
+  vec4 seen = vec4(varied(variation, colour), openness);
 #ifdef LIT
   vec3 normal = normalize(s.normal);
   // On a sphere the rim's mean is 0.1. The triangles of a coarse one would spread that of the outline over all of it.

@@ -15,9 +15,11 @@ layout(set = 0, binding = DRAW_COMMANDS, std430) buffer Commands { uint commands
 // and the way off the surface.
 const float FAR_REACH = 21.0;
 
-void append(uint list, uint agent) {
+// The agent's place in the list.
+uint append(uint list, uint agent) {
   uint place = atomicAdd(commands[list * DRAW_WORDS + 1], 1u);
   instances[list * constants.agents + place] = agent;
+  return place;
 }
 
 // The further of the ways along a cascade's sides, half of which is 1; `margin` is an agent's radius.
@@ -40,19 +42,21 @@ void main() {
   bool seen = inside > -constants.radius;
   float pixels = constants.radius / (max(away, 1e-3) * picture.eye.w);
   if (seen) {
-    uint lod = 0u;
-    for (int i = 0; i < CAMERA_LODS - 1; ++i) lod += pixels < constants.lodPixels[i] ? 1u : 0u;
-    append(lod, agent);
+    uint list = 0u;
+    for (int i = 0; i < CAMERA_LODS - 1; ++i) list += pixels < constants.lodPixels[i] ? 1u : 0u;
+    if (pixels < constants.splatPixels) list = SPLATS;
+    uint place = append(list, agent);
+    if (list == SPLATS && place % WORK_GROUP == 0u) atomicAdd(commands[SPLATS * DRAW_WORDS + 2], 1u);
     if (pixels >= constants.contactPixels) append(uint(CONTACTS), agent);
   }
   // An agent outside the picture may cast its shadow into it, but none is seen where shadows have faded. The far
   // cascade is not looked up where the near one holds the whole shadow and all from where it would be looked up.
   float ahead = dot(p - picture.eye.xyz, picture.forward.xyz);
-  bool casts = min(inside, picture.forward.w - ahead) > -4.0 * constants.radius;
+  bool casts = min(inside, picture.forward.w - ahead) > -4.0 * constants.radius && pixels >= constants.shadePixels;
   float nearMargin, farMargin;
   float outOfNear = outOfCascade(0, p, nearMargin), outOfFar = outOfCascade(1, p, farMargin);
   float nearAlone = 0.98 - 2.0 * FAR_REACH * picture.shadow.y / (picture.shadow.x * picture.shadow.w);
   if (casts && outOfNear < 1.0 + nearMargin)
-    append(uint(pixels < constants.lodPixels[2] ? NEAR_COARSE : NEAR_FINE), agent);
+    append(uint(pixels < constants.lodPixels[1] ? NEAR_COARSE : NEAR_FINE), agent);
   if (casts && outOfFar < 1.0 + farMargin && outOfNear + nearMargin > nearAlone) append(uint(FAR_SHADOWS), agent);
 }

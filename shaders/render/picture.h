@@ -19,13 +19,15 @@ using uint = uint32_t;
 // Two squares beside each other in one shadow map: sharp near the camera, coarse further away.
 SKITTER_PICTURE_CONST SHADOW_CASCADES = 2;
 // Instance lists of a page, and their indirect draws: the camera's levels of detail, then the near cascade's
-// finer and coarser shadows, the far cascade's, and who darkens the ground that it touches.
+// finer and coarser shadows, the far cascade's, who darkens the ground that it touches, and who is drawn as
+// splats (splat.comp).
 SKITTER_PICTURE_CONST CAMERA_LODS = 5;
 SKITTER_PICTURE_CONST NEAR_FINE = 5;
 SKITTER_PICTURE_CONST NEAR_COARSE = 6;
 SKITTER_PICTURE_CONST FAR_SHADOWS = 7;
 SKITTER_PICTURE_CONST CONTACTS = 8;
-SKITTER_PICTURE_CONST INSTANCE_LISTS = 9;
+SKITTER_PICTURE_CONST SPLATS = 9;
+SKITTER_PICTURE_CONST INSTANCE_LISTS = 10;
 // The camera's levels from this one on are lit at their vertices.
 SKITTER_PICTURE_CONST FIRST_VERTEX_LIT = 2;
 // clipFromPicture[VIEW_CAMERA], then one of each cascade.
@@ -33,8 +35,11 @@ SKITTER_PICTURE_CONST VIEW_CAMERA = 0;
 SKITTER_PICTURE_CONST VIEWS = 3;
 // Cells along a patch of the ground.
 SKITTER_PICTURE_CONST PATCH_CELLS = 8;
-// uint32 of a VkDrawIndexedIndirectCommand.
+// uint32 of a VkDrawIndexedIndirectCommand. Splats are no draw: their words are 0, their number, and the groups
+// that splat.comp is dispatched over.
 SKITTER_PICTURE_CONST DRAW_WORDS = 5;
+// Pixels along a square of the picture that is looked at for splats.
+SKITTER_PICTURE_CONST SPLAT_TILE = 32;
 
 struct Picture {
   mat4 clipFromPicture[VIEWS];
@@ -70,6 +75,25 @@ struct CullConstants {
   float radius;                      // about the body's position, metres
   float lodPixels[CAMERA_LODS - 1];  // the radius in pixels from which each level but the last serves
   float contactPixels;               // the same of contacts
+  float splatPixels;                 // the radius in pixels below which an agent is splats
+  float shadePixels;                 // the same of its shadow
+};
+
+// Push constants of splats and of what draws them.
+struct SplatConstants {
+  uint palette;        // pose entries an agent
+  uint firstAgent;     // of the page among its kind's
+  uint kind;
+  uint agents;         // of the page
+  float radius;        // about the body's position, metres
+  uint width, height;  // of the picture
+  float shadePixels;   // the radius in pixels below which its shadow is splats, too
+};
+
+// A shape between two ends, each relative to the rest start of a bone (entry of the pose palette).
+struct SplatPart {
+  vec4 from, to;                // xyz; radius, metres
+  vec4 colourFrom, colourTo;  // linear RGB; bone
 };
 
 #ifdef __cplusplus

@@ -16,7 +16,7 @@ namespace {
 
 using test::Sight;
 using Lists = std::vector<int>;  // ascending: 0 to 4 the camera's levels, 5 and 6 the near
-                                 // cascade, 7 the far one, 8 contacts
+                                 // cascade, 7 the far one, 8 contacts, 9 splats
 
 constexpr uint32_t kWidth = 640, kHeight = 360;
 constexpr float kRadius = 0.8f;
@@ -24,7 +24,8 @@ constexpr float kRadius = 0.8f;
 class CullTest : public test::GpuLoadTest {
  protected:
   // The lists that each agent is on.
-  std::vector<Lists> cull(const shared::Picture& picture, const std::vector<glm::dvec3>& places) {
+  std::vector<Lists> cull(const shared::Picture& picture, const std::vector<glm::dvec3>& places,
+                          bool splats = false) {
     std::vector<float> bodies(places.size() * shared::BODY_STRIDE * 4);
     for (size_t i = 0; i < places.size(); ++i) {
       const glm::dvec3 tile = glm::floor(places[i] / double(shared::TILE_SIZE));
@@ -42,16 +43,19 @@ class CullTest : public test::GpuLoadTest {
     const Cull cull(context());
     const CulledPage page = cull.makePage(context(), block, records, agents);
     gpu::clear(context(), page.commands);
-    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius); });
+    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius, splats); });
 
     const auto draws = gpu::download<VkDrawIndexedIndirectCommand>(context(), page.commands);
     const auto instances = gpu::download<uint32_t>(context(), page.instances);
+    groups_ = draws.at(shared::SPLATS).firstIndex;
     std::vector<Lists> found(agents);
     for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
       for (uint32_t i = 0; i < draws.at(size_t(list)).instanceCount; ++i)
         found.at(instances.at(size_t(list) * agents + i)).push_back(list);
     return found;
   }
+
+  uint32_t groups_ = 0;  // that splats were dispatched over
 };
 INSTANTIATE_TEST_SUITE_P(Loads, CullTest, test::bothLoadPaths(), test::loadPathName);
 
@@ -122,8 +126,30 @@ TEST_P(CullTest, theRadiusInPixelsChoosesTheLevel) {
     EXPECT_EQ(found[i].front(), expected[i]) << "agent " << i;
     EXPECT_TRUE(found[i].size() == 1 || found[i][1] > 4) << "agent " << i;
     // The near cascade draws who is small in the picture more coarsely.
-    EXPECT_EQ(std::ranges::count(found[i], 5), expected[i] < 3) << "agent " << i;
-    EXPECT_EQ(std::ranges::count(found[i], 6), expected[i] >= 3) << "agent " << i;
+    EXPECT_EQ(std::ranges::count(found[i], 5), expected[i] < 2) << "agent " << i;
+    EXPECT_EQ(std::ranges::count(found[i], 6), expected[i] >= 2) << "agent " << i;
+  }
+}
+
+// Where there are splats, who is small is on their list in place of a level's, and who is smaller still casts
+// no shadow of triangles. There are as many groups as hold the list.
+TEST_P(CullTest, theRadiusInPixelsChoosesSplats) {
+  const Sight s(kView, kWidth, kHeight);
+  const double onePixel = double(kRadius) * kHeight / (2 * s.tanY);
+  std::vector<glm::dvec3> places;
+  for (const double pixels : {25 * 1.005, 25 * 0.995, 12 * 1.005, 12 * 0.995})
+    places.push_back(s.eye + onePixel / pixels * s.forward);
+  const std::vector<Lists> found = cull(picture(), places, true), without = cull(picture(), places);
+  for (size_t i = 0; i < places.size(); ++i) {
+    EXPECT_EQ(std::ranges::count(found[i], 9), i > 0) << "agent " << i;
+    EXPECT_EQ(std::ranges::any_of(found[i], [](int list) { return list < 5; }), i == 0) << "agent " << i;
+    EXPECT_EQ(std::ranges::any_of(found[i], isShadow), i < 3) << "agent " << i;
+    EXPECT_EQ(std::ranges::count(without[i], 9), 0) << "agent " << i;
+    EXPECT_TRUE(std::ranges::any_of(without[i], isShadow)) << "agent " << i;
+  }
+  for (const uint32_t many : {1u, 128u, 129u, 1000u}) {
+    cull(picture(), std::vector(many, places[3]), true);
+    EXPECT_EQ(groups_, (many + 127) / 128) << many;
   }
 }
 

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "crowd/herd.h"
+#include "gpu/graphics.h"
+#include "gpu/kernel.h"
+#include "render/cull.h"
+#include "render/setting.h"
+
+namespace skitter::render {
+
+// Agents that are a few pixels large, drawn by a compute shader (docs/stages/pictures.md, Splats): triangles
+// so small cost more than they show.
+class Splats {
+ public:
+  Splats() = default;
+  explicit Splats(const Setting&);
+
+  // What a kind looks like as splats. None of one that plays clips, whose models have no legs.
+  struct Kind {
+    gpu::Kernel kernel;
+    gpu::Buffer parts;
+    float radius = 0;  // about the body's position, metres
+    explicit operator bool() const { return bool(kernel); }
+  };
+  Kind makeKind(const Setting&, const crowd::Kind&, float radius) const;
+  gpu::Bindings bind(const Setting&, const Kind&, const crowd::Kind& source, const crowd::Page&,
+                     const CulledPage&) const;
+
+  // Before a transferToCompute(): empties what the last picture left.
+  void prepare(vk::CommandBuffer) const;
+  // After the cull and a computeToIndirectAndCompute(), before a computeToGraphics().
+  void record(vk::CommandBuffer, const Kind&, const gpu::Bindings&, const CulledPage&,
+              const shared::CrowdConstants&) const;
+  // All of them, with their depth.
+  void draw(vk::CommandBuffer) const;
+  // Their shadows, after the ground.
+  void drawShades(vk::CommandBuffer) const;
+
+  // As the shader has them (splat.glsl): a number a pixel, then one of its shadow; and whether a square has
+  // any.
+  const gpu::Buffer& splats() const { return splats_; }
+  const gpu::Buffer& tiles() const { return tiles_; }
+
+ private:
+  shared::SplatConstants picture() const;
+
+  vk::Extent2D extent_;
+  gpu::Buffer splats_, tiles_;
+  gpu::GraphicsPipeline draw_, shade_;
+  gpu::Bindings drawBindings_, shadeBindings_;
+};
+
+}  // namespace skitter::render

@@ -1,0 +1,138 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Draws agents that are a few pixels large: shapes of the pose, pixel by pixel, into a buffer that holds the nearest.
+// The smallest cast their shadows so, too, onto the plane of the ground below them.
+#include "picture.glsl"
+#include "fold.glsl"
+#include "lib/heightfield.glsl"
+#include "lib/load4.glsl"
+#include "lib/math.glsl"
+#include "light.glsl"
+#include "splat.glsl"
+#include "variation.glsl"
+
+layout(local_size_x = WORK_GROUP) in;
+layout(constant_id = CONSTANT_SPLAT_PARTS) const int PARTS = 1;
+layout(constant_id = CONSTANT_STUMPS) const bool STUMPS = false;
+layout(push_constant) uniform ConstantBlock { SplatConstants constants; };
+LOAD4_BUFFER(DRAW_BODY, bodies)
+LOAD4_BUFFER(DRAW_POSE, poses)
+LOAD4_BUFFER(DRAW_SPLAT_PARTS, parts)
+layout(set = 0, binding = DRAW_HEIGHTS) uniform sampler2D heights;
+layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
+layout(set = 0, binding = DRAW_INSTANCES, std430) readonly buffer Instances { uint instances[]; };
+layout(set = 0, binding = DRAW_COMMANDS, std430) readonly buffer Commands { uint commands[]; };
+layout(set = 0, binding = DRAW_SPLATS, std430) buffer Splats { uint splats[]; };
+layout(set = 0, binding = DRAW_SPLAT_TILES, std430) buffer Tiles { uint tiles[]; };
+
+// Normals of what is round lean so far to both sides, and the rim adds so much of the sky's light, as in lit
+// vertices (skin.glsl, crowd.vert).
+const float ROUNDNESS = 0.6, RIM = 0.35 * 0.1;
+const float THIN = 0.75;  // pixels; what has a smaller radius is one pixel wide
+// A shadow's strength by the radius in pixels, at least and at most; the sun is as steep as that to the ground, at
+// least; and a shadow is at most so many of the agent's radii away.
+const float LEAST_SHADE = 0.2, MOST_SHADE = 0.9, LEAST_SUN = 0.1, MOST_WAY = 1.2;
+
+// Relative to the agent's position.
+vec3 posed(int entry, vec3 part, out bool lost) {
+  vec4 start = LOAD4(poses, entry + 1);
+  lost = STUMPS && start.w != 0.0;
+  return start.xyz + rotate(LOAD4(poses, entry), part);
+}
+
+// Pixels from the upper left corner, and the depth.
+vec3 seenAt(vec3 p) {
+  vec4 clip = picture.clipFromPicture[VIEW_CAMERA] * vec4(p, 1.0);
+  vec3 seen = clip.xyz / clip.w;
+  return vec3((0.5 + vec2(0.5, -0.5) * seen.xy) * vec2(constants.width, constants.height), seen.z);
+}
+
+// A capsule of radii in pixels, into the plane that begins at `plane`.
+void stroke(vec3 here, vec3 there, vec2 radii, uint low, uint plane) {
+  ivec2 end = ivec2(constants.width, constants.height);
+  int steps = 1 + int(length(there.xy - here.xy) / max(1.0, 0.5 * max(radii.x, radii.y)));
+  for (int s = 0; s < steps; ++s) {
+    float t = (float(s) + 0.5) / float(steps), wide = mix(radii.x, radii.y, t);
+    if (wide < THIN) wide = 0.0;
+    vec3 at = mix(here, there, t);
+    uint splat = packedDepth(at.z) | low;
+    ivec2 first = clamp(ivec2(floor(at.xy - wide)), ivec2(0), end);
+    ivec2 last = clamp(ivec2(floor(at.xy + wide)), ivec2(-1), end - 1);
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) {
+        vec2 off = vec2(x, y) + 0.5 - at.xy;
+        if (wide == 0.0 || dot(off, off) <= wide * wide) atomicMax(splats[plane + y * constants.width + x], splat);
+      }
+  }
+}
+
+// The squares of the picture that may be drawn in.
+void mark(vec3 body, float pixels) {
+  ivec2 most = ivec2(constants.width, constants.height) - 1;
+  vec2 middle = seenAt(body).xy;
+  float reach = (1.0 + MOST_WAY) * pixels + 2.0;
+  ivec2 first = clamp(ivec2(floor(middle - reach)), ivec2(0), most) / SPLAT_TILE;
+  ivec2 last = clamp(ivec2(floor(middle + reach)), ivec2(0), most) / SPLAT_TILE;
+  int across = (most.x + SPLAT_TILE) / SPLAT_TILE;
+  for (int y = first.y; y <= last.y; ++y)
+    for (int x = first.x; x <= last.x; ++x) atomicOr(tiles[y * across + x], 1u);
+}
+
+void main() {
+  uint place = gl_GlobalInvocationID.x;
+  if (place >= commands[SPLATS * DRAW_WORDS + 1]) return;
+  uint agent = instances[SPLATS * constants.agents + place];
+  vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE);
+  vec3 body = a.xyz + TILE_SIZE * vec3(tileX(a.w) - picture.tile.x, 0.0, tileZ(a.w) - picture.tile.y);
+  vec3 sun = picture.sun.xyz, toEye = picture.eye.xyz - body;
+  float away = length(toEye);
+  toEye /= away;
+  float metresAPixel = away * picture.eye.w, pixels = constants.radius / metresAPixel;
+  mark(body, pixels);
+
+  vec2 at = (body.xz - picture.ground.xy) / picture.ground.zw;
+  vec4 ground = textureLod(groundMap, (at + 0.5) / vec2(textureSize(groundMap, 0)), 0.0);
+  vec3 slope = normalize(vec3(-ground.x, 1.0, -ground.y));
+  Field field = fieldOf(heights, vec2(0.0), vec2(1.0));
+  float below = heightAt(heights, field, foldedAt(at, field.last).at).x - body.y;
+  // Where the sun does not reach the ground nobody casts a shadow. The plane is not quite the ground that is drawn.
+  float steep = dot(sun, slope);
+  bool casts = pixels < constants.shadePixels && steep > LEAST_SUN && ground.w > 0.5;
+  vec3 lifted = toEye * (0.012 + 2.0 * metresAPixel);
+  uint shades = constants.width * constants.height;
+  Variation variation = variationOf(agent, agent + constants.firstAgent, constants.kind);
+  int palette = int(agent * constants.palette);
+
+  for (int i = 0; i < PARTS; ++i) {
+    vec4 from = LOAD4(parts, 4 * i), to = LOAD4(parts, 4 * i + 1);
+    vec4 colourFrom = LOAD4(parts, 4 * i + 2), colourTo = LOAD4(parts, 4 * i + 3);
+    bool lostFrom, lostTo;
+    vec3 first = posed((palette + int(colourFrom.w)) * POSE_STRIDE, from.xyz, lostFrom);
+    vec3 second = posed((palette + int(colourTo.w)) * POSE_STRIDE, to.xyz, lostTo);
+
+    // Both sides' light, of whatever is round about its middle line. A ball's sides are those of the sun.
+    vec3 across = cross(second - first, toEye);
+    if (dot(across, across) < 1e-12) across = sun - dot(sun, toEye) * toEye;
+    across *= ROUNDNESS * inversesqrt(max(dot(across, across), 1e-12));
+    vec3 oneSide = normalize(toEye + across), otherSide = normalize(toEye - across);
+    float facing = 0.5 * (max(dot(oneSide, sun), 0.0) + max(dot(otherSide, sun), 0.0));
+    float above = 0.5 * dot(first + second, slope);
+    vec3 ambient = 0.5 * (ambientLight(oneSide) + ambientLight(otherSide)) *
+                   (ground.z * clamp(0.45 + 1.1 * above, 0.3, 1.0));
+    vec3 colour = varied(variation, 0.5 * (colourFrom.rgb + colourTo.rgb));
+    vec3 light = colour * (SUN_LIGHT * (facing * ground.w) + ambient) + RIM * ambient;
+    vec3 root = developed(hazed(light, -toEye, away, picture.tile.w, sun));
+
+    vec2 radii = vec2(from.w, to.w) / metresAPixel;
+    if (!lostFrom && !lostTo) {
+      stroke(seenAt(body + first), seenAt(body + second), radii, packedColour(root), 0u);
+      if (casts) {
+        vec2 ways = vec2(dot(first, slope), dot(second, slope)) - below * slope.y;
+        ways = clamp(ways / steep, 0.0, MOST_WAY * constants.radius);
+        vec3 start = body + lifted;
+        stroke(seenAt(start + first - ways.x * sun), seenAt(start + second - ways.y * sun), radii,
+               packedShade(clamp(max(radii.x, radii.y), LEAST_SHADE, MOST_SHADE)), shades);
+      }
+    }
+  }
+}

@@ -1,0 +1,321 @@
+// Agents that are a few pixels large: their shapes against the skin, and what is drawn against the poses,
+// projected in doubles.
+#include "render/splats.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "crowd/radius.h"
+#include "gpu/submit.h"
+#include "gpu/transfer.h"
+#include "render/composition.h"
+#include "render/ground_map.h"
+#include "render/sight.h"
+#include "render/splat_parts.h"
+#include "skitter/records.h"
+#include "skitter/renderer.h"
+#include "support/gpu_fixture.h"
+
+namespace skitter::render {
+namespace {
+
+using test::Sight;
+
+double distanceToSegment(const glm::dvec3& point, const glm::dvec3& from, const glm::dvec3& to,
+                         double& share) {
+  const glm::dvec3 along = to - from;
+  share = std::clamp(glm::dot(point - from, along) / std::max(glm::dot(along, along), 1e-12), 0.0, 1.0);
+  return glm::distance(point, from + share * along);
+}
+
+// By the first vec4 of a body record.
+glm::dvec3 placeOf(const glm::vec4& body) {
+  return glm::dvec3(body) +
+         double(shared::TILE_SIZE) * glm::dvec3(shared::tileX(body.w), 0, shared::tileZ(body.w));
+}
+
+// At rest the skin lies about the shapes: on the whole within a fiftieth of the agent's radius.
+TEST(SplatParts, FollowTheSkin) {
+  for (const char* file : {"spider", SKITTER_ASSETS "/quadruped.glb"}) {
+    SCOPED_TRACE(file);
+    const Rig rig = std::string(file) == "spider" ? spiderRig() : loadRig(file);
+    const double radius = double(crowd::radiusOf(rig));
+    const std::vector<shared::SplatPart> parts = splatPartsOf(rig, float(radius) / 25);
+    ASSERT_GE(parts.size(), rig.legs.size() + 2);
+    EXPECT_LE(parts.size(), rig.legs.size() * size_t(rig.maxBones()) + 6);
+    const std::vector<glm::vec3> starts = rig.restStarts();
+    double sum = 0, most = 0;
+    for (const SkinVertex& vertex : rig.vertices) {
+      double least = 1e9;
+      for (const shared::SplatPart& part : parts) {
+        ASSERT_LT(part.colourFrom.w, float(rig.paletteSize()));
+        ASSERT_LT(part.colourTo.w, float(rig.paletteSize()));
+        double share = 0;
+        const double away =
+            distanceToSegment(vertex.position, starts[size_t(part.colourFrom.w)] + glm::vec3(part.from),
+                              starts[size_t(part.colourTo.w)] + glm::vec3(part.to), share);
+        least = std::min(least, std::abs(away - std::lerp(double(part.from.w), double(part.to.w), share)));
+      }
+      sum += least;
+      most = std::max(most, least);
+    }
+    EXPECT_LT(sum / double(rig.vertices.size()), radius / 50);
+    EXPECT_LT(most, radius / 7);
+  }
+}
+
+TEST(SplatParts, AreNoneOfASkinless) {
+  Rig rig = spiderRig();
+  rig.vertices.clear();
+  rig.indices.clear();
+  EXPECT_TRUE(splatPartsOf(rig, 0.1f).empty());
+}
+
+constexpr uint32_t kWidth = 203, kHeight = 131;  // no whole squares
+constexpr double kShadeLift = 2;                 // pixels towards the eye
+
+struct Splat {
+  double depth;  // metres ahead
+  uint32_t low;
+};
+
+// What the shader's numbers mean (shaders/render/splat.glsl), told anew.
+std::optional<Splat> unpacked(uint32_t splat) {
+  if (splat == 0) return {};
+  const uint32_t depth = splat >> 16, exponent = depth >> 12, mantissa = depth & 4095;
+  return Splat{0.05 / (std::ldexp(1 + mantissa / 4096.0, int(exponent) - 16)), splat & 65535};
+}
+
+class SplatTest : public test::GpuLoadTest {
+ protected:
+  struct Drawn {
+    std::vector<uint32_t> splats, shades, tiles;
+    std::vector<glm::vec4> bodies, poses;
+    glm::vec3 towardsSun;
+  };
+
+  static Heightfield level() {
+    return {.name = "level",
+            .columns = 33,
+            .rows = 33,
+            .spacingX = 4,
+            .spacingZ = 4,
+            .heights = std::vector<float>(33 * 33, 0.0f)};
+  }
+  Scene scene(uint32_t agents) {
+    Scene made;
+    made.terrain = TerrainNoise{.columns = 33, .rows = 33, .spacing = 4, .amplitude = 0};
+    made.herds.resize(1);
+    made.herds[0].agents = agents;
+    made.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 3};
+    return made;
+  }
+
+  Drawn draw(const Scene& made, const View& view) {
+    const Heightfield ground = level();
+    Crowd crowd(device(), ground, made);
+    for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
+    const Crowd::Impl& impl = implOf(crowd);
+    const LightModel light = lightModel(made.light);
+    const gpu::Buffer picture(context(), sizeof(shared::Picture), "picture", gpu::BufferUse::uniform);
+    const gpu::Image map = makeGroundMap(context(), ground, glm::vec3(light.towards));
+    const vk::raii::Sampler sampler = gpu::makeSampler(context(), {.name = "ground map"});
+    const ShadowMap shadow(context(), kHeight);
+    const Setting setting{.context = context(),
+                          .terrain = ground,
+                          .heights = impl.heights,
+                          .picture = picture,
+                          .ground = map,
+                          .groundSampler = *sampler,
+                          .shadow = shadow,
+                          .colour = vk::Format::eR8G8B8A8Unorm,
+                          .depth = vk::Format::eD32Sfloat,
+                          .samples = vk::SampleCountFlagBits::e1,
+                          .extent = {kWidth, kHeight},
+                          .light = lightConstants(light)};
+    const Composition composition = compose(view, light, ground, 0, 0, kWidth, kHeight, shadow.texels());
+    gpu::upload(context(), picture, std::span(&composition.block, 1));
+    const crowd::Kind& kind = impl.kinds.front();
+    const crowd::Page& page = kind.pages.front();
+    const float radius = crowd::radiusOf(kind.rig);
+    const Cull cull(context());
+    const CulledPage culled = cull.makePage(context(), picture, page.body, page.agents);
+    const Splats splats(setting);
+    const Splats::Kind look = splats.makeKind(setting, kind, radius);
+    const gpu::Bindings bindings = splats.bind(setting, look, kind, page, culled);
+    std::vector<VkDrawIndexedIndirectCommand> commands(shared::INSTANCE_LISTS);
+    commands[shared::SPLATS].vertexOffset = 1, commands[shared::SPLATS].firstInstance = 1;
+    gpu::upload(context(), culled.commands, commands);
+    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+      splats.prepare(cmd);
+      gpu::transferToCompute(cmd);
+      cull.record(cmd, culled, radius, true);
+      gpu::computeToIndirectAndCompute(cmd);
+      splats.record(cmd, look, bindings, culled,
+                    {.view = 0, .palette = uint32_t(kind.rig.paletteSize()), .firstAgent = 0, .kind = 0});
+      gpu::allToAll(cmd);
+    });
+    Drawn drawn;
+    drawn.splats = gpu::download<uint32_t>(context(), splats.splats());
+    drawn.shades.assign(drawn.splats.begin() + kWidth * kHeight, drawn.splats.end());
+    drawn.splats.resize(kWidth * kHeight);
+    drawn.tiles = gpu::download<uint32_t>(context(), splats.tiles());
+    drawn.bodies = gpu::download<glm::vec4>(context(), page.body);
+    drawn.poses = gpu::download<glm::vec4>(context(), page.pose);
+    drawn.towardsSun = light.towards;
+    return drawn;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Loads, SplatTest, test::bothLoadPaths(), test::loadPathName);
+
+// A capsule in the picture: pixels from the upper left corner, metres ahead, radii in pixels.
+struct Stroke {
+  glm::dvec3 from, to;
+  double radiusFrom, radiusTo;
+};
+
+// The strokes that agents of these poses are, and those of their shadows on level ground at height 0.
+struct Strokes {
+  std::vector<Stroke> agents, shades;
+};
+
+Strokes strokesOf(const Rig& rig, const View& view, const std::vector<glm::vec4>& bodies,
+                  const std::vector<glm::vec4>& poses, uint32_t agents, const glm::dvec3& sun) {
+  const Sight sight(view, kWidth, kHeight);
+  const double pixel = 2 * sight.tanY / kHeight;
+  const auto seen = [&](const glm::dvec3& p) {
+    const glm::dvec3 to = p - sight.eye;
+    const double ahead = glm::dot(to, sight.forward);
+    return glm::dvec3((0.5 + 0.5 * glm::dot(to, sight.right) / (ahead * sight.tanX)) * kWidth,
+                      (0.5 - 0.5 * glm::dot(to, sight.up) / (ahead * sight.tanY)) * kHeight, ahead);
+  };
+  Strokes made;
+  for (uint32_t agent = 0; agent < agents; ++agent) {
+    const glm::dvec3 at = placeOf(bodies[agent * shared::BODY_STRIDE]);
+    const double away = glm::distance(at, sight.eye);
+    const glm::dvec3 lift = (sight.eye - at) / away * (0.012 + kShadeLift * pixel * away);
+    const auto posed = [&](const glm::vec4& end, float bone) {
+      const size_t entry = (agent * size_t(rig.paletteSize()) + size_t(bone)) * size_t(shared::POSE_STRIDE);
+      const glm::dvec4 q = poses[entry];
+      return at + glm::dvec3(poses[entry + 1]) + glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(end);
+    };
+    for (const shared::SplatPart& part : splatPartsOf(rig, crowd::radiusOf(rig) / kSplatPixels)) {
+      const glm::dvec3 from = posed(part.from, part.colourFrom.w), to = posed(part.to, part.colourTo.w);
+      const double a = double(part.from.w) / (pixel * away), b = double(part.to.w) / (pixel * away);
+      made.agents.push_back({seen(from), seen(to), a, b});
+      const auto shade = [&](const glm::dvec3& p) { return seen(p - p.y / sun.y * sun + lift); };
+      made.shades.push_back({shade(from), shade(to), a, b});
+    }
+  }
+  return made;
+}
+
+// Each pixel lies on a stroke with its depth, and each stroke's middle line has pixels, of itself or of what
+// is nearer.
+void expectDrawn(const std::vector<uint32_t>& pixels, const std::vector<Stroke>& strokes) {
+  size_t drawn = 0, missing = 0;
+  for (uint32_t y = 0; y < kHeight; ++y)
+    for (uint32_t x = 0; x < kWidth; ++x) {
+      const auto splat = unpacked(pixels[y * kWidth + x]);
+      if (!splat) continue;
+      ++drawn;
+      const bool on = std::ranges::any_of(strokes, [&](const Stroke& s) {
+        double share = 0;
+        const double off =
+            distanceToSegment({x + 0.5, y + 0.5, 0}, {s.from.x, s.from.y, 0}, {s.to.x, s.to.y, 0}, share);
+        // A pixel that a thin stroke passes is up to 0.71 pixels from it; depth is that of a step as long as
+        // half the radius, to a 4096th.
+        const double depth = std::lerp(s.from.z, s.to.z, share);
+        const double steep = std::abs(s.to.z - s.from.z);
+        return off <= std::max(0.72, std::max(s.radiusFrom, s.radiusTo)) + 0.01 &&
+               std::abs(splat->depth - depth) < depth / 2000 + steep;
+      });
+      EXPECT_TRUE(on) << "pixel " << x << ", " << y;
+    }
+  for (const Stroke& s : strokes)
+    for (const double t : {0.1, 0.5, 0.9}) {
+      const glm::dvec3 p = glm::mix(s.from, s.to, t);
+      if (p.x < 1 || p.y < 1 || p.x >= kWidth - 1 || p.y >= kHeight - 1) continue;
+      bool found = false;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const auto splat = unpacked(pixels[size_t(int(p.y) + dy) * kWidth + size_t(int(p.x) + dx)]);
+          found = found || (splat && splat->depth < p.z * (1 + 1.0 / 2000) + std::abs(s.to.z - s.from.z));
+        }
+      missing += !found;
+    }
+  EXPECT_GT(drawn, 100u);
+  EXPECT_EQ(missing, 0u);
+}
+
+void expectMarked(const std::vector<uint32_t>& tiles, const std::vector<uint32_t>& pixels) {
+  const uint32_t across = (kWidth + 31) / 32;
+  for (uint32_t y = 0; y < kHeight; ++y)
+    for (uint32_t x = 0; x < kWidth; ++x)
+      if (pixels[y * kWidth + x] != 0) {
+        ASSERT_NE(tiles[y / 32 * across + x / 32], 0u) << "pixel " << x << ", " << y;
+      }
+}
+
+// Spiders of some 9 pixels' radius, some beyond the picture's edges.
+const View kFar{.eye = {-9, 14, -12}, .target = {0, 0, 1}, .fieldOfView = 0.9f};
+
+TEST_P(SplatTest, AreWhereThePosesAre) {
+  constexpr uint32_t agents = 150;  // more than a work group
+  const Scene made = scene(agents);
+  const Drawn drawn = draw(made, kFar);
+  const Strokes strokes = strokesOf(spiderRig(), kFar, drawn.bodies, drawn.poses, agents, drawn.towardsSun);
+  {
+    SCOPED_TRACE("agents");
+    expectDrawn(drawn.splats, strokes.agents);
+    expectMarked(drawn.tiles, drawn.splats);
+  }
+  SCOPED_TRACE("shadows");
+  expectDrawn(drawn.shades, strokes.shades);
+  expectMarked(drawn.tiles, drawn.shades);
+}
+
+TEST_P(SplatTest, TheSamePictureHasTheSameBits) {
+  const Scene made = scene(150);
+  const Drawn once = draw(made, kFar), again = draw(made, kFar);
+  EXPECT_EQ(once.splats, again.splats);
+  EXPECT_EQ(once.shades, again.shades);
+}
+
+// Nothing pops where an agent is splats from now on. Seen from the sun, its rectangle, of which it covers a
+// tenth, keeps its mean colour to 1 of 255: with twice the sunlight it would change by 2.4.
+TEST_P(SplatTest, LookAsTheTrianglesDid) {
+  Scene made = scene(1);
+  made.herds[0].goal.kind = Goal::Kind::none;
+  const Heightfield ground = level();
+  Crowd crowd(device(), ground, made);
+  for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
+  const glm::dvec3 at = placeOf(gpu::download<glm::vec4>(context(), implOf(crowd).kinds[0].pages[0].body)[0]);
+  const double radius = double(crowd::radiusOf(implOf(crowd).kinds.front().rig));
+  Renderer renderer(device(), crowd, 320, 200);
+  std::vector<std::vector<uint8_t>> pictures;
+  for (const double share : {1.002, 0.998}) {
+    const double away = radius * 200 / (2 * std::tan(0.15)) / (double(kSplatPixels) * share);
+    const glm::dvec3 eye = at + away * glm::normalize(glm::dvec3(0.6, 0.5, 0.7));
+    device().run([&](VkCommandBuffer cmd) {
+      renderer.record(cmd, {.eye = glm::vec3(eye), .target = glm::vec3(at), .fieldOfView = 0.3f});
+    });
+    EXPECT_EQ(renderer.counts().splats, share > 1 ? 0u : 1u);
+    pictures.push_back(renderer.download());
+  }
+  double mean[3] = {}, apart = 0;
+  int pixels = 0;
+  for (int y = 75; y < 125; ++y)
+    for (int x = 135; x < 185; ++x, ++pixels)
+      for (int c = 0; c < 3; ++c) {
+        const size_t i = size_t(y * 320 + x) * 4 + size_t(c);
+        mean[c] += double(pictures[1][i]) - pictures[0][i];
+        apart += std::abs(double(pictures[1][i]) - pictures[0][i]) / 3;
+      }
+  for (const double channel : mean) EXPECT_LT(std::abs(channel) / pixels, 1);
+  EXPECT_LT(apart / pixels, 3);
+}
+
+}  // namespace
+}  // namespace skitter::render
