@@ -41,7 +41,7 @@ class CrowdDrawing {
   void countParts(vk::CommandBuffer) const;
   void drawShadows(vk::CommandBuffer, int cascade) const;
   void draw(vk::CommandBuffer) const;
-  // After the ground, which they darken.
+  // With the shadows of splats, after the ground, which they darken.
   void drawContacts(vk::CommandBuffer) const;
   // Whether there is anybody who could be drawn.
   bool hasAgents() const;

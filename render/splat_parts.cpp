@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "render/ribbons.h"
 
 namespace skitter::render {
 namespace {
 
-constexpr size_t kBalls = 6;  // of a body
-constexpr int kRounds = 8;    // of Lloyd's
+constexpr size_t kBalls = 12;  // of a body
+constexpr int kRounds = 8;     // of Lloyd's
 
 // A triangle of the body, as a point that weighs its area.
 struct Piece {
@@ -53,8 +54,8 @@ std::vector<Ball> seeds(const std::vector<Piece>& pieces) {
   return balls;
 }
 
-// k-means of the surface (Lloyd 1982). A ball's radius is the root mean square of the surface's distance from
-// its middle.
+// k-means of the surface (Lloyd 1982). A ball has the area of its share: balls along a limb are as wide as
+// the limb.
 std::vector<Ball> ballsOf(const std::vector<Piece>& pieces) {
   std::vector<Ball> balls = seeds(pieces);
   for (int round = 0; round < kRounds && !balls.empty(); ++round) {
@@ -69,15 +70,7 @@ std::vector<Ball> ballsOf(const std::vector<Piece>& pieces) {
     for (Ball& ball : sums) ball.middle /= ball.area, ball.colour /= ball.area;
     balls = std::move(sums);
   }
-  std::vector<float> areas(balls.size());
-  for (const Piece& piece : pieces) {
-    const size_t ball = nearestTo(balls, piece.middle);
-    const glm::vec3 away = piece.middle - balls[ball].middle;
-    balls[ball].radius += piece.area * glm::dot(away, away);
-    areas[ball] += piece.area;
-  }
-  for (size_t i = 0; i < balls.size(); ++i)
-    balls[i].radius = areas[i] > 0 ? std::sqrt(balls[i].radius / areas[i]) : 0;
+  for (Ball& ball : balls) ball.radius = std::sqrt(ball.area / (4 * std::numbers::pi_v<float>));
   return balls;
 }
 

@@ -50,11 +50,20 @@ vec3 ambientLight(vec3 normal) {
   return AMBIENT + normal.y * (AMBIENT_Y + normal.y * AMBIENT_YY + s * AMBIENT_YS) + s * (AMBIENT_S + s * AMBIENT_SS);
 }
 
-// `colour` seen from the eye through the haze, which has the colour of the sky at the horizon.
-vec3 hazed(vec3 colour, vec3 direction, float distanceToEye, float density, vec3 sun) {
+// The haze between the eye and what it sees has the colour of the sky at the horizon, and leaves a share.
+struct Haze {
+  vec3 colour;
+  float left;
+};
+
+Haze hazeOf(vec3 direction, float distanceToEye, float density, vec3 sun) {
   float depth = distanceToEye * density;
   float towards = max(dot(direction.xz, sun.xz), 0.0) * inversesqrt(max(dot(direction.xz, direction.xz), 1e-8));
-  return mix(HORIZON + glow(towards, 1.0), colour, exp(-depth * depth));
+  return Haze(HORIZON + glow(towards, 1.0), exp(-depth * depth));
+}
+vec3 hazed(vec3 colour, Haze haze) { return mix(haze.colour, colour, haze.left); }
+vec3 hazed(vec3 colour, vec3 direction, float distanceToEye, float density, vec3 sun) {
+  return hazed(colour, hazeOf(direction, distanceToEye, density, sun));
 }
 
 layout(constant_id = CONSTANT_ROOTS) const bool ROOTS = false;

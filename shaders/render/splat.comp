@@ -33,11 +33,11 @@ const float THIN = 0.75;  // pixels; what has a smaller radius is one pixel wide
 // least; and a shadow is at most so many of the agent's radii away.
 const float LEAST_SHADE = 0.2, MOST_SHADE = 0.9, LEAST_SUN = 0.1, MOST_WAY = 1.2;
 
-// Relative to the agent's position.
+// Relative to the agent's position; of a lost bone the stump's end, as of its skin (skin.glsl).
 vec3 posed(int entry, vec3 part, out bool lost) {
   vec4 start = LOAD4(poses, entry + 1);
   lost = STUMPS && start.w != 0.0;
-  return start.xyz + rotate(LOAD4(poses, entry), part);
+  return start.xyz + rotate(LOAD4(poses, entry), lost ? vec3(0.0) : part);
 }
 
 // Pixels from the upper left corner, and the depth.
@@ -47,15 +47,15 @@ vec3 seenAt(vec3 p) {
   return vec3((0.5 + vec2(0.5, -0.5) * seen.xy) * vec2(constants.width, constants.height), seen.z);
 }
 
-// A capsule of radii in pixels, into the plane that begins at `plane`.
-void stroke(vec3 here, vec3 there, vec2 radii, uint low, uint plane) {
+// A capsule of radii in pixels, into the plane that begins at `plane`. `low` is of its two halves.
+void stroke(vec3 here, vec3 there, vec2 radii, uvec2 low, uint plane) {
   ivec2 end = ivec2(constants.width, constants.height);
   int steps = 1 + int(length(there.xy - here.xy) / max(1.0, 0.5 * max(radii.x, radii.y)));
   for (int s = 0; s < steps; ++s) {
     float t = (float(s) + 0.5) / float(steps), wide = mix(radii.x, radii.y, t);
     if (wide < THIN) wide = 0.0;
     vec3 at = mix(here, there, t);
-    uint splat = packedDepth(at.z) | low;
+    uint splat = packedDepth(at.z) | (t < 0.5 ? low.x : low.y);
     ivec2 first = clamp(ivec2(floor(at.xy - wide)), ivec2(0), end);
     ivec2 last = clamp(ivec2(floor(at.xy + wide)), ivec2(-1), end - 1);
     for (int y = first.y; y <= last.y; ++y)
@@ -102,6 +102,10 @@ void main() {
   uint shades = constants.width * constants.height;
   Variation variation = variationOf(agent, agent + constants.firstAgent, constants.kind);
   int palette = int(agent * constants.palette);
+  Haze haze = hazeOf(-toEye, away, picture.tile.w, sun);
+  // The mean over the half of a sphere that is seen, (sin a + (pi - a) cos a) 2 / (3 pi) at an angle a between sun and
+  // eye, to 0.01.
+  float ballFacing = 0.667 * pow(0.5 + 0.5 * clamp(dot(sun, toEye), -0.999, 1.0), 1.65);
 
   for (int i = 0; i < PARTS; ++i) {
     vec4 from = LOAD4(parts, 4 * i), to = LOAD4(parts, 4 * i + 1);
@@ -110,28 +114,29 @@ void main() {
     vec3 first = posed((palette + int(colourFrom.w)) * POSE_STRIDE, from.xyz, lostFrom);
     vec3 second = posed((palette + int(colourTo.w)) * POSE_STRIDE, to.xyz, lostTo);
 
-    // Both sides' light, of whatever is round about its middle line. A ball's sides are those of the sun.
+    // Both sides' light, of whatever is round about its middle line.
     vec3 across = cross(second - first, toEye);
-    if (dot(across, across) < 1e-12) across = sun - dot(sun, toEye) * toEye;
+    bool isBall = dot(across, across) < 1e-12;
+    if (isBall) across = sun - dot(sun, toEye) * toEye;
     across *= ROUNDNESS * inversesqrt(max(dot(across, across), 1e-12));
     vec3 oneSide = normalize(toEye + across), otherSide = normalize(toEye - across);
-    float facing = 0.5 * (max(dot(oneSide, sun), 0.0) + max(dot(otherSide, sun), 0.0));
+    float facing = isBall ? ballFacing : 0.5 * (max(dot(oneSide, sun), 0.0) + max(dot(otherSide, sun), 0.0));
     float above = 0.5 * dot(first + second, slope);
     vec3 ambient = 0.5 * (ambientLight(oneSide) + ambientLight(otherSide)) *
                    (ground.z * clamp(0.45 + 1.1 * above, 0.3, 1.0));
-    vec3 colour = varied(variation, 0.5 * (colourFrom.rgb + colourTo.rgb));
-    vec3 light = colour * (SUN_LIGHT * (facing * ground.w) + ambient) + RIM * ambient;
-    vec3 root = developed(hazed(light, -toEye, away, picture.tile.w, sun));
+    vec3 light = SUN_LIGHT * (facing * ground.w) + ambient, rim = RIM * ambient;
+    uvec2 colours = uvec2(packedColour(developed(hazed(varied(variation, colourFrom.rgb) * light + rim, haze))),
+                          packedColour(developed(hazed(varied(variation, colourTo.rgb) * light + rim, haze))));
 
     vec2 radii = vec2(from.w, to.w) / metresAPixel;
-    if (!lostFrom && !lostTo) {
-      stroke(seenAt(body + first), seenAt(body + second), radii, packedColour(root), 0u);
+    if (!(lostFrom && lostTo)) {
+      stroke(seenAt(body + first), seenAt(body + second), radii, colours, 0u);
       if (casts) {
         vec2 ways = vec2(dot(first, slope), dot(second, slope)) - below * slope.y;
         ways = clamp(ways / steep, 0.0, MOST_WAY * constants.radius);
         vec3 start = body + lifted;
         stroke(seenAt(start + first - ways.x * sun), seenAt(start + second - ways.y * sun), radii,
-               packedShade(clamp(max(radii.x, radii.y), LEAST_SHADE, MOST_SHADE)), shades);
+               uvec2(packedShade(clamp(max(radii.x, radii.y), LEAST_SHADE, MOST_SHADE))), shades);
       }
     }
   }
