@@ -24,21 +24,23 @@ uint32_t tilesOf(const vk::Extent2D& extent) { return tilesAlong(extent.width) *
 
 }  // namespace
 
-Splats::Splats(const Setting& s)
-    : extent_(s.extent),
-      splats_(s.context, 2 * uint64_t(extent_.width) * extent_.height * sizeof(uint32_t), "splats"),
-      tiles_(s.context, uint64_t(tilesOf(extent_)) * sizeof(uint32_t), "squares with splats"),
-      draw_(s.context, {.name = "splats",
-                        .vertex = embedded::splat_vert(),
-                        .fragment = embedded::splat_frag(),
-                        .bindings = {{shared::DRAW_SPLATS, BindingKind::store},
-                                     {shared::DRAW_SPLAT_TILES, BindingKind::store}},
-                        .pushBytes = sizeof(shared::SplatConstants),
-                        .colour = s.colour,
-                        .depth = s.depth,
-                        .samples = s.samples,
-                        .cull = {},
-                        .constants = {{shared::CONSTANT_ROOTS, s.filtered()}}}) {
+Splats::Splats(const Setting& s) : extent_(s.extent) {
+  const uint64_t bytes = 2 * uint64_t(extent_.width) * extent_.height * sizeof(uint32_t);
+  const DeviceLimits& limits = s.context.limits();
+  if (bytes > limits.maxStorageBufferRange || bytes >= limits.maxAllocationBytes) return;
+  splats_ = gpu::Buffer(s.context, bytes, "splats");
+  tiles_ = gpu::Buffer(s.context, uint64_t(tilesOf(extent_)) * sizeof(uint32_t), "squares with splats");
+  draw_ = gpu::GraphicsPipeline(s.context, {.name = "splats",
+                                            .vertex = embedded::splat_vert(),
+                                            .fragment = embedded::splat_frag(),
+                                            .bindings = {{shared::DRAW_SPLATS, BindingKind::store},
+                                                         {shared::DRAW_SPLAT_TILES, BindingKind::store}},
+                                            .pushBytes = sizeof(shared::SplatConstants),
+                                            .colour = s.colour,
+                                            .depth = s.depth,
+                                            .samples = s.samples,
+                                            .cull = {},
+                                            .constants = {{shared::CONSTANT_ROOTS, s.filtered()}}});
   const std::vector<gpu::Binding> list{{shared::DRAW_SPLATS, &splats_}, {shared::DRAW_SPLAT_TILES, &tiles_}};
   drawBindings_ = draw_.bind(s.context, list);
   shade_ = gpu::GraphicsPipeline(s.context, {.name = "shades of splats",
@@ -63,7 +65,7 @@ Splats::Splats(const Setting& s)
 
 Splats::Kind Splats::makeKind(const Setting& s, const crowd::Kind& source, float radius) const {
   Kind kind;
-  if (crowd::traitsOf(source.controller).playsClips) return kind;
+  if (!*this || crowd::traitsOf(source.controller).playsClips) return kind;
   const std::vector<shared::SplatPart> parts =
       splatPartsOf(colouredRig(source.rig), kBendPixels * radius / kSplatPixels);
   if (parts.empty()) return kind;

@@ -14,8 +14,11 @@ class Splats {
  public:
   Splats() = default;
   explicit Splats(const Setting&);
+  // Not in pictures of more pixels than a binding of the device reaches, 16 million on lavapipe.
+  explicit operator bool() const { return bool(draw_); }
 
-  // What a kind looks like as splats. None of one that plays clips, whose models have no legs.
+  // What a kind looks like as splats. None where there are no splats, and of a kind that plays clips, whose
+  // models have no legs.
   struct Kind {
     gpu::Kernel kernel;
     gpu::Buffer parts;

@@ -9,8 +9,6 @@ layout(push_constant) uniform ConstantBlock { SplatConstants constants; };
 layout(set = 0, binding = DRAW_SPLATS, std430) readonly buffer Splats { uint splats[]; };
 layout(location = 0) out vec4 outColour;
 
-const float NEAR_PLANE = 0.05;  // metres: depth is that over the distance ahead
-
 // Blended over the ground, whose roots it dims by the root.
 void main() {
   uvec2 at = uvec2(gl_FragCoord.xy);

@@ -3,7 +3,8 @@
 // What a pixel of splats holds: 16 bits of depth above 16 bits of colour, or of a shadow's strength, so that the
 // nearest one is the greatest number. 0 is no splat.
 
-// Reversed depth of 5 cm / distance from here to 1, by its exponent and 12 bits of its mantissa: to 2.4e-4 of the
+const float NEAR_PLANE = 0.05;  // metres: depth is that over the distance ahead (render/composition.cpp)
+// Depth from here to 1, by its exponent and 12 bits of its mantissa: to 2.4e-4 of the
 // distance, a fifth of a pixel.
 const float LEAST_DEPTH = 1.0 / 65536.0;
 const int DEPTH_SHIFT = 11, LOW_BITS = 16;
