@@ -88,7 +88,7 @@ TEST_F(Picture, TimingsTellEveryPassOfAFrame) {
   const Result result = skitter(timed);
   ASSERT_EQ(result.code, 0) << result.err;
   for (const char* pass :
-       {"simulation", "cull", "shadow", "crowd", "ground", "sky", "filter", "readback", "encode"})
+       {"simulation", "cull", "splats", "shadow", "crowd", "ground", "sky", "filter", "readback", "encode"})
     EXPECT_THAT(result.out, ::testing::ContainsRegex(pass + std::string(" +[0-9.]+ ms a frame"))) << pass;
   EXPECT_EQ(plain.out.find("ms a frame"), std::string::npos) << plain.out;
 }

@@ -497,8 +497,8 @@ TEST_P(RendererTest, timingAPictureDoesNotChangeIt) {
     passes.push_back(time.stage);
     EXPECT_GE(time.milliseconds, 0) << time.stage;
   }
-  passes.resize(5);  // edges are smoothed by a pass only where there are no samples to resolve
-  EXPECT_THAT(passes, ::testing::ElementsAre("cull", "shadow", "crowd", "ground", "sky"));
+  passes.resize(6);  // edges are smoothed by a pass only where there are no samples to resolve
+  EXPECT_THAT(passes, ::testing::ElementsAre("cull", "splats", "shadow", "crowd", "ground", "sky"));
 }
 
 TEST_P(RendererTest, whatIsDrawnOverKeepsThePictureAroundIt) {
