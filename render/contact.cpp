@@ -73,29 +73,24 @@ Contact::Contact(const Setting& s, const crowd::Kind& kind) {
   using gpu::BindingKind;
   pipeline_ = gpu::GraphicsPipeline(
       s.context,
-      {.name = "contact",
-       .vertex = {embedded::contact_vert_texel(), embedded::contact_vert_storage()},
-       .fragment = embedded::contact_frag(),
-       .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
-                    {shared::DRAW_BODY, BindingKind::load4},
-                    {shared::DRAW_POSE, BindingKind::load4},
-                    {shared::DRAW_HEIGHTS, BindingKind::heights}},
-       .pushBytes = sizeof(shared::CrowdConstants),
-       .streams = {{.stride = sizeof(ContactVertex),
-                    .rate = vk::VertexInputRate::eVertex,
-                    .attributes = {{1, F::eR32Uint, offsetof(ContactVertex, bone)},
-                                   {2, F::eR32G32B32A32Sfloat, offsetof(ContactVertex, foot)},
-                                   {3, F::eR32G32B32A32Sfloat, offsetof(ContactVertex, where)}}},
-                   {.stride = sizeof(uint32_t),
-                    .rate = vk::VertexInputRate::eInstance,
-                    .attributes = {{0, F::eR32Uint, 0}}}},
-       .colour = s.colour,
-       .depth = s.depth,
-       .samples = s.samples,
-       .depthUse = gpu::DepthUse::background,
-       .cull = {},
-       .blended = true,
-       .constants = {{shared::CONSTANT_ROOTS, s.filtered()}, {shared::CONSTANT_STUMPS, kind.hurts}}});
+      s.dimming(
+          {.name = "contact",
+           .vertex = {embedded::contact_vert_texel(), embedded::contact_vert_storage()},
+           .fragment = embedded::contact_frag(),
+           .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
+                        {shared::DRAW_BODY, BindingKind::load4},
+                        {shared::DRAW_POSE, BindingKind::load4},
+                        {shared::DRAW_HEIGHTS, BindingKind::heights}},
+           .pushBytes = sizeof(shared::CrowdConstants),
+           .streams = {{.stride = sizeof(ContactVertex),
+                        .rate = vk::VertexInputRate::eVertex,
+                        .attributes = {{1, F::eR32Uint, offsetof(ContactVertex, bone)},
+                                       {2, F::eR32G32B32A32Sfloat, offsetof(ContactVertex, foot)},
+                                       {3, F::eR32G32B32A32Sfloat, offsetof(ContactVertex, where)}}},
+                       {.stride = sizeof(uint32_t),
+                        .rate = vk::VertexInputRate::eInstance,
+                        .attributes = {{0, F::eR32Uint, 0}}}},
+           .constants = {{shared::CONSTANT_ROOTS, s.filtered()}, {shared::CONSTANT_STUMPS, kind.hurts}}}));
 }
 
 Contact::Page Contact::makePage(const Setting& s, const crowd::Page& records) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 
 #include "crowd/controller.h"
@@ -169,7 +170,7 @@ gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Mat
 }
 
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureStore& store)
-    : cull_(s.context), splats_(s) {
+    : cull_(s.context) {
   if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
   for (const crowd::Kind& source : crowd.kinds) {
     Kind kind;
@@ -187,7 +188,10 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
     kind.lit = drawPipeline(s, litShading(kind.mesh.influences, formsOf(source)));
     kind.shadow = {s.context, shadowInfo(s, kind.mesh.influences, formsOf(source))};
     kind.contact = Contact(s, source);
-    kind.splat = splats_.makeKind(s, source, kind.mesh.radius);
+    if (!clips) {
+      if (!splats_) splats_ = Splats(s);
+      kind.splat = splats_.makeKind(s, source, kind.mesh.radius);
+    }
     if (textures) makeParts(s, source, *textures, kind);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
@@ -274,7 +278,7 @@ void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
       VkDrawIndexedIndirectCommand draws[shared::INSTANCE_LISTS] = {};
       for (int list = 0; list < kMeshLists; ++list)
         draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
-      draws[shared::SPLATS].vertexOffset = 1, draws[shared::SPLATS].firstInstance = 1;  // groups in y and z
+      draws[shared::SPLATS] = std::bit_cast<VkDrawIndexedIndirectCommand>(SplatDispatch{});
       cmd.updateBuffer(page.culled.commands.handle(), 0, sizeof draws, draws);
     }
   if (hasSplats()) splats_.prepare(cmd);

@@ -5,6 +5,14 @@
 
 namespace skitter::render {
 
+// What the list of splats has where the others have a draw.
+struct SplatDispatch {
+  uint32_t unused = 0;
+  uint32_t agents = 0;                        // as many as a draw has instances
+  VkDispatchIndirectCommand groups{0, 1, 1};  // of splat.comp
+};
+static_assert(sizeof(SplatDispatch) == sizeof(VkDrawIndexedIndirectCommand));
+
 // A page's instance lists and their indirect draws, chosen on the device.
 struct CulledPage {
   uint32_t agents = 0;

@@ -251,19 +251,17 @@ std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
   return surfaces;
 }
 
-Rig colouredRig(const Rig& rig) {
-  Rig coloured = rig;
-  if (!rig.look) return coloured;
+Rig colouredRig(Rig rig) {
   const std::vector<glm::vec3> colours = wornColours(rig.vertices, rig.look);
-  for (size_t v = 0; v < colours.size(); ++v) coloured.vertices[v].colour = colours[v];
-  return coloured;
+  for (size_t v = 0; v < colours.size(); ++v) rig.vertices[v].colour = colours[v];
+  return rig;
 }
 
 MeshData makeMesh(const Rig& rig) {
   MeshData data;
   data.radius = crowd::radiusOf(rig);
-  const Rig coloured = colouredRig(rig);
-  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), rig.look, &coloured});
+  const Rig worn = rig.look ? colouredRig(rig) : Rig();
+  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), rig.look, rig.look ? &worn : &rig});
   return data;
 }
 

@@ -28,6 +28,16 @@ struct Setting {
     constants.emplace_back(shared::CONSTANT_ROOTS, filtered());
     return constants;
   }
+  // Of what lies on the ground and dims it.
+  gpu::GraphicsInfo dimming(gpu::GraphicsInfo info) const {
+    info.colour = colour;
+    info.depth = depth;
+    info.samples = samples;
+    info.depthUse = gpu::DepthUse::background;
+    info.cull = {};
+    info.blended = true;
+    return info;
+  }
   bool filtered() const { return samples == vk::SampleCountFlagBits::e1; }  // edges are smoothed afterwards
 };
 

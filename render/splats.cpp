@@ -1,6 +1,7 @@
 #include "render/splats.h"
 
-#include "crowd/controller.h"
+#include <cstddef>
+
 #include "embedded/shade_frag.h"
 #include "embedded/splat_comp_storage.h"
 #include "embedded/splat_comp_texel.h"
@@ -43,20 +44,15 @@ Splats::Splats(const Setting& s) : extent_(s.extent) {
                                             .constants = {{shared::CONSTANT_ROOTS, s.filtered()}}});
   const std::vector<gpu::Binding> list{{shared::DRAW_SPLATS, &splats_}, {shared::DRAW_SPLAT_TILES, &tiles_}};
   drawBindings_ = draw_.bind(s.context, list);
-  shade_ = gpu::GraphicsPipeline(s.context, {.name = "shades of splats",
-                                             .vertex = embedded::splat_vert(),
-                                             .fragment = embedded::shade_frag(),
-                                             .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
-                                                          {shared::DRAW_SPLATS, BindingKind::store},
-                                                          {shared::DRAW_SPLAT_TILES, BindingKind::store}},
-                                             .pushBytes = sizeof(shared::SplatConstants),
-                                             .colour = s.colour,
-                                             .depth = s.depth,
-                                             .samples = s.samples,
-                                             .depthUse = gpu::DepthUse::background,
-                                             .cull = {},
-                                             .blended = true,
-                                             .constants = s.lit()});
+  shade_ = gpu::GraphicsPipeline(s.context,
+                                 s.dimming({.name = "shades of splats",
+                                            .vertex = embedded::splat_vert(),
+                                            .fragment = embedded::shade_frag(),
+                                            .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
+                                                         {shared::DRAW_SPLATS, BindingKind::store},
+                                                         {shared::DRAW_SPLAT_TILES, BindingKind::store}},
+                                            .pushBytes = sizeof(shared::SplatConstants),
+                                            .constants = s.lit()}));
   const std::vector<gpu::Binding> shades{{shared::DRAW_PICTURE, &s.picture},
                                          {shared::DRAW_SPLATS, &splats_},
                                          {shared::DRAW_SPLAT_TILES, &tiles_}};
@@ -65,9 +61,10 @@ Splats::Splats(const Setting& s) : extent_(s.extent) {
 
 Splats::Kind Splats::makeKind(const Setting& s, const crowd::Kind& source, float radius) const {
   Kind kind;
-  if (!*this || crowd::traitsOf(source.controller).playsClips) return kind;
+  if (!*this) return kind;
+  const Rig worn = source.rig.look ? colouredRig(source.rig) : Rig();
   const std::vector<shared::SplatPart> parts =
-      splatPartsOf(colouredRig(source.rig), kBendPixels * radius / kSplatPixels);
+      splatPartsOf(source.rig.look ? worn : source.rig, kBendPixels * radius / kSplatPixels);
   if (parts.empty()) return kind;
   kind.radius = radius;
   kind.parts = gpu::Buffer(s.context, parts.size() * sizeof parts[0], "splat parts");
@@ -112,14 +109,11 @@ gpu::Bindings Splats::bind(const Setting& s, const Kind& kind, const crowd::Kind
 }
 
 shared::SplatConstants Splats::picture() const {
-  return {.palette = 0,
-          .firstAgent = 0,
-          .kind = 0,
-          .agents = 0,
-          .radius = 0,
-          .width = extent_.width,
-          .height = extent_.height,
-          .shadePixels = kShadePixels};
+  shared::SplatConstants constants{};
+  constants.width = extent_.width;
+  constants.height = extent_.height;
+  constants.shadePixels = kShadePixels;
+  return constants;
 }
 
 void Splats::prepare(vk::CommandBuffer cmd) const {
@@ -135,7 +129,7 @@ void Splats::record(vk::CommandBuffer cmd, const Kind& kind, const gpu::Bindings
   constants.kind = of.kind;
   constants.agents = culled.agents;
   constants.radius = kind.radius;
-  constexpr uint64_t groups = shared::SPLATS * sizeof(VkDrawIndexedIndirectCommand) + 2 * sizeof(uint32_t);
+  constexpr uint64_t groups = shared::SPLATS * sizeof(SplatDispatch) + offsetof(SplatDispatch, groups);
   kind.kernel.dispatchIndirect(cmd, page, gpu::bytesOf(constants), culled.commands, groups);
 }
 

@@ -17,8 +17,8 @@ class Splats {
   // Not in pictures of more pixels than a binding of the device reaches, 16 million on lavapipe.
   explicit operator bool() const { return bool(draw_); }
 
-  // What a kind looks like as splats. None where there are no splats, and of a kind that plays clips, whose
-  // models have no legs.
+  // A kind's shapes and the shader that draws them. It is empty where there are no splats, and where the rig
+  // has no skin. The kind does not play clips: only a rig's legs are known.
   struct Kind {
     gpu::Kernel kernel;
     gpu::Buffer parts;
@@ -39,8 +39,7 @@ class Splats {
   // Their shadows, after the ground.
   void drawShades(vk::CommandBuffer) const;
 
-  // As the shader has them (splat.glsl): a number a pixel, then one of its shadow; and whether a square has
-  // any.
+  // The numbers of all pixels and then of their shadows (splat.glsl), and whether each square has any.
   const gpu::Buffer& splats() const { return splats_; }
   const gpu::Buffer& tiles() const { return tiles_; }
 

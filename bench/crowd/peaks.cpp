@@ -40,7 +40,8 @@ double bestSeconds(const gpu::Context& context, const Record& record) {
   return best;
 }
 
-// Of one of as many as take long enough in one submission, one after the other.
+// Records as many, one after the other, as take long enough in one submission, and returns the seconds of
+// one.
 template <typename Record>
 double secondsOfOne(const gpu::Context& context, const Record& record) {
   for (int count = 1;; count *= 4) {

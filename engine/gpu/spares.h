@@ -6,8 +6,8 @@
 #include <memory>
 #include <mutex>
 
-// What a copy between host and device needs for a moment, kept for the next one: a driver may take
-// milliseconds to make it. Threads may call it at once.
+// Spares keep what a copy between host and device needs for a moment, so that the next copy need not make it
+// anew: a driver may take milliseconds for that. Threads may call it at once.
 namespace skitter::gpu {
 
 class Spares {

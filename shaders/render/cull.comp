@@ -14,6 +14,10 @@ layout(set = 0, binding = DRAW_COMMANDS, std430) buffer Commands { uint commands
 // Texels of the far cascade from a point within which shadow.glsl looks: half its longest way, across, a square
 // and the way off the surface.
 const float FAR_REACH = 21.0;
+// Splats are projected point by point: all of an agent lies well ahead of the eye, and within what a splat's depth
+// tells apart (splat.glsl).
+const float LEAST_AHEAD = 4.0;  // of the agent's radius
+const float MOST_AHEAD = 3000.0;  // metres
 
 // The agent's place in the list.
 uint append(uint list, uint agent) {
@@ -41,18 +45,20 @@ void main() {
   for (int i = 0; i < 4; ++i) inside = min(inside, dot(picture.planes[i].xyz, p) + picture.planes[i].w);
   bool seen = inside > -constants.radius;
   float pixels = constants.radius / (max(away, 1e-3) * picture.eye.w);
+  float ahead = dot(p - picture.eye.xyz, picture.forward.xyz);
+  bool splat =
+      seen && pixels < constants.splatPixels && ahead > LEAST_AHEAD * constants.radius && ahead < MOST_AHEAD;
   if (seen) {
     uint list = 0u;
     for (int i = 0; i < CAMERA_LODS - 1; ++i) list += pixels < constants.lodPixels[i] ? 1u : 0u;
-    if (pixels < constants.splatPixels) list = SPLATS;
+    if (splat) list = SPLATS;
     uint place = append(list, agent);
-    if (list == SPLATS && place % WORK_GROUP == 0u) atomicAdd(commands[SPLATS * DRAW_WORDS + 2], 1u);
+    if (splat && place % WORK_GROUP == 0u) atomicAdd(commands[SPLATS * DRAW_WORDS + 2], 1u);
     if (pixels >= constants.contactPixels) append(uint(CONTACTS), agent);
   }
   // An agent outside the picture may cast its shadow into it, but none is seen where shadows have faded. The far
   // cascade is not looked up where the near one holds the whole shadow and all from where it would be looked up.
-  float ahead = dot(p - picture.eye.xyz, picture.forward.xyz);
-  bool casts = min(inside, picture.forward.w - ahead) > -4.0 * constants.radius && pixels >= constants.shadePixels;
+  bool casts = min(inside, picture.forward.w - ahead) > -4.0 * constants.radius && !(splat && pixels < constants.shadePixels);
   float nearMargin, farMargin;
   float outOfNear = outOfCascade(0, p, nearMargin), outOfFar = outOfCascade(1, p, farMargin);
   float nearAlone = 0.98 - 2.0 * FAR_REACH * picture.shadow.y / (picture.shadow.x * picture.shadow.w);

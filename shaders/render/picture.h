@@ -35,8 +35,7 @@ SKITTER_PICTURE_CONST VIEW_CAMERA = 0;
 SKITTER_PICTURE_CONST VIEWS = 3;
 // Cells along a patch of the ground.
 SKITTER_PICTURE_CONST PATCH_CELLS = 8;
-// uint32 of a VkDrawIndexedIndirectCommand. Splats are no draw: their words are 0, their number, and the groups
-// that splat.comp is dispatched over.
+// uint32 of a VkDrawIndexedIndirectCommand, or of what splats have in its place (SplatDispatch).
 SKITTER_PICTURE_CONST DRAW_WORDS = 5;
 // Pixels along a square of the picture that is looked at for splats.
 SKITTER_PICTURE_CONST SPLAT_TILE = 32;
@@ -81,8 +80,8 @@ struct CullConstants {
 
 // Push constants of splats and of what draws them.
 struct SplatConstants {
-  uint palette;        // pose entries an agent
-  uint firstAgent;     // of the page among its kind's
+  uint palette;     // pose entries an agent
+  uint firstAgent;  // of the page among its kind's
   uint kind;
   uint agents;         // of the page
   float radius;        // about the body's position, metres
@@ -92,7 +91,7 @@ struct SplatConstants {
 
 // A shape between two ends, each relative to the rest start of a bone (entry of the pose palette).
 struct SplatPart {
-  vec4 from, to;                // xyz; radius, metres
+  vec4 from, to;              // xyz; radius, metres
   vec4 colourFrom, colourTo;  // linear RGB; bone
 };
 

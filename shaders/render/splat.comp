@@ -66,11 +66,10 @@ void stroke(vec3 here, vec3 there, vec2 radii, uvec2 low, uint plane) {
   }
 }
 
-// The squares of the picture that may be drawn in.
-void mark(vec3 body, float pixels) {
+// Marks the squares of the picture that a drawing within `reach` pixels of the body may touch.
+void mark(vec3 body, float reach) {
   ivec2 most = ivec2(constants.width, constants.height) - 1;
   vec2 middle = seenAt(body).xy;
-  float reach = (1.0 + MOST_WAY) * pixels + 2.0;
   ivec2 first = clamp(ivec2(floor(middle - reach)), ivec2(0), most) / SPLAT_TILE;
   ivec2 last = clamp(ivec2(floor(middle + reach)), ivec2(0), most) / SPLAT_TILE;
   int across = (most.x + SPLAT_TILE) / SPLAT_TILE;
@@ -88,7 +87,6 @@ void main() {
   float away = length(toEye);
   toEye /= away;
   float metresAPixel = away * picture.eye.w, pixels = constants.radius / metresAPixel;
-  mark(body, pixels);
 
   vec2 at = (body.xz - picture.ground.xy) / picture.ground.zw;
   vec4 ground = textureLod(groundMap, (at + 0.5) / vec2(textureSize(groundMap, 0)), 0.0);
@@ -98,6 +96,7 @@ void main() {
   // Where the sun does not reach the ground nobody casts a shadow. The plane is not quite the ground that is drawn.
   float steep = dot(sun, slope);
   bool casts = pixels < constants.shadePixels && steep > LEAST_SUN && ground.w > 0.5;
+  mark(body, (casts ? 1.0 + MOST_WAY : 1.0) * pixels + 2.0);
   vec3 lifted = toEye * (0.012 + 2.0 * metresAPixel);
   uint shades = constants.width * constants.height;
   Variation variation = variationOf(agent, agent + constants.firstAgent, constants.kind);

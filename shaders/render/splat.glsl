@@ -1,7 +1,7 @@
 #ifndef SPLAT_GLSL
 #define SPLAT_GLSL
-// What a pixel of splats holds: 16 bits of depth above 16 bits of colour, or of a shadow's strength, so that the
-// nearest one is the greatest number. 0 is no splat.
+// A pixel of splats holds a number: 16 bits of depth above 16 bits of colour, or of a shadow's strength. The nearest
+// splat has the greatest number. 0 is no splat.
 
 const float NEAR_PLANE = 0.05;  // metres: depth is that over the distance ahead (render/composition.cpp)
 // Depth from here to 1, by its exponent and 12 bits of its mantissa: to 2.4e-4 of the

@@ -12,7 +12,7 @@ struct Variation {
   bool lightness;  // of the model's colour only the lightness counts
 };
 
-// Of an agent by its number on the page, and among its kind's.
+// `agent` counts on the page, and `number` among the kind's agents.
 Variation variationOf(uint agent, uint number, uint kind) {
   uint h = hashed(uvec2(number, kind));
   float value = LEAST_VALUE + VALUE_RANGE * unitOf(h), warmth = unitOf(h * 0x9E3779B1u) - 0.5;

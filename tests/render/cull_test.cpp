@@ -153,6 +153,43 @@ TEST_P(CullTest, theRadiusInPixelsChoosesSplats) {
   }
 }
 
+// Splats are of who lies well ahead of the eye, four radii at least and 3 km at most, however small the
+// picture.
+TEST_P(CullTest, theWayAheadBoundsSplats) {
+  shared::Picture p{};
+  for (glm::vec4& plane : p.planes) plane = {0, 0, 0, 1e6f};
+  p.tile = {0, 0, 1e6f, 0};
+  p.eye = {0, 0, 0, 1};  // one pixel a radian: all are less than a pixel large
+  p.forward = {0, 0, 1, 1e6f};
+  p.shadow = {1, 1, 0, 1024};
+  const std::vector<glm::dvec3> places{{0, 0, -10},
+                                       {0, 0, 3.99 * double(kRadius)},
+                                       {50, 0, 3.99 * double(kRadius)},
+                                       {50, 0, 4.01 * double(kRadius)},
+                                       {0, 0, 2999},
+                                       {0, 0, 3001}};
+  const std::vector<Lists> found = cull(p, places, true);
+  for (size_t i = 0; i < places.size(); ++i) {
+    EXPECT_EQ(std::ranges::count(found[i], 9), i == 3 || i == 4) << "agent " << i;
+    EXPECT_EQ(std::ranges::count_if(found[i], [](int list) { return list < 5; }), i != 3 && i != 4)
+        << "agent " << i;
+  }
+}
+
+// Who is not in the picture but casts a shadow into it has no splats, so its shadow is triangles.
+TEST_P(CullTest, whoIsOutsideCastsTriangles) {
+  const Sight s(kView, kWidth, kHeight);
+  const glm::dvec3 outward = glm::normalize(s.right - s.tanX * s.forward);
+  const double away = double(kRadius) * kHeight / (2 * s.tanY * 9);  // nine pixels
+  std::vector<glm::dvec3> places;
+  for (const double radii : {-2.0, 2.0})
+    places.push_back(s.at(away, 1, 0) + radii * double(kRadius) * outward);
+  const std::vector<Lists> found = cull(picture(), places, true);
+  EXPECT_EQ(found[0], Lists{9});
+  EXPECT_TRUE(std::ranges::any_of(found[1], isShadow));
+  EXPECT_TRUE(std::ranges::all_of(found[1], isShadow));
+}
+
 // Those near enough have contacts.
 TEST_P(CullTest, theRadiusInPixelsChoosesContacts) {
   const Sight s(kView, kWidth, kHeight);

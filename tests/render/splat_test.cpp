@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <numbers>
 
 #include "crowd/radius.h"
 #include "gpu/submit.h"
@@ -62,6 +63,27 @@ TEST(SplatParts, FollowTheSkin) {
     }
     EXPECT_LT(sum / double(rig.vertices.size()), radius / 50);
     EXPECT_LT(most, radius / 7);
+  }
+}
+
+// A triangle is the body's where a vertex hangs on it most.
+TEST(SplatParts, BallsHaveTheBodysArea) {
+  for (const char* file : {"spider", SKITTER_ASSETS "/quadruped.glb"}) {
+    SCOPED_TRACE(file);
+    const Rig rig = std::string(file) == "spider" ? spiderRig() : loadRig(file);
+    const auto hangsOnBody = [](const SkinVertex& v) {
+      return v.bones[std::max_element(v.weights, v.weights + 4) - v.weights] == 0;
+    };
+    double area = 0, balls = 0;
+    for (size_t i = 0; i < rig.indices.size(); i += 3) {
+      const SkinVertex &a = rig.vertices[rig.indices[i]], &b = rig.vertices[rig.indices[i + 1]],
+                       &c = rig.vertices[rig.indices[i + 2]];
+      if (hangsOnBody(a) || hangsOnBody(b) || hangsOnBody(c))
+        area += 0.5 * double(glm::length(glm::cross(b.position - a.position, c.position - a.position)));
+    }
+    for (const shared::SplatPart& part : splatPartsOf(rig, 0.05f))
+      if (part.from == part.to) balls += 4 * std::numbers::pi * double(part.from.w * part.from.w);
+    EXPECT_NEAR(balls, area, 1e-4 * area);
   }
 }
 
@@ -145,8 +167,7 @@ class SplatTest : public test::GpuLoadTest {
     const Splats splats(setting);
     const Splats::Kind look = splats.makeKind(setting, kind, radius);
     const gpu::Bindings bindings = splats.bind(setting, look, kind, page, culled);
-    std::vector<VkDrawIndexedIndirectCommand> commands(shared::INSTANCE_LISTS);
-    commands[shared::SPLATS].vertexOffset = 1, commands[shared::SPLATS].firstInstance = 1;
+    std::vector<SplatDispatch> commands(shared::INSTANCE_LISTS);
     gpu::upload(context(), culled.commands, commands);
     gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
       splats.prepare(cmd);
