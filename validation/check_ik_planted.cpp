@@ -50,7 +50,7 @@ void checkPlantedIk(const Setting& setting, const Moment& moment, Judge& judge) 
     clips.directions = start.directions;
     SolveVerdict verdict;
     if (limb.carries)
-      verdict = compareSolve(setting, moment, l, limb, clips);
+      verdict = compareSolve(setting, moment, l, limb, clips, !judge.hasRefused());
     else
       verdict.sample = compareHeld(setting, moment, l, limb);
     verdict.sample.finite("fix", records(moment.after.fix, leg * bones, shared::FIX_STRIDE, bones));
