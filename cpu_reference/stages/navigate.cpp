@@ -7,7 +7,7 @@
 namespace skitter::reference {
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 // `choice`, 0 or 1, instead of the rule.
 bool decided(bool rule, int choice) { return choice >= 0 ? choice == 1 : rule; }
@@ -111,7 +111,8 @@ void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const 
 NavigateResult navigate(const Tuning& tuning, const AgentBody& body, const Goal& goal, const Rest& rest,
                         const NavigateChoices& choices, std::span<const WayField> ways,
                         std::span<const WayPlace> places) {
-  NavigateResult result{goal, glm::dvec2(0), body.absent, never, glm::dvec2(never), never, never, {}};
+  NavigateResult result{goal,      glm::dvec2(0), body.absent, unbounded, glm::dvec2(unbounded),
+                        unbounded, unbounded,     {}};
   if (body.absent) return result;
   if (goal.kind == GoalKind::series)
     followSeries(tuning, body, goal, ways, places, choices, result);

@@ -103,29 +103,29 @@ TEST(Images, PngIsReadToTheByte) {
 
 TEST(Images, EveryKindOfPngBecomesFourBytes) {
   const auto decoded = [](MadePng png) { return decodeImage(fileOf(png.bytes())).rgba; };
-  using Bytes = std::vector<uint8_t>;
+  using Rgba = std::vector<uint8_t>;
   EXPECT_EQ(decoded({.width = 2, .colour = PNG_COLOR_TYPE_GRAY, .rows = {{7, 200}}}),
-            (Bytes{7, 7, 7, 255, 200, 200, 200, 255}));
+            (Rgba{7, 7, 7, 255, 200, 200, 200, 255}));
   EXPECT_EQ(decoded({.width = 4, .bits = 2, .colour = PNG_COLOR_TYPE_GRAY, .rows = {{0b00011011}}}),
-            (Bytes{0, 0, 0, 255, 85, 85, 85, 255, 170, 170, 170, 255, 255, 255, 255, 255}));
+            (Rgba{0, 0, 0, 255, 85, 85, 85, 255, 170, 170, 170, 255, 255, 255, 255, 255}));
   EXPECT_EQ(decoded({.width = 1, .colour = PNG_COLOR_TYPE_GRAY_ALPHA, .rows = {{9, 33}}}),
-            (Bytes{9, 9, 9, 33}));
+            (Rgba{9, 9, 9, 33}));
   EXPECT_EQ(decoded({.bits = 16, .rows = {{0x12, 0xff, 0x80, 0x00, 0x01, 0x80}}}),
-            (Bytes{0x12, 0x80, 0x01, 255}));
+            (Rgba{0x12, 0x80, 0x01, 255}));
   EXPECT_EQ(decoded({.width = 2,
                      .colour = PNG_COLOR_TYPE_PALETTE,
                      .rows = {{1, 0}},
                      .palette = {{1, 2, 3}, {40, 50, 60}},
                      .palettesAlpha = {255, 128}}),
-            (Bytes{40, 50, 60, 128, 1, 2, 3, 255}));
+            (Rgba{40, 50, 60, 128, 1, 2, 3, 255}));
   // Colour spaces are ignored (glTF 2.0, section 3.8.3).
-  EXPECT_EQ(decoded({.rows = {{10, 100, 200}}, .gamma = 1.0}), (Bytes{10, 100, 200, 255}));
+  EXPECT_EQ(decoded({.rows = {{10, 100, 200}}, .gamma = 1.0}), (Rgba{10, 100, 200, 255}));
   EXPECT_EQ(decoded({.width = 2,
                      .height = 2,
                      .colour = PNG_COLOR_TYPE_GRAY,
                      .interlace = PNG_INTERLACE_ADAM7,
                      .rows = {{1, 2}, {3, 4}}}),
-            (Bytes{1, 1, 1, 255, 2, 2, 2, 255, 3, 3, 3, 255, 4, 4, 4, 255}));
+            (Rgba{1, 1, 1, 255, 2, 2, 2, 255, 3, 3, 3, 255, 4, 4, 4, 255}));
 }
 
 TEST(Images, JpegIsReadAsItsColours) {

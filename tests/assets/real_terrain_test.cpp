@@ -12,7 +12,7 @@
 namespace skitter {
 namespace {
 
-const std::filesystem::path terrain = SKITTER_ROOT "/assets/terrain";
+const std::filesystem::path terrainFolder = SKITTER_ROOT "/assets/terrain";
 
 float lowestOf(const Heightfield& field) {
   return *std::min_element(field.heights.begin(), field.heights.end());
@@ -33,7 +33,7 @@ std::vector<Code> codesOf(const Heightfield& field, double unit, double lowest =
 }
 
 TEST(RealTerrain, JacksboroIsOfWholeMetres) {
-  const Heightfield png = loadHeightfield(terrain / "jacksboro_403x344.png");
+  const Heightfield png = loadHeightfield(terrainFolder / "jacksboro_403x344.png");
   EXPECT_EQ(png.columns, 403u);
   EXPECT_EQ(png.rows, 344u);
   EXPECT_NEAR(png.extentX(), 29938.8, 0.5);
@@ -41,7 +41,7 @@ TEST(RealTerrain, JacksboroIsOfWholeMetres) {
   EXPECT_NEAR(rangeOf(png), 840, 0.02);
 
   test::TemporaryFolder folder;
-  std::filesystem::copy_file(terrain / "jacksboro.json", folder / "jacksboro.json");
+  std::filesystem::copy_file(terrainFolder / "jacksboro.json", folder / "jacksboro.json");
   test::writeBytes(folder / "jacksboro_403x344.r32f", test::r32f(codesOf<float>(png, 1, 236)));
   const Heightfield metres = loadHeightfield(folder / "jacksboro_403x344.r32f");
   EXPECT_EQ(metres.columns, 403u);
@@ -53,14 +53,14 @@ TEST(RealTerrain, JacksboroIsOfWholeMetres) {
 }
 
 TEST(RealTerrain, EverestIsACropOfItsTile) {
-  const Heightfield png = loadHeightfield(terrain / "everest_513x513.png");
+  const Heightfield png = loadHeightfield(terrainFolder / "everest_513x513.png");
   EXPECT_NEAR(png.extentX(), 42018.4, 0.5);
   EXPECT_NEAR(png.extentZ(), 47178.2, 0.5);
   EXPECT_NEAR(rangeOf(png), 7436, 0.02);
   EXPECT_EQ(png.filledVoids, 0u);
 
   test::TemporaryFolder folder;
-  std::filesystem::copy_file(terrain / "everest.json", folder / "everest.json");
+  std::filesystem::copy_file(terrainFolder / "everest.json", folder / "everest.json");
   test::writeBytes(folder / "everest_513x513.r16", test::r16(codesOf<uint16_t>(png, 7436.0 / 65535)));
   EXPECT_EQ(loadHeightfield(folder / "everest_513x513.r16").heights, png.heights);
 
@@ -90,7 +90,7 @@ TEST(RealTerrain, ScaledToAWorldThatCanBeWalked) {
   HeightfieldUnits units;
   units.scale = 0.01f;
   units.exaggeration = 0.5f;
-  const Heightfield everest = loadHeightfield(terrain / "everest_513x513.png", units);
+  const Heightfield everest = loadHeightfield(terrainFolder / "everest_513x513.png", units);
   EXPECT_NEAR(everest.extentX(), 420.184, 0.01);
   EXPECT_NEAR(rangeOf(everest), 37.18, 0.01);
 }

@@ -17,17 +17,17 @@
 namespace skitter {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 const std::string assets = SKITTER_ROOT "/assets/";
 
-glm::dvec3 vectorOf(const json& from) { return {from[0], from[1], from[2]}; }
+glm::dvec3 vectorOf(const Json& from) { return {from[0], from[1], from[2]}; }
 
-glm::dmat4 localOf(const json& node) {
+glm::dmat4 localOf(const Json& node) {
   glm::dmat4 m(1);
   if (node.contains("translation")) m = glm::translate(m, vectorOf(node["translation"]));
   if (node.contains("rotation")) {
-    const json& q = node["rotation"];
+    const Json& q = node["rotation"];
     m *= glm::mat4_cast(glm::dquat(q[3], q[0], q[1], q[2]));
   }
   if (node.contains("scale")) m = glm::scale(m, vectorOf(node["scale"]));
@@ -36,10 +36,10 @@ glm::dmat4 localOf(const json& node) {
 
 // Where every named node is, in the model's own units.
 std::map<std::string, glm::dvec3> placesOf(const std::string& file) {
-  const json nodes = test::readGlb(file).json["nodes"];
+  const Json nodes = test::readGlb(file).json["nodes"];
   std::map<size_t, size_t> parents;
   for (size_t i = 0; i < nodes.size(); ++i)
-    for (const json& child : nodes[i].value("children", json::array())) parents[child] = i;
+    for (const Json& child : nodes[i].value("children", Json::array())) parents[child] = i;
   std::map<std::string, glm::dvec3> places;
   for (size_t i = 0; i < nodes.size(); ++i) {
     glm::dmat4 world = localOf(nodes[i]);
@@ -51,7 +51,7 @@ std::map<std::string, glm::dvec3> placesOf(const std::string& file) {
 }
 
 // `setup` as in docs/rig.md; a point x of the model lies at scale (x - origin).
-void expectLegs(const Rig& rig, const json& setup, const std::map<std::string, glm::dvec3>& places,
+void expectLegs(const Rig& rig, const Json& setup, const std::map<std::string, glm::dvec3>& places,
                 const glm::dvec3& origin, double scale) {
   const auto place = [&](const glm::dvec3& x) { return scale * (x - origin); };
   const auto near = [](const glm::dvec3& got, const glm::dvec3& expected) {
@@ -64,7 +64,7 @@ void expectLegs(const Rig& rig, const json& setup, const std::map<std::string, g
   double longest = 0;
   for (size_t l = 0; l < rig.legs.size(); ++l) {
     const Leg& leg = rig.legs[l];
-    const json& from = setup["legs"][l];
+    const Json& from = setup["legs"][l];
     SCOPED_TRACE(leg.name);
     EXPECT_EQ(leg.name, from["name"]);
     EXPECT_EQ(rig.groups.at(static_cast<size_t>(leg.group)), from["group"]);
@@ -90,17 +90,17 @@ void expectLegs(const Rig& rig, const json& setup, const std::map<std::string, g
 }
 
 TEST(RigNodes, OfTheSpider) {
-  const json setup = test::readGlb(assets + "spider.glb").json["scenes"][0]["extras"]["skitter"];
+  const Json setup = test::readGlb(assets + "spider.glb").json["scenes"][0]["extras"]["skitter"];
   expectLegs(spiderRig(), setup, placesOf(assets + "spider.glb"), glm::dvec3(0), 1);
 }
 
 // Its sidecar has a scale, an origin and homes of its own.
 TEST(RigNodes, OfTheQuadruped) {
   std::ifstream file(assets + "quadruped.rig.json");
-  const json setup = json::parse(file);
+  const Json setup = Json::parse(file);
   const std::map<std::string, glm::dvec3> places = placesOf(assets + "quadruped.glb");
   double longest = 0;
-  for (const json& leg : setup["legs"]) {
+  for (const Json& leg : setup["legs"]) {
     double reach = 0;
     for (size_t b = 0; b + 1 < leg["joints"].size(); ++b)
       reach += glm::distance(places.at(leg["joints"][b]), places.at(leg["joints"][b + 1]));

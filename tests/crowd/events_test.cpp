@@ -107,12 +107,12 @@ TEST_F(EventsTest, AboutAgentsAreWhatTheCallerCouldDo) {
   const Goal goal = pointAt(6, -3);
   const std::vector<Addition::Arrival> arrivals{{.place = {{4, 5}, 1}},
                                                 {.place = {{-4, 5}, 2}, .goal = goal}};
-  struct Case {
+  struct Asked {
     const char* name;
     decltype(Event::what) event;
     std::function<void(Crowd& crowd)> call;
   };
-  const std::vector<Case> cases{
+  const std::vector<Asked> cases{
       {"a goal", GoalChange{.herd = 1, .goal = goal}, [&](Crowd& crowd) { crowd.steer(1, goal); }},
       {"a goal of some", GoalChange{.agents = {5, 3}, .goal = goal},
        [&](Crowd& crowd) {
@@ -146,7 +146,7 @@ TEST_F(EventsTest, AboutAgentsAreWhatTheCallerCouldDo) {
   simulate(device(), plain, 14);
   const uint64_t before = plain.stateHash();
   simulate(device(), plain, 1);
-  for (const Case& each : cases) {
+  for (const Asked& each : cases) {
     SCOPED_TRACE(each.name);
     Scene scene = twoHerds();
     scene.events = {{0.25f, each.event}};

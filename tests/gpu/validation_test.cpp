@@ -11,7 +11,7 @@
 namespace skitter::gpu {
 namespace {
 
-struct CopyPush {
+struct PingPush {
   uint32_t count;
   float offset;
 };
@@ -23,15 +23,15 @@ class ValidationTest : public test::GpuLoadTest {
     const Kernel kernel(context(), {.name = "copy",
                                     .code = {embedded::copy_comp_texel(), embedded::copy_comp_storage()},
                                     .bindings = {{0, BindingKind::load4}, {1, BindingKind::store}},
-                                    .pushBytes = sizeof(CopyPush)});
+                                    .pushBytes = sizeof(PingPush)});
     const Buffer a(context(), 1024, "a");
     const Buffer b(context(), 1024, "b");
     const Bindings ab = kernel.bind(context(), {{0, &a}, {1, &b}});
     const Bindings ba = kernel.bind(context(), {{0, &b}, {1, &a}});
     submitAndWait(context(), [&](vk::CommandBuffer cmd) {
-      kernel.dispatch(cmd, ab, bytesOf(CopyPush{64, 0}), 1);
+      kernel.dispatch(cmd, ab, bytesOf(PingPush{64, 0}), 1);
       if (withBarrier) computeToCompute(cmd);
-      kernel.dispatch(cmd, ba, bytesOf(CopyPush{64, 0}), 1);
+      kernel.dispatch(cmd, ba, bytesOf(PingPush{64, 0}), 1);
     });
   }
 };

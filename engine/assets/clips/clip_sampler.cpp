@@ -20,12 +20,12 @@ Value valueAt(const Sampler& sampler, size_t index) {
 }
 
 // The keys around a time: at `key` + `u`, 0 <= u <= 1, towards the next, `seconds` later.
-struct Place {
+struct Between {
   size_t key = 0;
   double u = 0, seconds = 0;
 };
 
-Place placeOf(const std::vector<double>& times, double time, Side side) {
+Between placeOf(const std::vector<double>& times, double time, Side side) {
   const auto next = side == Side::at ? std::upper_bound(times.begin(), times.end(), time)
                                      : std::lower_bound(times.begin(), times.end(), time);
   if (next == times.begin()) return {};
@@ -36,7 +36,7 @@ Place placeOf(const std::vector<double>& times, double time, Side side) {
 }
 
 template <typename Value>
-Value spline(const Sampler& sampler, const Place& place) {
+Value spline(const Sampler& sampler, const Between& place) {
   const size_t k = 3 * place.key;
   const auto v = valueAt<Value>(sampler, k + 1);
   if (place.seconds <= 0) return v;
@@ -72,7 +72,7 @@ std::vector<double> eachOnce(std::vector<double> times) {
 }  // namespace
 
 glm::dvec3 sampleVector(const Sampler& sampler, double time, Side side) {
-  const Place place = placeOf(sampler.times, time, side);
+  const Between place = placeOf(sampler.times, time, side);
   if (sampler.interpolation == Interpolation::cubicSpline) return spline<glm::dvec3>(sampler, place);
   const auto value = valueAt<glm::dvec3>(sampler, place.key);
   if (sampler.interpolation == Interpolation::step || place.u <= 0) return value;
@@ -80,7 +80,7 @@ glm::dvec3 sampleVector(const Sampler& sampler, double time, Side side) {
 }
 
 glm::dquat sampleRotation(const Sampler& sampler, double time, Side side) {
-  const Place place = placeOf(sampler.times, time, side);
+  const Between place = placeOf(sampler.times, time, side);
   if (sampler.interpolation == Interpolation::cubicSpline) {
     const auto value = spline<glm::dvec4>(sampler, place);
     return rotationOf(glm::length(value) < 1e-9 ? valueAt<glm::dvec4>(sampler, 3 * place.key + 1) : value);

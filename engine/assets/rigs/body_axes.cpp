@@ -10,7 +10,7 @@
 namespace skitter {
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
+constexpr double degreesARadian = 180 / std::numbers::pi;
 constexpr size_t mostSamples = 400;  // of the mesh, when it is tried for symmetry
 
 constexpr std::array frontWords = {"front", "head",   "neck",    "jaw",      "eye",  "nose",
@@ -102,7 +102,7 @@ glm::dvec3 findSide(const BodyPlan& plan, glm::dvec3& namedLeft) {
   }
   if (least < 0.05) return best;
   for (int k = 1; k < 36; ++k) {
-    const double angle = k * 5 / degrees;
+    const double angle = k * 5 / degreesARadian;
     const glm::dvec3 side = across * std::cos(angle) + front * std::sin(angle);
     if (const double value = asymmetry(plan, side); value < 0.6 * least) {
       least = value;
