@@ -19,7 +19,7 @@ namespace skitter::test {
 namespace {
 
 using ForageTest = GpuTest;
-using ForageReplayTest = GpuLoadTest;
+using ForageReplayTest = GpuTest;
 
 // A nest, food 7 m from it, a wall beside the way, and a branch on either side of its middle.
 Scene foragingScene(uint32_t agents, Controller controller = Controller::adaptive) {
@@ -44,7 +44,7 @@ double unitsOf(const Crowd& crowd) {
 
 uint64_t taken(const Crowd& crowd) { return crowd.foraging(0).taken.at(0); }
 
-TEST_P(ForageReplayTest, FewAndMany) {
+TEST_F(ForageReplayTest, FewAndMany) {
   const Heightfield ground = smallRollingGround();
   for (const uint32_t agents : {1u, 2u, 45u}) {
     Crowd crowd(device(), ground, foragingScene(agents), {.pageAgents = 7});
@@ -54,8 +54,6 @@ TEST_P(ForageReplayTest, FewAndMany) {
     }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(, ForageReplayTest, bothLoadPaths(), loadPathName);
 
 TEST_F(ForageTest, EveryControllerForages) {
   for (const Controller controller : allControllers) {
