@@ -99,7 +99,8 @@ void checkReact(const Setting& setting, const Moment& moment, Judge& judge) {
                             moment.after.watched ? &setting.heights : nullptr, idleBefore, flips);
   };
   const auto judged = [&](const reference::ReactResult& result, tolerance::ReactBounds& bound) {
-    bound = tolerance::react(setting.tuning, setting.heights, setting.extent, body, before, result);
+    bound = tolerance::react(setting.tuning, setting.heights, setting.extent, setting.creature, body, before,
+                             result);
     return compare(setting, moment, result, bound);
   };
   const reference::ReactResult result = run(0);

@@ -142,6 +142,10 @@ reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs) {
   return hurt;
 }
 
+double loadOf(const HerdState& state, size_t agent) {
+  return validation::load(state.carried, at(agent, shared::CARRIED_STRIDE)).w;
+}
+
 glm::dvec3 centreOf(const HerdState& state, size_t agent, double legLength) {
   const glm::dvec4 load = validation::load(state.carried, at(agent, shared::CARRIED_STRIDE));
   return reference::centreWith(load.w, legLength * glm::dvec3(load));

@@ -10,6 +10,7 @@ namespace skitter::reference {
 namespace {
 
 constexpr size_t fewestThatFall = 3;
+constexpr double leastPendulum = 0.25;  // of bodyHeight
 
 // One tick of one agent.
 class Reacting {
@@ -29,7 +30,7 @@ class Reacting {
   void disturb(std::span<const Step> steps, std::span<const double> misses, double tick,
                const std::optional<glm::dvec2>& push, WatchedGround watched, uint32_t idleBefore) {
     bool disturbed = push.has_value();
-    if (push) next_.velocity += *push;
+    if (push) next_.velocity += *push / (1 + creature_.load);
     double lost = -std::numeric_limits<double>::infinity();
     for (size_t l = 0; l < steps.size(); ++l) {
       const bool carries = creature_.limbs[l].carries;
@@ -52,9 +53,10 @@ class Reacting {
   }
 
   void stand() {
-    const double fade = pendulumTime(tuning_);
+    const double fade = pendulumTime(tuning_, creature_.centre);
     const glm::dvec2 velocity = body_.speed * body_.heading + next_.velocity;
-    const bool held = isCaught(velocity * fade) || next_.disturbed <= 0;
+    const glm::dvec3 off = rotation_ * creature_.centre;
+    const bool held = isCaught(velocity * fade + glm::dvec2(off.x, off.z)) || next_.disturbed <= 0;
     next_.over = held ? 0 : next_.over + tuning_.dt;
     next_.clock += tuning_.dt;
     next_.fold = 0;
@@ -244,7 +246,10 @@ class Reacting {
 
 }  // namespace
 
-double pendulumTime(const Tuning& tuning) { return std::sqrt(tuning.bodyHeight / tuning.gravity); }
+double pendulumTime(const Tuning& tuning, const glm::dvec3& centre) {
+  const double height = std::max(tuning.bodyHeight + centre.y, leastPendulum * tuning.bodyHeight);
+  return std::sqrt(height / tuning.gravity);
+}
 
 ReactResult react(const Tuning& tuning, const Heights& heights, const Creature& creature,
                   const AgentBody& body, const Reaction& before, std::span<const Step> steps,
@@ -301,7 +306,7 @@ Creature reactingCreature(const Tuning& tuning, const Creature& hurt, const Reac
   }
   const glm::dvec3 velocity =
       glm::conjugate(orientation) * glm::dvec3(reaction.velocity.x, 0, reaction.velocity.y);
-  const glm::dvec3 ahead = pendulumTime(tuning) * glm::dvec3(velocity.x, 0, velocity.z);
+  const glm::dvec3 ahead = pendulumTime(tuning, hurt.centre) * glm::dvec3(velocity.x, 0, velocity.z);
   creature.shift += ahead;
   for (Limb& limb : creature.limbs) limb.home += ahead;
   return creature;

@@ -201,8 +201,8 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
 struct ReactBounds {
   double time, velocity, way, tilt, tiltRate, ground, frame, floor, reach;
 };
-inline ReactBounds react(const Tuning& t, const Heights& heights, double extent, const AgentBody& body,
-                         const Reaction& before, const ReactResult& result) {
+inline ReactBounds react(const Tuning& t, const Heights& heights, double extent, const Creature& creature,
+                         const AgentBody& body, const Reaction& before, const ReactResult& result) {
   ReactBounds bound{};
   const Reaction& next = result.reaction;
   // Sums and products of a few times; no clock is above a day.
@@ -210,7 +210,7 @@ inline ReactBounds react(const Tuning& t, const Heights& heights, double extent,
   const double fastest =
       body.speed + std::max(glm::length(before.velocity), glm::length(next.velocity)) + t.gravity * t.dt;
   // T_c is a quotient under a root, and a push fades by another quotient.
-  bound.velocity = 24 * roundoff * fastest;
+  bound.velocity = 24 * roundoff * fastest * (1 + glm::length(creature.centre) / t.bodyHeight);
   // Where the body is held back at the edge, its place is seen over a tick.
   const glm::dvec2 extents{t.halfExtentX, t.halfExtentZ};
   const glm::dvec2 ahead = glm::abs(body.world()) + fastest * t.dt;
@@ -224,8 +224,11 @@ inline ReactBounds react(const Tuning& t, const Heights& heights, double extent,
                     t.dt * t.tumbleRate * t.tumbleRate * t.tiltMost + 1);
   if (begins) bound.tiltRate += 2 * bound.velocity / t.bodyHeight;
   bound.tilt = t.dt * bound.tiltRate + 4 * roundoff;
-  // Where legs reach to: a home and the centre are rotated once, and xi is a product.
-  bound.reach = rotated(2 * t.legLength) + 24 * roundoff * fastest + 8 * roundoff * t.legLength;
+  // Where legs reach to: a home and the centre are rotated once, and xi is a product. A load may hang so low
+  // that T_c is the root of a small difference.
+  const double load = glm::length(creature.centre);
+  bound.reach = rotated(2 * t.legLength + load) + 24 * roundoff * fastest * (1 + load / t.bodyHeight) +
+                8 * roundoff * (t.legLength + load);
   if (!next.isFallen() && !next.isLoose()) return bound;
 
   double lookUp = 0;

@@ -54,6 +54,7 @@ void takeHurtForm(Stage& stage, bool reacts) {
   if (!reacts || !stage.reactCode) return;
   stage.code = *stage.reactCode;
   stage.bindings.push_back({shared::BINDING_REACTION, gpu::BindingKind::load4});
+  stage.bindings.push_back({shared::BINDING_CARRIED, gpu::BindingKind::load4});
   stage.bindings.insert(stage.bindings.end(), stage.reactBindings.begin(), stage.reactBindings.end());
 }
 

@@ -44,7 +44,7 @@ struct Stage {
   std::optional<gpu::ShaderCode> hurtCode = {};
   std::vector<gpu::BindingDecl> hurtBindings = {};
   // In herds with reactions, which can be hurt, too: a form in place of that, and what it binds beside that
-  // one and BINDING_REACTION.
+  // one, BINDING_REACTION and BINDING_CARRIED.
   std::optional<gpu::ShaderCode> reactCode = {};
   std::vector<gpu::BindingDecl> reactBindings = {};
 

@@ -283,12 +283,12 @@ SKITTER_INLINE int packedBone(float packed, int leg) {
 }
 
 // carried, per agent of a herd that can be hurt, written by the host alone (Crowd::carry, docs/loads.md).
-// What its walk depends on is in its `hurt` record.
+// What its gait depends on is in its `hurt` record; react and measure have the centre of mass from this one.
 //   [0] offset of the load's centre from the body's x, y, z (model, leg lengths), mass (of the body's mass)
 SKITTER_CONST int CARRIED_STRIDE = 1;
 
 // push, per agent of a herd with reactions, written by the host alone (Crowd::push).
-//   [0] change of the velocity x, z (m/s), unused, the tick in which it counts
+//   [0] change of the velocity x, z (m/s) of who carries nothing, unused, the tick in which it counts
 SKITTER_CONST int PUSH_STRIDE = 1;
 
 // reaction, per agent of a herd with reactions, written by react (docs/stages/react.md).
@@ -425,8 +425,8 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
   /* It counts in the tick that it names alone. */ \
   RECORD(PUSH,   push,   54, agent,   PUSH_STRIDE,                     bound,      false, false) \
   RECORD(RATE,   rate,   56, agent,   RATE_STRIDE,                     bound,      false, true) \
-  /* Only measure looks at it. */ \
-  RECORD(CARRIED, carried, 58, agent, CARRIED_STRIDE,                  hurt,       false, false)
+  /* Looked at by measure, and in herds with reactions by react and where feet go. */ \
+  RECORD(CARRIED, carried, 58, agent, CARRIED_STRIDE,                  hurt,       false, true)
 // clang-format on
 
 #ifdef __cplusplus

@@ -73,7 +73,8 @@ struct AgentLoad {
   Load load = {};
 };
 
-// A push: an impulse over the agent's mass, which is a change of its velocity.
+// A push: an impulse over the agent's own mass. Its velocity changes by so much, or by 1 / (1 + m) of it
+// where it carries m times its mass.
 struct AgentPush {
   AgentId agent;
   glm::vec2 velocity{0};  // x, z, metres per second, at most Push::most long

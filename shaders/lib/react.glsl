@@ -1,5 +1,6 @@
 #ifndef REACT_GLSL
 #define REACT_GLSL
+#include "lib/carried.glsl"
 // The pieces of stage react (docs/stages/react.md) that others share.
 
 struct Reaction {
@@ -29,7 +30,11 @@ bool isFallen(float phase) { return phase >= REACTION_FALLING && phase <= REACTI
 // It does not stand on its legs, not even as it begins to rise.
 bool isLoose(Reaction r) { return isFallen(r.phase) || (r.phase == REACTION_RISING && r.clock == 0.0); }
 
-float pendulumTime(Parameters q) { return sqrt(q.bodyHeight / q.gravity); }
+// Where a load hangs below the body the pendulum is not shorter than so many bodyHeight.
+const float LEAST_PENDULUM = 0.25;
+float pendulumTime(Parameters q, vec4 load) {
+  return sqrt(max(q.bodyHeight + centreShift(q, load).y, LEAST_PENDULUM * q.bodyHeight) / q.gravity);
+}
 
 // R_0 of a body that stands on `up`, tipped over toward `way`.
 mat3 tippedFrame(vec3 up, vec2 heading, vec2 way, float tilt) {

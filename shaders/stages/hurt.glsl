@@ -7,6 +7,7 @@
 #ifdef REACTS
 #include "lib/react.glsl"
 LOAD4_BUFFER(BINDING_REACTION, reactions);
+LOAD4_BUFFER(BINDING_CARRIED, loads);
 #endif
 
 LOAD4_BUFFER(BINDING_HURT, hurts);
@@ -37,7 +38,8 @@ Hurt hurtNow(int agent, vec4 orientation) {
   Hurt hurt = hurtOf(agent);
   Reaction r = LOAD_REACTION(agent);
   bool fallen = isFallen(r.phase);
-  vec3 ahead = rotateBack(orientation, vec3(r.velocity.x, 0.0, r.velocity.y)) * pendulumTime(parameters);
+  vec3 ahead = rotateBack(orientation, vec3(r.velocity.x, 0.0, r.velocity.y)) *
+               pendulumTime(parameters, LOAD4(loads, agent * CARRIED_STRIDE));
   hurt.idle |= fallen ? (1u << LEGS) - 1u : 0u;
   hurt.shift += fallen ? vec3(0.0) : vec3(ahead.x, 0.0, ahead.z);
   hurt.hurry = fallen ? 0.0 : length(r.velocity);

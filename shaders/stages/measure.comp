@@ -5,6 +5,7 @@
 #include "lib/rarely.glsl"
 #include "stages/ground.glsl"
 #include "lib/trail.glsl"
+#include "lib/carried.glsl"
 #include "stages/hurt.glsl"
 
 LOAD4_BUFFER(BINDING_RIG, rig);
@@ -128,12 +129,12 @@ void measure(int slot, int agent) {
   int firstLeg = legRecord(agent, 0, LEGS), watchAt = slot * watchStride(LEGS);
   Body body = LOAD_BODY(agent);
   vec2 world = worldOf(body.local, body.tile);
-  vec3 mass = vec3(0.0, parameters.bodyHeight, 0.0);  // its centre, model space
 #ifdef HURT
   vec4 load = LOAD4(loads, agent * CARRIED_STRIDE);
-  mass += load.w / (1.0 + load.w) * parameters.legLength * load.xyz;
+#else
+  vec4 load = vec4(0.0);
 #endif
-  vec2 centre = rotate(body.orientation, mass).xz;
+  vec2 centre = rotate(body.orientation, vec3(0.0, parameters.bodyHeight, 0.0) + centreShift(parameters, load)).xz;
   uint watched = constants.watched, ticks = uint(parameters.jerkTicks);
   uint place = watched >= 3u ? (watched - 3u) % ticks : 0u;
   bool closes = watched >= 3u && place + 1u == ticks;

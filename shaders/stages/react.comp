@@ -11,6 +11,7 @@ LOAD4_BUFFER(BINDING_GAIT, gaits);
 LOAD4_BUFFER(BINDING_STEP, steps);
 LOAD4_BUFFER(BINDING_MISS, misses);
 LOAD4_BUFFER(BINDING_PUSH, pushes);
+LOAD4_BUFFER(BINDING_CARRIED, loads);
 LOAD4_BUFFER(BINDING_REACTION, reactions);
 STORE4_BUFFER(BINDING_REACTION_OUT, reactionsOut);
 #include "stages/rig_legs.glsl"
@@ -79,10 +80,10 @@ void beginFall(inout Reaction r, Body body, vec3 up, vec2 velocity) {
 }
 
 // An agent that is not fallen, in a tick; it may fall.
-void stand(inout Reaction r, int agent, Body body, mat3 frame, Legs legs, vec3 shift) {
-  float dt = parameters.dt, fade = pendulumTime(parameters);
+void stand(inout Reaction r, int agent, Body body, mat3 frame, Legs legs, vec3 shift, vec4 load) {
+  float dt = parameters.dt, fade = pendulumTime(parameters, load);
   vec2 velocity = body.heading * body.speed + r.velocity;
-  bool caught = isCaught(agent, legs, frame, shift, velocity * fade);
+  bool caught = isCaught(agent, legs, frame, shift, velocity * fade + (frame * centreShift(parameters, load)).xz);
   bool held = caught || r.disturbed <= 0.0;
   r.over = held ? 0.0 : r.over + dt;
   r.clock += dt;
@@ -176,14 +177,14 @@ void main() {
   Reaction r = LOAD_REACTION(agent);
   Hurt hurt = hurtOf(agent);
   mat3 frame = matrixOf(body.orientation);
-  vec4 push = LOAD4(pushes, agent);
+  vec4 push = LOAD4(pushes, agent), load = LOAD4(loads, agent * CARRIED_STRIDE);
   bool pushed = push.w == thisTick;
-  r.velocity += pushed ? push.xy : vec2(0.0);
+  r.velocity += pushed ? push.xy / (1.0 + load.w) : vec2(0.0);
   Legs legs = legsOf(agent, body, hurt.idle);
   bool loses = (hurt.idle & ~uint(LOAD4(gaits, agent * GAIT_STRIDE + 1).w)) != 0u;
   bool disturbed = pushed || loses || legs.disturbed;
   r.disturbed = disturbed ? parameters.disturbTime : max(0.0, r.disturbed - parameters.dt);
-  if (!isFallen(r.phase)) stand(r, agent, body, frame, legs, hurt.shift);
+  if (!isFallen(r.phase)) stand(r, agent, body, frame, legs, hurt.shift, load);
   if (isFallen(r.phase)) tumble(r, body, frame);
 
   int at = agent * REACTION_STRIDE;

@@ -45,9 +45,9 @@ std::string situationName(const ::testing::TestParamInfo<SituationCase>& param) 
 
 // Those whose kernels are no others'.
 std::vector<size_t> ofOwnKernels() {
-  const std::set<std::string> names = {"walking",    "amongObstacles", "findingWays",
-                                       "foraging",   "fallingAsleep",  "gettingPushed",
-                                       "losingLegs", "carryingLoads",  "atRatesOfTheirOwn"};
+  const std::set<std::string> names = {"walking",       "amongObstacles",   "findingWays",      "foraging",
+                                       "fallingAsleep", "gettingPushed",    "pushedUnderLoads", "losingLegs",
+                                       "carryingLoads", "atRatesOfTheirOwn"};
   std::vector<size_t> numbers;
   for (size_t i = 0; i < sound().size(); ++i)
     if (names.contains(sound()[i].situation->name)) numbers.push_back(i);

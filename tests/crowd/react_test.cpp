@@ -87,6 +87,30 @@ TEST_F(ReactTest, HarderPushesFellMore) {
   EXPECT_EQ(curve[12.0f], 1);
 }
 
+// The same impulse, of which all who carry nothing fall.
+TEST_F(ReactTest, HeavyLoadsKeepFromFallingAndThoseFarOutFell) {
+  constexpr uint32_t agents = 32;
+  const auto fallen = [&](float speed, const Load& load) {
+    Scene scene = reactingScene(agents);
+    scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
+    scene.herds[0].goal = {.kind = Goal::Kind::velocity, .velocity = {0, 1}};
+    Crowd crowd(device(), flatGround(), scene, kAllWatched);
+    for (uint32_t agent = 0; agent < agents; ++agent) crowd.carry(crowd.agentId(0, agent), load);
+    simulate(device(), crowd, 90);
+    for (uint32_t agent = 0; agent < agents; ++agent) {
+      const float angle = 0.7f * static_cast<float>(agent);
+      crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
+    }
+    simulate(device(), crowd, 30);
+    return fallenIn(crowd.reactions(0));
+  };
+  EXPECT_EQ(fallen(12, {}), agents);
+  const uint32_t heavy = fallen(12, {.mass = 3});
+  EXPECT_LT(heavy, agents / 2);
+  EXPECT_GT(fallen(12, {.mass = 3, .offset = {0, 2, 0}}), heavy) << "the pendulum is longer";
+  EXPECT_GT(fallen(12, {.mass = 3, .offset = {1, 0, 0}}), heavy) << "the centre is further out";
+}
+
 TEST_F(ReactTest, GroundThatIsGoneUnderAFootFellsNobody) {
   constexpr uint32_t agents = 40, legs = 8;
   Scene scene = reactingScene(agents);

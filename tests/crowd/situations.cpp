@@ -463,6 +463,29 @@ Results gettingPushed(Device& device, Controller controller, const CrowdOptions&
   return replay.results();
 }
 
+// The same push, to every side, of agents with loads of every weight: beside them, on top, and hanging so low
+// that the pendulum is at its shortest.
+Results pushedUnderLoads(Device& device, Controller controller, const CrowdOptions& options) {
+  constexpr uint32_t agents = 32;
+  Scene scene = sceneOf(agents, 1, 1, controller);
+  scene.herds[0].reactions = true;
+  Underway underway(device, scene, options);
+  auto& [crowd, replay] = underway;
+  const glm::vec3 offsets[] = {{0.8f, 0, 0}, {0, 1.5f, 0}, {0, -2, 0}, {0, 0.2f, -0.7f}};
+  for (uint32_t agent = 1; agent < agents; ++agent)
+    crowd.carry(crowd.agentId(0, agent),
+                {.mass = 0.5f * static_cast<float>(1 + agent % 8), .offset = offsets[agent % 4]});
+  replayTicks(device, crowd, replay, 20);
+  for (const float speed : {4.0f, 12.0f}) {
+    for (uint32_t agent = 0; agent < agents; ++agent) {
+      const float angle = 2.4f * static_cast<float>(agent);
+      crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
+    }
+    replayTicks(device, crowd, replay, 60);
+  }
+  return replay.results();
+}
+
 // A camera that comes and goes, so that every rate is had, and changed from to every other.
 Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOptions& options) {
   Scene scene = sceneOf(60, 1, 1, controller);
@@ -510,6 +533,7 @@ const std::vector<Situation>& situations() {
       {"foldingBack", {Controller::clip}, foldingBack},
       {"beyondTheLimits", {Controller::planted}, beyondTheLimits},
       {"gettingPushed", {Controller::adaptive}, gettingPushed},
+      {"pushedUnderLoads", {Controller::adaptive}, pushedUnderLoads},
       {"atRatesOfTheirOwn", {Controller::adaptive, Controller::loop}, atRatesOfTheirOwn},
       {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs},
       {"carryingLoads", {Controller::adaptive, Controller::loop, Controller::planted}, carryingLoads},

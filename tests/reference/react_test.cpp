@@ -118,6 +118,29 @@ TEST_F(React, TippingTurnsTheUpAxisTowardTheFall) {
   EXPECT_NEAR(glm::determinant(frame), 1, 1e-12);
 }
 
+TEST_F(React, AHeavierBodyIsPushedLess) {
+  creature.load = 3;
+  tick(glm::dvec2(1, 0));
+  EXPECT_NEAR(reaction.velocity.x, 0.25 / (1 + tuning.dt / kFade), 1e-6);
+}
+
+// The body's centre is 0.26 m above its origin.
+TEST_F(React, ALoadOnTopMakesThePendulumLongerAndOneBelowShorter) {
+  EXPECT_NEAR(reference::pendulumTime(tuning, {1, 0.78, 1}), 2 * kFade, 1e-6);
+  EXPECT_NEAR(reference::pendulumTime(tuning, {0, -0.13, 0}), std::sqrt(0.5) * kFade, 1e-6);
+  EXPECT_NEAR(reference::pendulumTime(tuning, {0, -5, 0}), 0.5 * kFade, 1e-6) << "but not than a quarter";
+}
+
+// A centre of mass that far out is beyond every leg, whatever the velocity.
+TEST_F(React, ALoadFarOutFellsWhoIsDisturbed) {
+  creature.centre = {3, 0, 0};
+  for (int i = 0; i < 20; ++i) tick();
+  EXPECT_EQ(reaction.falls, 0);
+  tick(glm::dvec2(0.1, 0));
+  for (int i = 0; i < 20; ++i) tick();
+  EXPECT_EQ(reaction.falls, 1);
+}
+
 TEST_F(React, LegsOfAFallenCreatureFoldAndHomesOfAPushedOneAreAhead) {
   reaction.velocity = {1, 0};
   reaction.phase = ReactionPhase::stumbling;

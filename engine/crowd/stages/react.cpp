@@ -28,6 +28,7 @@ Stage reactStage() {
            {BINDING_MISS, load4},
            {BINDING_HURT, load4},
            {BINDING_PUSH, load4},
+           {BINDING_CARRIED, load4},
            {BINDING_REACTION, load4},
            {BINDING_REACTION_OUT, store}},
           Stage::Over::agents,
