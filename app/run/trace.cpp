@@ -8,6 +8,7 @@
 
 #include "app/run/placed_bone.h"
 #include "crowd/herd.h"
+#include "crowd/load.h"
 #include "crowd/radius.h"
 #include "skitter/error.h"
 #include "skitter/records.h"
@@ -126,6 +127,13 @@ nlohmann::ordered_json legState(const Rig& rig, uint64_t tick, uint32_t agent, u
   return entry;
 }
 
+nlohmann::ordered_json loadState(uint64_t tick, uint32_t agent, const Load& load) {
+  return {{"tick", tick},
+          {"agent", agent},
+          {"mass", load.mass},
+          {"offset", {load.offset.x, load.offset.y, load.offset.z}}};
+}
+
 // Without legs where the herd is gone.
 const Rig& tracedRig(const Crowd& crowd, uint32_t herd) {
   static const Rig none;
@@ -174,8 +182,9 @@ void Trace::append(const Crowd& crowd) {
     herds_[h].rotations.append(std::span<const float>(values.rotations));
     herds_[h].stance.append(std::span<const uint8_t>(values.stance));
     herds_[h].body.append(std::span<const float>(values.body));
-    if (!state.hurt.empty())
-      noteLegs(state, static_cast<uint32_t>(tracedRig(crowd, h).legCount()), herds_[h]);
+    if (state.hurt.empty()) continue;
+    noteLegs(state, static_cast<uint32_t>(tracedRig(crowd, h).legCount()), herds_[h]);
+    noteLoads(state, herds_[h]);
   }
   ++entries_;
 }
@@ -194,6 +203,16 @@ void Trace::noteLegs(const HerdState& state, uint32_t legs, HerdFiles& herd) con
   }
 }
 
+void Trace::noteLoads(const HerdState& state, HerdFiles& herd) const {
+  constexpr size_t floats = std::tuple_size_v<crowd::CarriedRecord>;
+  herd.carried.resize(state.agents);
+  for (uint32_t agent = 0; agent < state.agents; ++agent) {
+    const Load now = crowd::loadOf(std::span(state.carried).subspan(agent * floats, floats));
+    if (now != herd.carried[agent]) herd.loads.push_back({firstTick_ + entries_, agent, now});
+    herd.carried[agent] = now;
+  }
+}
+
 size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manifest& manifest) {
   NpyWriter heights(folder_.add("heights.npy"), "<f4", {terrain.columns});
   heights.append(std::span<const float>(terrain.heights));
@@ -208,6 +227,8 @@ size_t Trace::finish(const Crowd& crowd, const Heightfield& terrain, const Manif
     addSizes(implOf(crowd), h, herds.back());
     for (const auto& [tick, agent, leg, bone, state] : herds_[h].legs)
       herds.back()["hurt"].push_back(legState(tracedRig(crowd, h), tick, agent, leg, state, bone));
+    for (const auto& [tick, agent, load] : herds_[h].loads)
+      herds.back()["loads"].push_back(loadState(tick, agent, load));
   }
   const nlohmann::ordered_json json = {{"dt", dt_},
                                        {"firstTick", firstTick_},

@@ -34,13 +34,23 @@ class Trace {
     uint32_t agent, leg, bone;  // the first bone that is lost
     LegState state;
   };
+  // What an agent carries from a tick on.
+  struct LoadEntry {
+    uint64_t tick;
+    uint32_t agent;
+    Load load;
+  };
   struct HerdFiles {
     uint32_t agents;
     NpyWriter joints, rotations, stance, body;
-    std::vector<crowd::Damage> damages = {};  // of each agent at the last entry, of a herd that can be hurt
+    // Of each agent at the last entry, of a herd that can be hurt.
+    std::vector<crowd::Damage> damages = {};
+    std::vector<Load> carried = {};
     std::vector<LegEntry> legs = {};
+    std::vector<LoadEntry> loads = {};
   };
   void noteLegs(const HerdState& state, uint32_t legs, HerdFiles& herd) const;
+  void noteLoads(const HerdState& state, HerdFiles& herd) const;
   StagedFolder folder_;
   double dt_;
   uint64_t firstTick_ = 1, entries_ = 0;

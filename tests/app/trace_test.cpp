@@ -394,6 +394,25 @@ TEST_F(Trace, LegsThatAreHurtAreListed) {
   EXPECT_FALSE(herds.at(1).contains("hurt"));
 }
 
+TEST_F(Trace, LoadsAreListed) {
+  write("loads.json", R"({"herds": [{"agents": 3, "hurt": true}, {"agents": 1, "hurt": true}], "events": [
+    {"at": 0.1, "agents": [2], "load": {"mass": 0.5, "offset": [0, 0.25, -0.5]}},
+    {"at": 0.15, "agents": [0], "load": {"mass": 2}},
+    {"at": 0.2, "agents": [2], "load": {}}
+  ]})");
+  const Result result =
+      skitter({"run", file("loads.json"), "--headless", "--frames", "20", "--trace", file("trace")});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto herds = json("trace/trace.json").at("herds");
+  EXPECT_EQ(herds.at(0).at("loads"), nlohmann::json::parse(R"([
+    {"tick": 6, "agent": 2, "mass": 0.5, "offset": [0, 0.25, -0.5]},
+    {"tick": 9, "agent": 0, "mass": 2, "offset": [0, 0, 0]},
+    {"tick": 12, "agent": 2, "mass": 0, "offset": [0, 0, 0]}
+  ])"));
+  EXPECT_FALSE(herds.at(0).contains("hurt"));
+  EXPECT_FALSE(herds.at(1).contains("loads"));
+}
+
 TEST_F(Trace, NoTicksAreNoEntries) {
   ASSERT_EQ(skitter({"run", "--headless", "--agents", "2", "--frames", "0", "--trace", file("trace")}).code,
             0);
