@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "crowd/herd.h"
+#include "crowd/state_file.h"
+#include "crowd/state_head.h"
+
+// What the device has of a crowd, to a state and back.
+namespace skitter::crowd {
+
+std::vector<StateChunk> recordChunks(const Crowd::Impl& crowd, const Kind& kind);
+uint64_t bytesOfRecords(const Crowd::Impl& crowd, const Kind& kind, Record record);
+void writeRecords(const Crowd::Impl& crowd, const Kind& kind, Record record, StateWriter& writer);
+void readRecords(const Crowd::Impl& crowd, const Kind& kind, Record record, StateReader& reader);
+
+// A footfall as the device has it; agents are numbered through the kind.
+struct RawFootfall {
+  std::array<float, size_t{4} * shared::FOOTFALL_STRIDE> values;
+  float agent() const { return values[4]; }
+  float leg() const { return values[5]; }
+};
+
+// By agent and leg.
+std::vector<RawFootfall> footfallsOf(const Crowd::Impl& crowd, const Kind& kind);
+void giveFootfalls(const Crowd::Impl& crowd, const Kind& kind, const std::vector<RawFootfall>& all);
+
+// Adds what the device has counted for a herd since the start, on all of its pages.
+void addCounts(const Crowd::Impl& crowd, uint32_t herd, StateHerd& sums);
+// To one of its pages: only the sum over all of them is asked for.
+void giveCounts(const Crowd::Impl& crowd, uint32_t herd, const StateHerd& counts);
+
+}  // namespace skitter::crowd
