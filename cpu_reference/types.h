@@ -100,9 +100,8 @@ struct Creature {
   // speed.
   glm::dvec3 shift{0};
   double speed = 1;
-  // What it carries, times its own mass; and from its own centre of mass to that of both, model space.
-  double load = 0;
-  glm::dvec3 centre{0};
+  double load = 0;       // the mass that it carries, times its own
+  glm::dvec3 centre{0};  // from its own centre of mass to that of both, model space
   // Where it reacts (cpu_reference/stages/react.h).
   std::optional<Reaction> reaction = {};
 

@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "cpu_reference/ik/kinematics.h"
 #include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/ik.h"
@@ -7,8 +9,6 @@
 #include "validation/checks.h"
 #include "validation/convert.h"
 #include "validation/solve.h"
-
-#include <optional>
 
 namespace skitter::validation {
 namespace {

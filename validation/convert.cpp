@@ -142,7 +142,7 @@ reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs) {
   return hurt;
 }
 
-double loadOf(const HerdState& state, size_t agent) {
+double carriedMassOf(const HerdState& state, size_t agent) {
   return validation::load(state.carried, at(agent, shared::CARRIED_STRIDE)).w;
 }
 

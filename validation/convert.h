@@ -24,8 +24,8 @@ reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones
 
 // The state is a herd's that can be hurt.
 reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs);
-// What the agent carries, times its own mass; of the same herd.
-double loadOf(const HerdState& state, size_t agent);
+// The mass that the agent carries, times its own. The state is a herd's that can be hurt.
+double carriedMassOf(const HerdState& state, size_t agent);
 // How far what the agent carries moves its centre of mass, model space; of the same herd.
 glm::dvec3 centreOf(const HerdState& state, size_t agent, double legLength);
 // The state is a herd's with reactions. What the host has pushed the agent with for tick n, if anything.

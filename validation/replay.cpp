@@ -119,7 +119,7 @@ void setCreature(const Setting& herd, const HerdState& state, size_t agent, bool
                  std::optional<Setting>& ofAgent) {
   if (!ofAgent) ofAgent = herd;
   ofAgent->creature = reference::hurtCreature(herd.creature, hurtOf(state, agent, herd.legs));
-  ofAgent->creature.load = loadOf(state, agent);
+  ofAgent->creature.load = carriedMassOf(state, agent);
   ofAgent->creature.centre = centreOf(state, agent, herd.tuning.legLength);
   if (reacts && !state.reaction.empty())
     ofAgent->creature = reference::reactingCreature(herd.tuning, ofAgent->creature, reactionOf(state, agent),

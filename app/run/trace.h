@@ -34,7 +34,7 @@ class Trace {
     uint32_t agent, leg, bone;  // the first bone that is lost
     LegState state;
   };
-  // What an agent carries from a tick on.
+  // The agent carries this load from the tick on.
   struct LoadEntry {
     uint64_t tick;
     uint32_t agent;
@@ -43,7 +43,7 @@ class Trace {
   struct HerdFiles {
     uint32_t agents;
     NpyWriter joints, rotations, stance, body;
-    // Of each agent at the last entry, of a herd that can be hurt.
+    // These two say how each agent was at the last entry. They are empty for a herd that cannot be hurt.
     std::vector<crowd::Damage> damages = {};
     std::vector<Load> carried = {};
     std::vector<LegEntry> legs = {};

@@ -44,8 +44,8 @@ ReactResult react(const Tuning& tuning, const Heights& heights, const Creature& 
                   std::span<const double> misses, double tick, const std::optional<glm::dvec2>& push,
                   WatchedGround watched, uint32_t idleBefore, ReactFlips flips = 0);
 
-// T_c: the time constant of the pendulum. `centre` is the creature's.
-double pendulumTime(const Tuning& tuning, const glm::dvec3& centre = glm::dvec3(0));
+// T_c is the time constant of the pendulum. `centre` is the creature's.
+double pendulumTime(const Tuning& tuning, const glm::dvec3& centre);
 
 // R_0 of a body that stands on `up` and is tipped over toward `way`.
 glm::dmat3 tippedFrame(const glm::dvec3& up, const glm::dvec2& heading, const glm::dvec2& way, double tilt);

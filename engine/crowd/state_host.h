@@ -7,16 +7,18 @@
 #include "crowd/herd.h"
 #include "crowd/state_head.h"
 
-// What the host knows of a crowd, to a state and back.
+// A state keeps what the host knows of a crowd. Each `...Of` reads it for a state, and each `give...` puts it
+// back.
 namespace skitter::crowd {
 
-// Of all that the simulation knows of a kind's rig and its clips: what the records are of no use without.
+// The checksum covers all that the simulation knows of a kind's rig and its clips. The records are of no use
+// with others.
 uint32_t fingerprintOf(const Kind& kind);
 std::vector<uint32_t> fingerprintsOf(const std::vector<Kind>& kinds);
 
-// Of each of the kind's places.
+// There is one for each of the kind's places.
 std::vector<uint32_t> generationsOf(const Crowd::Impl& crowd, uint32_t kind);
-// Whether everybody is there who was there at first, and nobody else.
+// It is true where everybody is there who was there at first, and nobody else.
 bool isFirstGeneration(const Crowd::Impl& crowd, uint32_t kind);
 void giveGenerations(Crowd::Impl& crowd, uint32_t kind, std::span<const uint32_t> all);
 
@@ -29,7 +31,7 @@ void giveThreats(const std::vector<StateThreat>& all, Crowd::Impl& crowd);
 std::vector<StateSeries> seriesOf(const Crowd::Impl& crowd);
 void giveSeries(const std::vector<StateSeries>& all, Crowd::Impl& crowd);
 
-// Damage and loads, as the records have them or as wait to be written.
+// Damage and loads come from the records, or from the changes that wait to be written.
 void giveDamages(const Crowd::Impl& crowd, const std::vector<StateChange>& waiting, Kind& kind);
 
 }  // namespace skitter::crowd

@@ -8,7 +8,7 @@
 #include "crowd/state_file.h"
 #include "crowd/state_head.h"
 
-// What the device has of a crowd, to a state and back.
+// A state keeps what the device has of a crowd. These functions read it for a state and put it back.
 namespace skitter::crowd {
 
 std::vector<StateChunk> recordChunks(const Crowd::Impl& crowd, const Kind& kind);
@@ -23,13 +23,13 @@ struct RawFootfall {
   float leg() const { return values[5]; }
 };
 
-// By agent and leg.
+// They are sorted by agent and leg.
 std::vector<RawFootfall> footfallsOf(const Crowd::Impl& crowd, const Kind& kind);
 void giveFootfalls(const Crowd::Impl& crowd, const Kind& kind, const std::vector<RawFootfall>& all);
 
-// Adds what the device has counted for a herd since the start, on all of its pages.
+// This adds what the device has counted for a herd since the start, on all of its pages.
 void addCounts(const Crowd::Impl& crowd, uint32_t herd, StateHerd& sums);
-// To one of its pages: only the sum over all of them is asked for.
+// One of its pages gets them all, since only the sum is ever asked for.
 void giveCounts(const Crowd::Impl& crowd, uint32_t herd, const StateHerd& counts);
 
 }  // namespace skitter::crowd

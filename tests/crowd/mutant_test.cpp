@@ -1,7 +1,6 @@
 // Every check is seen to fail: one small error in a shader (tests/crowd/CMakeLists.txt says which), and
 // lock-step replay must refuse its stage and no other. The same situations pass with the sound shaders.
 #include <algorithm>
-#include <set>
 #include <tuple>
 
 #include "broken_includes.inc"
@@ -43,14 +42,10 @@ std::string situationName(const ::testing::TestParamInfo<SituationCase>& param) 
          (std::get<0>(param.param) == LoadPath::texel ? "_texel" : "_storage");
 }
 
-// Those whose kernels are no others'.
-std::vector<size_t> ofOwnKernels() {
-  const std::set<std::string> names = {"walking",       "amongObstacles",   "findingWays",      "foraging",
-                                       "fallingAsleep", "gettingPushed",    "pushedUnderLoads", "losingLegs",
-                                       "carryingLoads", "atRatesOfTheirOwn"};
+std::vector<size_t> onBothPaths() {
   std::vector<size_t> numbers;
   for (size_t i = 0; i < sound().size(); ++i)
-    if (names.contains(sound()[i].situation->name)) numbers.push_back(i);
+    if (sound()[i].situation->onBothPaths) numbers.push_back(i);
   return numbers;
 }
 
@@ -60,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(, SituationTest,
                          situationName);
 INSTANTIATE_TEST_SUITE_P(Storage, SituationTest,
                          ::testing::Combine(::testing::Values(LoadPath::storage),
-                                            ::testing::ValuesIn(ofOwnKernels())),
+                                            ::testing::ValuesIn(onBothPaths())),
                          situationName);
 
 struct Mutant {

@@ -27,6 +27,22 @@ Scene reactingScene(uint32_t agents) {
   return scene;
 }
 
+// All walk forward, out of each other's way.
+Scene abreast(uint32_t agents) {
+  Scene scene = reactingScene(agents);
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
+  scene.herds[0].goal = {.kind = Goal::Kind::velocity, .velocity = {0, 1}};
+  return scene;
+}
+
+// Each agent is pushed in a direction of its own.
+void pushAllAside(Crowd& crowd, float speed) {
+  for (uint32_t agent = 0; agent < crowd.places(0); ++agent) {
+    const float angle = 0.7f * static_cast<float>(agent);
+    crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
+  }
+}
+
 uint32_t fallenIn(const std::vector<Reaction>& all) {
   return static_cast<uint32_t>(
       std::ranges::count_if(all, [](const Reaction& each) { return each.falls > 0; }));
@@ -57,15 +73,9 @@ TEST_F(ReactTest, HarderPushesFellMore) {
   constexpr uint32_t agents = 64;
   std::map<float, double> curve;
   for (const float speed : {0.5f, 2.0f, 4.0f, 6.0f, 12.0f}) {
-    Scene scene = reactingScene(agents);
-    scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
-    scene.herds[0].goal = {.kind = Goal::Kind::velocity, .velocity = {0, 1}};
-    Crowd crowd(device(), flatGround(), scene, kAllWatched);
+    Crowd crowd(device(), flatGround(), abreast(agents), kAllWatched);
     simulate(device(), crowd, 90);
-    for (uint32_t agent = 0; agent < agents; ++agent) {
-      const float angle = 0.7f * static_cast<float>(agent);
-      crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
-    }
+    pushAllAside(crowd, speed);
     for (int i = 0; i < 30; ++i) {
       simulate(device(), crowd, 10);
       expectSound(crowd, crowd.download(0));
@@ -91,16 +101,10 @@ TEST_F(ReactTest, HarderPushesFellMore) {
 TEST_F(ReactTest, HeavyLoadsKeepFromFallingAndThoseFarOutFell) {
   constexpr uint32_t agents = 32;
   const auto fallen = [&](float speed, const Load& load) {
-    Scene scene = reactingScene(agents);
-    scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
-    scene.herds[0].goal = {.kind = Goal::Kind::velocity, .velocity = {0, 1}};
-    Crowd crowd(device(), flatGround(), scene, kAllWatched);
+    Crowd crowd(device(), flatGround(), abreast(agents), kAllWatched);
     for (uint32_t agent = 0; agent < agents; ++agent) crowd.carry(crowd.agentId(0, agent), load);
     simulate(device(), crowd, 90);
-    for (uint32_t agent = 0; agent < agents; ++agent) {
-      const float angle = 0.7f * static_cast<float>(agent);
-      crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
-    }
+    pushAllAside(crowd, speed);
     simulate(device(), crowd, 30);
     return fallenIn(crowd.reactions(0));
   };

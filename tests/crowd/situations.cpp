@@ -413,6 +413,12 @@ Results carryingLoads(Device& device, Controller controller, const CrowdOptions&
   return replay.results();
 }
 
+// Each agent is pushed in a direction of its own.
+void pushAside(Crowd& crowd, uint32_t agent, float speed) {
+  const float angle = 2.4f * static_cast<float>(agent);
+  crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
+}
+
 // Pushes of every strength and to every side, ground that is gone under some, and a leg that others lose;
 // some are pushed again as they lie or rise.
 Results gettingPushed(Device& device, Controller controller, const CrowdOptions& options) {
@@ -423,11 +429,8 @@ Results gettingPushed(Device& device, Controller controller, const CrowdOptions&
   auto& [crowd, replay] = underway;
   const auto run = [&](int ticks) { replayTicks(device, crowd, replay, ticks); };
   const auto pushAll = [&](float strongest, uint32_t every) {
-    for (uint32_t agent = 0; agent < agents; agent += every) {
-      const float angle = 2.4f * static_cast<float>(agent);
-      const float speed = strongest * static_cast<float>(agent) / agents;
-      crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
-    }
+    for (uint32_t agent = 0; agent < agents; agent += every)
+      pushAside(crowd, agent, strongest * static_cast<float>(agent) / agents);
   };
   pushAll(14, 1);
   run(30);
@@ -477,10 +480,7 @@ Results pushedUnderLoads(Device& device, Controller controller, const CrowdOptio
                 {.mass = 0.5f * static_cast<float>(1 + agent % 8), .offset = offsets[agent % 4]});
   replayTicks(device, crowd, replay, 20);
   for (const float speed : {4.0f, 12.0f}) {
-    for (uint32_t agent = 0; agent < agents; ++agent) {
-      const float angle = 2.4f * static_cast<float>(agent);
-      crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
-    }
+    for (uint32_t agent = 0; agent < agents; ++agent) pushAside(crowd, agent, speed);
     replayTicks(device, crowd, replay, 60);
   }
   return replay.results();
@@ -512,15 +512,15 @@ Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOpti
 
 const std::vector<Situation>& situations() {
   static const std::vector<Situation> all = {
-      {"walking", {Controller::adaptive}, walking},
+      {"walking", {Controller::adaptive}, walking, true},
       {"meeting", {Controller::adaptive, Controller::clip}, meeting},
       {"parting", {Controller::adaptive}, parting},
       {"facing", {Controller::adaptive}, facing},
-      {"amongObstacles", {Controller::adaptive, Controller::clip}, amongObstacles},
-      {"findingWays", {Controller::adaptive, Controller::clip}, findingWays},
+      {"amongObstacles", {Controller::adaptive, Controller::clip}, amongObstacles, true},
+      {"findingWays", {Controller::adaptive, Controller::clip}, findingWays, true},
       {"roaming", {Controller::adaptive, Controller::clip}, roaming},
-      {"foraging", {Controller::adaptive, Controller::clip}, foraging},
-      {"fallingAsleep", {Controller::adaptive}, fallingAsleep},
+      {"foraging", {Controller::adaptive, Controller::clip}, foraging, true},
+      {"fallingAsleep", {Controller::adaptive}, fallingAsleep, true},
       {"atTheEdge", {Controller::adaptive}, atTheEdge},
       {"goingByVelocity", {Controller::adaptive, Controller::loop}, goingByVelocity},
       {"tooFastForTheMap", {Controller::adaptive, Controller::loop}, tooFastForTheMap},
@@ -532,11 +532,11 @@ const std::vector<Situation>& situations() {
       {"changingGaits", {Controller::clip, Controller::planted}, changingGaits},
       {"foldingBack", {Controller::clip}, foldingBack},
       {"beyondTheLimits", {Controller::planted}, beyondTheLimits},
-      {"gettingPushed", {Controller::adaptive}, gettingPushed},
-      {"pushedUnderLoads", {Controller::adaptive}, pushedUnderLoads},
-      {"atRatesOfTheirOwn", {Controller::adaptive, Controller::loop}, atRatesOfTheirOwn},
-      {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs},
-      {"carryingLoads", {Controller::adaptive, Controller::loop, Controller::planted}, carryingLoads},
+      {"gettingPushed", {Controller::adaptive}, gettingPushed, true},
+      {"pushedUnderLoads", {Controller::adaptive}, pushedUnderLoads, true},
+      {"atRatesOfTheirOwn", {Controller::adaptive, Controller::loop}, atRatesOfTheirOwn, true},
+      {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs, true},
+      {"carryingLoads", {Controller::adaptive, Controller::loop, Controller::planted}, carryingLoads, true},
   };
   return all;
 }

@@ -14,6 +14,7 @@ struct Situation {
   const char* name;
   std::vector<Controller> controllers;  // those that are replayed in it with sound shaders
   std::vector<validation::StageResult> (*replayed)(Device&, Controller controller, const CrowdOptions&);
+  bool onBothPaths = false;  // it has kernels that no other has, so it is replayed on either load path
 };
 
 const std::vector<Situation>& situations();

@@ -44,7 +44,7 @@ TEST_F(React, NobodyFallsWithoutADisturbance) {
 }
 
 TEST_F(React, APushThatIsCaughtCarriesTheBodyToTheCapturePoint) {
-  EXPECT_NEAR(reference::pendulumTime(tuning), kFade, 1e-6);
+  EXPECT_NEAR(reference::pendulumTime(tuning, {}), kFade, 1e-6);
   tick(glm::dvec2(1, 0));
   EXPECT_EQ(reaction.phase, ReactionPhase::stumbling);
   EXPECT_NEAR(reaction.velocity.x, 1 / (1 + tuning.dt / kFade), 1e-6);
