@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,11 +23,14 @@ inline DeviceRequest validatedRequest(std::optional<LoadPath> loads = {}) {
 
 // Where there is none, what is for it alone and what compares both paths is skipped.
 inline bool hasTexelPath() {
-  DeviceRequest request = validatedRequest();
-  request.validation = false;
-  for (const DeviceReport& device : listDevices(request))
-    if (device.chosen) return device.limits.texelRgba32f && device.features.shaderInt64;
-  return true;  // no device: making one tells why
+  static const bool has = [] {
+    DeviceRequest request = validatedRequest();
+    request.validation = false;
+    for (const DeviceReport& device : listDevices(request))
+      if (device.chosen) return device.limits.texelRgba32f && device.features.shaderInt64;
+    return true;  // no device: making one tells why
+  }();
+  return has;
 }
 
 // Every way in which a device that has them all reads and writes records: the same bits.
@@ -45,32 +49,60 @@ inline void failOnMessages(const ValidationLog& log) {
   }
 }
 
-// A device with validation and synchronization validation. There must be one: without, the test fails, it is
-// never skipped. Any validation message fails it too, those about the device's destruction included; so what
-// is made on the device lives in the test's body, or is released before GpuTest::TearDown().
+// The devices that the tests of a process share, for a device keeps its pipelines, and to make them anew is
+// half of what a crowd's test takes. With validation and synchronization validation. Messages about their end
+// fail the process.
+class TestDevices : public ::testing::Environment {
+ public:
+  Device& of(std::optional<LoadPath> loads) {
+    std::unique_ptr<Device>& device = devices_[loads];
+    if (!device) device = std::make_unique<Device>(Device::create(validatedRequest(loads)));
+    return *device;
+  }
+
+  void drop(std::optional<LoadPath> loads) {
+    const std::shared_ptr<ValidationLog> log = of(loads).validationLog();
+    devices_.erase(loads);
+    failOnMessages(*log);
+  }
+
+  void TearDown() override {
+    while (!devices_.empty()) drop(devices_.begin()->first);
+  }
+
+ private:
+  std::map<std::optional<LoadPath>, std::unique_ptr<Device>> devices_;
+};
+inline TestDevices& testDevices =
+    *static_cast<TestDevices*>(::testing::AddGlobalTestEnvironment(new TestDevices));
+
+// A device with validation. There must be one: without, the test fails, it is never skipped. Any validation
+// message fails it too; so what is made on the device lives in the test's body, or is released before
+// GpuTest::TearDown().
 class GpuTest : public ::testing::Test {
  protected:
   explicit GpuTest(std::optional<LoadPath> loads = {}) : loads_(loads) {}
 
   void SetUp() override {
     if (loads_ == LoadPath::texel && !hasTexelPath()) GTEST_SKIP() << "the device has one load path only";
-    device_ = std::make_unique<Device>(Device::create(validatedRequest(loads_)));
-    log_ = device_->validationLog();
+    device_ = &testDevices.of(loads_);
   }
 
   void TearDown() override {
-    device_.reset();
-    if (log_) failOnMessages(*log_);
+    if (!device_) return;
+    failOnMessages(log());
+    log().clear();
+    // What is wrong with it now shall not fail others.
+    if (HasFailure()) testDevices.drop(loads_);
   }
 
   Device& device() { return *device_; }
   gpu::Context& context() { return device_->context(); }
-  ValidationLog& log() { return *log_; }
+  ValidationLog& log() { return *device_->validationLog(); }
 
  private:
   std::optional<LoadPath> loads_;
-  std::shared_ptr<ValidationLog> log_;
-  std::unique_ptr<Device> device_;
+  Device* device_ = nullptr;
 };
 
 // The same test body on both load paths: TEST_P with INSTANTIATE_TEST_SUITE_P(..., bothLoadPaths(),
