@@ -17,7 +17,7 @@ namespace skitter::render {
 namespace {
 
 constexpr uint32_t kAgent = 2, kPalette = 5;
-constexpr glm::dvec3 kBody{4, 1.5, 7};  // in a tile of its own, one beside that of the picture's origin
+constexpr glm::dvec3 kPlace{4, 1.5, 7};  // in a tile of its own, one beside that of the picture's origin
 constexpr glm::ivec2 kTile{-3, 12}, kPictureTile{-4, 12};
 
 // A joint that takes rest position v to linear * (v - start) + at, relative to the body.
@@ -92,7 +92,7 @@ class SkinTest : public test::GpuLoadTest {
       expected.normal = glm::normalize(expected.normal);
     }
     const glm::dvec3 body =
-        kBody + double(shared::TILE_SIZE) * glm::dvec3(kTile.x - kPictureTile.x, 0, kTile.y - kPictureTile.y);
+        kPlace + double(shared::TILE_SIZE) * glm::dvec3(kTile.x - kPictureTile.x, 0, kTile.y - kPictureTile.y);
     const Posed found =
         draw(vertices, palette, asMatrices, int(influences.size()), face, body + expected.position, false);
     // A few tens of float32 operations on numbers of at most 4. A device places corners to 1/16 pixel at
@@ -187,7 +187,7 @@ class SkinTest : public test::GpuLoadTest {
   static std::vector<glm::vec4> bodyRecords() {
     std::vector<glm::vec4> records((kAgent + 1) * shared::BODY_STRIDE, glm::vec4(0));
     records[kAgent * shared::BODY_STRIDE] =
-        glm::vec4(glm::vec3(kBody), shared::packedTile(float(kTile.x), float(kTile.y)));
+        glm::vec4(glm::vec3(kPlace), shared::packedTile(float(kTile.x), float(kTile.y)));
     return records;
   }
   // Those of the agents before it are zeros.

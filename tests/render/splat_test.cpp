@@ -12,6 +12,7 @@
 #include "gpu/transfer.h"
 #include "render/composition.h"
 #include "render/ground_map.h"
+#include "render/mesh.h"
 #include "render/sight.h"
 #include "render/splat_parts.h"
 #include "skitter/records.h"
