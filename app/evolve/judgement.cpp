@@ -89,10 +89,12 @@ TableReport::TableReport(Device& device, const Rig& rig, float dt) {
   Rig ruled = rig;
   ruled.gaits = {};
   const std::vector<GaitJudgement> byTable = judgeGaits(device, rig, idle, judgedSeconds, dt),
-                                   byRule = judgeGaits(device, ruled, idle, judgedSeconds, dt);
+                                   byRule = judgeGaits(device, ruled, idle, judgedSeconds, dt),
+                                   unadapted = judgeUnadapted(device, ruled, idle, judgedSeconds, dt);
   intact_ = byRule.back();
   for (size_t i = 0; i + 1 < idle.size(); ++i)
-    patterns_.push_back({namesOf(rig, idle[i]), isInTable(rig, idle[i]), byTable[i], byRule[i]});
+    patterns_.push_back(
+        {namesOf(rig, idle[i]), isInTable(rig, idle[i]), byTable[i], byRule[i], unadapted[i]});
 }
 
 nlohmann::ordered_json TableReport::jsonOfPattern(const Pattern& pattern) const {
@@ -104,7 +106,8 @@ nlohmann::ordered_json TableReport::jsonOfPattern(const Pattern& pattern) const 
   return {{"without", pattern.without},
           {"inTable", pattern.inTable},
           {"byTable", withKept(pattern.byTable)},
-          {"byRule", withKept(pattern.byRule)}};
+          {"byRule", withKept(pattern.byRule)},
+          {"unadapted", withKept(pattern.unadapted)}};
 }
 
 nlohmann::ordered_json TableReport::json() const {
@@ -114,17 +117,18 @@ nlohmann::ordered_json TableReport::json() const {
 }
 
 std::string TableReport::lineWithout(int idle) const {
-  Shares byTable, byRule;
+  Shares byTable, byRule, unadapted;
   size_t inTable = 0;
   for (const Pattern& pattern : patterns_) {
     if (std::popcount(pattern.byRule.idle) != idle) continue;
     byTable.add(keptOf(pattern.byTable), pattern.byTable.unstable);
     byRule.add(keptOf(pattern.byRule), pattern.byRule.unstable);
+    unadapted.add(keptOf(pattern.unadapted), pattern.unadapted.unstable);
     inTable += pattern.inTable;
   }
   if (byTable.kept.empty()) return {};
-  return fmt::format("without {:<7}{} patterns, {} in the table: speed kept {}; by rule {}\n", idle,
-                     byTable.kept.size(), inTable, byTable.text(), byRule.text());
+  return fmt::format("without {:<7}{} patterns, {} in the table: speed kept {}; by rule {}; unadapted {}\n",
+                     idle, byTable.kept.size(), inTable, byTable.text(), byRule.text(), unadapted.text());
 }
 
 std::string TableReport::text() const {

@@ -28,7 +28,8 @@ nlohmann::ordered_json jsonOf(const GaitJudgement& judged);
 nlohmann::ordered_json namesOf(const Rig& rig, uint32_t legs);
 
 // How creatures of a rig walk without legs, one of each pattern that a gait is searched for, mirror images
-// too: by the rig's table, and by the rule alone (docs/evolve.md#how-a-table-is-judged).
+// too: by the rig's table, by the rule alone, and in the gait of whole creatures
+// (docs/evolve.md#how-a-table-is-judged).
 class TableReport {
  public:
   // Throws Error(input) for a rig without patterns.
@@ -43,7 +44,7 @@ class TableReport {
   struct Pattern {
     nlohmann::ordered_json without;
     bool inTable = false;
-    GaitJudgement byTable, byRule;
+    GaitJudgement byTable, byRule, unadapted;
   };
   nlohmann::ordered_json jsonOfPattern(const Pattern& pattern) const;
   std::string lineWithout(int idle) const;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "crowd/herd.h"
+#include "crowd/regait.h"
 #include "evolve/trials.h"
 #include "skitter/error.h"
 #include "skitter/evolve.h"
@@ -34,10 +36,15 @@ void checkJudgement(const Rig& rig, std::span<const uint32_t> patterns, double s
           fmt::format("pattern of a judgement is {:#x}, expected a mask of {} legs", idle, rig.legs.size()));
 }
 
-}  // namespace
+// The rig's own gait, in which nobody waits for a leg that does not carry.
+crowd::Regait unadapted(const Rig& rig, const Tuning& tuning, uint32_t idle) {
+  crowd::Regait gait = crowd::regaitByRule(rig, tuning, {});
+  for (crowd::LegTurn& turn : gait.legs) turn.neighbours &= ~idle;
+  return gait;
+}
 
-std::vector<GaitJudgement> judgeGaits(Device& device, const Rig& rig, std::span<const uint32_t> patterns,
-                                      double seconds, float dt) {
+std::vector<GaitJudgement> judged(Device& device, const Rig& rig, std::span<const uint32_t> patterns,
+                                  double seconds, float dt, bool adapts) {
   checkJudgement(rig, patterns, seconds, dt);
   if (patterns.empty()) return {};
   Rig walker = evolve::bareRig(rig);
@@ -46,6 +53,11 @@ std::vector<GaitJudgement> judgeGaits(Device& device, const Rig& rig, std::span<
   options.rigs = {walker};
   Crowd crowd(device, evolve::flatGround(rig, judgedSide),
               evolve::walkOf(rig, static_cast<uint32_t>(patterns.size()), Evolution::wantedSpeed), options);
+  if (!adapts) {
+    crowd::Kind& kind = implOf(crowd).kinds.front();
+    for (const uint32_t idle : patterns)
+      kind.regaits.emplace(crowd::LegPattern{.idle = idle}, unadapted(kind.rig, kind.tuning, idle));
+  }
   std::vector<AgentLeg> legs;
   for (uint32_t agent = 0; agent < patterns.size(); ++agent)
     for (uint32_t leg = 0; leg < rig.legs.size(); ++leg)
@@ -60,17 +72,29 @@ std::vector<GaitJudgement> judgeGaits(Device& device, const Rig& rig, std::span<
     });
   const HerdState after = crowd.download(0);
   const std::vector<Fidelity> fidelity = crowd.agentFidelity(0);
-  std::vector<GaitJudgement> judged;
+  std::vector<GaitJudgement> all;
   for (size_t agent = 0; agent < patterns.size(); ++agent) {
     const double way = worldOfBody(after, agent).y - worldOfBody(before, agent).y;
-    judged.push_back({.idle = patterns[agent],
-                      .speed = way / (double{rig.legLength} * ticks * double{dt}),
-                      .unstable = fidelity[agent].unstable,
-                      .margin = fidelity[agent].margin,
-                      .slip = fidelity[agent].slip,
-                      .reachError = fidelity[agent].reachErrorMost});
+    all.push_back({.idle = patterns[agent],
+                   .speed = way / (double{rig.legLength} * ticks * double{dt}),
+                   .unstable = fidelity[agent].unstable,
+                   .margin = fidelity[agent].margin,
+                   .slip = fidelity[agent].slip,
+                   .reachError = fidelity[agent].reachErrorMost});
   }
-  return judged;
+  return all;
+}
+
+}  // namespace
+
+std::vector<GaitJudgement> judgeGaits(Device& device, const Rig& rig, std::span<const uint32_t> patterns,
+                                      double seconds, float dt) {
+  return judged(device, rig, patterns, seconds, dt, true);
+}
+
+std::vector<GaitJudgement> judgeUnadapted(Device& device, const Rig& rig, std::span<const uint32_t> patterns,
+                                          double seconds, float dt) {
+  return judged(device, rig, patterns, seconds, dt, false);
 }
 
 }  // namespace skitter

@@ -47,6 +47,10 @@ struct GaitJudgement {
 SKITTER_API std::vector<GaitJudgement> judgeGaits(Device& device, const Rig& rig,
                                                   std::span<const uint32_t> patterns, double seconds,
                                                   float dt = 1.0f / 60);
+// The same of creatures that go on in their own gait, with the legs that are left.
+SKITTER_API std::vector<GaitJudgement> judgeUnadapted(Device& device, const Rig& rig,
+                                                      std::span<const uint32_t> patterns, double seconds,
+                                                      float dt = 1.0f / 60);
 
 // How a creature came through a loss that it did not know of, by trial and error over the map.
 struct AdaptationReport {

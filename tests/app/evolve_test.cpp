@@ -79,6 +79,7 @@ TEST_F(Evolve, TheTableOfARigIsJudgedForEachPattern) {
   const Result judged = skitter(arguments);
   ASSERT_EQ(judged.code, 0) << judged.err;
   EXPECT_NE(judged.out.find("without 1      4 patterns"), std::string::npos) << judged.out;
+  EXPECT_NE(judged.out.find("; unadapted "), std::string::npos) << judged.out;
   const nlohmann::json figures = json("judged.json");
   const double intact = figures.at("intact").at("speed");
   EXPECT_GT(intact, 1);
@@ -90,6 +91,7 @@ TEST_F(Evolve, TheTableOfARigIsJudgedForEachPattern) {
       EXPECT_EQ(each.at("byTable"), each.at("byRule"));
     }
     inTable += each.at("inTable").get<bool>();
+    EXPECT_EQ(each.at("unadapted").size(), each.at("byRule").size());
   }
   EXPECT_EQ(figures.at("judgedPatterns").size(), 4u);
   EXPECT_EQ(inTable, 2 * searched.size()) << "each with its mirror image";

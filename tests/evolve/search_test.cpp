@@ -236,6 +236,22 @@ TEST_F(EvolutionTest, ATableIsJudgedForItsPatternsAndTheRuleForOthers) {
   for (const size_t i : {1, 2}) EXPECT_LT(byTable[i].speed, 0.8 * byRule[i].speed) << i;
 }
 
+// In its own gait a spider without R1, L2, R3 and L4 has a whole tripod missing: only the others' feet, of
+// which the body's weight is held half of the time. The rule makes the four that are left take turns.
+TEST_F(EvolutionTest, WhoDoesNotAdaptIsLessStable) {
+  Rig rig = spiderRig();
+  rig.gaits = {};
+  uint32_t group = 0;
+  for (size_t leg = 0; leg < 8; ++leg)
+    if (rig.legs[leg].group == rig.legs[0].group) group |= 1u << leg;
+  const std::vector<uint32_t> patterns = {0, group};
+  const std::vector<GaitJudgement> byRule = judgeGaits(device(), rig, patterns, 4, 1.0f / 20),
+                                   unadapted = judgeUnadapted(device(), rig, patterns, 4, 1.0f / 20);
+  EXPECT_EQ(unadapted[0].speed, byRule[0].speed);
+  EXPECT_EQ(unadapted[0].unstable, byRule[0].unstable);
+  EXPECT_GT(unadapted[1].unstable, byRule[1].unstable + 0.05);
+}
+
 TEST_F(EvolutionTest, RefusesWhatCannotBe) {
   const Rig rig = spiderRig();
   EXPECT_THAT(faultOf([&] { Evolution(device(), rig, {.batch = 0}); }),

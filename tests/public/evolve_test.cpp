@@ -47,6 +47,7 @@ TEST_F(PublicEvolution, GaitsAreJudged) {
   EXPECT_EQ(judged[1].idle, 1u);
   EXPECT_GT(judged[0].speed, 0);
   EXPECT_TRUE(judgeGaits(device(), rig, {}, 1).empty());
+  EXPECT_EQ(judgeUnadapted(device(), rig, patterns, 1, 1.0f / 20).size(), patterns.size());
   expectRefused("seconds of a judgement is 0", [&] { judgeGaits(device(), rig, patterns, 0); });
   expectRefused("dt of a judgement is 1", [&] { judgeGaits(device(), rig, patterns, 1, 1); });
   expectRefused("pattern of a judgement is 0x100",
