@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <map>
-#include <tuple>
 
 #include "assets/materials/worn_colours.h"
 #include "crowd/radius.h"
@@ -28,6 +27,9 @@ constexpr float kLeastHalfWidth = 1e-6f;  // metres, so that a point has two sid
 // allows.
 constexpr float kRibbonPixels = 3.5f;
 constexpr float kBendPixels = 1;  // that joints within a ribbon may be off it at rest, likewise
+
+// The last level whose ribbons have waists.
+constexpr size_t kLastWaists = 2;
 
 // A skin, and where each entry of its palette starts: vertices are stored relative to it.
 struct Skin {
@@ -179,27 +181,33 @@ void append(MeshData& data, MeshLod& lod, const Skin& skin, const Surface& surfa
   data.indices.insert(data.indices.end(), surface.indices.begin(), surface.indices.end());
 }
 
-// A quad, whose corners the vertex shader moves apart.
+constexpr uint32_t indexCountOf(const Ribbon& ribbon) { return ribbon.waist ? 12 : 6; }
+
+// A quad, or two that meet at the waist, whose corners the vertex shader moves apart.
 void append(MeshData& data, MeshLod& lod, const Ribbon& ribbon) {
   const auto first = uint32_t(data.vertices.size()) - uint32_t(lod.firstVertex);
   data.influences = std::max(data.influences, 2);
+  std::vector<Ribbon::End> sections{ribbon.from, ribbon.to};
+  if (ribbon.waist) sections.insert(sections.begin() + 1, *ribbon.waist);
+  // Each section looks away from its neighbour: the first one back, all others forward.
+  for (size_t i = 0; i < sections.size(); ++i)
+    for (const int side : {1, -1}) {
+      const Ribbon::End &here = sections[i], &neighbour = sections[i == 0 ? 1 : i - 1];
+      MeshVertex vertex{};
+      vertex.bones[0] = here.bone;
+      vertex.influences[0] = glm::vec4(here.along * here.direction, 1);
+      vertex.bones[1] = neighbour.bone;
+      vertex.influences[1] = glm::vec4(neighbour.along * neighbour.direction, 0);
+      vertex.colour = here.colour;
+      vertex.halfWidth = float(side) * std::max(here.radius, kLeastHalfWidth);
+      data.vertices.push_back(vertex);
+      if (!data.worn.empty()) data.worn.emplace_back();
+    }
   // Counter-clockwise, as seen from the eye that they are spread for.
-  for (const auto& [end, other, side] : {std::tuple(ribbon.from, ribbon.to, 1),
-                                         {ribbon.from, ribbon.to, -1},
-                                         {ribbon.to, ribbon.from, 1},
-                                         {ribbon.to, ribbon.from, -1}}) {
-    MeshVertex vertex{};
-    vertex.bones[0] = end.bone;
-    vertex.influences[0] = glm::vec4(end.along * end.direction, 1);
-    vertex.bones[1] = other.bone;
-    vertex.influences[1] = glm::vec4(other.along * other.direction, 0);
-    vertex.colour = end.colour;
-    vertex.halfWidth = float(side) * std::max(end.radius, kLeastHalfWidth);
-    data.vertices.push_back(vertex);
-    if (!data.worn.empty()) data.worn.emplace_back();
-  }
   for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) data.indices.push_back(first + corner);
-  lod.indexCount += 6;
+  if (ribbon.waist)
+    for (const uint32_t corner : {3u, 2u, 4u, 3u, 4u, 5u}) data.indices.push_back(first + corner);
+  lod.indexCount += indexCountOf(ribbon);
 }
 
 MeshPart& partOf(MeshData& data, int material) {
@@ -229,12 +237,15 @@ void appendLods(MeshData& data, const Skin& skin) {
   for (size_t i = 1; i < data.lods.size(); ++i) {
     const float pixel = data.radius / kLodPixels[i - 1];
     const float error = i + 1 < data.lods.size() ? kLargestError : kLastError;
-    const Ribbons thin = skin.rig ? ribbonsOf(*skin.rig, kRibbonPixels * pixel, kBendPixels * pixel)
-                                  : Ribbons{{}, skin.indices};
+    const Ribbons thin =
+        skin.rig ? ribbonsOf(*skin.rig, kRibbonPixels * pixel, kBendPixels * pixel, i <= kLastWaists)
+                 : Ribbons{{}, skin.indices};
     append(data, data.lods[i], skin,
            optimised(welded.vertices, welded.worn, simplified(welded, thin.others, kShare[i - 1], error)));
     for (const Ribbon& ribbon : thin.ribbons) append(data, data.lods[i], ribbon);
-    if (skin.look) splitByMaterial(data, i, 6 * uint32_t(thin.ribbons.size()));
+    uint32_t ribbons = 0;
+    for (const Ribbon& ribbon : thin.ribbons) ribbons += indexCountOf(ribbon);
+    if (skin.look) splitByMaterial(data, i, ribbons);
   }
 }
 

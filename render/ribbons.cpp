@@ -1,6 +1,8 @@
 #include "render/ribbons.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 namespace skitter::render {
@@ -18,6 +20,11 @@ struct BoneSurface {
   float least = 0, most = 0;
   glm::vec3 colour[2] = {};
   float share[2] = {};
+  struct Point {
+    float at;               // metres along the bone
+    glm::dvec4 appearance;  // colour; radius
+  };
+  std::vector<Point> points;
 
   void add(const SkinVertex& vertex) {
     const glm::vec3 from = vertex.position - bone->start;
@@ -27,6 +34,7 @@ struct BoneSurface {
     alongAlong += at * at;
     radius += away;
     alongRadius += at * away;
+    points.push_back({at, {vertex.colour, away}});
     least = std::min(least, at);
     most = std::max(most, at);
     const float end = std::clamp(at / bone->length, 0.0f, 1.0f);
@@ -64,10 +72,47 @@ Ribbon::End endOf(uint16_t entry, const BoneSurface& surface, int i, float along
           surface.colour[i] / surface.share[i]};
 }
 
+// Ends and middle of a bone's ribbon: the least-squares polyline through colours and radii. Where there is
+// too little skin for one, it stays by their mean.
+std::array<Ribbon::End, 3> sectionsOf(uint16_t entry, const BoneSurface& surface) {
+  const double length = std::max(double{surface.most} - surface.least, 1e-9);
+  glm::dmat3 sums(1e-3 * surface.count);
+  glm::dvec4 mean(0);
+  for (const BoneSurface::Point& point : surface.points) mean += point.appearance / surface.count;
+  std::array<glm::dvec4, 3> found;
+  found.fill(1e-3 * surface.count * mean);
+  for (const BoneSurface::Point& point : surface.points) {
+    const double s = 2 * (point.at - surface.least) / length - 1;  // -1 to 1
+    const glm::dvec3 weights(std::max(0.0, -s), 1 - std::abs(s), std::max(0.0, s));
+    sums += glm::outerProduct(weights, weights);
+    for (int i = 0; i < 3; ++i) found[size_t(i)] += weights[i] * point.appearance;
+  }
+  const glm::dmat3 inverse = glm::inverse(sums);
+  std::array<Ribbon::End, 3> sections;
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec4 appearance =
+        inverse[0][i] * found[0] + inverse[1][i] * found[1] + inverse[2][i] * found[2];
+    sections[size_t(i)] = {entry, surface.bone->direction,
+                           glm::mix(surface.least, surface.most, 0.5f * float(i)),
+                           float(std::max(0.0, appearance.w)), glm::clamp(glm::vec3(appearance), 0.0f, 1.0f)};
+  }
+  return sections;
+}
+
+// Below these shares nobody sees a waist.
+constexpr float kColourStep = 0.02f, kRadiusStep = 0.08f;
+
+bool isWaist(const std::array<Ribbon::End, 3>& sections) {
+  const glm::vec3 colour = sections[1].colour - 0.5f * (sections[0].colour + sections[2].colour);
+  const float mean = 0.5f * (sections[0].radius + sections[2].radius);
+  return glm::any(glm::greaterThan(glm::abs(colour), glm::vec3(kColourStep))) ||
+         std::abs(sections[1].radius - mean) > kRadiusStep * mean;
+}
+
 // One ribbon for those of bones that follow each other. Each bone counts by its length: its colours at a
 // quarter and three quarters of it, nearer to one end of the ribbon and the other.
 Ribbon joined(const Leg& leg, const std::vector<Ribbon>& bones, size_t first) {
-  Ribbon whole{bones.front().from, bones.back().to};
+  Ribbon whole{bones.front().from, bones.back().to, {}};
   if (bones.size() == 1) return whole;
   float length = 0, before = 0;
   for (size_t b = 0; b < bones.size(); ++b) length += leg.bones[first + b].length;
@@ -111,7 +156,7 @@ bool isStraight(const Leg& leg, size_t first, size_t last, float bend) {
 
 }  // namespace
 
-Ribbons ribbonsOf(const Rig& rig, float radius, float bend) {
+Ribbons ribbonsOf(const Rig& rig, float radius, float bend, bool waists) {
   Ribbons found;
   const std::vector<BoneSurface> surfaces = boneSurfacesOf(rig);
   std::vector<bool> thin(surfaces.size());
@@ -124,7 +169,7 @@ Ribbons ribbonsOf(const Rig& rig, float radius, float bend) {
       const BoneSurface& surface = surfaces[entry];
       Ribbon ribbon;
       if (surface.count > 0) {
-        ribbon = {endOf(entry, surface, 0, surface.least), endOf(entry, surface, 1, surface.most)};
+        ribbon = {endOf(entry, surface, 0, surface.least), endOf(entry, surface, 1, surface.most), {}};
         thin[entry] = std::max(ribbon.from.radius, ribbon.to.radius) <= radius;
       }
       if (!thin[entry]) {
@@ -137,6 +182,9 @@ Ribbons ribbonsOf(const Rig& rig, float radius, float bend) {
       }
       run.push_back(ribbon);
       found.ribbons.back() = joined(leg, run, b + 1 - run.size());
+      if (!waists || run.size() > 1) continue;
+      if (const auto sections = sectionsOf(entry, surface); isWaist(sections))
+        found.ribbons.back() = {sections[0], sections[2], sections[1]};
     }
   }
   const auto isThin = [&](uint32_t vertex) { return thin[heaviestBone(rig.vertices[vertex])]; };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "skitter/rig.h"
@@ -18,6 +19,8 @@ struct Ribbon {
     glm::vec3 colour;
   };
   End from, to;
+  // In the middle of a single bone, where its skin there has another colour or radius than the ends' mean.
+  std::optional<End> waist;
 };
 
 struct Ribbons {
@@ -25,7 +28,8 @@ struct Ribbons {
   std::vector<uint32_t> others;  // indices of the triangles that no ribbon stands for
 };
 // Ribbons for the leg bones whose radius is at most `radius` metres. Bones that follow each other are one
-// ribbon where no joint between them is more than `bend` metres off the straight line at rest.
-Ribbons ribbonsOf(const Rig&, float radius, float bend);
+// ribbon where no joint between them is more than `bend` metres off the straight line at rest. `waists`:
+// whether ribbons may have them.
+Ribbons ribbonsOf(const Rig&, float radius, float bend, bool waists);
 
 }  // namespace skitter::render

@@ -82,7 +82,7 @@ glm::vec4 colourOf(const Ribbon::End& end) { return {end.colour, float(end.bone)
 std::vector<shared::SplatPart> splatPartsOf(const Rig& rig, float bend) {
   std::vector<shared::SplatPart> parts;
   if (rig.indices.empty()) return parts;
-  const Ribbons legs = ribbonsOf(rig, std::numeric_limits<float>::max(), bend);
+  const Ribbons legs = ribbonsOf(rig, std::numeric_limits<float>::max(), bend, false);
   for (const Ribbon& leg : legs.ribbons)
     parts.push_back({endOf(leg.from), endOf(leg.to), colourOf(leg.from), colourOf(leg.to)});
   // The body is the palette's first entry.

@@ -3,8 +3,8 @@
 
 // The colour that a creature without materials has in the picture. `colour` is linear RGB and openness to the sky,
 // `lit` is the share of sunlight that nothing takes away, `normal` and `toEye` are unit, and `away` is in metres. The
-// rim has at most `mostRim`.
-vec3 chitin(vec4 colour, vec3 normal, vec3 toEye, float away, float lit, float mostRim) {
+// rim has at most `mostRim`, and the sheen is `gloss`.
+vec3 chitin(vec4 colour, vec3 normal, vec3 toEye, float away, float lit, float mostRim, float gloss) {
   vec3 sun = picture.sun.xyz;
   float facing = max(dot(normal, sun), 0.0);
   // A dull sheen of chitin, and a rim of skylight that parts dark creatures from dark ground.
@@ -15,7 +15,7 @@ vec3 chitin(vec4 colour, vec3 normal, vec3 toEye, float away, float lit, float m
   rim = min(rim * rim * rim, mostRim);
   vec3 ambient = ambientLight(normal) * colour.a;
   vec3 light = colour.rgb * (SUN_LIGHT * (facing * lit) + ambient) +
-               SUN_LIGHT * (0.10 * sheen * lit * smoothstep(0.0, 0.15, facing)) +
+               SUN_LIGHT * (gloss * sheen * lit * smoothstep(0.0, 0.15, facing)) +
                ambient * rim * 0.35;
   return developed(hazed(light, -toEye, away, picture.tile.w, sun));
 }

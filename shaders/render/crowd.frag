@@ -16,5 +16,5 @@ void main() {
   float away = length(toEye);
   vec3 normal = normalize(wornNormal);
   float lit = hillSun * sunlight(position, normal, 3.0);
-  outColour = vec4(chitin(colour, normal, toEye / away, away, lit, 1.0), 1.0);
+  outColour = vec4(chitin(colour, normal, toEye / away, away, lit, 1.0, 0.10), 1.0);
 }

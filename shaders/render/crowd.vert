@@ -69,8 +69,9 @@ void main() {
   vec4 seen = vec4(varied(variation, colour), openness);
 #ifdef LIT
   vec3 normal = normalize(s.normal);
-  // On a sphere the rim's mean is 0.1. The triangles of a coarse one would spread that of the outline over all of it.
-  outColour = chitin(seen, normal, toEye / away, away, ground.w * sunlight(s.position, normal), 0.1);
+  // On a sphere the rim's mean is 0.1. The triangles of a coarse one would spread that of the outline over all of it,
+  // and so they would the sheen.
+  outColour = chitin(seen, normal, toEye / away, away, ground.w * sunlight(s.position, normal), 0.1, 0.0);
 #else
   outColour = seen;
   outSun = ground.w;

@@ -108,10 +108,17 @@ TEST(Mesh, everyLevelWearsTheRigsNormalsAndColours) {
 // docs/stages/pictures.md, cull and Ribbons.
 constexpr double kShares[] = {1, 0.35, 0.12, 0.04, 0.015}, kNearest[] = {1e9, 150, 75, 25, 10};
 constexpr double kRibbonPixels = 3.5, kBendPixels = 1;
+constexpr size_t kLastWaists = 2;
 
 Ribbons ribbonsAt(const Rig& rig, const MeshData& mesh, size_t level) {
   const double pixel = mesh.radius / kNearest[level];
-  return ribbonsOf(rig, float(kRibbonPixels * pixel), float(kBendPixels * pixel));
+  return ribbonsOf(rig, float(kRibbonPixels * pixel), float(kBendPixels * pixel), level <= kLastWaists);
+}
+
+size_t indexCountOf(const Ribbons& found) {
+  size_t count = 0;
+  for (const Ribbon& ribbon : found.ribbons) count += ribbon.waist ? 12 : 6;
+  return count;
 }
 
 TEST(Mesh, levelsHaveTheirShareOfTheTrianglesAndRibbons) {
@@ -119,7 +126,7 @@ TEST(Mesh, levelsHaveTheirShareOfTheTrianglesAndRibbons) {
   const MeshData mesh = makeMesh(rig);
   for (size_t i = 0; i < mesh.lods.size(); ++i) {
     const Ribbons thin = ribbonsAt(rig, mesh, i);
-    const double share = kShares[i] * double(thin.others.size()), ribbons = 6.0 * double(thin.ribbons.size());
+    const double share = kShares[i] * double(thin.others.size()), ribbons = double(indexCountOf(thin));
     EXPECT_LE(mesh.lods[i].indexCount, share + ribbons) << "level " << i;
     // The largest error that is allowed may end the collapsing of edges earlier at the coarser levels.
     EXPECT_GE(mesh.lods[i].indexCount, (i == 1 ? 0.95 * share : 0) + ribbons) << "level " << i;
@@ -134,6 +141,30 @@ glm::vec3 placeOf(const Rig& rig, const Ribbon::End& end) {
   return boneOf(rig, end.bone).start + end.along * boneOf(rig, end.bone).direction;
 }
 
+// The corners of a quad between two sections of a ribbon, the first of which is the `number`-th.
+void expectQuad(const Rig& rig, const MeshData& mesh, const uint32_t* corner,
+                const std::vector<Ribbon::End>& sections, size_t number) {
+  const glm::vec3 near = placeOf(rig, sections[number]);
+  double sides = 0;
+  for (int i = 0; i < 6; ++i) {
+    const MeshVertex& vertex = mesh.vertices[corner[i]];
+    const bool last =
+        vertex.bones[0] != sections[number].bone || glm::distance(positionAtRest(rig, vertex), near) > 1e-6f;
+    const size_t at = number + last;
+    const Ribbon::End &here = sections[at], &neighbour = sections[at == 0 ? 1 : at - 1];
+    EXPECT_EQ(vertex.bones[0], here.bone);
+    EXPECT_LT(glm::distance(positionAtRest(rig, vertex), placeOf(rig, here)), 1e-6f);
+    EXPECT_NEAR(std::abs(vertex.halfWidth), here.radius, 2e-6f);
+    EXPECT_EQ(vertex.colour, here.colour);
+    // The neighbour is the second influence, without weight.
+    EXPECT_EQ(vertex.bones[1], neighbour.bone);
+    EXPECT_EQ(vertex.influences[1], glm::vec4(neighbour.along * neighbour.direction, 0));
+    const float out = at > 0 ? 1.0f : -1.0f;
+    sides += std::copysign(1.0, out * vertex.halfWidth);
+  }
+  EXPECT_EQ(sides, 0) << "both triangles lie on one side";
+}
+
 TEST(Mesh, ribbonsLieBetweenTheirEnds) {
   const Rig rig = spiderRig();
   const MeshData mesh = makeMesh(rig);
@@ -141,28 +172,15 @@ TEST(Mesh, ribbonsLieBetweenTheirEnds) {
   for (size_t level = 0; level < mesh.lods.size(); ++level) {
     const Ribbons thin = ribbonsAt(rig, mesh, level);
     const MeshLod& lod = mesh.lods[level];
-    for (size_t r = 0; r < thin.ribbons.size(); ++r) {
-      const Ribbon& ribbon = thin.ribbons[r];
-      const uint32_t* corner = &mesh.indices[lod.firstIndex + lod.indexCount - 6 * (thin.ribbons.size() - r)];
-      const glm::vec3 ends[] = {placeOf(rig, ribbon.from), placeOf(rig, ribbon.to)};
-      double sides = 0;
-      for (int i = 0; i < 6; ++i) {
-        const MeshVertex& vertex = mesh.vertices[uint32_t(lod.firstVertex) + corner[i]];
-        const bool last = vertex.bones[0] != ribbon.from.bone ||
-                          (ribbon.from.bone == ribbon.to.bone &&
-                           glm::distance(positionAtRest(rig, vertex), ends[0]) > 1e-6f);
-        const Ribbon::End &end = last ? ribbon.to : ribbon.from, &other = last ? ribbon.from : ribbon.to;
-        EXPECT_EQ(vertex.bones[0], end.bone);
-        EXPECT_LT(glm::distance(positionAtRest(rig, vertex), ends[last]), 1e-6f);
-        EXPECT_NEAR(std::abs(vertex.halfWidth), end.radius, 2e-6f);
-        EXPECT_EQ(vertex.colour, end.colour);
-        // The other end is the second influence, without weight.
-        EXPECT_EQ(vertex.bones[1], other.bone);
-        EXPECT_EQ(vertex.influences[1], glm::vec4(other.along * other.direction, 0));
-        const float out = last ? 1.0f : -1.0f;
-        sides += std::copysign(1.0, out * vertex.halfWidth);
-      }
-      EXPECT_EQ(sides, 0) << "both triangles lie on one side";
+    std::vector<uint32_t> corners;
+    for (uint32_t i = lod.indexCount - uint32_t(indexCountOf(thin)); i < lod.indexCount; ++i)
+      corners.push_back(uint32_t(lod.firstVertex) + mesh.indices[lod.firstIndex + i]);
+    const uint32_t* corner = corners.data();
+    for (const Ribbon& ribbon : thin.ribbons) {
+      std::vector<Ribbon::End> sections{ribbon.from, ribbon.to};
+      if (ribbon.waist) sections.insert(sections.begin() + 1, *ribbon.waist);
+      for (size_t number = 0; number + 1 < sections.size(); ++number, corner += 6)
+        expectQuad(rig, mesh, corner, sections, number);
     }
   }
 }
@@ -199,7 +217,7 @@ Rig tube(size_t bone, const std::vector<std::pair<float, float>>& rings) {
 TEST(Ribbons, taperAsTheirBonesDo) {
   const float length = spiderRig().legs[0].bones[1].length;
   const Rig rig = tube(1, {{0.0f, 0.06f}, {0.5f * length, 0.05f}, {length, 0.04f}});
-  const Ribbons found = ribbonsOf(rig, 0.061f, 0);
+  const Ribbons found = ribbonsOf(rig, 0.061f, 0, false);
   ASSERT_EQ(found.ribbons.size(), 1u);
   EXPECT_TRUE(found.others.empty());
   const Ribbon& ribbon = found.ribbons[0];
@@ -214,23 +232,50 @@ TEST(Ribbons, taperAsTheirBonesDo) {
   EXPECT_NEAR(ribbon.to.colour.x, 2.5f / 3, 2e-3f);
 }
 
+// Dark and thin at its joints, light and thick between them, as a spider's leg is.
+TEST(Ribbons, haveAWaistWhereASingleBoneDiffersInTheMiddle) {
+  const float length = spiderRig().legs[0].bones[1].length;
+  Rig rig = tube(1, {{0.0f, 0.02f}, {0.25f * length, 0.03f}, {0.5f * length, 0.04f}, {length, 0.01f}});
+  for (SkinVertex& vertex : rig.vertices) {
+    const float from = vertex.colour.x;
+    vertex.colour = glm::vec3(1 - std::abs(2 * from - 1), 0, 0);
+  }
+  const Ribbon ribbon = ribbonsOf(rig, 1, 0, true).ribbons.at(0);
+  ASSERT_TRUE(ribbon.waist);
+  EXPECT_NEAR(ribbon.from.radius, 0.02f, 2e-4f);
+  EXPECT_NEAR(ribbon.waist->radius, 0.04f, 2e-4f);
+  EXPECT_NEAR(ribbon.to.radius, 0.01f, 2e-4f);
+  EXPECT_NEAR(ribbon.from.colour.x, 0, 5e-3f);
+  EXPECT_NEAR(ribbon.waist->colour.x, 1, 5e-3f);
+  EXPECT_NEAR(ribbon.to.colour.x, 0, 5e-3f);
+  EXPECT_EQ(ribbon.waist->bone, ribbon.from.bone);
+  EXPECT_NEAR(ribbon.waist->along, 0.5f * length, 1e-6f);
+  EXPECT_FALSE(ribbonsOf(rig, 1, 0, false).ribbons.at(0).waist);
+  // What goes evenly from end to end has none, nor has what spans more than a bone.
+  EXPECT_FALSE(ribbonsOf(tube(1, {{0, 0.06f}, {0.5f * length, 0.05f}, {length, 0.04f}}), 1, 0, true)
+                   .ribbons.at(0)
+                   .waist);
+  for (const Ribbon& whole : ribbonsOf(spiderRig(), 1, 1, true).ribbons) EXPECT_FALSE(whole.waist);
+}
+
 TEST(Ribbons, areOfThinBonesAlone) {
   const float length = spiderRig().legs[0].bones[1].length;
   const Rig rig = tube(1, {{0.0f, 0.04f}, {length, 0.06f}});
-  EXPECT_EQ(ribbonsOf(rig, 0.059f, 0).ribbons.size(), 0u);
-  EXPECT_EQ(ribbonsOf(rig, 0.059f, 0).others, rig.indices);
-  EXPECT_EQ(ribbonsOf(rig, 0.061f, 0).ribbons.size(), 1u);
-  EXPECT_EQ(ribbonsOf(spiderRig(), 0, 1).ribbons.size(), 0u);
+  EXPECT_EQ(ribbonsOf(rig, 0.059f, 0, false).ribbons.size(), 0u);
+  EXPECT_EQ(ribbonsOf(rig, 0.059f, 0, false).others, rig.indices);
+  EXPECT_EQ(ribbonsOf(rig, 0.061f, 0, false).ribbons.size(), 1u);
+  EXPECT_EQ(ribbonsOf(spiderRig(), 0, 1, false).ribbons.size(), 0u);
 }
 
 // What lies beyond a joint is a ribbon's, too; a single ring has one radius; a bone is never shorter than
 // itself.
 TEST(Ribbons, coverTheirBonesAndSkin) {
   const float length = spiderRig().legs[0].bones[2].length;
-  const Ribbon longer = ribbonsOf(tube(2, {{-0.1f, 0.02f}, {length + 0.2f, 0.02f}}), 1, 0).ribbons.at(0);
+  const Ribbon longer =
+      ribbonsOf(tube(2, {{-0.1f, 0.02f}, {length + 0.2f, 0.02f}}), 1, 0, false).ribbons.at(0);
   EXPECT_NEAR(longer.from.along, -0.1f, 1e-6f);
   EXPECT_NEAR(longer.to.along, length + 0.2f, 1e-6f);
-  const Ribbon ring = ribbonsOf(tube(2, {{0.3f * length, 0.02f}}), 1, 0).ribbons.at(0);
+  const Ribbon ring = ribbonsOf(tube(2, {{0.3f * length, 0.02f}}), 1, 0, false).ribbons.at(0);
   EXPECT_EQ(ring.from.along, 0);
   EXPECT_EQ(ring.to.along, length);
   EXPECT_NEAR(ring.from.radius, 0.02f, 1e-6f);
@@ -242,7 +287,7 @@ TEST(Ribbons, spanBonesThatAreAlmostStraight) {
   const Rig rig = spiderRig();
   const auto ends = [&](float bend) {
     std::vector<std::pair<int, int>> found;
-    for (const Ribbon& ribbon : ribbonsOf(rig, 1, bend).ribbons)
+    for (const Ribbon& ribbon : ribbonsOf(rig, 1, bend, false).ribbons)
       if (ribbon.to.bone <= rig.maxBones()) found.emplace_back(ribbon.from.bone, ribbon.to.bone);
     return found;
   };
@@ -257,7 +302,7 @@ TEST(Ribbons, spanBonesThatAreAlmostStraight) {
   EXPECT_EQ(ends(0.06f), (Ends{{1, 2}, {3, 4}}));
   EXPECT_EQ(ends(1), (Ends{{1, 4}}));
   // A thick bone parts the thin ones about it.
-  const Ribbons parted = ribbonsOf(rig, 0.045f, 1);
+  const Ribbons parted = ribbonsOf(rig, 0.045f, 1, false);
   EXPECT_EQ(parted.ribbons[0].to.bone, 1);
   EXPECT_EQ(parted.ribbons[1].from.bone, 3);
   EXPECT_EQ(parted.ribbons[1].to.bone, 4);
@@ -267,7 +312,7 @@ TEST(Ribbons, spanBonesThatAreAlmostStraight) {
 // A triangle between a thin bone and the body is no ribbon's.
 TEST(Ribbons, leaveTheBodyAlone) {
   const Rig rig = spiderRig();
-  const Ribbons all = ribbonsOf(rig, 1, 0);
+  const Ribbons all = ribbonsOf(rig, 1, 0, false);
   EXPECT_EQ(all.ribbons.size(), 32u);
   const auto hangsOnTheBody = [&](uint32_t index) {
     const SkinVertex& vertex = rig.vertices[index];
