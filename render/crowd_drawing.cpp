@@ -170,7 +170,7 @@ gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Mat
 }
 
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureStore& store)
-    : cull_(s.context) {
+    : cull_(s.context, s.detail) {
   if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
   for (const crowd::Kind& source : crowd.kinds) {
     Kind kind;

@@ -1,7 +1,6 @@
 #include "render/cull.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "embedded/cull_comp_storage.h"
 #include "embedded/cull_comp_texel.h"
@@ -10,14 +9,15 @@
 #include "skitter/records.h"
 
 namespace skitter::render {
-Cull::Cull(const gpu::Context& context)
+Cull::Cull(const gpu::Context& context, float detail)
     : kernel_(context, {.name = "cull",
                         .code = {embedded::cull_comp_texel(), embedded::cull_comp_storage()},
                         .bindings = {{shared::DRAW_PICTURE, gpu::BindingKind::uniform},
                                      {shared::DRAW_BODY, gpu::BindingKind::load4},
                                      {shared::DRAW_INSTANCES, gpu::BindingKind::store},
                                      {shared::DRAW_COMMANDS, gpu::BindingKind::store}},
-                        .pushBytes = sizeof(shared::CullConstants)}) {}
+                        .pushBytes = sizeof(shared::CullConstants)}),
+      detail_(detail) {}
 
 CulledPage Cull::makePage(const gpu::Context& context, const gpu::Buffer& picture, const gpu::Buffer& bodies,
                           uint32_t agents) const {
@@ -38,10 +38,10 @@ void Cull::record(vk::CommandBuffer cmd, const CulledPage& page, float radius, b
   shared::CullConstants constants{.agents = page.agents,
                                   .radius = radius,
                                   .lodPixels = {},
-                                  .contactPixels = kContactPixels,
-                                  .splatPixels = splats ? kSplatPixels : 0,
-                                  .shadePixels = splats ? kShadePixels : 0};
-  std::copy(std::begin(kLodPixels), std::end(kLodPixels), constants.lodPixels);
+                                  .contactPixels = kContactPixels / detail_,
+                                  .splatPixels = splats ? kSplatPixels / detail_ : 0,
+                                  .shadePixels = splats ? kShadePixels / detail_ : 0};
+  std::ranges::transform(kLodPixels, constants.lodPixels, [&](float pixels) { return pixels / detail_; });
   kernel_.dispatch(cmd, page.bindings, gpu::bytesOf(constants),
                    gpu::groupsFor(page.agents, shared::WORK_GROUP));
 }

@@ -24,7 +24,8 @@ struct CulledPage {
 class Cull {
  public:
   Cull() = default;
-  explicit Cull(const gpu::Context&);
+  // `detail`: RendererOptions::detail.
+  Cull(const gpu::Context&, float detail);
 
   CulledPage makePage(const gpu::Context&, const gpu::Buffer& picture, const gpu::Buffer& bodies,
                       uint32_t agents) const;
@@ -33,6 +34,7 @@ class Cull {
 
  private:
   gpu::Kernel kernel_;
+  float detail_ = 1;
 };
 
 }  // namespace skitter::render

@@ -40,6 +40,14 @@ const gpu::Context& checkedContext(const gpu::Context& context) {
   return context;
 }
 
+float checkedDetail(const RendererOptions& options) {
+  // Also refuses NaN.
+  if (!(options.detail >= RendererOptions::leastDetail && options.detail <= RendererOptions::mostDetail))
+    throw inputError(fmt::format("detail is {}, expected {} to {}", options.detail,
+                                 RendererOptions::leastDetail, RendererOptions::mostDetail));
+  return options.detail;
+}
+
 // Four samples where a GPU gives them almost for nothing; a software device pays sevenfold.
 vk::SampleCountFlagBits sampleCount(const gpu::Context& context) {
   return context.isCpu() ? vk::SampleCountFlagBits::e1 : vk::SampleCountFlagBits::e4;
@@ -48,7 +56,7 @@ vk::SampleCountFlagBits sampleCount(const gpu::Context& context) {
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(const gpu::Context& context, const Crowd::Impl& crowd, uint32_t width, uint32_t height);
+  Impl(const gpu::Context& context, const Crowd::Impl& crowd, uint32_t width, uint32_t height, float detail);
 
   void record(vk::CommandBuffer, const View&, const std::function<void(VkCommandBuffer)>& over);
   bool filtered() const { return samples == vk::SampleCountFlagBits::e1; }
@@ -81,7 +89,8 @@ struct Renderer::Impl {
   render::Antialias antialias;  // where there are no samples to resolve
 };
 
-Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height)
+Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height,
+                     float detail)
     : context(checkedContext(c)),
       live(source),
       revision(source.revision),
@@ -103,9 +112,9 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       ground(render::makeGroundMap(c, source.terrain, glm::vec3(light.towards))),
       groundSampler(gpu::makeSampler(c, {.name = "ground map"})),
       shadow(c, height),
-      setting{c,      source.terrain, source.heights,  picture,
-              ground, *groundSampler, shadow,          drawnFormat(),
-              kDepth, samples,        colour.extent(), render::lightConstants(light)},
+      setting{c,      source.terrain, source.heights, picture, ground,          *groundSampler,
+              shadow, drawnFormat(),  kDepth,         samples, colour.extent(), render::lightConstants(light),
+              detail},
       terrain(setting),
       obstacles(setting, source),
       crowd(setting, source, textures),
@@ -234,8 +243,9 @@ void Renderer::Impl::smoothEdges(vk::CommandBuffer cmd) {
   timer.end(cmd, "filter");
 }
 
-Renderer::Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height)
-    : impl_(std::make_unique<Impl>(device.context(), implOf(crowd), width, height)) {}
+Renderer::Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height,
+                   const RendererOptions& options)
+    : impl_(std::make_unique<Impl>(device.context(), implOf(crowd), width, height, checkedDetail(options))) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 

@@ -21,6 +21,7 @@ struct Setting {
   vk::SampleCountFlagBits samples;
   vk::Extent2D extent;
   const std::vector<gpu::SpecConstant> light;  // lightConstants of the scene's
+  float detail = 1;                            // RendererOptions::detail
 
   // Constants of whatever is lit (shaders/render/light.glsl).
   std::vector<gpu::SpecConstant> lit() const {

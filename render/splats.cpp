@@ -25,7 +25,7 @@ uint32_t tilesOf(const vk::Extent2D& extent) { return tilesAlong(extent.width) *
 
 }  // namespace
 
-Splats::Splats(const Setting& s) : extent_(s.extent) {
+Splats::Splats(const Setting& s) : extent_(s.extent), shadePixels_(kShadePixels / s.detail) {
   const uint64_t bytes = 2 * uint64_t(extent_.width) * extent_.height * sizeof(uint32_t);
   const DeviceLimits& limits = s.context.limits();
   if (bytes > limits.maxStorageBufferRange || bytes >= limits.maxAllocationBytes) return;
@@ -112,7 +112,7 @@ shared::SplatConstants Splats::picture() const {
   shared::SplatConstants constants{};
   constants.width = extent_.width;
   constants.height = extent_.height;
-  constants.shadePixels = kShadePixels;
+  constants.shadePixels = shadePixels_;
   return constants;
 }
 

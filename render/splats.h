@@ -47,6 +47,7 @@ class Splats {
   shared::SplatConstants picture() const;
 
   vk::Extent2D extent_;
+  float shadePixels_ = 0;
   gpu::Buffer splats_, tiles_;
   gpu::GraphicsPipeline draw_, shade_;
   gpu::Bindings drawBindings_, shadeBindings_;

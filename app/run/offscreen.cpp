@@ -34,7 +34,7 @@ Offscreen::Offscreen(const RunOptions& options, const OutTarget& target, const S
       leave_(leave) {
   const StopDeadline deadline(std::ref(leave_));
   if (!pictures) return;
-  renderer_.emplace(device, crowd, options.size.width, options.size.height);
+  renderer_.emplace(device, crowd, options.size.width, options.size.height, options.drawing);
   read_.emplace(device.context(), options.size.width, options.size.height, pictureSlots);
   warnOfImages(*renderer_);
   renderer_->timeStages(options.timings);

@@ -298,6 +298,7 @@ void Run::runWindow() {
                       .dt = static_cast<float>(options_.scene.dt),
                       .ticks = ticks_.value_or(UINT64_MAX),
                       .ticksPerFrame = options_.ticksPerFrame,
+                      .drawing = options_.drawing,
                       .paused = options_.paused,
                       .timings = options_.timings,
                       .afterTick = [this] { afterTick(); },

@@ -87,6 +87,15 @@ void addNumbers(CLI::App& command, RunOptions& options) {
           "--size", [&options](const std::string& text) { options.size = parseSize("--size", text); },
           "of the window or the pictures, in pixels [1280x720]")
       ->type_name("WxH");
+  command
+      .add_option_function<std::string>(
+          "--detail",
+          [&options](const std::string& text) {
+            options.drawing.detail = static_cast<float>(parseNumber(
+                "--detail", text, double{RendererOptions::leastDetail}, double{RendererOptions::mostDetail}));
+          },
+          "draw agents as finely as if they were so many times larger; 0.5 is faster, 100000 full detail [1]")
+      ->type_name("X");
 }
 
 }  // namespace

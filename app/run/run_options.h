@@ -11,6 +11,7 @@
 #include "app/run/run_note.h"
 #include "skitter/crowd.h"
 #include "skitter/device.h"
+#include "skitter/renderer.h"
 #include "skitter/scene.h"
 
 namespace CLI {
@@ -27,6 +28,7 @@ struct RunOptions {
   uint32_t watchEvery = 0;
   std::optional<double> fps, slow;  // of a video
   Size size{1280, 720};
+  RendererOptions drawing;
   std::string view, out, json, trace, footfalls;
   std::optional<Sky> light;           // none: as the scene says
   std::string save, resume;           // state files

@@ -63,7 +63,7 @@ class Canvas {
  private:
   void make(Size size) {
     renderer_.reset();
-    renderer_.emplace(run_.device, run_.crowd, size.width, size.height);
+    renderer_.emplace(run_.device, run_.crowd, size.width, size.height, run_.drawing);
     warnOfImages(*renderer_);
   }
 

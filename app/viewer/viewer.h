@@ -9,6 +9,7 @@
 #include "app/viewer/window.h"
 #include "skitter/crowd.h"
 #include "skitter/device.h"
+#include "skitter/renderer.h"
 #include "skitter/scene.h"
 
 namespace skitter::app {
@@ -20,6 +21,7 @@ struct WindowRun {
   float dt;
   uint64_t ticks;  // at most
   uint64_t ticksPerFrame;
+  RendererOptions drawing;
   bool paused;   // at first
   bool timings;  // stages are timed all along
   std::function<void()> afterTick;

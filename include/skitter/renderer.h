@@ -37,13 +37,21 @@ struct PictureCounts {
   uint64_t triangles = 0;  // of the others, of the ground and of obstacles, without shadows
 };
 
+struct RendererOptions {
+  // Agents are drawn as finely as if they were so many times larger on the screen, leastDetail to mostDetail.
+  // Less is cheaper; the most leaves no level of detail out and draws nobody without triangles.
+  float detail = 1;
+  static constexpr float leastDetail = 0.25f, mostDetail = 100000;
+};
+
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.
 class SKITTER_API Renderer {
  public:
-  // Throws Error(input) for a picture without pixels or a crowd without poses, Error(device) for a device
-  // whose queue has no graphics, when width or height exceed the device's limits or memory does not suffice.
-  // The crowd outlives the renderer and stays where it is.
-  Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height);
+  // Throws Error(input) for a picture without pixels, a crowd without poses or another detail, Error(device)
+  // for a device whose queue has no graphics, when width or height exceed the device's limits or memory does
+  // not suffice. The crowd outlives the renderer and stays where it is.
+  Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height,
+           const RendererOptions& options = {});
   ~Renderer();
   Renderer(Renderer&&) noexcept;
 

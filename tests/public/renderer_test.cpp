@@ -1,6 +1,7 @@
 #include "skitter/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "public/public.h"
@@ -78,6 +79,8 @@ TEST_F(PublicRenderer, RefusesWhatCannotBe) {
   expectError(Error::Kind::device, "draws at most", [&] { Renderer(device(), crowd, 1 << 20, 48); });
   const Crowd poseless(device(), flatGround(), standingScene(1), {.pose = false});
   expectRefused("pose", [&] { Renderer(device(), poseless, 64, 48); });
+  for (const float detail : {0.0f, 0.2f, -1.0f, 2e5f, NAN, INFINITY})
+    expectRefused("detail is ", [&] { Renderer(device(), crowd, 64, 48, {.detail = detail}); });
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ class CullTest : public test::GpuLoadTest {
  protected:
   // The lists that each agent is on.
   std::vector<Lists> cull(const shared::Picture& picture, const std::vector<glm::dvec3>& places,
-                          bool splats = false) {
+                          bool splats = false, float detail = 1) {
     std::vector<float> bodies(places.size() * shared::BODY_STRIDE * 4);
     for (size_t i = 0; i < places.size(); ++i) {
       const glm::dvec3 tile = glm::floor(places[i] / double(shared::TILE_SIZE));
@@ -40,7 +40,7 @@ class CullTest : public test::GpuLoadTest {
     const gpu::Buffer records(context(), bodies.size() * sizeof(float), "bodies");
     gpu::upload(context(), block, std::span(&picture, 1));
     gpu::upload(context(), records, bodies);
-    const Cull cull(context());
+    const Cull cull(context(), detail);
     const CulledPage page = cull.makePage(context(), block, records, agents);
     gpu::clear(context(), page.commands);
     gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius, splats); });
@@ -151,6 +151,28 @@ TEST_P(CullTest, theRadiusInPixelsChoosesSplats) {
     cull(picture(), std::vector(many, places[3]), true);
     EXPECT_EQ(groups_, (many + 127) / 128) << many;
   }
+}
+
+// Who is drawn in twice the detail is on the lists of those that are twice as large, and casts as they do.
+TEST_P(CullTest, detailMovesEveryThreshold) {
+  const Sight s(kView, kWidth, kHeight);
+  const double onePixel = double(kRadius) * kHeight / (2 * s.tanY);
+  for (const double threshold : {150.0, 75.0, 40.0, 25.0, 12.0, 10.0})
+    for (const double share : {1.005, 0.995}) {
+      const auto seen = [&](double pixels, bool splats, float detail) {
+        Lists lists = cull(picture(), {s.eye + onePixel / pixels * s.forward}, splats, detail).front();
+        // Which cascades hold it depends on where it is.
+        const bool casts = std::erase_if(lists, isShadow) > 0;
+        if (casts) lists.push_back(-1);
+        return lists;
+      };
+      for (const bool splats : {false, true}) {
+        EXPECT_EQ(seen(threshold * share / 2, splats, 2), seen(threshold * share, splats, 1))
+            << threshold * share;
+        EXPECT_EQ(seen(threshold * share * 2, splats, 0.5f), seen(threshold * share, splats, 1))
+            << threshold * share;
+      }
+    }
 }
 
 // Splats are of who lies well ahead of the eye, four radii at least and 3 km at most, however small the

@@ -163,7 +163,7 @@ class SplatTest : public test::GpuLoadTest {
     const crowd::Kind& kind = impl.kinds.front();
     const crowd::Page& page = kind.pages.front();
     const float radius = crowd::radiusOf(kind.rig);
-    const Cull cull(context());
+    const Cull cull(context(), 1);
     const CulledPage culled = cull.makePage(context(), picture, page.body, page.agents);
     const Splats splats(setting);
     const Splats::Kind look = splats.makeKind(setting, kind, radius);

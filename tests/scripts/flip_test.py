@@ -1,19 +1,19 @@
 """scripts/flip, against what follows from the paper's definitions, and its reading of PNG files."""
-import importlib.machinery
-import importlib.util
 import pathlib
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 import zlib
 
 import numpy as np
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/flip"
-loader = importlib.machinery.SourceFileLoader("flip", str(SCRIPT))
-flip = importlib.util.module_from_spec(importlib.util.spec_from_loader("flip", loader))
-loader.exec_module(flip)
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+SCRIPT = SCRIPTS / "flip"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SCRIPTS / "lib"))
+import flip  # noqa: E402
 
 
 def even(colour, height=24, width=40):
