@@ -37,6 +37,7 @@ struct PictureCounts {
   uint64_t triangles = 0;  // of the others, of the ground and of obstacles, without shadows
 };
 
+// How a renderer draws.
 struct RendererOptions {
   // Agents are drawn as finely as if they were so many times larger on the screen, leastDetail to mostDetail.
   // Less is cheaper; the most leaves no level of detail out and draws nobody without triangles.

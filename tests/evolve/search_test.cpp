@@ -236,8 +236,8 @@ TEST_F(EvolutionTest, ATableIsJudgedForItsPatternsAndTheRuleForOthers) {
   for (const size_t i : {1, 2}) EXPECT_LT(byTable[i].speed, 0.8 * byRule[i].speed) << i;
 }
 
-// In its own gait a spider without R1, L2, R3 and L4 has a whole tripod missing: only the others' feet, of
-// which the body's weight is held half of the time. The rule makes the four that are left take turns.
+// A spider without one of its two tripods lifts all the legs that are left at once, unless they take turns by
+// the rule.
 TEST_F(EvolutionTest, WhoDoesNotAdaptIsLessStable) {
   Rig rig = spiderRig();
   rig.gaits = {};

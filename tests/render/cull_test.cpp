@@ -153,7 +153,8 @@ TEST_P(CullTest, theRadiusInPixelsChoosesSplats) {
   }
 }
 
-// Who is drawn in twice the detail is on the lists of those that are twice as large, and casts as they do.
+// An agent that is drawn in twice the detail is on the lists of one that is twice as large, and casts as it
+// does.
 TEST_P(CullTest, detailMovesEveryThreshold) {
   const Sight s(kView, kWidth, kHeight);
   const double onePixel = double(kRadius) * kHeight / (2 * s.tanY);

@@ -275,7 +275,7 @@ TEST_P(RendererTest, levelsOfDetailLookAlike) {
     // The coarser one is drawn 2 % smaller, so covers 4 % less.
     EXPECT_NEAR(coarser.pixels / finer.pixels, 0.96, 0.1)
         << "level " << level << " covers " << finer.pixels << " pixels";
-    // What the hash of their numbers makes of neighbours is about six times as much.
+    // The hash of their numbers makes neighbours differ about six times as much.
     EXPECT_LT(glm::distance(coarser.colour, finer.colour), 9)
         << "level " << level << ": " << finer.colour.x << " " << finer.colour.y << " " << finer.colour.z
         << ", then " << coarser.colour.x << " " << coarser.colour.y << " " << coarser.colour.z;

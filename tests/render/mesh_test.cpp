@@ -251,7 +251,7 @@ TEST(Ribbons, haveAWaistWhereASingleBoneDiffersInTheMiddle) {
   EXPECT_EQ(ribbon.waist->bone, ribbon.from.bone);
   EXPECT_NEAR(ribbon.waist->along, 0.5f * length, 1e-6f);
   EXPECT_FALSE(ribbonsOf(rig, 1, 0, false).ribbons.at(0).waist);
-  // What goes evenly from end to end has none, nor has what spans more than a bone.
+  // A bone that tapers evenly has none, nor has a ribbon that spans several bones.
   EXPECT_FALSE(ribbonsOf(tube(1, {{0, 0.06f}, {0.5f * length, 0.05f}, {length, 0.04f}}), 1, 0, true)
                    .ribbons.at(0)
                    .waist);

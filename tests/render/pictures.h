@@ -100,7 +100,7 @@ inline Heightfield groundOf(uint32_t columns, uint32_t rows,
   return field;
 }
 
-// Of pictures that tests draw, in several files.
+// The suite has its tests in several files.
 class RendererTest : public GpuLoadTest {};
 
 }  // namespace skitter::test

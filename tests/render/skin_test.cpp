@@ -91,8 +91,8 @@ class SkinTest : public test::GpuLoadTest {
         expected.normal += i.weight * (palette.at(i.bone).linear * normal);
       expected.normal = glm::normalize(expected.normal);
     }
-    const glm::dvec3 body =
-        kPlace + double(shared::TILE_SIZE) * glm::dvec3(kTile.x - kPictureTile.x, 0, kTile.y - kPictureTile.y);
+    const glm::dvec3 body = kPlace + double(shared::TILE_SIZE) *
+                                         glm::dvec3(kTile.x - kPictureTile.x, 0, kTile.y - kPictureTile.y);
     const Posed found =
         draw(vertices, palette, asMatrices, int(influences.size()), face, body + expected.position, false);
     // A few tens of float32 operations on numbers of at most 4. A device places corners to 1/16 pixel at
