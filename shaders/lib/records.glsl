@@ -37,7 +37,11 @@ Step unpackStep(vec4 a, vec4 b) {
 #define LOAD_STEP(leg) \
   inOwnTicks(unpackStep(LOAD4(steps, (leg) * STEP_STRIDE), LOAD4(steps, (leg) * STEP_STRIDE + 1)))
 
-float stepProgress(Step s, float tick) { return clamp((tick - s.firstTick) / s.ticks, 0.0, 1.0); }
+// A step's end is compared, not divided: Vulkan lets a device round n / n down.
+float stepProgress(Step s, float tick) {
+  float flown = tick - s.firstTick;
+  return flown >= s.ticks ? 1.0 : max(flown / s.ticks, 0.0);
+}
 
 // A point relative to a body's position, along world axes; its tile is so many off from the body's.
 vec3 fromTile(vec3 point, vec2 apart, vec3 bodyLocal) {

@@ -55,7 +55,7 @@ void makeGait(int agent, Body body) {
     stance = stride.cycle - slowTicks(stride.ticks, own.w) * parameters.dt;
 #endif
     float flown = thisTick - 1.0 - s.firstTick;
-    float u = clamp(flown / s.ticks, 0.0, 1.0);
+    float u = stepProgress(s, thisTick - 1.0);
     vec3 landing = fromStep(s.landing, s, body.local, body.tile);
     vec3 foot = landing * orientation;
     bool moved = WATCH != 0 && !s.lastResort && abs(above(landing, body)) > parameters.groundTolerance;
