@@ -31,7 +31,7 @@ vec3 moved(vec3 now, vec3 before) {
 // How far the centre is inside the hull of those of `q` that count; the others are copies of one that does. The least
 // support is on a normal of a line through two of them, or right away from one.
 float marginOf(vec2 q[LEGS]) {
-  float margin = FAR, none = 1e-8 * trial.legLength * trial.legLength;
+  float margin = FAR, none = 1e-12 * trial.legLength * trial.legLength;
   for (int i = 0; i < LEGS; ++i) {
     vec2 away = -unit(q[i]);
     float support = -FAR;

@@ -103,7 +103,7 @@ float depthOf(Stretched s, vec4 orientation, float y, vec2 world) {
 float supportMargin(int first, vec2 centre, vec2 anchor) {
   vec2 q[LEGS];
   for (int k = 0; k < LEGS; ++k) q[k] = plantedAt(first + k * BLOCK) ? tipOf(first + k * BLOCK).xz - centre : anchor;
-  float margin = FAR, none = 1e-8 * parameters.legLength * parameters.legLength;
+  float margin = FAR, none = 1e-12 * parameters.legLength * parameters.legLength;
   for (int i = 0; i < LEGS; ++i) {
     vec2 a = plantedAt(first + i * BLOCK) ? tipOf(first + i * BLOCK).xz - centre : anchor;
     vec2 away = -unit(a);

@@ -213,6 +213,18 @@ TEST_P(NastyTest, MissesAreThoseOfTheTips) {
   }
 }
 
+// One foot all but right below the body: a hair's breadth from balance is off balance.
+TEST_P(NastyTest, AFootRightBelowTheBodyIsMeasured) {
+  Rig rig = straightLegs({4}, 120);
+  rig.legs[0].home = {0, 0, 4e-5f};
+  Scene scene = sceneOf(8, 0);
+  scene.herds[0].tuning.breathHeight = 0;
+  Crowd crowd(device(), flatGround(), scene, {.rigs = {rig}});
+  simulate(device(), crowd, 30);
+  expectAllPass(replay(device(), crowd, flatGround(), 4));
+  EXPECT_EQ(crowd.fidelity().unstable, 1);
+}
+
 TEST_P(NastyTest, SpidersInAnyState) { expectEveryStage(device(), spiderRig(), 8, 3); }
 TEST_P(NastyTest, StraightLegs) { expectEveryStage(device(), straightLegs({4, 4, 4, 4, 4, 4}, 70), 4, 1.1f); }
 TEST_P(NastyTest, OneBoneAndFifteen) {
