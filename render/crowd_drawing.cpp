@@ -12,6 +12,12 @@
 #include "embedded/cutout_frag.h"
 #include "embedded/cutout_vert_storage.h"
 #include "embedded/cutout_vert_texel.h"
+#include "embedded/fading_frag.h"
+#include "embedded/fading_shadow_frag.h"
+#include "embedded/fading_shadow_vert_storage.h"
+#include "embedded/fading_shadow_vert_texel.h"
+#include "embedded/fading_vert_storage.h"
+#include "embedded/fading_vert_texel.h"
 #include "embedded/lit_frag.h"
 #include "embedded/lit_vert_storage.h"
 #include "embedded/lit_vert_texel.h"
@@ -112,15 +118,37 @@ gpu::GraphicsInfo cutoutInfo(const Setting& s, int influences, const CrowdForms&
   return info;
 }
 
+// The same of what goes over to splats.
+gpu::GraphicsInfo fadingShading(int influences, const CrowdForms& forms) {
+  gpu::GraphicsInfo info = litShading(influences, forms);
+  info.name = "fading crowd";
+  info.vertex = {embedded::fading_vert_texel(), embedded::fading_vert_storage()};
+  info.fragment = embedded::fading_frag();
+  return info;
+}
+
+gpu::GraphicsInfo fadingShadowInfo(const Setting& s, int influences, const CrowdForms& forms) {
+  gpu::GraphicsInfo info = shadowInfo(s, influences, forms);
+  info.name = "fading shadow";
+  info.vertex = {embedded::fading_shadow_vert_texel(), embedded::fading_shadow_vert_storage()};
+  info.fragment = embedded::fading_shadow_frag();
+  return info;
+}
+
 CrowdForms formsOf(const crowd::Kind& kind) {
   return {
       .matrices = crowd::traitsOf(kind.controller).playsClips, .tinted = kind.tinted, .stumps = kind.hurts};
 }
 
-// The lists that draw meshes.
+// The lists that draw meshes, but for those that fade.
 constexpr int kMeshLists = shared::CONTACTS;
-// The level that a list draws: of the camera's each its own.
-int levelOf(int list) { return list < shared::CAMERA_LODS ? list : kOtherLod[list - shared::CAMERA_LODS]; }
+// The level that a list draws: of the camera's each its own; what fades goes on as it was.
+int levelOf(int list) {
+  if (list == shared::FADING) return shared::FIRST_VERTEX_LIT;
+  if (list == shared::NEAR_FADING) return levelOf(shared::NEAR_COARSE);
+  if (list == shared::FAR_FADING) return levelOf(shared::FAR_SHADOWS);
+  return list < shared::CAMERA_LODS ? list : kOtherLod[list - shared::CAMERA_LODS];
+}
 
 VkDrawIndexedIndirectCommand commandOf(const MeshLod& lod) {
   return {.indexCount = lod.indexCount,
@@ -193,6 +221,12 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       kind.splat = splats_.makeKind(s, source, kind.mesh.radius);
     }
     if (textures) makeParts(s, source, *textures, kind);
+    // What wears materials has none of the colours that it would fade with at its vertices.
+    kind.splat.fades = kind.splat && kind.parts.empty();
+    if (kind.splat.fades) {
+      kind.fading = drawPipeline(s, fadingShading(kind.mesh.influences, formsOf(source)));
+      kind.fadingShadow = {s.context, fadingShadowInfo(s, kind.mesh.influences, formsOf(source))};
+    }
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
       Page page;
@@ -208,6 +242,10 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       page.shadow = kind.shadow.bind(s.context, shadow);
       page.draw = kind.draw.bind(s.context, draw);
       page.lit = kind.lit.bind(s.context, draw);
+      if (kind.splat.fades) {
+        page.fading = kind.fading.bind(s.context, draw);
+        page.fadingShadow = kind.fadingShadow.bind(s.context, shadow);
+      }
       if (kind.splat) page.splat = splats_.bind(s, kind.splat, source, records, page.culled);
       if (kind.contact) page.contact = kind.contact.makePage(s, records);
       if (!kind.parts.empty()) bindParts(s, *textures, shadow, draw, kind, page);
@@ -278,6 +316,8 @@ void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
       VkDrawIndexedIndirectCommand draws[shared::INSTANCE_LISTS] = {};
       for (int list = 0; list < kMeshLists; ++list)
         draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
+      for (const int list : {shared::FADING, shared::NEAR_FADING, shared::FAR_FADING})
+        draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
       draws[shared::SPLATS] = std::bit_cast<VkDrawIndexedIndirectCommand>(SplatDispatch{});
       cmd.updateBuffer(page.culled.commands.handle(), 0, sizeof draws, draws);
     }
@@ -286,7 +326,8 @@ void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
 
 void CrowdDrawing::cull(vk::CommandBuffer cmd) const {
   for (const Kind& kind : kinds_)
-    for (const Page& page : kind.pages) cull_.record(cmd, page.culled, kind.mesh.radius, bool(kind.splat));
+    for (const Page& page : kind.pages)
+      cull_.record(cmd, page.culled, kind.mesh.radius, bool(kind.splat), kind.splat.fades);
 }
 
 void CrowdDrawing::splat(vk::CommandBuffer cmd) const {
@@ -325,6 +366,10 @@ void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
     for (const Page& page : kinds_[k].pages) {
       const shared::CrowdConstants constants = constantsOf(k, page, shared::VIEW_CAMERA + 1 + cascade);
       const int first = kCascadeLists[cascade], end = kCascadeLists[cascade + 1];
+      if (kinds_[k].splat.fades) {
+        kinds_[k].fadingShadow.use(cmd, page.fadingShadow, gpu::bytesOf(constants));
+        drawList(cmd, kinds_[k], page, cascade == 0 ? shared::NEAR_FADING : shared::FAR_FADING);
+      }
       const auto cutout = [](const Worn& worn) { return worn.cutout; };
       if (std::ranges::none_of(kinds_[k].worn, cutout)) {
         kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
@@ -362,6 +407,8 @@ PictureCounts CrowdDrawing::counts(const gpu::Context& context) const {
         counts.agents += draws[lod].instanceCount;
         counts.triangles += uint64_t(draws[lod].instanceCount) * (draws[lod].indexCount / 3);
       }
+      const VkDrawIndexedIndirectCommand& fading = draws[shared::FADING];  // its agents are splats, too
+      counts.triangles += uint64_t(fading.instanceCount) * (fading.indexCount / 3);
       counts.agents += draws[shared::SPLATS].instanceCount;
       counts.splats += draws[shared::SPLATS].instanceCount;
     }
@@ -379,6 +426,10 @@ void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
           if (lod == shared::FIRST_VERTEX_LIT) kinds_[k].lit.use(cmd, page.lit, gpu::bytesOf(constants));
           drawList(cmd, kinds_[k], page, lod);
         }
+      }
+      if (kinds_[k].splat.fades) {
+        kinds_[k].fading.use(cmd, page.fading, gpu::bytesOf(constants));
+        drawList(cmd, kinds_[k], page, shared::FADING);
       }
       for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
         const gpu::GraphicsPipeline& pipeline = drawOf(kinds_[k], p);

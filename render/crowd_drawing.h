@@ -52,7 +52,7 @@ class CrowdDrawing {
   struct Page {
     uint32_t firstAgent = 0;
     CulledPage culled;
-    gpu::Bindings draw, lit, shadow, splat;
+    gpu::Bindings draw, lit, shadow, splat, fading, fadingShadow;
     Contact::Page contact;
     // For a kind with materials: the indirect draws of each list, part by part, and each part's bindings.
     gpu::Buffer partDraws;
@@ -71,7 +71,7 @@ class CrowdDrawing {
   struct Kind {
     uint32_t palette = 0;
     Mesh mesh;
-    gpu::GraphicsPipeline draw, lit, shadow;
+    gpu::GraphicsPipeline draw, lit, shadow, fading, fadingShadow;
     Contact contact;
     Splats::Kind splat;
     std::vector<Part> parts;  // as the mesh's

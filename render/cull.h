@@ -29,8 +29,8 @@ class Cull {
 
   CulledPage makePage(const gpu::Context&, const gpu::Buffer& picture, const gpu::Buffer& bodies,
                       uint32_t agents) const;
-  // `splats`: whether small agents may be drawn as such.
-  void record(vk::CommandBuffer, const CulledPage&, float radius, bool splats) const;
+  // `splats`: whether small agents may be drawn as such; `fades`: whether they go over to them by and by.
+  void record(vk::CommandBuffer, const CulledPage&, float radius, bool splats, bool fades) const;
 
  private:
   gpu::Kernel kernel_;

@@ -25,7 +25,8 @@ uint32_t tilesOf(const vk::Extent2D& extent) { return tilesAlong(extent.width) *
 
 }  // namespace
 
-Splats::Splats(const Setting& s) : extent_(s.extent), shadePixels_(kShadePixels / s.detail) {
+Splats::Splats(const Setting& s)
+    : extent_(s.extent), splatPixels_(kSplatPixels / s.detail), shadePixels_(kShadePixels / s.detail) {
   const uint64_t bytes = 2 * uint64_t(extent_.width) * extent_.height * sizeof(uint32_t);
   const DeviceLimits& limits = s.context.limits();
   if (bytes > limits.maxStorageBufferRange || bytes >= limits.maxAllocationBytes) return;
@@ -112,6 +113,7 @@ shared::SplatConstants Splats::picture() const {
   shared::SplatConstants constants{};
   constants.width = extent_.width;
   constants.height = extent_.height;
+  constants.splatPixels = splatPixels_;
   constants.shadePixels = shadePixels_;
   return constants;
 }
@@ -129,6 +131,7 @@ void Splats::record(vk::CommandBuffer cmd, const Kind& kind, const gpu::Bindings
   constants.kind = of.kind;
   constants.agents = culled.agents;
   constants.radius = kind.radius;
+  constants.fades = kind.fades;
   constexpr uint64_t groups = shared::SPLATS * sizeof(SplatDispatch) + offsetof(SplatDispatch, groups);
   kind.kernel.dispatchIndirect(cmd, page, gpu::bytesOf(constants), culled.commands, groups);
 }

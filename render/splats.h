@@ -22,7 +22,8 @@ class Splats {
   struct Kind {
     gpu::Kernel kernel;
     gpu::Buffer parts;
-    float radius = 0;  // about the body's position, metres
+    float radius = 0;    // about the body's position, metres
+    bool fades = false;  // whether its agents go over to splats by and by
     explicit operator bool() const { return bool(kernel); }
   };
   Kind makeKind(const Setting&, const crowd::Kind&, float radius) const;
@@ -47,7 +48,7 @@ class Splats {
   shared::SplatConstants picture() const;
 
   vk::Extent2D extent_;
-  float shadePixels_ = 0;
+  float splatPixels_ = 0, shadePixels_ = 0;
   gpu::Buffer splats_, tiles_;
   gpu::GraphicsPipeline draw_, shade_;
   gpu::Bindings drawBindings_, shadeBindings_;

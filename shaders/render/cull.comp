@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Which agents each list draws: an agent in the camera's pyramid joins the list of its level of detail, one
 // in reach of a shadow cascade one of that cascade's. The order within a list is of no consequence.
+#include "fade.glsl"
 #include "picture.glsl"
 #include "lib/load4.glsl"
 
@@ -19,10 +20,10 @@ const float FAR_REACH = 21.0;
 const float LEAST_AHEAD = 4.0;  // of the agent's radius
 const float MOST_AHEAD = 3000.0;  // metres
 
-// The agent's place in the list.
-uint append(uint list, uint agent) {
+// The entry's place in the list.
+uint append(uint list, uint entry) {
   uint place = atomicAdd(commands[list * DRAW_WORDS + 1], 1u);
-  instances[list * constants.agents + place] = agent;
+  instances[list * constants.agents + place] = entry;
   return place;
 }
 
@@ -48,21 +49,27 @@ void main() {
   float ahead = dot(p - picture.eye.xyz, picture.forward.xyz);
   bool splat =
       seen && pixels < constants.splatPixels && ahead > LEAST_AHEAD * constants.radius && ahead < MOST_AHEAD;
+  bool shade = splat && pixels < constants.shadePixels;
+  uint fade = constants.fades != 0u ? fadeOf(pixels, constants.splatPixels) : FADED;
+  uint shadeFade = constants.fades != 0u ? fadeOf(pixels, constants.shadePixels) : FADED;
   if (seen) {
     uint list = 0u;
     for (int i = 0; i < CAMERA_LODS - 1; ++i) list += pixels < constants.lodPixels[i] ? 1u : 0u;
     if (splat) list = SPLATS;
     uint place = append(list, agent);
     if (splat && place % WORK_GROUP == 0u) atomicAdd(commands[SPLATS * DRAW_WORDS + 2], 1u);
+    if (splat && fade < FADED) append(uint(FADING), agent | fade << FADE_SHIFT);
     if (pixels >= constants.contactPixels) append(uint(CONTACTS), agent);
   }
   // An agent outside the picture may cast its shadow into it, but none is seen where shadows have faded. The far
   // cascade is not looked up where the near one holds the whole shadow and all from where it would be looked up.
-  bool casts = min(inside, picture.forward.w - ahead) > -4.0 * constants.radius && !(splat && pixels < constants.shadePixels);
+  bool casts = min(inside, picture.forward.w - ahead) > -4.0 * constants.radius && !(shade && shadeFade == FADED);
   float nearMargin, farMargin;
   float outOfNear = outOfCascade(0, p, nearMargin), outOfFar = outOfCascade(1, p, farMargin);
   float nearAlone = 0.98 - 2.0 * FAR_REACH * picture.shadow.y / (picture.shadow.x * picture.shadow.w);
+  uint caster = shade ? agent | shadeFade << FADE_SHIFT : agent;
   if (casts && outOfNear < 1.0 + nearMargin)
-    append(uint(pixels < constants.lodPixels[1] ? NEAR_COARSE : NEAR_FINE), agent);
-  if (casts && outOfFar < 1.0 + farMargin && outOfNear + nearMargin > nearAlone) append(uint(FAR_SHADOWS), agent);
+    append(uint(shade ? NEAR_FADING : pixels < constants.lodPixels[1] ? NEAR_COARSE : NEAR_FINE), caster);
+  if (casts && outOfFar < 1.0 + farMargin && outOfNear + nearMargin > nearAlone)
+    append(uint(shade ? FAR_FADING : FAR_SHADOWS), caster);
 }

@@ -20,14 +20,18 @@ using uint = uint32_t;
 SKITTER_PICTURE_CONST SHADOW_CASCADES = 2;
 // Instance lists of a page, and their indirect draws: the camera's levels of detail, then the near cascade's
 // finer and coarser shadows, the far cascade's, who darkens the ground that it touches, and who is drawn as
-// splats (splat.comp).
+// splats (splat.comp). Last, who goes over to splats, and is on that list, too, and whose shadow does,
+// near and far: an entry holds the agent and how far it has gone (fade.glsl).
 SKITTER_PICTURE_CONST CAMERA_LODS = 5;
 SKITTER_PICTURE_CONST NEAR_FINE = 5;
 SKITTER_PICTURE_CONST NEAR_COARSE = 6;
 SKITTER_PICTURE_CONST FAR_SHADOWS = 7;
 SKITTER_PICTURE_CONST CONTACTS = 8;
 SKITTER_PICTURE_CONST SPLATS = 9;
-SKITTER_PICTURE_CONST INSTANCE_LISTS = 10;
+SKITTER_PICTURE_CONST FADING = 10;
+SKITTER_PICTURE_CONST NEAR_FADING = 11;
+SKITTER_PICTURE_CONST FAR_FADING = 12;
+SKITTER_PICTURE_CONST INSTANCE_LISTS = 13;
 // The camera's levels from this one on are lit at their vertices.
 SKITTER_PICTURE_CONST FIRST_VERTEX_LIT = 2;
 // clipFromPicture[VIEW_CAMERA], then one of each cascade.
@@ -76,6 +80,7 @@ struct CullConstants {
   float contactPixels;               // the same of contacts
   float splatPixels;                 // the radius in pixels below which an agent is splats
   float shadePixels;                 // the same of its shadow
+  uint fades;                        // whether both begin by and by
 };
 
 // Push constants of splats and of what draws them.
@@ -86,7 +91,9 @@ struct SplatConstants {
   uint agents;         // of the page
   float radius;        // about the body's position, metres
   uint width, height;  // of the picture
-  float shadePixels;   // the radius in pixels below which its shadow is splats, too
+  float splatPixels;   // CullConstants
+  float shadePixels;
+  uint fades;
 };
 
 // A shape between two ends, each relative to the rest start of a bone (entry of the pose palette).

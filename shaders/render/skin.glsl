@@ -10,7 +10,14 @@ layout(push_constant) uniform ConstantBlock { CrowdConstants constants; };
 LOAD4_BUFFER(DRAW_BODY, bodies)
 LOAD4_BUFFER(DRAW_POSE, poses)
 
+#ifdef FADES
+#include "fade.glsl"
+layout(location = 0) in uint instance;
+layout(location = 1) flat out uint outFade;
+uint agent = instance & ((1u << FADE_SHIFT) - 1u);
+#else
 layout(location = 0) in uint agent;
+#endif
 layout(location = 1) in uvec4 bones;
 layout(location = 2) in vec4 influence0;  // vertex - rest start, weight
 layout(location = 3) in vec4 influence1;
@@ -58,6 +65,9 @@ void influence(uint bone, vec4 part, vec3 normal, inout Skinned s, out vec3 plac
 }
 
 Skinned skinned() {
+#ifdef FADES
+  outFade = instance >> FADE_SHIFT;
+#endif
   vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE);
   Skinned s;
   s.body = a.xyz + TILE_SIZE * vec3(tileX(a.w) - picture.tile.x, 0.0, tileZ(a.w) - picture.tile.y);

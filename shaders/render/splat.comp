@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Draws agents that are a few pixels large: shapes of the pose, pixel by pixel, into a buffer that holds the nearest.
 // The smallest cast their shadows so, too, onto the plane of the ground below them.
+#include "fade.glsl"
 #include "picture.glsl"
 #include "fold.glsl"
 #include "lib/heightfield.glsl"
@@ -48,7 +49,7 @@ vec3 seenAt(vec3 p) {
 }
 
 // A capsule of radii in pixels, into the plane that begins at `plane`. `low` is of its two halves.
-void stroke(vec3 here, vec3 there, vec2 radii, uvec2 low, uint plane) {
+void stroke(vec3 here, vec3 there, vec2 radii, uvec2 low, uint plane, uint fade) {
   ivec2 end = ivec2(constants.width, constants.height);
   int steps = 1 + int(length(there.xy - here.xy) / max(1.0, 0.5 * max(radii.x, radii.y)));
   for (int s = 0; s < steps; ++s) {
@@ -61,7 +62,7 @@ void stroke(vec3 here, vec3 there, vec2 radii, uvec2 low, uint plane) {
     for (int y = first.y; y <= last.y; ++y)
       for (int x = first.x; x <= last.x; ++x) {
         vec2 off = vec2(x, y) + 0.5 - at.xy;
-        if (wide == 0.0 || dot(off, off) <= wide * wide) atomicMax(splats[plane + y * constants.width + x], splat);
+        if ((wide == 0.0 || dot(off, off) <= wide * wide) && isFaded(uvec2(x, y), fade)) atomicMax(splats[plane + y * constants.width + x], splat);
       }
   }
 }
@@ -95,6 +96,9 @@ void main() {
   float below = heightAt(heights, field, foldedAt(at, field.last).at).x - body.y;
   // Where the sun does not reach the ground nobody casts a shadow. The plane is not quite the ground that is drawn.
   float steep = dot(sun, slope);
+  bool fades = constants.fades != 0u;
+  uint fade = fades ? fadeOf(pixels, constants.splatPixels) : FADED;
+  float shadeShare = fades ? float(fadeOf(pixels, constants.shadePixels)) / FADE_STEPS : 1.0;
   bool casts = pixels < constants.shadePixels && steep > LEAST_SUN && ground.w > 0.5;
   mark(body, (casts ? 1.0 + MOST_WAY : 1.0) * pixels + 2.0);
   vec3 lifted = toEye * (0.012 + 2.0 * metresAPixel);
@@ -129,13 +133,13 @@ void main() {
 
     vec2 radii = vec2(from.w, to.w) / metresAPixel;
     if (!(lostFrom && lostTo)) {
-      stroke(seenAt(body + first), seenAt(body + second), radii, colours, 0u);
+      stroke(seenAt(body + first), seenAt(body + second), radii, colours, 0u, fade);
       if (casts) {
         vec2 ways = vec2(dot(first, slope), dot(second, slope)) - below * slope.y;
         ways = clamp(ways / steep, 0.0, MOST_WAY * constants.radius);
         vec3 start = body + lifted;
         stroke(seenAt(start + first - ways.x * sun), seenAt(start + second - ways.y * sun), radii,
-               uvec2(packedShade(clamp(max(radii.x, radii.y), LEAST_SHADE, MOST_SHADE))), shades);
+               uvec2(packedShade(shadeShare * clamp(max(radii.x, radii.y), LEAST_SHADE, MOST_SHADE))), shades, FADED);
       }
     }
   }

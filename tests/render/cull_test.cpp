@@ -16,7 +16,8 @@ namespace {
 
 using test::Sight;
 using Lists = std::vector<int>;  // ascending: 0 to 4 the camera's levels, 5 and 6 the near
-                                 // cascade, 7 the far one, 8 contacts, 9 splats
+                                 // cascade, 7 the far one, 8 contacts, 9 splats, 10 who fades
+                                 // into them, 11 and 12 whose near and far shadow does
 
 constexpr uint32_t kWidth = 640, kHeight = 360;
 constexpr float kRadius = 0.8f;
@@ -25,7 +26,7 @@ class CullTest : public test::GpuLoadTest {
  protected:
   // The lists that each agent is on.
   std::vector<Lists> cull(const shared::Picture& picture, const std::vector<glm::dvec3>& places,
-                          bool splats = false, float detail = 1) {
+                          bool splats = false, float detail = 1, bool fades = false) {
     std::vector<float> bodies(places.size() * shared::BODY_STRIDE * 4);
     for (size_t i = 0; i < places.size(); ++i) {
       const glm::dvec3 tile = glm::floor(places[i] / double(shared::TILE_SIZE));
@@ -43,19 +44,25 @@ class CullTest : public test::GpuLoadTest {
     const Cull cull(context(), detail);
     const CulledPage page = cull.makePage(context(), block, records, agents);
     gpu::clear(context(), page.commands);
-    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius, splats); });
+    gpu::submitAndWait(context(),
+                       [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius, splats, fades); });
 
     const auto draws = gpu::download<VkDrawIndexedIndirectCommand>(context(), page.commands);
     const auto instances = gpu::download<uint32_t>(context(), page.instances);
     groups_ = draws.at(shared::SPLATS).firstIndex;
     std::vector<Lists> found(agents);
+    steps_.assign(agents, {});
     for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
-      for (uint32_t i = 0; i < draws.at(size_t(list)).instanceCount; ++i)
-        found.at(instances.at(size_t(list) * agents + i)).push_back(list);
+      for (uint32_t i = 0; i < draws.at(size_t(list)).instanceCount; ++i) {
+        const uint32_t entry = instances.at(size_t(list) * agents + i), agent = entry & 0xFFFFFF;
+        found.at(agent).push_back(list);
+        if (list >= shared::FADING) steps_.at(agent).push_back(entry >> 24);
+      }
     return found;
   }
 
-  uint32_t groups_ = 0;  // that splats were dispatched over
+  uint32_t groups_ = 0;                       // that splats were dispatched over
+  std::vector<std::vector<uint32_t>> steps_;  // how far each agent has faded, on each list of those
 };
 INSTANTIATE_TEST_SUITE_P(Loads, CullTest, test::bothLoadPaths(), test::loadPathName);
 
@@ -150,6 +157,29 @@ TEST_P(CullTest, theRadiusInPixelsChoosesSplats) {
   for (const uint32_t many : {1u, 128u, 129u, 1000u}) {
     cull(picture(), std::vector(many, places[3]), true);
     EXPECT_EQ(groups_, (many + 127) / 128) << many;
+  }
+}
+
+// Sixteen steps lead to splats, over a tenth of the radius at which they begin, and likewise to their
+// shadows.
+TEST_P(CullTest, theRadiusInPixelsTellsHowFarAnAgentHasFaded) {
+  const Sight s(kView, kWidth, kHeight);
+  const double onePixel = double(kRadius) * kHeight / (2 * s.tanY);
+  for (const double limit : {25.0, 12.0}) {
+    std::vector<glm::dvec3> places{s.eye + onePixel / (1.005 * limit) * s.forward};
+    for (int step = 0; step <= 16; ++step)
+      places.push_back(s.eye + onePixel / (limit * (1 - 0.1 * (step + 0.5) / 16)) * s.forward);
+    const std::vector<Lists> found = cull(picture(), places, true, 1, true);
+    for (size_t i = 0; i < places.size(); ++i) {
+      const bool fades = i > 0 && i < 17;
+      const auto isFading = [&](int list) { return limit == 25 ? list == 10 : list == 11 || list == 12; };
+      EXPECT_EQ(std::ranges::any_of(found[i], isFading), fades) << "place " << i;
+      EXPECT_EQ(std::ranges::count(found[i], shared::SPLATS), i > 0 || limit == 12) << "place " << i;
+      EXPECT_EQ(steps_[i].empty(), !fades) << "place " << i;
+      for (const uint32_t step : steps_[i]) EXPECT_EQ(step, i - 1) << "place " << i;
+      // Its shadow goes over later than itself.
+      EXPECT_EQ(std::ranges::any_of(found[i], isShadow), limit == 25 || i == 0) << "place " << i;
+    }
   }
 }
 

@@ -136,7 +136,7 @@ class SplatTest : public test::GpuLoadTest {
     return made;
   }
 
-  Drawn draw(const Scene& made, const View& view) {
+  Drawn draw(const Scene& made, const View& view, bool fades = false) {
     const Heightfield ground = level();
     Crowd crowd(device(), ground, made);
     for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
@@ -166,14 +166,15 @@ class SplatTest : public test::GpuLoadTest {
     const Cull cull(context(), 1);
     const CulledPage culled = cull.makePage(context(), picture, page.body, page.agents);
     const Splats splats(setting);
-    const Splats::Kind look = splats.makeKind(setting, kind, radius);
+    Splats::Kind look = splats.makeKind(setting, kind, radius);
+    look.fades = fades;
     const gpu::Bindings bindings = splats.bind(setting, look, kind, page, culled);
     std::vector<SplatDispatch> commands(shared::INSTANCE_LISTS);
     gpu::upload(context(), culled.commands, commands);
     gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
       splats.prepare(cmd);
       gpu::transferToCompute(cmd);
-      cull.record(cmd, culled, radius, true);
+      cull.record(cmd, culled, radius, true, fades);
       gpu::computeToIndirectAndCompute(cmd);
       splats.record(cmd, look, bindings, culled,
                     {.view = 0, .palette = uint32_t(kind.rig.paletteSize()), .firstAgent = 0, .kind = 0});
@@ -312,8 +313,41 @@ TEST_P(SplatTest, TheSamePictureHasTheSameBits) {
   EXPECT_EQ(once.shades, again.shades);
 }
 
-// Nothing pops where an agent is splats from now on. Seen from the sun, its rectangle, of which it covers a
-// tenth, keeps its mean colour to 1 of 255: with twice the sunlight it would change by 2.4.
+// Half way over, every second pixel is there, in the order of Bayer's matrix; of the shadow, half its
+// strength.
+TEST_P(SplatTest, ComePixelByPixel) {
+  constexpr uint32_t kOrder[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+  Scene made = scene(1);
+  made.herds[0].goal.kind = Goal::Kind::none;
+  const glm::dvec3 at = placeOf(draw(made, kFar).bodies[0]);
+  const double radius = double(crowd::radiusOf(spiderRig()));
+  for (const double limit : {double(kSplatPixels), double(kShadePixels)}) {
+    const double pixels = limit * (1 - 0.1 * 8.5 / 16);
+    const double away = radius * kHeight / (2 * std::tan(0.45) * pixels);
+    const View view{.eye = glm::vec3(at + away * glm::normalize(glm::dvec3(0.6, 0.5, 0.7))),
+                    .target = glm::vec3(at),
+                    .fieldOfView = 0.9f};
+    const Drawn whole = draw(made, view), half = draw(made, view, true);
+    uint32_t drawn = 0, shaded = 0;
+    for (uint32_t y = 0; y < kHeight; ++y)
+      for (uint32_t x = 0; x < kWidth; ++x) {
+        const size_t i = y * kWidth + x;
+        const bool there = limit == double(kShadePixels) || kOrder[y % 4][x % 4] < 8;
+        ASSERT_EQ(half.splats[i], there ? whole.splats[i] : 0) << x << ", " << y;
+        drawn += half.splats[i] != 0;
+        if (limit != double(kShadePixels) || whole.shades[i] == 0) continue;
+        ASSERT_NEAR(unpacked(half.shades[i]).value().low, unpacked(whole.shades[i]).value().low / 2, 1);
+        ++shaded;
+      }
+    EXPECT_GT(drawn, 20u);
+    if (limit == double(kShadePixels)) {
+      EXPECT_GT(shaded, 10u);
+    }
+  }
+}
+
+// Nothing pops where an agent is splats from now on, and half way to it. Seen from the sun, its rectangle, of
+// which it covers a tenth, keeps its mean colour to 1 of 255: with twice the sunlight it would change by 2.4.
 TEST_P(SplatTest, LookAsTheTrianglesDid) {
   Scene made = scene(1);
   made.herds[0].goal.kind = Goal::Kind::none;
@@ -322,28 +356,30 @@ TEST_P(SplatTest, LookAsTheTrianglesDid) {
   for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
   const glm::dvec3 at = placeOf(gpu::download<glm::vec4>(context(), implOf(crowd).kinds[0].pages[0].body)[0]);
   const double radius = double(crowd::radiusOf(implOf(crowd).kinds.front().rig));
-  Renderer renderer(device(), crowd, 320, 200);
-  std::vector<std::vector<uint8_t>> pictures;
-  for (const double share : {1.002, 0.998}) {
+  Renderer renderer(device(), crowd, 320, 200), finer(device(), crowd, 320, 200, {.detail = 1.2f});
+  for (const double share : {0.998, 0.95, 0.898}) {
     const double away = radius * 200 / (2 * std::tan(0.15)) / (double(kSplatPixels) * share);
     const glm::dvec3 eye = at + away * glm::normalize(glm::dvec3(0.6, 0.5, 0.7));
-    device().run([&](VkCommandBuffer cmd) {
-      renderer.record(cmd, {.eye = glm::vec3(eye), .target = glm::vec3(at), .fieldOfView = 0.3f});
-    });
-    EXPECT_EQ(renderer.counts().splats, share > 1 ? 0u : 1u);
-    pictures.push_back(renderer.download());
+    std::vector<std::vector<uint8_t>> pictures;
+    for (Renderer* one : {&finer, &renderer}) {
+      device().run([&](VkCommandBuffer cmd) {
+        one->record(cmd, {.eye = glm::vec3(eye), .target = glm::vec3(at), .fieldOfView = 0.3f});
+      });
+      EXPECT_EQ(one->counts().splats, one == &finer ? 0u : 1u);
+      pictures.push_back(one->download());
+    }
+    double mean[3] = {}, apart = 0;
+    int pixels = 0;
+    for (int y = 75; y < 125; ++y)
+      for (int x = 135; x < 185; ++x, ++pixels)
+        for (int c = 0; c < 3; ++c) {
+          const size_t i = size_t(y * 320 + x) * 4 + size_t(c);
+          mean[c] += double(pictures[1][i]) - pictures[0][i];
+          apart += std::abs(double(pictures[1][i]) - pictures[0][i]) / 3;
+        }
+    for (const double channel : mean) EXPECT_LT(std::abs(channel) / pixels, 1) << share;
+    EXPECT_LT(apart / pixels, 3) << share;
   }
-  double mean[3] = {}, apart = 0;
-  int pixels = 0;
-  for (int y = 75; y < 125; ++y)
-    for (int x = 135; x < 185; ++x, ++pixels)
-      for (int c = 0; c < 3; ++c) {
-        const size_t i = size_t(y * 320 + x) * 4 + size_t(c);
-        mean[c] += double(pictures[1][i]) - pictures[0][i];
-        apart += std::abs(double(pictures[1][i]) - pictures[0][i]) / 3;
-      }
-  for (const double channel : mean) EXPECT_LT(std::abs(channel) / pixels, 1);
-  EXPECT_LT(apart / pixels, 3);
 }
 
 }  // namespace
