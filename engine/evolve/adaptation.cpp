@@ -39,7 +39,7 @@ double Adaptation::kernel(uint32_t a, uint32_t b) const {
 
 std::optional<uint32_t> Adaptation::next() const {
   if (mean_.empty() || trials() >= options_.mostTrials) return {};
-  if (best_ && bestFitness_ >= options_.goodEnough * *std::ranges::max_element(mean_)) return {};
+  if (best_ && bestFitness_ >= options_.goodEnough * double{map_->best()}) return {};
   const auto bound = [&](uint32_t behaviour) {
     return mean_[behaviour] + options_.exploration * std::sqrt(std::max(0.0, variance_[behaviour]));
   };
@@ -49,6 +49,7 @@ std::optional<uint32_t> Adaptation::next() const {
     if (std::ranges::find(tried_, behaviour) != tried_.end()) continue;
     if (!highest || bound(behaviour) > bound(*highest)) highest = behaviour;
   }
+  if (best_ && highest && bestFitness_ >= bound(*highest)) return {};
   return highest;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,6 +18,8 @@ class BehaviourMap {
   void add(std::span<const float> shares, float expected);
   uint32_t count() const { return static_cast<uint32_t>(expected_.size()); }
   float expected(uint32_t behaviour) const { return expected_[behaviour]; }
+  // The highest that is expected of any; there is one.
+  float best() const { return *std::ranges::max_element(expected_); }
   // Of two behaviours, in shares of time: a Euclidean one.
   double distance(uint32_t a, uint32_t b) const;
 
@@ -26,14 +29,13 @@ class BehaviourMap {
 };
 
 struct AdaptationOptions {
-  // The kernel's length, in shares of time. A leg that is held up is about 0.6 away: with 0.4, a trial
-  // changes what is expected of gaits on other legs by a quarter of its surprise, and one bad trial is not
-  // taken for all.
-  double lengthScale = 0.4;
-  double noise = 0.001;       // variance of a measured fitness
-  double deviation = 0.3;     // of what is expected, before any trial
-  double exploration = 0.05;  // how many deviations a behaviour may be better than expected
-  double goodEnough = 0.9;    // share of the best that is expected anywhere, at which the search ends
+  // The kernel's length, in shares of time. A leg that is held up is about 0.6 away: with 0.8, a bad trial
+  // tells of gaits that differ in one such leg, too, and the few trials reach the others sooner.
+  double lengthScale = 0.8;
+  double noise = 0.001;     // variance of a measured fitness
+  double deviation = 0.3;   // of what is expected, before any trial
+  double exploration = 2;   // how many deviations a behaviour may be better than expected
+  double goodEnough = 0.9;  // share of the best in the map, at which the search ends
   uint32_t mostTrials = 20;
 };
 
@@ -45,7 +47,8 @@ class Adaptation {
   // The map outlives it.
   Adaptation(const BehaviourMap& map, const AdaptationOptions& options);
 
-  // What to try next; none where the best that was tried is good enough, or enough was tried.
+  // What to try next; none where the best that was tried is good enough or as good as what is left could be,
+  // or enough was tried.
   std::optional<uint32_t> next() const;
   // A trial's result.
   void tell(uint32_t behaviour, double fitness);

@@ -101,6 +101,18 @@ TEST(Adaptation, AnIntactCreatureTriesOnce) {
   EXPECT_EQ(search.bestFitness(), 0.88);
 }
 
+// Half of what the map promised is not good enough, but better than what nothing that is left can be.
+TEST(Adaptation, ItEndsWhereNothingThatIsLeftCanBeBetter) {
+  BehaviourMap map(1);
+  for (const float at : {0.0f, 5.0f}) map.add(std::vector{at}, at == 0 ? 1.0f : 0.1f);
+  Adaptation search(map, {.deviation = 0.1, .exploration = 2});
+  search.tell(0, 0.5);
+  EXPECT_EQ(search.next(), std::nullopt);
+  Adaptation hopeful(map, {.deviation = 0.3, .exploration = 2});
+  hopeful.tell(0, 0.5);
+  EXPECT_EQ(hopeful.next(), 1u);
+}
+
 TEST(Adaptation, ItTriesNothingTwiceAndNotForEver) {
   BehaviourMap map(1);
   for (int i = 0; i < 30; ++i) map.add(std::vector{static_cast<float>(i) / 30}, 0.9f);
