@@ -6,7 +6,7 @@
 const float FADE_SHARE = 0.1;
 const float FADE_STEPS = 16.0;
 const uint FADED = 16u;
-// Where the steps of an instance of a fading list lie.
+// Where the steps of an instance of a fading list lie, above the agent's number: a crowd has at most 2^24.
 const int FADE_SHIFT = 24;
 
 // How many of the steps are done at a radius of so many pixels.

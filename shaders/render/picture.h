@@ -91,7 +91,7 @@ struct SplatConstants {
   uint agents;         // of the page
   float radius;        // about the body's position, metres
   uint width, height;  // of the picture
-  float splatPixels;   // CullConstants
+  float splatPixels;   // this and the rest as in CullConstants
   float shadePixels;
   uint fades;
 };
