@@ -106,13 +106,21 @@ gpu::GraphicsInfo shadowInfo(const Setting& s, int influences, const CrowdForms&
                         {shared::CONSTANT_STUMPS, forms.stumps}}};
 }
 
+// The same pipeline with other shaders.
+gpu::GraphicsInfo shadedBy(gpu::GraphicsInfo info, const char* name, gpu::ShaderCode vertex,
+                           gpu::ShaderCode fragment) {
+  info.name = name;
+  info.vertex = vertex;
+  info.fragment = fragment;
+  return info;
+}
+
 // The same for a material that lets light through.
 gpu::GraphicsInfo cutoutInfo(const Setting& s, int influences, const CrowdForms& forms,
                              const Material& material, int has) {
-  gpu::GraphicsInfo info = shadowInfo(s, influences, forms);
-  info.name = "cutout shadow";
-  info.vertex = {embedded::cutout_vert_texel(), embedded::cutout_vert_storage()};
-  info.fragment = embedded::cutout_frag();
+  gpu::GraphicsInfo info =
+      shadedBy(shadowInfo(s, influences, forms), "cutout shadow",
+               {embedded::cutout_vert_texel(), embedded::cutout_vert_storage()}, embedded::cutout_frag());
   info.streams.push_back(wornStream(false));
   addTextures(info, material, has);
   return info;
@@ -120,19 +128,14 @@ gpu::GraphicsInfo cutoutInfo(const Setting& s, int influences, const CrowdForms&
 
 // The same of what goes over to splats.
 gpu::GraphicsInfo fadingShading(int influences, const CrowdForms& forms) {
-  gpu::GraphicsInfo info = litShading(influences, forms);
-  info.name = "fading crowd";
-  info.vertex = {embedded::fading_vert_texel(), embedded::fading_vert_storage()};
-  info.fragment = embedded::fading_frag();
-  return info;
+  return shadedBy(crowdShading(influences, forms), "fading crowd",
+                  {embedded::fading_vert_texel(), embedded::fading_vert_storage()}, embedded::fading_frag());
 }
 
 gpu::GraphicsInfo fadingShadowInfo(const Setting& s, int influences, const CrowdForms& forms) {
-  gpu::GraphicsInfo info = shadowInfo(s, influences, forms);
-  info.name = "fading shadow";
-  info.vertex = {embedded::fading_shadow_vert_texel(), embedded::fading_shadow_vert_storage()};
-  info.fragment = embedded::fading_shadow_frag();
-  return info;
+  return shadedBy(shadowInfo(s, influences, forms), "fading shadow",
+                  {embedded::fading_shadow_vert_texel(), embedded::fading_shadow_vert_storage()},
+                  embedded::fading_shadow_frag());
 }
 
 CrowdForms formsOf(const crowd::Kind& kind) {
@@ -179,18 +182,14 @@ gpu::GraphicsInfo crowdShading(int influences, const CrowdForms& forms) {
 }
 
 gpu::GraphicsInfo litShading(int influences, const CrowdForms& forms) {
-  gpu::GraphicsInfo info = crowdShading(influences, forms);
-  info.name = "crowd lit at its vertices";
-  info.vertex = {embedded::lit_vert_texel(), embedded::lit_vert_storage()};
-  info.fragment = embedded::lit_frag();
-  return info;
+  return shadedBy(crowdShading(influences, forms), "crowd lit at its vertices",
+                  {embedded::lit_vert_texel(), embedded::lit_vert_storage()}, embedded::lit_frag());
 }
 
 gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Material& material, int has) {
-  gpu::GraphicsInfo info = crowdShading(influences, forms);
-  info.name = "worn crowd";
-  info.vertex = {embedded::worn_vert_texel(), embedded::worn_vert_storage()};
-  info.fragment = embedded::worn_frag();
+  gpu::GraphicsInfo info =
+      shadedBy(crowdShading(influences, forms), "worn crowd",
+               {embedded::worn_vert_texel(), embedded::worn_vert_storage()}, embedded::worn_frag());
   info.streams.push_back(wornStream(true));
   addTextures(info, material, has);
   if (material.doubleSided) info.cull = {};
@@ -221,7 +220,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       kind.splat = splats_.makeKind(s, source, kind.mesh.radius);
     }
     if (textures) makeParts(s, source, *textures, kind);
-    // What wears materials has none of the colours that it would fade with at its vertices.
+    // A mesh with materials lacks the vertex colours with which it would fade.
     kind.splat.fades = kind.splat && kind.parts.empty();
     if (kind.splat.fades) {
       kind.fading = drawPipeline(s, fadingShading(kind.mesh.influences, formsOf(source)));

@@ -47,8 +47,8 @@ class Adaptation {
   // The map outlives it.
   Adaptation(const BehaviourMap& map, const AdaptationOptions& options);
 
-  // What to try next; none where the best that was tried is good enough or as good as what is left could be,
-  // or enough was tried.
+  // The next behaviour to try. There is none once enough were tried, once the best of them is good enough, or
+  // once no other one could be better.
   std::optional<uint32_t> next() const;
   // A trial's result.
   void tell(uint32_t behaviour, double fitness);

@@ -90,7 +90,8 @@ TEST_F(Picture, TimingsTellEveryPassOfAFrame) {
   std::vector<std::string> passes{"simulation", "cull", "splats",   "shadow", "crowd",
                                   "ground",     "sky",  "readback", "encode"};
   // Only a software device smooths edges by a pass; a GPU takes four samples.
-  if (result.out.find("llvmpipe") != std::string::npos) passes.push_back("filter");
+  for (const char* software : {"llvmpipe", "SwiftShader"})
+    if (result.out.find(software) != std::string::npos) passes.push_back("filter");
   for (const std::string& pass : passes)
     EXPECT_THAT(result.out, ::testing::ContainsRegex(pass + std::string(" +[0-9.]+ ms a frame"))) << pass;
   EXPECT_EQ(plain.out.find("ms a frame"), std::string::npos) << plain.out;

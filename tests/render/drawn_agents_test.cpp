@@ -111,7 +111,8 @@ TEST_P(RendererTest, aHerdHasTheColourThatItsSceneSays) {
       }
     ASSERT_GT(pixels, 200);
     EXPECT_GT(otherwise, pixels / 3);
-    EXPECT_GT(varied, otherwise / 4);
+    // Four samples a pixel mix more of an agent with the ground, and shadows are among the pixels.
+    EXPECT_GT(varied, device().context().isCpu() ? pixels / 4 : otherwise / 4);
     EXPECT_GT(sum.b / sum.r, 1.3 * was.b / was.r);
   }
 }
