@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "assets/files.h"
 #include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/measure.h"
 #include "crowd/damage.h"

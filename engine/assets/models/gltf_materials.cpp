@@ -110,7 +110,7 @@ class MaterialReader {
            range.least, range.most);
       return usual;
     }
-    glm::vec<count, float> values;
+    glm::vec<count, float> values = usual;
     for (int k = 0; k < count; ++k) values[k] = (*found)[static_cast<size_t>(k)].get<float>();
     return values;
   }
