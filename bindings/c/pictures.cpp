@@ -46,11 +46,13 @@ skitter_result skitter_scene_view(const skitter_scene* scene, const skitter_crow
 }
 
 skitter_result skitter_renderer_create(skitter_crowd* crowd, uint32_t width, uint32_t height,
-                                       skitter_renderer** renderer) {
+                                       const skitter_renderer_options* options, skitter_renderer** renderer) {
   return guarded([&] {
     const std::shared_ptr<c::LiveCrowd>& live = given(crowd, "crowd").live;
     given(renderer, "renderer");
-    *renderer = new skitter_renderer{live, Renderer(*live->device, live->crowd, width, height)};
+    RendererOptions made;
+    if (options != nullptr && options->detail != 0) made.detail = options->detail;
+    *renderer = new skitter_renderer{live, Renderer(*live->device, live->crowd, width, height, made)};
   });
 }
 

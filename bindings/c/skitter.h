@@ -727,7 +727,14 @@ SKITTER_C skitter_result skitter_renderer_image(const skitter_renderer* renderer
 /* The last picture that was drawn or, once submitted, recorded: RGBA8 sRGB, rows without gaps, top row first,
  * to `rgba`, which has room for `room` bytes. Waits for the device. */
 SKITTER_C skitter_result skitter_renderer_pixels(const skitter_renderer* renderer, uint8_t* rgba,
+/* All zero: the defaults. */
+typedef struct skitter_renderer_options {
+  float detail; /* agents are drawn as finely as if they were so many times larger, 0.25 to 100000; 0: 1. Less
+                   is cheaper. */
+} skitter_renderer_options;
+/* `options`: NULL: the defaults. */
                                                  size_t room);
+                                                 const skitter_renderer_options* options,
 /* Which image of the crowd's models cannot be decoded, and why: the index-th of them, from 0 on, or NULL
  * behind the last. Its material is drawn in a flat colour. It lives until the next picture. */
 SKITTER_C skitter_result skitter_renderer_note(const skitter_renderer* renderer, size_t index,

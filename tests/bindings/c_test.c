@@ -151,7 +151,7 @@ static void testNothingRead(void) {
   REFUSED(skitter_skin_mesh_radius(NULL, numbers), "mesh is NULL");
 
   REFUSED(skitter_scene_view(NULL, NULL, 0, &view), "scene is NULL");
-  REFUSED(skitter_renderer_create(NULL, 1, 1, &renderer), "crowd is NULL");
+  REFUSED(skitter_renderer_create(NULL, 1, 1, NULL, &renderer), "crowd is NULL");
   REFUSED(skitter_renderer_draw(NULL, &view), "renderer is NULL");
   REFUSED(skitter_renderer_record(NULL, NULL, &view, NULL, NULL), "renderer is NULL");
   REFUSED(skitter_renderer_image(NULL, &image), "renderer is NULL");
@@ -1900,7 +1900,8 @@ static void testNotes(skitter_device* device) {
   crowd = makeCrowdOf("{\"herds\": [{\"agents\": 1, \"rig\": \"piebald.glb\"}]}", device, NULL);
   remove("piebald.glb");
   remove("piebald.rig.json");
-  NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, &renderer));
+  NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, NULL, &renderer));
+  NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, &options, &fine));
   OK(skitter_renderer_note(renderer, 0, &note));
   CHECK(note != NULL && strstr(note, "images[0]: corrupt PNG: ") != NULL);
   OK(skitter_renderer_note(renderer, 1, &note));
@@ -1915,7 +1916,8 @@ static void testPictures(void) {
   skitter_crowd* crowd = makeCrowdOf(standing, device, NULL);
   skitter_crowd_options bare = {0};
   skitter_scene* scene = NULL;
-  skitter_renderer* renderer = NULL;
+  skitter_renderer *renderer = NULL, *fine = NULL;
+  skitter_renderer_options options = {0.1f};
   skitter_view view = {{0}, {0}, 0}, up;
   VkImage image = VK_NULL_HANDLE;
   const char* note = "";
@@ -1928,17 +1930,19 @@ static void testPictures(void) {
   CHECK(fabs(view.field_of_view - 0.8) < 1e-6 && view.eye[1] > view.target[1]);
   OK(skitter_scene_destroy(scene));
 
-  REFUSED(skitter_renderer_create(crowd, 0, 5, &renderer), "a picture of 0 x 5 pixels");
-  REFUSED(skitter_renderer_create(crowd, 5, 5, NULL), "renderer is NULL");
-  CHECK(skitter_renderer_create(crowd, 1u << 30, 5, &renderer) == SKITTER_ERROR_DEVICE);
+  REFUSED(skitter_renderer_create(crowd, 0, 5, NULL, &renderer), "a picture of 0 x 5 pixels");
+  REFUSED(skitter_renderer_create(crowd, 5, 5, NULL, NULL), "renderer is NULL");
+  REFUSED(skitter_renderer_create(crowd, 5, 5, &options, &renderer), "detail is 0.1, expected 0.25 to 100000");
+  options.detail = 100000;
+  CHECK(skitter_renderer_create(crowd, 1u << 30, 5, NULL, &renderer) == SKITTER_ERROR_DEVICE);
   bare.no_poses = 1;
   {
     skitter_crowd* plain = makeCrowdOf(standing, device, &bare);
-    REFUSED(skitter_renderer_create(plain, 5, 5, &renderer), "pose");
+    REFUSED(skitter_renderer_create(plain, 5, 5, NULL, &renderer), "pose");
     OK(skitter_crowd_destroy(plain));
   }
   CHECK(renderer == NULL);
-  NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, &renderer));
+  NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, NULL, &renderer));
   /* It keeps the crowd. */
   OK(skitter_crowd_destroy(crowd));
   REFUSED(skitter_renderer_pixels(renderer, pixels, pictureBytes), "no picture");
@@ -1973,6 +1977,10 @@ static void testPictures(void) {
   for (i = 0; i < pictureBytes; i += 4) CHECK(again[i] == 255 && again[i + 1] == 0 && again[i + 2] == 0);
   OK(skitter_renderer_image(renderer, &image));
   CHECK(image != VK_NULL_HANDLE);
+  OK(skitter_renderer_draw(fine, &view));
+  OK(skitter_renderer_pixels(fine, again, pictureBytes));
+  CHECK(memcmp(pixels, again, sizeof pixels) != 0);
+  OK(skitter_renderer_destroy(fine));
   /* Its spiders have no images. */
   REFUSED(skitter_renderer_note(renderer, 0, NULL), "note is NULL");
   OK(skitter_renderer_note(renderer, 0, &note));

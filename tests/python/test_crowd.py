@@ -183,6 +183,10 @@ def test_a_picture_is_an_array(device, scene):
     assert not np.array_equal(picture, other)
     assert view.target == pytest.approx((x, y, z)) and view.fieldOfView == pytest.approx(0.9) and len(view.eye) == 3
     assert crowd.render(80, 60).shape == (60, 80, 4)
+    assert not np.array_equal(picture, crowd.render(160, 90, detail=100000))
+    assert np.array_equal(picture, crowd.render(160, 90))
+    with pytest.raises(skitter.InputError, match="detail is 0.1, expected 0.25 to 100000"):
+        crowd.render(160, 90, detail=0.1)
     with pytest.raises(skitter.InputError):
         crowd.render(0, 10)
     with pytest.raises(skitter.InputError):
