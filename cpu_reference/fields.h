@@ -60,6 +60,17 @@ inline constexpr int own = -1;
   FIELD(double,     down,              0,                      18, own)  /* s since this fall began */ \
   FIELD(double,     downBefore,        0,                      19, own)  /* s of those before */
 
+#define SKITTER_SEARCH_FIELDS(FIELD) \
+  FIELD(uint32_t,   idle,              0,                      0,  0)    /* legs that it has noticed */ \
+  FIELD(uint32_t,   lame,              0,                      1,  0) \
+  FIELD(uint32_t,   candidate,         0,                      4,  0)    /* c */ \
+  FIELD(double,     clock,             0,                      5,  own)  /* tau */ \
+  FIELD(uint32_t,   bestCandidate,     0,                      6,  0) \
+  FIELD(double,     bestFitness,       0,                      7,  0) \
+  FIELD(double,     wanted,            0,                      8,  own)  /* m */ \
+  FIELD(double,     progress,          0,                      9,  own)  /* m */ \
+  FIELD(double,     unstable,          0,                      10, own)  /* s */
+
 /* Positions are local to the tile in x and z, world in y. */
 #define SKITTER_STEP_FIELDS(FIELD) \
   FIELD(glm::dvec3, landing,           glm::dvec3(0),          0,  own) \

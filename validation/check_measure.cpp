@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "cpu_reference/heightfield.h"
+#include "cpu_reference/stages/adapt.h"
 #include "cpu_reference/stages/measure.h"
 #include "cpu_reference/stages/tolerances.h"
 #include "skitter/records.h"
@@ -124,17 +125,6 @@ bool decideWindows(const MetricComparison& metric, Metric& want, const BoundedSu
   return false;
 }
 
-// Nearest two distinct planted tips: a direction between them turns by their rounding over it.
-double nearestPair(const std::vector<reference::Foot>& feet, const std::vector<reference::Chain>& chains,
-                   double most) {
-  for (size_t a = 0; a < feet.size(); ++a)
-    for (size_t b = 0; b < a; ++b)
-      if (feet[a].progress >= 1 && feet[b].progress >= 1)
-        most =
-            std::min(most, std::hypot(chains[a].tip.x - chains[b].tip.x, chains[a].tip.z - chains[b].tip.z));
-  return std::max(most, 1e-4);
-}
-
 void compareUnwatched(const Moment& moment, Judge& judge) {
   Sample sample;
   const auto before = records(moment.before.metric, moment.agent, shared::METRIC_STRIDE);
@@ -255,9 +245,8 @@ bool compareSums(const Setting& setting, const Legs& legs, const reference::Meas
   metric.count("pair-ticks", &Metric::pairs);
   metric.count("crossings", &Metric::crossings, bounds.crossings);
 
-  const double turned = nearestPair(legs.feet, legs.chains, 2 * unit);
   const double farthest = 2 * unit + glm::length(setting.creature.centre);  // a tip, from the centre of mass
-  const double margin = 16 * tolerance::roundoff * farthest * (1 + farthest / turned);
+  const double margin = tolerance::supportMargin(reference::plantedTips(0, legs.feet, legs.chains), farthest);
   metric.count("ticks with a support", &Metric::supported);
   metric.count("unstable ticks", &Metric::unstable,
                expected.supported && std::abs(expected.margin) <= margin ? 1 : 0);

@@ -8,6 +8,7 @@ namespace skitter::validation {
 using StageCheck = void(const Setting& setting, const Moment& moment, Judge& judge);
 StageCheck checkNavigate;
 StageCheck checkAvoid;
+StageCheck checkAdapt;
 StageCheck checkReact;
 StageCheck checkBody, checkBlindBody;
 StageCheck checkClip;
@@ -30,6 +31,7 @@ const std::vector<Controller> blind = {loop, clip, planted, Controller::keyPoses
 const std::vector<Check> checks = {
     {StageId::navigate, every, checkNavigate},
     {StageId::avoid, every, checkAvoid},
+    {StageId::adapt, {adaptive}, checkAdapt, {Record::hurt, Record::search}},
     {StageId::react, {adaptive}, checkReact, {Record::reaction}},
     {StageId::body, {adaptive}, checkBody, {Record::body}},
     {StageId::body, blind, checkBlindBody, {Record::body}},
@@ -71,6 +73,8 @@ bool isLeftOut(StageId stage, const HerdState& before, const HerdState& after) {
   switch (stage) {
     case StageId::avoid:
       return after.avoid.empty();
+    case StageId::adapt:
+      return before.search.empty() || after.search.empty();
     case StageId::react:
       return after.reaction.empty();
     case StageId::swing:

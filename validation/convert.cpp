@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cpu_reference/stages/hurt.h"
+#include "shared/adapt.h"
 #include "skitter/records.h"
 #include "validation/vec4s.h"
 
@@ -140,6 +141,64 @@ reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs) {
                          .lostFrom = static_cast<size_t>(shared::packedBone(packed, l))});
   }
   return hurt;
+}
+
+void putHurtGait(HerdState& state, size_t agent, const reference::Hurt& hurt) {
+  const size_t first = at(agent, shared::hurtStride(static_cast<int>(hurt.legs.size())));
+  state.hurt[4 * first + 3] = static_cast<float>(hurt.groups);
+  store(state.hurt, first + 2, {hurt.shift, hurt.speed});
+  for (size_t l = 0; l < hurt.legs.size(); ++l) {
+    const reference::Hurt::Turn& turn = hurt.legs[l];
+    store(state.hurt, first + shared::HURT_LEGS + l, {turn.group, turn.lag, turn.neighbours, turn.slowness});
+  }
+}
+
+reference::GaitMap gaitMapOf(const crowd::GaitMap& map, int legs) {
+  reference::GaitMap result;
+  for (size_t c = 0; c < map.candidates; ++c) {
+    const size_t first = at(c, shared::gaitMapStride(legs));
+    const glm::dvec4 head = load(map.records, first), shift = load(map.records, first + 1);
+    reference::GaitCandidate& candidate = result.candidates.emplace_back();
+    candidate.groups = static_cast<int>(head.x);
+    candidate.speed = head.y;
+    candidate.expected = head.z;
+    candidate.shift = shift;
+    for (int l = 0; l < legs; ++l) {
+      const glm::dvec4 turn = load(map.records, first + shared::GAIT_MAP_LEGS + static_cast<size_t>(l));
+      const size_t shares = first + static_cast<size_t>(shared::GAIT_MAP_LEGS + legs + l / 4);
+      candidate.legs.push_back(
+          {.group = turn.x, .lag = turn.y, .neighbours = mask(turn.z), .slowness = turn.w});
+      candidate.shares.push_back(load(map.records, shares)[l % 4]);
+    }
+  }
+  return result;
+}
+
+reference::Search searchOf(const HerdState& state, size_t agent) {
+  const float* record = recordAt(state.search, agent, shared::SEARCH_STRIDE);
+  reference::Search to;
+  SKITTER_SEARCH_FIELDS(READ)
+  to.does = record[2] == shared::SEARCH_SEARCHES  ? reference::Searching::searches
+            : record[2] == shared::SEARCH_SETTLED ? reference::Searching::settled
+                                                  : reference::Searching::atEase;
+  const uint32_t trials = std::min(mask(record[3]), uint32_t{shared::SEARCH_MOST_TRIALS});
+  for (size_t i = 0; i < trials; ++i) {
+    const float* trial = record + 4 * shared::SEARCH_TRIALS + 2 * i;
+    to.trials.push_back({mask(trial[0]), trial[1]});
+  }
+  return to;
+}
+
+void putSearch(HerdState& state, size_t agent, const reference::Search& from) {
+  float* record = clearedAt(state.search, agent, shared::SEARCH_STRIDE);
+  SKITTER_SEARCH_FIELDS(WRITE)
+  record[2] = static_cast<float>(from.does);
+  record[3] = static_cast<float>(from.trials.size());
+  for (size_t i = 0; i < from.trials.size(); ++i) {
+    float* trial = record + 4 * shared::SEARCH_TRIALS + 2 * i;
+    trial[0] = static_cast<float>(from.trials[i].candidate);
+    trial[1] = static_cast<float>(from.trials[i].fitness);
+  }
 }
 
 double carriedMassOf(const HerdState& state, size_t agent) {

@@ -3,11 +3,13 @@
 #include <optional>
 #include <vector>
 
+#include "cpu_reference/stages/adapt.h"
 #include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/measure.h"
 #include "cpu_reference/stages/react.h"
 #include "cpu_reference/stages/swing_key_poses.h"
 #include "cpu_reference/types.h"
+#include "crowd/gait_map.h"
 #include "crowd/key_poses.h"
 #include "shared/parameters.h"
 #include "skitter/crowd.h"
@@ -21,9 +23,12 @@ reference::Tuning tuningOf(const shared::Parameters& parameters);
 reference::Heights heightsOf(const Heightfield& field, const shared::Parameters& parameters);
 reference::Creature creatureOf(const std::vector<float>& rigRecords, int legs, int bones, int groups);
 reference::KeyPoses keyPosesOf(const crowd::KeyPoses& poses, int legs, int bones);
+reference::GaitMap gaitMapOf(const crowd::GaitMap& map, int legs);
 
 // The state is a herd's that can be hurt.
 reference::Hurt hurtOf(const HerdState& state, size_t agent, int legs);
+// The state is a herd's that adapts.
+reference::Search searchOf(const HerdState& state, size_t agent);
 // The mass that the agent carries, times its own. The state is a herd's that can be hurt.
 double carriedMassOf(const HerdState& state, size_t agent);
 // How far what the agent carries moves its centre of mass, model space; of the same herd.
@@ -61,6 +66,9 @@ reference::Watched watchedOf(const HerdState& state, size_t slot, int legs);
 void putGoal(HerdState& state, size_t agent, const reference::Goal& goal);
 void putSteer(HerdState& state, size_t agent, const glm::dvec2& desired, bool asleep);
 void putBody(HerdState& state, size_t agent, const reference::AgentBody& body);
+void putSearch(HerdState& state, size_t agent, const reference::Search& search);
+// The gait alone: the damage is the host's.
+void putHurtGait(HerdState& state, size_t agent, const reference::Hurt& hurt);
 void putReaction(HerdState& state, size_t agent, const reference::Reaction& reaction);
 void putGait(HerdState& state, size_t agent, const reference::Gait& gait);
 void putStep(HerdState& state, size_t leg, const reference::Step& step);

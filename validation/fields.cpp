@@ -41,6 +41,10 @@ void compareFields(const reference::Reaction& expected, const reference::Reactio
   SKITTER_REACTION_FIELDS(COMPARE)
 }
 
+void compareFields(const reference::Search& expected, const reference::Search& got, Sample& sample) {
+  SKITTER_SEARCH_FIELDS(COMPARE)
+}
+
 void compareFields(const reference::Step& expected, const reference::Step& got, Sample& sample) {
   SKITTER_STEP_FIELDS(COMPARE)
   SKITTER_ARC_FIELDS(COMPARE)

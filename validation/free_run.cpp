@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "cpu_reference/stages/adapt.h"
 #include "cpu_reference/stages/body.h"
 #include "cpu_reference/stages/clip.h"
 #include "cpu_reference/stages/foothold.h"
@@ -35,6 +36,7 @@ class Walk {
   Walk(const Setting& setting, uint64_t tick, size_t agent, HerdState& state)
       : setting_(setting),
         tuning_(setting.tuning),
+        hurtCreature_(setting.creature),
         ownCreature_(setting.creature),
         tick_(tick),
         n_(static_cast<double>(tick)),
@@ -44,6 +46,8 @@ class Walk {
 
   void all() {
     if (navigate()) return;
+    if (!state_.search.empty()) adapt();
+    if (!state_.hurt.empty()) hurtCreature_ = ownCreature_ = hurtCreatureOf(setting_, state_, agent_);
     switch (setting_.controller) {
       case Controller::adaptive:
         return adaptive();
@@ -93,8 +97,7 @@ class Walk {
   }
 
   reference::Creature reactingCreature(const reference::AgentBody& at) const {
-    return reference::reactingCreature(tuning_, setting_.creature, reactionOf(state_, agent_),
-                                       at.orientation);
+    return reference::reactingCreature(tuning_, hurtCreature_, reactionOf(state_, agent_), at.orientation);
   }
 
   reference::Foot footOfStep(size_t l) const {
@@ -181,6 +184,20 @@ class Walk {
     putSteer(state_, agent_, way.desired, way.asleep);
     return way.asleep;
   }
+  // Body, feet and chains are still those of the last tick.
+  void adapt() {
+    std::vector<reference::Foot> feet;
+    std::vector<reference::Chain> chains;
+    for (size_t l = 0; l < legs_; ++l) {
+      feet.push_back(footOf(state_, leg(l)));
+      chains.push_back(chainOf(state_, leg(l), setting_.bones));
+    }
+    const reference::AdaptResult adapted = reference::adapt(
+        tuning_, setting_.gaitMap, searchOf(state_, agent_), hurtOf(state_, agent_, setting_.legs), body(),
+        feet, chains, desiredOf(state_, agent_));
+    putSearch(state_, agent_, adapted.search);
+    putHurtGait(state_, agent_, adapted.hurt);
+  }
   void blindBody() {
     putBody(
         state_, agent_,
@@ -258,6 +275,7 @@ class Walk {
 
   const Setting& setting_;
   const reference::Tuning& tuning_;
+  reference::Creature hurtCreature_;
   reference::Creature ownCreature_;  // as react leaves it
   const reference::Creature& creature_ = ownCreature_;
   uint64_t tick_;
@@ -278,10 +296,7 @@ FreeRun::FreeRun(const HerdFacts& herd, HerdState start)
 void FreeRun::tick(bool watched) {
   ++state_.tick;
   state_.watched = watched;
-  for (size_t agent = 0; agent < state_.agents; ++agent) {
-    if (!state_.hurt.empty()) setCreature(setting_, state_, agent, false, ofAgent_);
-    walkAgent(state_.hurt.empty() ? setting_ : *ofAgent_, state_.tick, agent, state_);
-  }
+  for (size_t agent = 0; agent < state_.agents; ++agent) walkAgent(setting_, state_.tick, agent, state_);
 }
 
 void FreeRun::follow(const HerdState& before, const HerdState& after) {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <optional>
+#include <cstddef>
+#include <cstdint>
 
 #include "validation/replay.h"
 
@@ -32,7 +33,6 @@ class FreeRun {
 
  private:
   Setting setting_;
-  std::optional<Setting> ofAgent_;
   HerdState state_;
 };
 

@@ -79,6 +79,7 @@ inline HerdFacts herdFacts(const crowd::Kind& kind, const Heightfield& terrain) 
   facts.ways = waysOf(kind);
   facts.wayPlaces = wayPlacesOf(kind);
   facts.forage = forageOf(kind);
+  facts.gaitMap = kind.gaitMap;
   return facts;
 }
 

@@ -108,6 +108,7 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   setting.ways = herd.ways;
   setting.wayPlaces = herd.wayPlaces;
   setting.forage = herd.forage;
+  setting.gaitMap = gaitMapOf(herd.gaitMap, setting.legs);
   if (crowd::traitsOf(herd.controller).playsClips)
     setting.clips = clipTableOf(herd.clips, setting.legs, setting.bones);
   if (herd.controller == Controller::keyPoses)
@@ -115,15 +116,11 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
   return setting;
 }
 
-void setCreature(const Setting& herd, const HerdState& state, size_t agent, bool reacts,
-                 std::optional<Setting>& ofAgent) {
-  if (!ofAgent) ofAgent = herd;
-  ofAgent->creature = reference::hurtCreature(herd.creature, hurtOf(state, agent, herd.legs));
-  ofAgent->creature.load = carriedMassOf(state, agent);
-  ofAgent->creature.centre = centreOf(state, agent, herd.tuning.legLength);
-  if (reacts && !state.reaction.empty())
-    ofAgent->creature = reference::reactingCreature(herd.tuning, ofAgent->creature, reactionOf(state, agent),
-                                                    bodyOf(state, agent).orientation);
+reference::Creature hurtCreatureOf(const Setting& herd, const HerdState& state, size_t agent) {
+  reference::Creature creature = reference::hurtCreature(herd.creature, hurtOf(state, agent, herd.legs));
+  creature.load = carriedMassOf(state, agent);
+  creature.centre = centreOf(state, agent, herd.tuning.legLength);
+  return creature;
 }
 
 reference::Step Moment::stepOf(const HerdState& state, size_t leg) const {
@@ -140,7 +137,11 @@ const Setting& Replay::settingFor(const HerdState& after, size_t agent, crowd::S
     return found->second;
   }
   if (after.hurt.empty()) return setting_;
-  setCreature(setting_, after, agent, stage != crowd::StageId::react, ofAgent_);
+  if (!ofAgent_) ofAgent_ = setting_;
+  ofAgent_->creature = hurtCreatureOf(setting_, after, agent);
+  if (stage != crowd::StageId::react && !after.reaction.empty())
+    ofAgent_->creature = reference::reactingCreature(
+        setting_.tuning, ofAgent_->creature, reactionOf(after, agent), bodyOf(after, agent).orientation);
   return *ofAgent_;
 }
 

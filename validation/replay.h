@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cpu_reference/clips/table.h"
+#include "cpu_reference/stages/adapt.h"
 #include "cpu_reference/stages/avoid.h"
 #include "cpu_reference/stages/ik.h"
 #include "cpu_reference/stages/swing_key_poses.h"
@@ -15,6 +16,7 @@
 #include "cpu_reference/ways/way.h"
 #include "crowd/clip_records.h"
 #include "crowd/controller.h"
+#include "crowd/gait_map.h"
 #include "crowd/key_poses.h"
 #include "crowd/stage_id.h"
 #include "crowd/tuning.h"
@@ -42,6 +44,7 @@ struct HerdFacts {
   std::vector<reference::WayField> ways = {};       // the fields of its kind, as they are on the device
   std::vector<reference::WayPlace> wayPlaces = {};  // those of its goals in series
   std::optional<ForageFacts> forage = {};           // where the herd forages
+  crowd::GaitMap gaitMap = {};                      // where it adapts
 };
 
 // All agents that are there, of the whole crowd: as they were before a tick.
@@ -63,12 +66,11 @@ struct Setting {
   std::vector<reference::WayField> ways;
   std::vector<reference::WayPlace> wayPlaces;
   std::optional<ForageFacts> forage;
+  reference::GaitMap gaitMap;
 };
 
-// Gives `ofAgent`, which is made of `herd` where there is none, the creature that an agent of a herd is that
-// can be hurt; with `reacts` as stages after react have it, where the herd has reactions.
-void setCreature(const Setting& herd, const HerdState& state, size_t agent, bool reacts,
-                 std::optional<Setting>& ofAgent);
+// The creature that an agent is, of a herd that can be hurt, before it reacts.
+reference::Creature hurtCreatureOf(const Setting& herd, const HerdState& state, size_t agent);
 
 // `terrain` is a copy that outlives the setting. Throws Error(input) when the rig records' size does not fit
 // the rig.

@@ -111,7 +111,7 @@ void add(Hash& hash, const Forage& forage) {
 
 void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt, reactions] = herd;
+               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt, reactions, adapts] = herd;
   for (const char* name : {nameOf(controller), nameOf(solver), nameOf(stepping)}) hash.add(name);
   hash.add(rig == "spider" ? std::string_view(rig) : "file");  // wherever it lies
   if (rig != "spider") {
@@ -158,6 +158,7 @@ void add(Hash& hash, FileHashes& fileHashes, const Herd& herd) {
       hash.add(fileHashes.hashOf(gaitsOf(rig)));
   }
   if (reactions) hash.add("reactions");
+  if (adapts) hash.add("adapts");
   for (const TuningInfo& info : allTunings)
     if (tuning.*info.member != info.usual) {
       hash.add(info.name);

@@ -340,6 +340,7 @@ void Run::finish() {
     summary_.crowding = crowd_->crowding();
     summary_.foraging = foraging_.figures(*crowd_, options_.scene.dt);
     summary_.reactions = reactionFigures(*crowd_);
+    summary_.searches = searchFigures(*crowd_);
     if (crowdingWatch_) summary_.jams = crowdingWatch_->jams();
     if (damageWatch_) summary_.damage = damageWatch_->figures();
     summary_.levels = crowd_->levels();

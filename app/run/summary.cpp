@@ -110,6 +110,18 @@ nlohmann::ordered_json jsonOf(const std::vector<ReactionFigures>& herds) {
   return all;
 }
 
+nlohmann::ordered_json jsonOf(const std::vector<SearchFigures>& herds) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const SearchFigures& herd : herds)
+    all.push_back({{"herd", herd.herd},
+                   {"searching", herd.searching},
+                   {"settled", herd.settled},
+                   {"trialsMedian", orNull(herd.trialsMedian())},
+                   {"trialsMost", orNull(herd.trialsMost())},
+                   {"fitness", orNull(herd.fitness())}});
+  return all;
+}
+
 void printLevels(const std::vector<LevelFigures>& levels) {
   for (const LevelFigures& level : levels)
     printRow(level.rate == 1 ? "levels" : "",
@@ -192,6 +204,39 @@ std::vector<ReactionFigures> reactionFigures(const Crowd& crowd) {
   return all;
 }
 
+std::optional<uint32_t> SearchFigures::trialsMedian() const {
+  if (trials.empty()) return {};
+  return trials[(trials.size() - 1) / 2];
+}
+
+std::optional<uint32_t> SearchFigures::trialsMost() const {
+  if (trials.empty()) return {};
+  return trials.back();
+}
+
+std::optional<double> SearchFigures::fitness() const {
+  if (settled == 0) return {};
+  return best / static_cast<double>(settled);
+}
+
+std::vector<SearchFigures> searchFigures(const Crowd& crowd) {
+  std::vector<SearchFigures> all;
+  const Crowd::Impl& impl = implOf(crowd);
+  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
+    if (impl.herds[h].isGone() || !impl.herds[h].from.adapts) continue;
+    SearchFigures& herd = all.emplace_back(SearchFigures{.herd = h});
+    for (const Search& each : crowd.searches(h)) {
+      herd.searching += each.phase == SearchPhase::searching;
+      if (each.phase != SearchPhase::settled) continue;
+      ++herd.settled;
+      herd.trials.push_back(each.trials);
+      herd.best += double{each.best};
+    }
+    std::ranges::sort(herd.trials);
+  }
+  return all;
+}
+
 void Summary::print() const {
   printRow("device", device);
   printRow("terrain", filledVoids > 0 ? fmt::format("{}, voids filled: {}", terrain, filledVoids) : terrain);
@@ -225,6 +270,13 @@ void Summary::print() const {
     printRow("reactions",
              fmt::format("herd {}: {} falls, {} stood again after {:.2f} s, {} are down", herd.herd,
                          herd.falls, herd.stands, herd.standUpSeconds().value_or(0), herd.down));
+  for (const SearchFigures& herd : searches)
+    printRow(
+        "adapting",
+        fmt::format("herd {}: {} agents try gaits; {} have found one, after {} trials in the median and {} "
+                    "at most, of fitness {:.3f}",
+                    herd.herd, herd.searching, herd.settled, herd.trialsMedian().value_or(0),
+                    herd.trialsMost().value_or(0), herd.fitness().value_or(0)));
   for (size_t i = 0; i < herds.size() && herds.size() > 1; ++i) {
     fmt::print("herd {}: {}, {} agents\n", herds[i].number, herds[i].rig, herds[i].agents);
     printFidelity(herds[i].fidelity, watchEvery);
@@ -263,6 +315,7 @@ nlohmann::ordered_json Summary::json() const {
           {"foraging", jsonOf(foraging)},
           {"damage", damage ? jsonOf(*damage) : nlohmann::ordered_json(nullptr)},
           {"reactions", jsonOf(reactions)},
+          {"searches", jsonOf(searches)},
           {"levels", jsonOf(levels)},
           {"herds", perHerd},
           {"stateHash", fmt::format("{:016x}", stateHash)}};

@@ -40,6 +40,19 @@ struct ReactionFigures {
 };
 std::vector<ReactionFigures> reactionFigures(const Crowd& crowd);
 
+// A herd that adapts has these figures, of its agents at the end.
+struct SearchFigures {
+  uint32_t herd = 0;
+  uint64_t searching = 0, settled = 0;
+  std::vector<uint32_t> trials = {};  // of each who is settled, ascending
+  double best = 0;                    // the sum of their highest fitnesses
+
+  std::optional<uint32_t> trialsMedian() const;
+  std::optional<uint32_t> trialsMost() const;
+  std::optional<double> fitness() const;  // the mean
+};
+std::vector<SearchFigures> searchFigures(const Crowd& crowd);
+
 // What a run came to: printed for people and written for programs.
 struct Summary {
   std::string device;
@@ -58,6 +71,7 @@ struct Summary {
   Crowding crowding;
   std::vector<ForageFigures> foraging;     // of the herds that forage
   std::vector<ReactionFigures> reactions;  // of the herds with reactions
+  std::vector<SearchFigures> searches;     // of the herds that adapt
   Jams jams;
   std::vector<LevelFigures> levels;     // where there are levels of rate
   std::optional<DamageFigures> damage;  // where events hurt legs, and it was asked for

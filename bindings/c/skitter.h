@@ -343,6 +343,22 @@ typedef struct skitter_reaction {
 SKITTER_C skitter_result skitter_crowd_reactions(const skitter_crowd* crowd, uint32_t herd,
                                                  skitter_reaction* reactions, size_t room);
 
+/* How agents of a herd that adapts get on (docs/evolve.md). */
+typedef enum skitter_search_phase {
+  SKITTER_SEARCH_AT_EASE = 0,
+  SKITTER_SEARCH_SEARCHING = 1,
+  SKITTER_SEARCH_SETTLED = 2
+} skitter_search_phase;
+typedef struct skitter_search {
+  skitter_search_phase phase;
+  uint32_t trials; /* that have ended since the agent was hurt last */
+  float best;      /* the highest fitness of these */
+} skitter_search;
+/* What the last tick left, one of each place of the herd; at ease where it does not adapt. Waits for the
+ * device. There is room for `room` of them. */
+SKITTER_C skitter_result skitter_crowd_searches(const skitter_crowd* crowd, uint32_t herd,
+                                                skitter_search* searches, size_t room);
+
 /* Adds an agent to a herd with a reserve, in its lowest empty place, which says how large it is, and removes
  * one from such a herd. `goal`: NULL: the herd's. `id` may be NULL. No empty place and no reserve are
  * SKITTER_ERROR_INPUT. */
@@ -711,7 +727,14 @@ SKITTER_C skitter_result skitter_scene_view(const skitter_scene* scene, const sk
  * graphics. What was recorded has finished before it is destroyed. */
 typedef struct skitter_renderer skitter_renderer;
 
+/* All zero: the defaults. */
+typedef struct skitter_renderer_options {
+  float detail; /* agents are drawn as finely as if they were so many times larger, 0.25 to 100000; 0: 1. Less
+                   is cheaper. */
+} skitter_renderer_options;
+/* `options`: NULL: the defaults. */
 SKITTER_C skitter_result skitter_renderer_create(skitter_crowd* crowd, uint32_t width, uint32_t height,
+                                                 const skitter_renderer_options* options,
                                                  skitter_renderer** renderer);
 /* Draws the crowd as it is on the device's queue, and waits. */
 SKITTER_C skitter_result skitter_renderer_draw(skitter_renderer* renderer, const skitter_view* view);
@@ -727,14 +750,7 @@ SKITTER_C skitter_result skitter_renderer_image(const skitter_renderer* renderer
 /* The last picture that was drawn or, once submitted, recorded: RGBA8 sRGB, rows without gaps, top row first,
  * to `rgba`, which has room for `room` bytes. Waits for the device. */
 SKITTER_C skitter_result skitter_renderer_pixels(const skitter_renderer* renderer, uint8_t* rgba,
-/* All zero: the defaults. */
-typedef struct skitter_renderer_options {
-  float detail; /* agents are drawn as finely as if they were so many times larger, 0.25 to 100000; 0: 1. Less
-                   is cheaper. */
-} skitter_renderer_options;
-/* `options`: NULL: the defaults. */
                                                  size_t room);
-                                                 const skitter_renderer_options* options,
 /* Which image of the crowd's models cannot be decoded, and why: the index-th of them, from 0 on, or NULL
  * behind the last. Its material is drawn in a flat colour. It lives until the next picture. */
 SKITTER_C skitter_result skitter_renderer_note(const skitter_renderer* renderer, size_t index,

@@ -180,6 +180,18 @@ skitter_result skitter_crowd_reactions(const skitter_crowd* crowd, uint32_t herd
   });
 }
 
+skitter_result skitter_crowd_searches(const skitter_crowd* crowd, uint32_t herd, skitter_search* searches,
+                                      size_t room) {
+  return guarded([&] {
+    const Crowd& asked = crowdOf(crowd);
+    given(searches, "searches");
+    c::checkRoom("searches", room, asked.places(herd));
+    for (const Search& each : asked.searches(herd))
+      *searches++ = {
+          .phase = static_cast<skitter_search_phase>(each.phase), .trials = each.trials, .best = each.best};
+  });
+}
+
 skitter_result skitter_crowd_add(skitter_crowd* crowd, uint32_t herd, const skitter_place* place,
                                  const skitter_goal* goal, skitter_agent_id* id) {
   return guarded([&] {

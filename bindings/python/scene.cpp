@@ -142,6 +142,8 @@ void bindHerd(py::module_& module) {
                      "How much agents differ in colour, 0 to 1; None: half, by their numbers.")
       .def_readwrite("hurt", &Herd::hurt, "Whether legs of its agents can be hurt.")
       .def_readwrite("reactions", &Herd::reactions, "Whether its agents stumble, fall and get up.")
+      .def_readwrite("adapts", &Herd::adapts,
+                     "Whether its agents are not told which legs are hurt, and try gaits until one is good.")
       .def("__repr__", [](const Herd& self) {
         return fmt::format("<skitter.Herd of {} agents, {}, {}>", self.agents, self.rig,
                            nameOf(self.controller));

@@ -172,6 +172,19 @@ py::list reactions(PythonCrowd& self, uint32_t herd) {
   return made;
 }
 
+py::list searches(PythonCrowd& self, uint32_t herd) {
+  const std::vector<Search> all = self.told([&](const Crowd& crowd) { return crowd.searches(herd); });
+  py::list made;
+  for (const Search& each : all) {
+    py::dict one;
+    one["phase"] = nameOf(each.phase);
+    one["trials"] = each.trials;
+    one["best"] = each.best;
+    made.append(one);
+  }
+  return made;
+}
+
 uint64_t add(PythonCrowd& self, const glm::vec2& position, float heading, uint32_t herd,
              const std::optional<Goal>& goal) {
   const Place place{position, heading};
@@ -232,6 +245,10 @@ void bindAgents(CrowdClass& bound) {
       .def("reactions", &reactions, "herd"_a = 0,
            "Who fell and who stands again, one dict per place: phase, falls, stands, down and down_before "
            "(seconds). Waits for the device.")
+      .def(
+          "searches", &searches, "herd"_a = 0,
+          "How agents get on that try gaits, one dict per place: phase, trials and best, the highest fitness "
+          "of these. Waits for the device.")
       .def("teleport", &teleport, "agents"_a, "positions"_a, "headings"_a = 0.0f,
            "Puts the agents of one or more handles at x and z, metres, with their feet on the ground and "
            "without speed; `headings` as headings(), one for all or one each. Goals stay.")

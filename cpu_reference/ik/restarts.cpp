@@ -26,9 +26,10 @@ struct Seed {
   bool tried = false;
 };
 
-class Search {
+class RestartSearch {
  public:
-  Search(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target, const IkState& start)
+  RestartSearch(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
+                const IkState& start)
       : chain_(chain), settings_(settings), target_(target), origin_(start), shapes_(aimsSeeds(chain)) {
     for (const Pose& pose : chain.seeds) {
       const IkState seed = stateAt(chain, pose);
@@ -206,7 +207,7 @@ class Search {
 
 IkResult solveWithRestarts(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
                            const IkState& start, IkMemory& memory) {
-  return Search(chain, settings, target, start).run(memory);
+  return RestartSearch(chain, settings, target, start).run(memory);
 }
 
 }  // namespace skitter::reference

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "cpu_reference/arithmetic.h"
 #include "cpu_reference/heightfield.h"
 #include "cpu_reference/roundoff.h"
+#include "cpu_reference/stages/adapt.h"
 #include "cpu_reference/stages/body.h"
 #include "cpu_reference/stages/foothold.h"
 #include "cpu_reference/stages/gait.h"
@@ -251,6 +253,75 @@ inline ReactBounds react(const Tuning& t, const Heights& heights, double extent,
                 8 * roundoff * (t.bodyHeight + t.bodyRadius);
   return bound;
 }
+
+// The stability margin, where the tips are at most `farthest` from the centre. It is measured along normals
+// of lines through two tips, and a normal turns by the error of the tips over their distance.
+inline double supportMargin(std::span<const glm::dvec2> tips, double farthest) {
+  double nearest = farthest;
+  for (size_t a = 0; a < tips.size(); ++a)
+    for (size_t b = 0; b < a; ++b) nearest = std::min(nearest, glm::distance(tips[a], tips[b]));
+  return 16 * roundoff * farthest * (1 + farthest / std::max(nearest, 1e-4));
+}
+
+// The wanted speed is a root of two squares, and the threshold a product.
+inline double adaptWish(double speed) { return 12 * roundoff * speed; }
+// A tick of a trial. The records that it starts from are exact.
+struct AdaptBounds {
+  double clock = 0, margin = 0, wanted = 0, progress = 0, unstable = 0, fitness = 0;
+};
+inline AdaptBounds adapt(const Tuning& t, const AgentBody& body, const glm::dvec2& velocity,
+                         std::span<const glm::dvec2> support, const Search& before, const Search& ticked) {
+  AdaptBounds bound;
+  const double wish = glm::length(velocity);
+  // The clock is a sum, and the constant with which it is compared is another.
+  bound.clock = 8 * roundoff * (1 + ticked.clock);
+  bound.margin = supportMargin(support, 2 * t.legLength) + 2 * roundoff * t.legLength;
+  // Each tick adds a product that has a quotient in it.
+  bound.wanted = roundoff * (24 * wish * t.dt + 2 * ticked.wanted);
+  bound.progress = roundoff * (24 * std::abs(body.speed) * t.dt +
+                               2 * std::max(std::abs(before.progress), std::abs(ticked.progress)));
+  bound.unstable = 2 * roundoff * ticked.unstable;
+  // Both factors are quotients of 6 roundings, and one is taken off 1.
+  if (ticked.wanted <= 0) return bound;
+  const double progress = std::abs(ticked.progress) / ticked.wanted, counted = ticked.clock - 1;
+  bound.fitness = (bound.progress + progress * bound.wanted) / ticked.wanted +
+                  (bound.unstable + ticked.unstable / counted * bound.clock) / counted +
+                  8 * roundoff * (2 + progress + ticked.unstable / counted);
+  return bound;
+}
+
+// The map's k is at most 0.09 and rounded once. Its constants 0.3 and 1.2 are float32: the first is squared,
+// and an error of the second scales r, with r dk/dr at most 0.06.
+inline constexpr double gaitKernel = 4 * roundoff * 0.09;
+// bound(x) = f + u . w + 2 sqrt(k(x, x) - u . u) of n trials, with K = k(X, X) + 0.001 I = M M^T.
+//
+// - Computed M, u and w are the exact ones of another matrix K' (Higham 2002, theorems 8.5 and 10.3).
+//   Its entries differ from K's, which are at most 0.091, by the error of k and by a rounding per term:
+//   n each for M, u and w, and 32 for their quotients and roots, which have up to 6.
+// - With g = K^-1 k(X, x) and h = K^-1 (y - f(X)), the mean errs by g (K' - K) h and the variance by
+//   g (K' - K) g. Both are at most the error of an entry times the sums of absolute values in g and h.
+// - The dot products round n times: u . w is at most |u| |w|, u . u is k(x, X) g.
+// - K's least eigenvalue is at least 0.001, over 80 times |K' - K|. A tenth is added for higher orders.
+//
+// The root of a variance near 0 may be off by the root of the variance's error.
+inline double gaitBound(const Outlook& outlook, const Expectation& x) {
+  const auto n = static_cast<double>(outlook.trials);
+  const double entry = gaitKernel + (3 * n + 32) * roundoff * 0.091;
+  const double mean = (entry * x.weights + gaitKernel) * outlook.corrections +
+                      roundoff * (n * std::sqrt(x.explained * outlook.surprise) +
+                                  x.weights * outlook.mostSurprise + std::abs(x.mean));
+  const double variance = (entry * x.weights + 2 * gaitKernel) * x.weights + gaitKernel +
+                          roundoff * (n * x.explained + x.variance);
+  const double root = std::sqrt(x.variance);
+  const double deviation = std::max(std::sqrt(x.variance + variance) - root,
+                                    root - std::sqrt(std::max(0.0, x.variance - variance)));
+  return 1.1 * (mean + 2 * deviation) + roundoff * (12 * root + 2 * std::abs(x.bound()));
+}
+// The threshold of a search that ends is 0.9 of the highest fitness in the map, a product.
+inline double goodGait(double mostExpected) { return 4 * roundoff * mostExpected; }
+// Lame legs: sigma is a product with a quotient that is taken off 1, slowness a product.
+inline constexpr double lameSpeed = 12 * roundoff;
+inline double lameSlowness(double slowness) { return 2 * roundoff * slowness; }
 
 struct GaitBounds {
   double phase, halfStride, cycle, duration, length, window;

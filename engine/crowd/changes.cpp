@@ -100,7 +100,7 @@ class Standing {
       if (!each.record || !keeps(kind, crowd.options, *each.record)) continue;
       // The host says these by themselves, and a block has one rate.
       if (*each.record == Record::goal || *each.record == Record::hurt || *each.record == Record::carried ||
-          *each.record == Record::push || *each.record == Record::rate)
+          *each.record == Record::push || *each.record == Record::rate || *each.record == Record::search)
         continue;
       const RecordInfo info = infoOf(*each.record);
       // What every tick makes anew can stay, and what measure has summed up shall.
@@ -197,6 +197,12 @@ void writeLegs(const AgentChange& change, const Page& page, uint32_t agent, Kind
   writes.add(page.carried, uint64_t{agent} * sizeof carried, carried);
 }
 
+// Who comes, or is hurt as it stands anew, has tried nothing.
+void forgetSearch(const Page& page, uint32_t agent, Writes& writes) {
+  constexpr std::array<float, 4 * shared::SEARCH_STRIDE> none{};
+  writes.add(page.search, uint64_t{agent} * sizeof none, none);
+}
+
 // Who does not begin anew stirs: a sleeper would not see what happens to it.
 void stir(const Page& page, uint32_t agent, Writes& writes) {
   constexpr uint64_t still = 13;  // the float of a body record
@@ -256,6 +262,7 @@ void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
         writes.add(page->goal, goal + 4 * sizeof(float), std::span(change.record).subspan(4, 1));
       if (change.leaves) writes.add(page->body, uint64_t{agent} * sizeof(BodyRecord), absentBody());
       if (change.hurt) writeLegs(change, *page, agent, kind, writes);
+      if (change.hurt && change.stands && page->search) forgetSearch(*page, agent, writes);
       if (change.push) writePush(*change.push, *page, agent, crowd.tick, writes);
       if ((change.hurt || change.push) && !change.stands) stir(*page, agent, writes);
       if (!change.stands) continue;

@@ -81,6 +81,7 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
   }
   run(avoid, written);
   if (!inTurns) run(wake, counted);
+  run(adapt, written);
   run(react, written);
   run(body, written);
   run({navigate, body, gait}, counted);

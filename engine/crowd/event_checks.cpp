@@ -164,8 +164,7 @@ void check(const LegChange& change, const Where& at) {
 
 void check(const LoadChange& change, const Where& at) {
   const skitter::Herd& herd = herdOf("herd", change.herd, at);
-  expectCarries([&] { return fmt::format("{}: herd {}", at.event, change.herd); },
-                herd.hurt || herd.reactions);
+  expectCarries([&] { return fmt::format("{}: herd {}", at.event, change.herd); }, herd);
   checkWhom(change, herd, at);
   expectLoad([&] { return at.event; }, change.load);
 }

@@ -104,7 +104,7 @@ class Rehearsal {
   }
   void play(const LoadChange& change, const std::string& name) {
     const skitter::Herd& herd = herdAt(change.herd, name);
-    expectCarries([&] { return fmt::format("{}: herd {}", name, change.herd); }, herd.hurt || herd.reactions);
+    expectCarries([&] { return fmt::format("{}: herd {}", name, change.herd); }, herd);
     for (const uint32_t agent : change.agents) expectSomebody(change.herd, agent, name);
   }
   void play(const Teleport& teleport, const std::string& name) {

@@ -14,6 +14,7 @@
 #include "crowd/clip_records.h"
 #include "crowd/damage.h"
 #include "crowd/edit.h"
+#include "crowd/gait_map.h"
 #include "crowd/key_poses.h"
 #include "crowd/levels.h"
 #include "crowd/load.h"
@@ -80,11 +81,13 @@ struct Kind {
   gpu::Buffer clipHeads, clipTimes, clipRows, clipLegs, clipBones;
   KeyPoses keyPoses;  // of controller key-poses
   gpu::Buffer keyBuffer;
-  gpu::Buffer wallBuffer;              // the scene's obstacles, where its herds avoid
-  bool reachTriggered = false;         // legs step when out of reach, without a rhythm
-  bool tinted = false;                 // some herd of it has a colour or a tint of its own
-  bool hurts = false;                  // legs of its agents can be hurt, and they can carry loads
-  bool reacts = false;                 // its agents have reactions
+  gpu::Buffer wallBuffer;       // the scene's obstacles, where its herds avoid
+  bool reachTriggered = false;  // legs step when out of reach, without a rhythm
+  bool tinted = false;          // some herd of it has a colour or a tint of its own
+  bool hurts = false;           // legs of its agents can be hurt, and they can carry loads
+  bool reacts = false;          // its agents have reactions
+  GaitMap gaitMap;              // where its agents adapt, what they try
+  gpu::Buffer gaitMapBuffer;
   std::vector<float> wholeRecord;      // where it hurts: the `hurt` record of an agent that is whole and free
   std::map<uint32_t, Damage> damages;  // of its agents, those that are hurt, as the host has said
   std::map<uint32_t, Load> loads;      // of its agents, those that carry, as the host has said

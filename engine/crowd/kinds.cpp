@@ -17,9 +17,9 @@ namespace {
 // What makes a kind. Names every member, so that a new one cannot be forgotten.
 auto membersOf(const skitter::Herd& herd) {
   const auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal,
-               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt, reactions] = herd;
+               sizes, avoid, ways, threat, forage, phase, colour, tint, hurt, reactions, adapts] = herd;
   return std::tuple_cat(std::tie(rig, controller, clips, cuts, keys, solver, stepping, tuning, avoid, ways,
-                                 threat, forage, hurt, reactions),
+                                 threat, forage, hurt, reactions, adapts),
                         std::tuple(reserve > 0));
 }
 
@@ -44,7 +44,8 @@ Kinds grouped(const Scene& scene, const Equal& areEqual) {
   if (kinds.firstHerds.size() > mostKinds)
     throw inputError(fmt::format(
         "{}: {} herds differ in rig, controller, clips, cuts, keys, solver, stepping, tuning, "
-        "avoid, ways, threat, forage, hurt, reactions or size, expected at most {}: each of them, and each "
+        "avoid, ways, threat, forage, hurt, reactions, adapts or size, expected at most {}: each of them, "
+        "and each "
         "size "
         "of one, has pipelines of its own; equal herds share them, whatever their agents, spawn and goal",
         scene.name, kinds.firstHerds.size(), mostKinds));
@@ -71,6 +72,14 @@ void checkReactions(const skitter::Herd& herd, const std::string& what) {
   if (herd.solver != Solver::activeSet)
     throw inputError(fmt::format("{}.solver is {}, expected {}: it has reactions", what, nameOf(herd.solver),
                                  nameOf(Solver::activeSet)));
+}
+
+void checkAdapts(const skitter::Herd& herd, const std::string& what) {
+  if (herd.controller != Controller::adaptive)
+    throw inputError(
+        fmt::format("{}.controller is {}, expected adaptive: it adapts", what, nameOf(herd.controller)));
+  if (!herd.hurt && !herd.reactions)
+    throw inputError(fmt::format("{}.hurt is false, expected true: it adapts", what));
 }
 
 // The ranges of a scene file.
@@ -131,7 +140,7 @@ void checkForage(const skitter::Herd& herd, const std::string& what) {
   expect("rest", forage.rest, 0, Forage::maxRest);
   if (forage.load.mass == 0) return;
   expectLoad([&] { return what + ".forage"; }, forage.load);
-  expectCarries([&] { return what; }, herd.hurt || herd.reactions);
+  expectCarries([&] { return what; }, herd);
 }
 
 }  // namespace
@@ -141,6 +150,7 @@ void checkHerd(const skitter::Herd& herd, const std::string& what) {
   checkTuning(herd.tuning, what + ".tuning");
   if (herd.hurt) checkHurt(herd, what);
   if (herd.reactions) checkReactions(herd, what);
+  if (herd.adapts) checkAdapts(herd, what);
   if (herd.sizes.size() > Herd::maxSizes)
     throw inputError(
         fmt::format("{}.sizes are {}, expected at most {}", what, herd.sizes.size(), Herd::maxSizes));

@@ -72,6 +72,8 @@ gpu::Binding bindingOf(const Crowd::Impl& crowd, const Kind& kind, const Page& p
       return {binding, &kind.trails->ground()};
     case BINDING_TRAIL:
       return {binding, &kind.trails->trail()};
+    case BINDING_GAIT_MAP:
+      return {binding, &kind.gaitMapBuffer};
     case BINDING_WALL:
       return {binding, &kind.wallBuffer};
     case BINDING_LEVELS:

@@ -191,6 +191,19 @@ std::vector<Reaction> Crowd::reactions(uint32_t herd) const {
   return all;
 }
 
+std::vector<Search> Crowd::searches(uint32_t herd) const {
+  constexpr std::array records = {Record::search};
+  const HerdState state = crowd::downloadRecords(*impl_, herd, records);
+  std::vector<Search> all(state.agents);
+  for (size_t agent = 0; agent < all.size() && !state.search.empty(); ++agent) {
+    const float* record = state.search.data() + agent * 4 * shared::SEARCH_STRIDE;
+    all[agent] = {.phase = static_cast<SearchPhase>(record[2]),
+                  .trials = static_cast<uint32_t>(record[3]),
+                  .best = record[7]};
+  }
+  return all;
+}
+
 std::vector<Footfall> Crowd::footfalls(uint32_t herd) const {
   return footfallsOf(*impl_, crowd::partsOf(*impl_, herd));
 }

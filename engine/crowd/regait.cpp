@@ -11,6 +11,7 @@
 #include "crowd/leg_order.h"
 #include "crowd/support.h"
 #include "crowd/symmetry.h"
+#include "skitter/records.h"
 
 // Lengths are in leg lengths and speeds in leg lengths per second, where nothing else is said.
 namespace skitter::crowd {
@@ -31,8 +32,8 @@ constexpr double quickness = 0.75;
 constexpr int fewGroups = 2, mostGroups = 8;
 // Shares of the desired velocity that are tried, the largest first.
 constexpr double triedShares[] = {1, 0.9, 0.8, 0.7, 0.6, 0.5};
-// Below so many legs that carry a creature lies down. As many stand while others step, or all but one.
-constexpr size_t fewestThatWalk = 3;
+// As many stand while others step, or all but one.
+constexpr size_t fewestThatWalk = shared::FEWEST_THAT_WALK;
 // Most of the body's height by which it is lowered.
 constexpr float lowestShare = 0.3f;
 
@@ -269,6 +270,7 @@ void regroup(const Rig& rig, const Tuning& tuning, const std::vector<size_t>& ca
   const Choice choice = regrouping.best();
   gait.groups = choice.groups;
   gait.speed = std::min(gait.speed, static_cast<float>(choice.speed));
+  gait.worth = gait.speed * static_cast<float>(1 - std::min(choice.unstable, 1.0));
   for (size_t k = 0; k < carriers.size(); ++k) {
     LegTurn& leg = gait.legs[carriers[k]];
     leg.group = choice.grouping[k];
@@ -283,7 +285,7 @@ void lieDown(const Rig& rig, const std::vector<size_t>& carriers, Regait& gait) 
   gait.groups = std::max(1, static_cast<int>(carriers.size()));
   for (size_t k = 0; k < carriers.size(); ++k) gait.legs[carriers[k]].group = static_cast<int>(k);
   gait.shift = {0, rig.bodyHeight, 0};
-  gait.speed = 0;
+  gait.speed = gait.worth = 0;
 }
 
 void takeOwnGait(const Rig& rig, Regait& gait) {
@@ -298,6 +300,19 @@ void takeOwnGait(const Rig& rig, Regait& gait) {
 
 }  // namespace
 
+std::vector<float> standingShares(const Tuning& tuning, const Regait& gait, uint32_t idle, double wanted) {
+  double slowest = 0;
+  for (size_t l = 0; l < gait.legs.size(); ++l)
+    if (!isIn(idle, l)) slowest = std::max(slowest, double{gait.legs[l].slowness});
+  const Walk walk = walkOf(tuning, gait.groups, slowest, double{gait.speed} * wanted);
+  std::vector<float> shares;
+  for (size_t l = 0; l < gait.legs.size(); ++l) {
+    const double step = walk.step * double{gait.legs[l].slowness} / slowest;
+    shares.push_back(isIn(idle, l) ? 0.0f : static_cast<float>(1 - step / walk.cycle));
+  }
+  return shares;
+}
+
 float loweringFor(const Rig& rig, const Tuning& tuning, const LegPattern& pattern, const glm::vec2& shift) {
   return loweringFor(rig, tuning, carriersOf(rig, pattern.idle), -shift);
 }
@@ -308,7 +323,7 @@ Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& patt
   gait.legs.resize(rig.legs.size());
   size_t lame = 0;
   for (const size_t l : carriers)
-    if (isIn(pattern.lame, l)) gait.legs[l].slowness = lameSlowness, ++lame;
+    if (isIn(pattern.lame, l)) gait.legs[l].slowness = shared::LAME_SLOWNESS, ++lame;
   if (lame > 0) gait.speed = 1 - static_cast<float>(lame) / (2 * static_cast<float>(carriers.size()));
   if (carriers.size() == rig.legs.size()) {
     takeOwnGait(rig, gait);
@@ -317,7 +332,7 @@ Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& patt
   if (carriers.size() < fewestThatWalk)
     lieDown(rig, carriers, gait);
   else
-    regroup(rig, tuning, carriers, lame > 0 ? double{lameSlowness} : 1.0, gait);
+    regroup(rig, tuning, carriers, lame > 0 ? double{shared::LAME_SLOWNESS} : 1.0, gait);
   setNeighbours(carriers, gait);
   return gait;
 }
@@ -342,6 +357,7 @@ Regait regaitOf(const Rig& rig, const RigGait& found, const LegPattern& pattern)
   gait.groups = static_cast<int>(found.groups);
   gait.shift = found.shift * rig.legLength;
   gait.speed = found.speed;
+  gait.worth = found.fitness;
   gait.legs.resize(rig.legs.size());
   const std::vector<size_t> carriers = carriersOf(rig, found.idle);
   size_t lame = 0;
@@ -352,7 +368,7 @@ Regait regaitOf(const Rig& rig, const RigGait& found, const LegPattern& pattern)
     turn.group = std::min(static_cast<int>(turns), gait.groups - 1);
     turn.within = turns - static_cast<float>(turn.group);
     turn.slowness = found.turns[leg].slowness;
-    if (isIn(pattern.lame, leg)) turn.slowness *= lameSlowness, ++lame;
+    if (isIn(pattern.lame, leg)) turn.slowness *= shared::LAME_SLOWNESS, ++lame;
     for (size_t m = 0; m < carriers.size(); ++m) {
       const size_t between = m > k ? m - k : k - m;
       const bool isNext = between == 1 || between + 1 == carriers.size();

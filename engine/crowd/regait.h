@@ -31,11 +31,11 @@ struct Regait {
   int groups = 1;
   glm::vec3 shift{0};  // of the homes, model space, metres
   float speed = 1;     // share of the desired velocity
+  // The fitness that it should have on flat ground (docs/evolve.md#fitness): of a table the one that was
+  // found, by rule the share of the velocity, less that of the time without support.
+  float worth = 1;
   std::vector<LegTurn> legs;
 };
-
-// How many times as long as others the step of a lame leg lasts.
-constexpr float lameSlowness = 1.5f;
 
 // By rule: the legs that carry regroup so that the body's centre stays inside of the support polygon and no
 // leg is stretched too far, at one leg length per second or as much of it as that allows. The rig's own gait
@@ -44,6 +44,10 @@ Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& patt
 
 // As the rig's table has it for the pattern or for its mirror image (docs/evolve.md); else by rule.
 Regait regaitFor(const Rig& rig, const Tuning& tuning, const LegPattern& pattern);
+
+// Of each leg the share of the time in which it stands, at a wish of so many leg lengths per second; 0 of
+// those that are idle.
+std::vector<float> standingShares(const Tuning& tuning, const Regait& gait, uint32_t idle, double wanted);
 
 // How much lower the body must be for every leg that carries to reach its home, shifted by so much (model x
 // and z, metres), as well as the rig's legs reach theirs, or comfortably. Metres.

@@ -146,6 +146,11 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
   kind.reacts = from.reactions;
   kind.hurts = from.hurt || kind.reacts;
   if (kind.hurts) kind.wholeRecord = crowd::hurtRecord({}, kind.regaitOf({}));
+  if (from.adapts) {
+    kind.gaitMap = crowd::gaitMapOf(kind.rig, kind.tuning);
+    kind.gaitMapBuffer = gpu::Buffer(context, kind.gaitMap.records.size() * sizeof(float), "map of gaits");
+    gpu::upload(context, kind.gaitMapBuffer, kind.gaitMap.records);
+  }
   const bool amongWalls = kind.avoids && !crowd.scene.obstacles.empty();
   if (amongWalls) kind.wallBuffer = crowd::makeWalls(crowd, kind);
   for (const Stage& stage : crowd::stagesOf(kind.controller, asked,
@@ -154,7 +159,8 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
                                             .forages = kind.forages(),
                                             .amongWalls = amongWalls,
                                             .hurts = kind.hurts,
-                                            .reacts = kind.reacts}))
+                                            .reacts = kind.reacts,
+                                            .adapts = from.adapts}))
     kind.stages.push_back({stage});
   return kind;
 }

@@ -17,6 +17,8 @@ bool isAskedFor(StageId stage, const CrowdOptions& options, const StageForms& fo
   switch (stage) {
     case StageId::avoid:
       return forms.avoids;
+    case StageId::adapt:
+      return forms.adapts;
     case StageId::react:
       return forms.reacts;
     case StageId::wake:

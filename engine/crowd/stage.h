@@ -69,6 +69,7 @@ struct StageForms {
   bool amongWalls = false;  // avoids, and there are obstacles
   bool hurts = false;       // can be hurt
   bool reacts = false;      // has reactions, and can be hurt
+  bool adapts = false;      // tries gaits when it is hurt
 };
 // A controller's stages, in order, less those that make what nobody asked for.
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, const StageForms& forms = {});

@@ -12,7 +12,7 @@ namespace skitter::crowd {
 // Every stage, in the order in which they run.
 // clang-format off
 #define SKITTER_STAGES(STAGE) \
-  STAGE(navigate) STAGE(avoid) STAGE(wake) STAGE(react) STAGE(body) STAGE(clip) STAGE(gait) STAGE(foothold) STAGE(swing) \
+  STAGE(navigate) STAGE(avoid) STAGE(wake) STAGE(adapt) STAGE(react) STAGE(body) STAGE(clip) STAGE(gait) STAGE(foothold) STAGE(swing) \
   STAGE(ik) STAGE(pose) STAGE(measure) STAGE(footfall)
 // clang-format on
 

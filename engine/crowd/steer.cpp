@@ -227,7 +227,7 @@ void Crowd::carry(std::span<const AgentLoad> loads) {
   for (const auto& [id, load] : loads) {
     expectSomebody(*impl_, id);
     const auto name = [&] { return nameOf(id.herd(), id.agent()); };
-    expectCarries(name, impl_->kindOf(id.herd(), id.agent()).hurts);
+    expectCarries(name, impl_->herds[id.herd()].from);
     expectLoad(name, load);
   }
   for (const auto& [id, load] : loads) {

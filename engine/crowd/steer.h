@@ -103,8 +103,11 @@ void expectHurts(const Name& name, bool hurts) {
 }
 
 template <class Name>
-void expectCarries(const Name& name, bool hurts) {
-  if (!hurts) throw inputError(fmt::format("{}: hurt is false, expected true where agents carry", name()));
+void expectCarries(const Name& name, const skitter::Herd& herd) {
+  if (!herd.hurt && !herd.reactions)
+    throw inputError(fmt::format("{}: hurt is false, expected true where agents carry", name()));
+  if (herd.adapts)
+    throw inputError(fmt::format("{}: adapts is true, expected false where agents carry", name()));
 }
 
 template <class Name>

@@ -3,15 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crowd/gait_map.h"
+
 namespace skitter::evolve {
-namespace {
-
-double matern52(double distance, double lengthScale) {
-  const double r = std::sqrt(5.0) * distance / lengthScale;
-  return (1 + r + r * r / 3) * std::exp(-r);
-}
-
-}  // namespace
 
 void BehaviourMap::add(std::span<const float> shares, float expected) {
   shares_.insert(shares_.end(), shares.begin(), shares.end());
@@ -34,7 +28,8 @@ Adaptation::Adaptation(const BehaviourMap& map, const AdaptationOptions& options
 }
 
 double Adaptation::kernel(uint32_t a, uint32_t b) const {
-  return options_.deviation * options_.deviation * matern52(map_->distance(a, b), options_.lengthScale);
+  return options_.deviation * options_.deviation *
+         crowd::matern52(map_->distance(a, b), options_.lengthScale);
 }
 
 std::optional<uint32_t> Adaptation::next() const {

@@ -304,6 +304,9 @@ class SKITTER_API Crowd {
   // Who fell and who stands again: one of each place of the herd, as the last tick left it; steady in a herd
   // without reactions. Waits for the device.
   std::vector<Reaction> reactions(uint32_t herd) const;
+  // How agents get on that try gaits: one of each place of the herd, as the last tick left it; at ease in a
+  // herd that does not adapt. Waits for the device.
+  std::vector<Search> searches(uint32_t herd) const;
 
   // Herds that come and go, between ticks. Both calls make or free device memory at once, submit and wait
   // under the queue's lock. Herd::rig is relative to the working directory.

@@ -265,13 +265,18 @@ SKITTER_FUNCTION int watchStride(int legs) { return WATCH_TRAIL_STRIDE * (1 + le
 //   [6] W^5 Q over windows of the tips, their P^2, the same of the body (m^2)
 SKITTER_CONST int METRIC_STRIDE = 7;
 
-// hurt, per agent of a herd that can be hurt, written by the host alone (Crowd::hurt): which of its legs are
-// hurt, and the gait that it has for it (docs/damage.md). A leg that is lost or stuck does not carry.
+// hurt, per agent of a herd that can be hurt, written by the host (Crowd::hurt): which of its legs are hurt,
+// and the gait that it has for it (docs/damage.md); of a herd that adapts, adapt writes the gait. A leg that
+// is lost or stuck does not carry.
 //   [0] mask of lost legs, of stuck legs, of lame legs; groups of the gait
 //   [1] of lost legs the first bone that is lost: legs 0 to 5, 6 to 11, 12 to 17 and 18 to 23 (packedBone)
 //   [2] shift of the homes x, y, z (model, m); share of the desired velocity
 //   [3 + leg] group, lag in it, mask of the legs that must stand while it is in the air; how many times as
 //   long as others its step lasts
+// Below so many legs that carry a creature lies on its belly.
+SKITTER_CONST int FEWEST_THAT_WALK = 3;
+// How many times as long as others the step of a lame leg lasts.
+SKITTER_CONST float LAME_SLOWNESS = 1.5;
 SKITTER_CONST int HURT_LEGS = 3;  // where its vec4 of legs begin
 SKITTER_FUNCTION int hurtStride(int legs) { return HURT_LEGS + legs; }
 // Six bones, each below HURT_BONES, are one exact float.
@@ -306,8 +311,18 @@ SKITTER_CONST float REACTION_FALLING = 2.0;
 SKITTER_CONST float REACTION_LYING = 3.0;
 SKITTER_CONST float REACTION_RIGHTING = 4.0;
 SKITTER_CONST float REACTION_RISING = 5.0;
-// Below so many legs that carry a creature lies on its belly, and cannot fall.
-SKITTER_CONST int FEWEST_THAT_FALL = 3;
+
+// search, per agent of a herd that adapts, written by adapt (docs/stages/adapt.md).
+//   [0] masks of idle and of lame legs that it has noticed, what it does (SEARCH_), trials that it has made
+//   [1] candidate whose gait it has, seconds of its trial; candidate and fitness of its best trial
+//   [2] sums of its trial: wanted way, progress (m), time without a safe support (s), unused
+//   [3 + i] trials 2i and 2i + 1, each: candidate, fitness
+SKITTER_CONST float SEARCH_AT_EASE = 0.0;
+SKITTER_CONST float SEARCH_SEARCHES = 1.0;
+SKITTER_CONST float SEARCH_SETTLED = 2.0;
+SKITTER_CONST int SEARCH_TRIALS = 3;        // where its trials begin
+SKITTER_CONST int SEARCH_MOST_TRIALS = 20;  // then it is settled
+SKITTER_CONST int SEARCH_STRIDE = SEARCH_TRIALS + SEARCH_MOST_TRIALS / 2;
 
 // rate, per agent where there are levels of rate, written by wake (docs/levels.md). All agents of a block
 // have the same.
@@ -425,6 +440,7 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
   /* It counts in the tick that it names alone. */ \
   RECORD(PUSH,   push,   54, agent,   PUSH_STRIDE,                     bound,      false, false) \
   RECORD(RATE,   rate,   56, agent,   RATE_STRIDE,                     bound,      false, true) \
+  RECORD(SEARCH, search, 75, agent,   SEARCH_STRIDE,                   bound,      false, true) \
   /* Looked at by measure, and in herds with reactions by react and where feet go. */ \
   RECORD(CARRIED, carried, 58, agent, CARRIED_STRIDE,                  hurt,       false, true)
 // clang-format on

@@ -113,6 +113,9 @@ struct Herd {
   // Whether its agents stumble, fall and get up (Crowd::push, docs/reactions.md). Their legs can be hurt
   // then, too. Of controller adaptive, with the solver activeSet.
   bool reactions = false;
+  // Whether an agent that is hurt is not told which legs, and tries gaits until one is good (docs/evolve.md).
+  // Of controller adaptive, in herds whose legs can be hurt; its agents carry nothing.
+  bool adapts = false;
 
   bool operator==(const Herd&) const = default;
 };

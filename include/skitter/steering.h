@@ -94,6 +94,18 @@ struct Reaction {
   float downBefore = 0;  // seconds of all those falls from which it stood again
 };
 
+// What an agent of a herd that adapts does (Herd::adapts, docs/evolve.md#while-they-walk).
+enum class SearchPhase { atEase, searching, settled };
+constexpr const char* nameOf(SearchPhase phase) {
+  constexpr std::array names = {"at ease", "searching", "settled"};
+  return names[static_cast<size_t>(phase)];
+}
+struct Search {
+  SearchPhase phase = SearchPhase::atEase;
+  uint32_t trials = 0;  // that have ended since the agent was hurt last
+  float best = 0;       // the highest fitness of these
+};
+
 // Goal records of a run of a herd's agents on the device, for shaders of the caller's, which may write them:
 // GOAL_STRIDE vec4 per agent (include/skitter/records.h), that of agent firstAgent + i beginning with
 // vec4 GOAL_STRIDE * (first + i). Equal herds share buffers. Owned by the crowd.

@@ -10,6 +10,7 @@
 
 layout(local_size_x = WORK_GROUP) in;
 layout(constant_id = CONSTANT_LEGS) const int LEGS = 8;
+#include "lib/support.glsl"
 layout(push_constant) uniform TrialBlock { TrialConstants trial; };
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -19,36 +20,11 @@ LOAD4_BUFFER(BINDING_TIP, tips);
 LOAD4_BUFFER(BINDING_TRIAL, trials);
 STORE4_BUFFER(BINDING_TRIAL_OUT, trialsOut);
 
-const float FAR = 3e38;
-
 // From one sample to the next, across tiles.
 vec3 moved(vec3 now, vec3 before) {
   vec3 way = now - before;
   way.xz -= TILE_SIZE * floor(way.xz / TILE_SIZE + 0.5);
   return way;
-}
-
-// How far the centre is inside the hull of those of `q` that count; the others are copies of one that does. The least
-// support is on a normal of a line through two of them, or right away from one.
-float marginOf(vec2 q[LEGS]) {
-  float margin = FAR, none = 1e-12 * trial.legLength * trial.legLength;
-  for (int i = 0; i < LEGS; ++i) {
-    vec2 away = -unit(q[i]);
-    float support = -FAR;
-    for (int k = 0; k < LEGS; ++k) support = max(support, dot(away, q[k]));
-    margin = dot(q[i], q[i]) > none ? min(margin, support) : margin;
-    for (int j = 0; j < i; ++j) {
-      vec2 edge = q[j] - q[i], normal = unit(vec2(-edge.y, edge.x));
-      float high = -FAR, low = FAR;
-      for (int k = 0; k < LEGS; ++k) {
-        float along = dot(normal, q[k]);
-        high = max(high, along);
-        low = min(low, along);
-      }
-      margin = dot(edge, edge) > none ? min(margin, min(high, -low)) : margin;
-    }
-  }
-  return margin < FAR ? margin : 0.0;
 }
 
 void main() {
@@ -83,7 +59,7 @@ void main() {
   }
   for (int leg = 0; leg < LEGS; ++leg)
     q[leg] = LOAD4(feet, firstLeg + leg * BLOCK).w >= 1.0 ? q[leg] : anchor;
-  float margin = supported ? marginOf(q) : -trial.legLength;
+  float margin = supported ? marginOf(q, trial.legLength) : -trial.legLength;
 
   float turned = phase - last.w;
   turned -= floor(turned);

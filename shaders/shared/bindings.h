@@ -58,6 +58,9 @@ BINDING BINDING_TRAIL = 72;
 // Levels of rate (shared/levels.h).
 BINDING BINDING_LEVELS = 74;
 
+// Gaits that agents try (shared/adapt.h). 75 and 76 are a record's.
+BINDING BINDING_GAIT_MAP = 77;
+
 // Specialization constants.
 BINDING CONSTANT_LEGS = 0;
 BINDING CONSTANT_BONES = 1;
@@ -77,7 +80,8 @@ BINDING CONSTANT_SLEEP = 25;    // SLEEP_
 BINDING CONSTANT_FEET = 26;     // tips are written, and feet where no other stage needs them
 BINDING CONSTANT_RESERVE = 29;  // whether places may be empty
 BINDING CONSTANT_LEVELS = 30;   // whether blocks tick at rates of their own (docs/levels.md)
-BINDING CONSTANT_AVOIDS = 31;   // whether the herd avoids, so that steer is avoid's record
+BINDING CONSTANT_CANDIDATES = 32;  // gaits of the map that agents try
+BINDING CONSTANT_AVOIDS = 31;      // whether the herd avoids, so that steer is avoid's record
 BINDING CONSTANT_HERD_STEPS = 28;  // 2 to their power is at least the number of herds in a page
 // From here on the numbers with which the rig's records of legs begin, 4 * RIG_LEG_STRIDE a leg.
 BINDING CONSTANT_RIG_LEGS = 100;

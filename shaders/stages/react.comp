@@ -48,7 +48,7 @@ Legs legsOf(int agent, Body body, uint idle) {
 // Whether a leg that can step reaches the capture point, which is `ahead` of the body's centre.
 bool isCaught(int agent, Legs legs, mat3 frame, vec3 shift, vec2 ahead) {
   vec2 centre = parameters.bodyHeight * frame[1].xz;
-  bool caught = bitCount(legs.carry) < FEWEST_THAT_FALL;
+  bool caught = bitCount(legs.carry) < FEWEST_THAT_WALK;
   [[unroll]] for (int leg = 0; leg < LEGS; ++leg) {
     uint neighbours = uint(HURT_LEG(agent, leg).z);
     bool steps = (legs.air >> leg & 1u) != 0u || ((legs.planted >> leg & 1u) != 0u && (neighbours & legs.air) == 0u);

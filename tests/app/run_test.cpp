@@ -123,14 +123,27 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(files(), std::vector<std::string>{"run.json"});
   const nlohmann::json run = json("run.json");
-  EXPECT_EQ(keysOf(run),
-            (std::set<std::string>{"device",     "agents",           "ticks",
-                                   "seed",       "tickMilliseconds", "cpuMicrosecondsPerAgentTick",
-                                   "watchEvery", "fidelity",         "crowding",
-                                   "foraging",   "damage",           "reactions",
-                                   "herds",      "levels",           "sleeping",
-                                   "stateHash",  "ticksWanted",      "interrupted",
-                                   "manifest",   "resumedAt"}));
+  EXPECT_EQ(keysOf(run), (std::set<std::string>{"device",
+                                                "agents",
+                                                "ticks",
+                                                "seed",
+                                                "tickMilliseconds",
+                                                "cpuMicrosecondsPerAgentTick",
+                                                "watchEvery",
+                                                "fidelity",
+                                                "crowding",
+                                                "foraging",
+                                                "damage",
+                                                "reactions",
+                                                "searches",
+                                                "herds",
+                                                "levels",
+                                                "sleeping",
+                                                "stateHash",
+                                                "ticksWanted",
+                                                "interrupted",
+                                                "manifest",
+                                                "resumedAt"}));
   EXPECT_TRUE(run.at("foraging").empty()) << "nobody does";
   EXPECT_TRUE(run.at("damage").is_null()) << "nobody is hurt";
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";

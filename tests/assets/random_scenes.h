@@ -159,7 +159,7 @@ class RandomScenes {
   Herd herd() {
     Herd made;
     auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-           avoid, ways, threat, forage, phase, colour, tint, hurt, reactions] = made;
+           avoid, ways, threat, forage, phase, colour, tint, hurt, reactions, adapts] = made;
     if (coin()) rig = "/rigs/" + text();
     controller = one(allControllers);
     clips.resize(whole(0, 2));
@@ -189,6 +189,7 @@ class RandomScenes {
     maybe(tint, 0, 1);
     hurt = coin();
     reactions = coin();
+    adapts = coin();
     return made;
   }
   Load load() {

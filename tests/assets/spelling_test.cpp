@@ -46,7 +46,7 @@ TEST(Spelling, NoNameIsNearWhereMoreThanAThirdOfTheLettersDiffer) {
 TEST(Spelling, ScenesNameTheNearestKeyAndTheNearestName) {
   const std::pair<const char*, const char*> cases[] = {
       {R"({"herds": [{"agent": 5}]})",
-       "herds[0].agent is no known key; did you mean agents? Expected one of agents, avoid"},
+       "herds[0].agent is no known key; did you mean agents? Expected one of adapts, agents, avoid"},
       {R"({"herds": [{"goal": {"targets": [0, 0]}}]})",
        "herds[0].goal.targets is no known key; did you mean target? Expected one of agent, herd, kind"},
       {R"({"herds": [{"controller": "adaptiv"}]})",
@@ -54,7 +54,8 @@ TEST(Spelling, ScenesNameTheNearestKeyAndTheNearestName) {
       {R"({"herds": [{"spawn": {"kind": "lane"}}]})",
        R"(spawn.kind is "lane"; did you mean lanes? Expected one of "lanes", "grid")"},
       {R"({"herds": [{"controller": 5}]})", R"(controller is 5, expected one of "adaptive", "loop")"},
-      {R"({"herds": [{"quantity": 5}]})", "herds[0].quantity is no known key, expected one of agents, avoid"},
+      {R"({"herds": [{"quantity": 5}]})",
+       "herds[0].quantity is no known key, expected one of adapts, agents, avoid"},
   };
   for (const auto& [json, expected] : cases) {
     const std::string what = inputFault([&, text = json] { parseScene(text, "bad.json", ""); });

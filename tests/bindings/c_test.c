@@ -535,6 +535,27 @@ static skitter_leg_state legOf(const skitter_crowd* crowd, skitter_agent_id agen
   return state;
 }
 
+static void testSearches(skitter_device* device) {
+  skitter_crowd* crowd = makeCrowdOf(
+      "{\"herds\": [{\"agents\": 2, \"hurt\": true, \"adapts\": true, "
+      "\"goal\": {\"kind\": \"velocity\", \"velocity\": [0, 1]}}]}",
+      device, NULL);
+  skitter_agent_leg leg = {0};
+  skitter_search searches[2];
+  leg.leg = 3;
+  leg.bone = SKITTER_STUMP;
+  leg.state = SKITTER_LEG_LOST;
+  OK(skitter_crowd_agent_id(crowd, 0, 1, &leg.agent));
+  OK(skitter_crowd_hurt(crowd, &leg, 1));
+  OK(skitter_crowd_step(crowd, 260, dt));
+  REFUSED(skitter_crowd_searches(crowd, 0, NULL, 2), "searches is NULL");
+  REFUSED(skitter_crowd_searches(crowd, 0, searches, 1), "searches has room for 1");
+  OK(skitter_crowd_searches(crowd, 0, searches, 2));
+  CHECK(searches[0].phase == SKITTER_SEARCH_AT_EASE && searches[0].trials == 0);
+  CHECK(searches[1].phase != SKITTER_SEARCH_AT_EASE && searches[1].trials == 1 && searches[1].best > 0.5f);
+  OK(skitter_crowd_destroy(crowd));
+}
+
 static void testLegs(void) {
   skitter_device* device = openDevice();
   skitter_crowd* crowd = makeCrowdOf(
@@ -610,6 +631,7 @@ static void testLegs(void) {
   REFUSED(skitter_crowd_leg_state(crowd, ids[1], 8, &state), "leg is 8");
   REFUSED(skitter_crowd_leg_state(crowd, ids[1], 0, NULL), "state is NULL");
   OK(skitter_crowd_destroy(crowd));
+  testSearches(device);
   OK(skitter_device_destroy(device));
 }
 
@@ -1901,7 +1923,6 @@ static void testNotes(skitter_device* device) {
   remove("piebald.glb");
   remove("piebald.rig.json");
   NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, NULL, &renderer));
-  NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, &options, &fine));
   OK(skitter_renderer_note(renderer, 0, &note));
   CHECK(note != NULL && strstr(note, "images[0]: corrupt PNG: ") != NULL);
   OK(skitter_renderer_note(renderer, 1, &note));
@@ -1943,6 +1964,7 @@ static void testPictures(void) {
   }
   CHECK(renderer == NULL);
   NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, NULL, &renderer));
+  NEED(skitter_renderer_create(crowd, pictureWidth, pictureHeight, &options, &fine));
   /* It keeps the crowd. */
   OK(skitter_crowd_destroy(crowd));
   REFUSED(skitter_renderer_pixels(renderer, pixels, pictureBytes), "no picture");
@@ -1955,6 +1977,10 @@ static void testPictures(void) {
   OK(skitter_renderer_draw(renderer, &view));
   OK(skitter_renderer_pixels(renderer, again, pictureBytes));
   CHECK(memcmp(pixels, again, sizeof pixels) == 0);
+  OK(skitter_renderer_draw(fine, &view));
+  OK(skitter_renderer_pixels(fine, again, pictureBytes));
+  CHECK(memcmp(pixels, again, sizeof pixels) != 0);
+  OK(skitter_renderer_destroy(fine));
   up = view;
   up.target[1] = up.eye[1] + 10;
   OK(skitter_renderer_draw(renderer, &up));
@@ -1977,10 +2003,6 @@ static void testPictures(void) {
   for (i = 0; i < pictureBytes; i += 4) CHECK(again[i] == 255 && again[i + 1] == 0 && again[i + 2] == 0);
   OK(skitter_renderer_image(renderer, &image));
   CHECK(image != VK_NULL_HANDLE);
-  OK(skitter_renderer_draw(fine, &view));
-  OK(skitter_renderer_pixels(fine, again, pictureBytes));
-  CHECK(memcmp(pixels, again, sizeof pixels) != 0);
-  OK(skitter_renderer_destroy(fine));
   /* Its spiders have no images. */
   REFUSED(skitter_renderer_note(renderer, 0, NULL), "note is NULL");
   OK(skitter_renderer_note(renderer, 0, &note));

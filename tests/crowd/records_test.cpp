@@ -84,19 +84,20 @@ std::vector<crowd::Stage> everyStage() {
   return stages;
 }
 
-std::vector<std::string> namesOf(Controller controller, bool fuse, bool sleep, bool avoids = false,
-                                 bool reacts = false) {
+std::vector<std::string> namesOf(Controller controller, bool fuse, bool sleep,
+                                 const crowd::StageForms& forms = {}) {
   CrowdOptions options = everything(fuse);
   options.sleep = sleep;
   std::vector<std::string> names;
-  for (const crowd::Stage& stage : crowd::stagesOf(controller, options, {.avoids = avoids, .reacts = reacts}))
+  for (const crowd::Stage& stage : crowd::stagesOf(controller, options, forms))
     names.push_back(stage.makes.name());
   return names;
 }
 
 TEST(Stages, AreThoseOfTheirPage) {
   for (const Controller controller : allControllers)
-    EXPECT_EQ(namesOf(controller, false, true, true, true), stagesOnThePage({nameOf(controller)}))
+    EXPECT_EQ(namesOf(controller, false, true, {.avoids = true, .reacts = true, .adapts = true}),
+              stagesOnThePage({nameOf(controller)}))
         << nameOf(controller);
 }
 
@@ -104,19 +105,19 @@ TEST(Stages, AreMadeAtOnceWhereTheyStandInARow) {
   for (const Controller controller : allControllers)
     for (const bool sleep : {false, true})
       for (const bool avoids : {false, true})
-        EXPECT_EQ(fmt::format("{}", fmt::join(namesOf(controller, true, sleep, avoids), "+")),
-                  fmt::format("{}", fmt::join(namesOf(controller, false, sleep, avoids), "+")));
+        EXPECT_EQ(fmt::format("{}", fmt::join(namesOf(controller, true, sleep, {.avoids = avoids}), "+")),
+                  fmt::format("{}", fmt::join(namesOf(controller, false, sleep, {.avoids = avoids}), "+")));
   using testing::IsSupersetOf;
   EXPECT_THAT(namesOf(Controller::adaptive, true, false), IsSupersetOf({"navigate+body+gait", "swing+ik"}));
   // Where agents sleep, wake comes after navigate.
   EXPECT_THAT(namesOf(Controller::adaptive, true, true),
               IsSupersetOf({"navigate", "wake", "body+gait", "swing+ik"}));
   // Or avoid.
-  EXPECT_THAT(namesOf(Controller::adaptive, true, false, true),
+  EXPECT_THAT(namesOf(Controller::adaptive, true, false, {.avoids = true}),
               IsSupersetOf({"navigate", "avoid", "body+gait", "swing+ik"}));
-  // react comes before body.
-  EXPECT_THAT(namesOf(Controller::adaptive, true, false, false, true),
-              IsSupersetOf({"navigate", "react", "body+gait", "swing+ik"}));
+  // adapt and react come before body.
+  EXPECT_THAT(namesOf(Controller::adaptive, true, false, {.reacts = true, .adapts = true}),
+              IsSupersetOf({"navigate", "adapt", "react", "body+gait", "swing+ik"}));
   CrowdOptions options = everything(true);
   options.shaders = {{.stage = "ik", .texel = {}, .storage = {}}};
   EXPECT_THAT(crowd::stagesOf(Controller::adaptive, options),
@@ -128,7 +129,7 @@ TEST(Records, ReplayHoldsAllThatAStageWrites) {
     const std::vector<validation::CheckedStage> checked = validation::checkedStages(controller);
     auto next = checked.begin();
     for (const crowd::Stage& stage :
-         crowd::stagesOf(controller, everything(false), {.avoids = true, .reacts = true})) {
+         crowd::stagesOf(controller, everything(false), {.avoids = true, .reacts = true, .adapts = true})) {
       if (stage.makes == crowd::StageId::wake) continue;
       SCOPED_TRACE(std::string(nameOf(controller)) + ", " + stage.makes.name());
       ASSERT_NE(next, checked.end());

@@ -334,11 +334,11 @@ Results beyondTheLimits(Device& device, Controller controller, const CrowdOption
 }
 
 // What the host has said happens before the first of them.
-void replayTicks(Device& device, Crowd& crowd, validation::Replay& replay, int ticks) {
+void replayTicks(Device& device, Crowd& crowd, validation::Replay& replay, int ticks, float dt = kTick) {
   crowd::applyChanges(implOf(crowd));
   HerdState before = crowd.download(0);
   for (int i = 0; i < ticks && !replay.hasRefused(); ++i) {
-    simulate(device, crowd, 1);
+    simulate(device, crowd, 1, dt);
     HerdState after = crowd.download(0);
     replay.tick(crowd.tick(), before, after);
     before = std::move(after);
@@ -387,6 +387,56 @@ Results losingLegs(Device& device, Controller controller, const CrowdOptions& op
   for (uint32_t agent = 0; agent < agents; agent += 2) crowd.heal(crowd.agentId(0, agent));
   crowd.heal(crowd.agentId(0, 23));
   run(45);
+  return replay.results();
+}
+
+// Agents that are not told what they lost try gaits: each is hurt in a way of its own, goes at a speed of its
+// own, some too slowly to try anything, and some turn. Ticks are long, for a trial takes seconds.
+Results tryingGaits(Device& device, Controller controller, const CrowdOptions& options) {
+  constexpr uint32_t agents = 16, legs = 8;
+  constexpr float longTick = 1.0f / 15;
+  const Heightfield ground = rollingGround();
+  Scene scene = hurtScene(agents, controller);
+  scene.herds[0].adapts = true;
+  Crowd crowd(device, ground, scene, options);
+  std::vector<AgentLeg> hurt;
+  std::vector<AgentGoal> goals;
+  for (uint32_t agent = 0; agent < agents; ++agent) {
+    const AgentId id = crowd.agentId(0, agent);
+    const auto add = [&](uint32_t leg, LegState state) { hurt.push_back({id, leg % legs, state}); };
+    if (agent == 15) {  // it lies down
+      for (uint32_t leg = 0; leg < legs - 2; ++leg) add(leg, LegState::lost);
+    } else if (agent % 4 == 1) {
+      add(5 * agent + 2, LegState::lame);
+    } else {
+      for (uint32_t k = 0; k <= agent / 4; ++k) add(agent + k * (1 + agent % 3), LegState::lost);
+      if (agent % 3 == 0) add(3 * agent + 1, LegState::stuck);
+    }
+    const float speed = agent == 6 || agent == 7 ? 0.15f : 1 + 0.1f * static_cast<float>(agent % 5);
+    const float angle = 0.6f * static_cast<float>(agent);
+    goals.push_back(
+        {id,
+         {.kind = Goal::Kind::velocity, .velocity = speed * glm::vec2(std::sin(angle), std::cos(angle))}});
+  }
+  crowd.steer(goals);
+  simulate(device, crowd, 10, longTick);
+  crowd.hurt(hurt);
+  return replay(device, crowd, ground, 290, longTick);
+}
+
+// On three or four legs agents try one gait after the other; only their trials are looked at.
+Results tryingManyGaits(Device& device, Controller controller, const CrowdOptions& options) {
+  constexpr uint32_t agents = 4, legs = 8;
+  constexpr float longTick = 1.0f / 15;
+  Scene scene = hurtScene(agents, controller);
+  scene.herds[0].adapts = true;
+  Crowd crowd(device, rollingGround(), scene, options);
+  simulate(device, crowd, 10, longTick);
+  for (uint32_t agent = 0; agent < agents; ++agent)
+    for (uint32_t k = 0; k < 4 + agent % 2; ++k)
+      crowd.hurt(crowd.agentId(0, agent), (agent + k * (1 + agent / 2)) % legs);
+  validation::Replay replay(validation::herdFacts(kindOf(crowd), crowd.terrain()), {crowd::StageId::adapt});
+  replayTicks(device, crowd, replay, 13 * 63, longTick);
   return replay.results();
 }
 
@@ -536,6 +586,8 @@ const std::vector<Situation>& situations() {
       {"pushedUnderLoads", {Controller::adaptive}, pushedUnderLoads, true},
       {"atRatesOfTheirOwn", {Controller::adaptive, Controller::loop}, atRatesOfTheirOwn, true},
       {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs, true},
+      {"tryingGaits", {Controller::adaptive}, tryingGaits, true},
+      {"tryingManyGaits", {Controller::adaptive}, tryingManyGaits},
       {"carryingLoads", {Controller::adaptive, Controller::loop, Controller::planted}, carryingLoads, true},
   };
   return all;

@@ -152,7 +152,7 @@ TEST(RigGaits, LameLegsAreSlowerByTableToo) {
   EXPECT_FLOAT_EQ(made.speed, whole.speed * (1 - 1.0f / 14));
   for (size_t leg = 0; leg < 8; ++leg)
     EXPECT_FLOAT_EQ(made.legs[leg].slowness,
-                    whole.legs[leg].slowness * ((lame >> leg & 1u) != 0 ? crowd::lameSlowness : 1.0f));
+                    whole.legs[leg].slowness * ((lame >> leg & 1u) != 0 ? shared::LAME_SLOWNESS : 1.0f));
 }
 
 TEST(RigGaits, OnlyTheNextLegsWaitWhereSoSaid) {

@@ -470,6 +470,19 @@ TEST_F(PublicCrowd, WhoIsPushedFallsAndStandsAgain) {
   });
 }
 
+TEST_F(PublicCrowd, WhoIsNotToldWhatItLostTriesGaits) {
+  Scene scene = standingScene(2);
+  scene.herds[0].hurt = scene.herds[0].adapts = true;
+  scene.herds[0].goal = {.kind = Goal::Kind::velocity, .velocity = {0, 1}};
+  Crowd crowd(device(), flatGround(), scene);
+  crowd.hurt(crowd.agentId(0, 1), 3);
+  walk(device(), crowd, 260);
+  EXPECT_EQ(crowd.searches(0)[0].phase, SearchPhase::atEase);
+  EXPECT_NE(crowd.searches(0)[1].phase, SearchPhase::atEase);
+  EXPECT_EQ(crowd.searches(0)[1].trials, 1u);
+  EXPECT_GT(crowd.searches(0)[1].best, 0.5f);
+}
+
 // Two of four in one place, the others far from anybody.
 TEST_F(PublicCrowd, MeasuresHowFarAgentsOverlap) {
   Crowd crowd(device(), flatGround(), standingScene(4), {.crowding = true});

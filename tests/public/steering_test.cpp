@@ -26,6 +26,11 @@ TEST(PublicReactionPhase, HasAName) {
   EXPECT_STREQ(nameOf(ReactionPhase::rising), "rising");
 }
 
+TEST(PublicSearchPhase, HasAName) {
+  EXPECT_STREQ(nameOf(SearchPhase::atEase), "at ease");
+  EXPECT_STREQ(nameOf(SearchPhase::settled), "settled");
+}
+
 TEST(PublicHerdId, IsOfNoHerdByDefault) {
   EXPECT_EQ(HerdId(), (HerdId{UINT32_MAX, 0}));
   EXPECT_NE((HerdId{1, 0}), (HerdId{1, 2}));

@@ -271,6 +271,19 @@ def test_legs_are_hurt_and_heal(device, standing):
         whole.hurt(whole.agent_id(0), "R2")
 
 
+def test_agents_try_gaits(device, standing):
+    standing.herds[0].hurt = standing.herds[0].adapts = True
+    standing.herds[0].goal = velocity(0, 1)
+    crowd = skitter.Crowd(device, standing)
+    crowd.hurt(crowd.agent_id(1), "R2")
+    crowd.step(260)
+    at_ease, searches = crowd.searches()[:2]
+    assert at_ease == {"phase": "at ease", "trials": 0, "best": 0}
+    assert searches["phase"] in ("searching", "settled") and searches["trials"] == 1 and 0.5 < searches["best"] <= 1
+    with pytest.raises(skitter.InputError, match="adapts is true, expected false where agents carry"):
+        crowd.carry(crowd.agent_id(0), skitter.Load(1))
+
+
 def test_agents_carry_loads(device, standing):
     standing.herds[0].hurt = True
     crowd = skitter.Crowd(device, standing)

@@ -7,6 +7,7 @@
 #include "cpu_reference/heightfield.h"
 #include "cpu_reference/stages/measure.h"
 #include "crowd/record.h"
+#include "gait_maps.h"
 #include "skitter/records.h"
 #include "validation/convert.h"
 #include "validation/free_run.h"
@@ -28,23 +29,37 @@ ReferenceHerd::ReferenceHerd(const Heightfield& terrain, uint32_t agents, int pa
 
 HerdFacts ReferenceHerd::facts() const {
   const crowd::IkPlan ik{shared::SOLVER_FABRIK, plan.approachIterations, plan.polishIterations};
-  return {rig_, terrain_, parameters_, rigRecords_, ik};
+  HerdFacts facts{rig_, terrain_, parameters_, rigRecords_, ik};
+  facts.gaitMap = gaitMap_;
+  return facts;
 }
 
 Replay ReferenceHerd::replay() const { return Replay(facts()); }
 
+void ReferenceHerd::adapt(const reference::GaitMap& map) {
+  gaitMap_ = recordsOf(map);
+  for (const Record record : {Record::hurt, Record::carried, Record::search}) make(record);
+  const reference::Creature creature = creatureOf(rigRecords_, legs(), bones_, rig_.groupCount());
+  reference::Hurt whole;
+  whole.groups = creature.groups;
+  for (const reference::Limb& limb : creature.limbs)
+    whole.legs.push_back({.group = limb.group, .lag = limb.lag, .neighbours = limb.neighbours});
+  for (size_t agent = 0; agent < state_.agents; ++agent) putHurtGait(state_, agent, whole);
+}
+
+void ReferenceHerd::make(Record record) {
+  const int each = crowd::infoOf(record).per == crowd::Per::leg ? legs() : 1;
+  const int stride = crowd::strideOf(record, legs(), bones_, 0);
+  state_.of(record).resize(4 * size_t{state_.agents} * static_cast<size_t>(each * stride));
+}
+
 void ReferenceHerd::spawn(uint32_t agents) {
   const size_t count = agents, legCount = static_cast<size_t>(legs());
   state_.agents = agents;
-  const auto make = [&](Record record) {
-    const size_t each = crowd::infoOf(record).per == crowd::Per::leg ? legCount : 1;
-    state_.of(record).resize(4 * count * each *
-                             static_cast<size_t>(crowd::strideOf(record, legs(), bones_, 0)));
-  };
   for (const Record record : allRecords)
     if (crowd::infoOf(record).kept == crowd::Kept::always) make(record);
   for (const CheckedStage& stage : checkedStages(Controller::adaptive))
-    if (stage.stage != crowd::StageId::react)  // nobody pushes it
+    if (stage.stage != crowd::StageId::react && stage.stage != crowd::StageId::adapt)
       for (const Record record : stage.writes) make(record);
   make(Record::metric);
   make(Record::watch);
@@ -95,11 +110,13 @@ void ReferenceHerd::tickAgent(size_t agent) {
   for (size_t l = 0; l < static_cast<size_t>(legs()); ++l) {
     const size_t leg = agent * static_cast<size_t>(legs()) + l;
     feet.push_back(footOf(state_, leg));
-    chains.push_back(chainOf(state_, leg, bones_));
+    chains.push_back(validation::chainOf(state_, leg, bones_));
   }
+  const reference::Creature creature =
+      state_.hurt.empty() ? setting.creature : hurtCreatureOf(setting, state_, agent);
   const auto measured =
-      reference::measure(setting.tuning, setting.heights, setting.creature, bodyOf(state_, agent), feet,
-                         chains, state_.tick - 1, watchedOf(state_, agent, legs()), metricOf(state_, agent));
+      reference::measure(setting.tuning, setting.heights, creature, bodyOf(state_, agent), feet, chains,
+                         state_.tick - 1, watchedOf(state_, agent, legs()), metricOf(state_, agent));
   putMetric(state_, agent, measured.metric);
   putWatched(state_, agent, measured.watched);
 }

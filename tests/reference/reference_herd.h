@@ -1,5 +1,7 @@
 #pragma once
 
+#include "cpu_reference/stages/adapt.h"
+#include "crowd/gait_map.h"
 #include "skitter/crowd.h"
 #include "spider.h"
 #include "validation/replay.h"
@@ -11,6 +13,9 @@ namespace skitter::test {
 class ReferenceHerd {
  public:
   ReferenceHerd(const Heightfield& terrain, uint32_t agents, int padding = 0);
+
+  // From the next tick on its agents can be hurt, and adapt with the gaits of that map.
+  void adapt(const reference::GaitMap& map);
 
   void tick();
   uint64_t ticks() const { return state_.tick; }
@@ -26,6 +31,7 @@ class ReferenceHerd {
   static constexpr reference::IkPlan plan = {reference::IkSolver::fabrik, 1, 2};
 
  private:
+  void make(Record record);
   void spawn(uint32_t agents);
   void tickAgent(size_t agent);
 
@@ -33,6 +39,7 @@ class ReferenceHerd {
   Heightfield terrain_;
   shared::Parameters parameters_;
   std::vector<float> rigRecords_;
+  crowd::GaitMap gaitMap_;
   int bones_;
   HerdState state_;
 };

@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "cpu_reference/fields.h"
+#include "gait_maps.h"
 #include "reference_herd.h"
 #include "skitter/error.h"
 #include "skitter/records.h"
@@ -77,7 +78,7 @@ TEST(Replay, leavesOutWhatAStateHasNot) {
   std::vector<std::string> few;
   for (const validation::CheckedStage& checked : validation::checkedStages(Controller::adaptive)) {
     using enum crowd::StageId;
-    if (checked.stage != avoid && checked.stage != react && checked.stage != pose &&
+    if (checked.stage != avoid && checked.stage != adapt && checked.stage != react && checked.stage != pose &&
         checked.stage != measure && checked.stage != footfall)
       few.emplace_back(nameOf(checked.stage));
   }
@@ -142,15 +143,21 @@ TEST(Replay, metricsMayBeAbsent) {
 struct Fault {
   std::string name, stage;
   std::function<void(HerdState& after)> spoil;
+
+  bool isOfOneWhoAdapts() const { return stage == "adapt"; }
 };
 
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 
 class ReplayFault : public testing::TestWithParam<Fault> {
  protected:
-  std::vector<StageResult> replay(const std::function<void(HerdState&)>& spoil) {
+  std::vector<StageResult> replay(const std::function<void(HerdState&)>& spoil, bool adapts = false) {
     // Long enough for the legs to be in mid step, up to a tick in which leg 0 of agent 0 lifts.
     ReferenceHerd herd(roughField(), 1);
+    if (adapts) {
+      herd.adapt(oneLegMap(spiderCreature()));
+      herd.state().hurt[1] = 1 << 3;  // leg 3 is stuck
+    }
     HerdState before;
     do {
       before = herd.state();
@@ -165,9 +172,10 @@ class ReplayFault : public testing::TestWithParam<Fault> {
 };
 
 TEST_P(ReplayFault, isFound) {
-  const auto clean = replay([](HerdState&) {});
+  const bool adapts = GetParam().isOfOneWhoAdapts();
+  const auto clean = replay([](HerdState&) {}, adapts);
   for (const StageResult& result : clean) ASSERT_TRUE(result.pass) << validation::table(clean);
-  for (const StageResult& result : replay(GetParam().spoil)) {
+  for (const StageResult& result : replay(GetParam().spoil, adapts)) {
     if (result.name != GetParam().stage) {
       EXPECT_TRUE(result.pass) << result.name;
       continue;
@@ -212,6 +220,7 @@ std::vector<Fault> fieldFaults() {
 #define POSE(type, name, initial, place, roundings) ADD(pose, "pose", type, name, place)
 #define METRIC(type, name, initial, place, roundings) ADD(metric, "measure", type, name, place)
 #define TRAIL(type, name, initial, place, roundings) ADD(watch, "measure", type, name, place)
+#define SEARCH(type, name, initial, place, roundings) ADD(search, "adapt", type, name, place)
   SKITTER_GOAL_FIELDS(GOAL)
   SKITTER_BODY_FIELDS(BODY)
   SKITTER_GAIT_FIELDS(GAIT)
@@ -222,6 +231,7 @@ std::vector<Fault> fieldFaults() {
   SKITTER_POSE_FIELDS(POSE)
   SKITTER_METRIC_FIELDS(METRIC)
   SKITTER_TRAIL_FIELDS(TRAIL)
+  SKITTER_SEARCH_FIELDS(SEARCH)
   return faults;
 }
 
@@ -263,6 +273,24 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"tipTrail", "measure", [](HerdState& s) { s.watch[13] += 1e-4f; }},
                     Fault{"slip", "measure", [](HerdState& s) { s.watch[15] += 1e-3f; }},
                     Fault{"metricNan", "measure", [](HerdState& s) { s.metric[4] = notANumber; }}),
+    [](const auto& fault) { return fault.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    ofOneWhoAdapts, ReplayFault,
+    testing::Values(Fault{"searchDoes", "adapt", [](HerdState& s) { s.search[2] = shared::SEARCH_SETTLED; }},
+                    Fault{"searchTrials", "adapt", [](HerdState& s) { s.search[3] = 1; }},
+                    Fault{"trialCandidate", "adapt", [](HerdState& s) { s.search[12] = 1; }},
+                    Fault{"trialFitness", "adapt", [](HerdState& s) { s.search[51] = 1e-3f; }},
+                    Fault{"searchUnused", "adapt", [](HerdState& s) { s.search[11] = 1e-3f; }},
+                    Fault{"searchNan", "adapt", [](HerdState& s) { s.search[8] = notANumber; }},
+                    Fault{"hurtGroups", "adapt", [](HerdState& s) { s.hurt[3] += 1; }},
+                    Fault{"hurtShift", "adapt", [](HerdState& s) { s.hurt[9] += 1e-6f; }},
+                    Fault{"hurtSpeed", "adapt", [](HerdState& s) { s.hurt[11] += 1e-6f; }},
+                    Fault{"hurtGroup", "adapt", [](HerdState& s) { s.hurt[12] += 1; }},
+                    Fault{"hurtLag", "adapt", [](HerdState& s) { s.hurt[13] += 1e-6f; }},
+                    Fault{"hurtNeighbours", "adapt", [](HerdState& s) { s.hurt[14] += 1; }},
+                    Fault{"hurtSlowness", "adapt", [](HerdState& s) { s.hurt[4 * 10 + 3] += 1e-6f; }},
+                    Fault{"hurtNan", "adapt", [](HerdState& s) { s.hurt[8] = notANumber; }}),
     [](const auto& fault) { return fault.param.name; });
 
 // A spoilt limit or a lost bone cannot hide behind a tie.

@@ -63,6 +63,7 @@ class SleepersRecord : public testing::TestWithParam<KeptRecord> {
     for (const Record record : allRecords)
       if (crowd::infoOf(record).kept == crowd::Kept::always) fill(record);
     for (const KeptRecord& kept : keptRecords({{controller}})) fill(kept.record);
+    if (!state.hurt.empty()) fill(Record::carried);  // a herd that can be hurt has both
     for (size_t agent = 0; agent < agents; ++agent) {
       validation::putGoal(state, agent, {});
       validation::putSteer(state, agent, {0, 0}, true);

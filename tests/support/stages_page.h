@@ -47,11 +47,12 @@ inline std::vector<std::string> stagesOnThePage(const std::vector<std::string>& 
   return stages;
 }
 
-// Those that are replayed: wake decides nothing, and avoid and react are only of herds that ask for them.
+// Those that are replayed: wake decides nothing; avoid, adapt and react are only of herds that ask for them.
 inline std::vector<std::string> replayedOnThePage(const std::vector<std::string>& controllers,
                                                   bool avoids = false) {
   std::vector<std::string> stages = stagesOnThePage(controllers);
   std::erase(stages, "wake");
+  std::erase(stages, "adapt");
   std::erase(stages, "react");
   if (!avoids) std::erase(stages, "avoid");
   return stages;

@@ -60,6 +60,7 @@ void expectComparable(const Scene& scene, std::span<const crowd::StageId> stages
     return std::ranges::any_of(herds, [&](const Herd* herd) {
       const std::vector<CheckedStage> compared = checkedStages(herd->controller);
       return (stage != crowd::StageId::avoid || herd->avoid) &&
+             (stage != crowd::StageId::adapt || herd->adapts) &&
              (stage != crowd::StageId::react || herd->reactions) &&
              std::ranges::find(compared, stage, &CheckedStage::stage) != compared.end();
     });

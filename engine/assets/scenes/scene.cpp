@@ -208,7 +208,7 @@ void checkKeys(const Obstacle& obstacle, const std::string& file, const std::str
 template <class Fields>
 void keysOf(Fields& fields, Herd& herd) {
   auto& [rig, controller, clips, cuts, keys, solver, stepping, tuning, agents, reserve, spawn, goal, sizes,
-         avoid, ways, threat, forage, phase, colour, tint, hurt, reactions] = herd;
+         avoid, ways, threat, forage, phase, colour, tint, hurt, reactions, adapts] = herd;
   fields.file("rig", rig, "spider");
   fields.named("controller", controller, allControllers);
   fields.key("clips", clips);
@@ -231,6 +231,7 @@ void keysOf(Fields& fields, Herd& herd) {
   fields.key("tint", tint, 0, 1);
   fields.flag("hurt", hurt);
   fields.flag("reactions", reactions);
+  fields.flag("adapts", adapts);
 }
 
 template <class Fields>

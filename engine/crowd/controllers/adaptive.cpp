@@ -18,7 +18,7 @@ void prepareGait(const gpu::Context&, const skitter::Herd& from, const Rig&, Kin
 }
 
 void checkTick(const Kind& kind, float dt) {
-  const float ticks = (kind.hurts ? lameSlowness : 1.0f) * kind.parameters.swingStill / dt;
+  const float ticks = (kind.hurts ? shared::LAME_SLOWNESS : 1.0f) * kind.parameters.swingStill / dt;
   if (!(ticks < shared::MOST_STEP_TICKS))
     throw inputError(
         fmt::format("dt {:.3g} s: a step of {} would last {:.0f} ticks, expected fewer than {:.0f}", dt,
@@ -31,9 +31,9 @@ void checkTick(const Kind& kind, float dt) {
 const ControllerStages adaptiveController = {
     .all =
         [](const CrowdOptions&) {
-          return std::vector{navigateStage(), avoidStage(), wakeStage(),     reactStage(),
-                             bodyStage(),     gaitStage(),  footholdStage(), swingStage(),
-                             ikStage(),       poseStage(),  measureStage(),  footfallStage()};
+          return std::vector{navigateStage(), avoidStage(),   wakeStage(),     adaptStage(), reactStage(),
+                             bodyStage(),     gaitStage(),    footholdStage(), swingStage(), ikStage(),
+                             poseStage(),     measureStage(), footfallStage()};
         },
     .fused =
         [] {
