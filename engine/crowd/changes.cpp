@@ -197,7 +197,7 @@ void writeLegs(const AgentChange& change, const Page& page, uint32_t agent, Kind
   writes.add(page.carried, uint64_t{agent} * sizeof carried, carried);
 }
 
-// Who comes, or is hurt as it stands anew, has tried nothing.
+// An agent that comes has tried nothing, nor has one that is hurt as it stands anew.
 void forgetSearch(const Page& page, uint32_t agent, Writes& writes) {
   constexpr std::array<float, 4 * shared::SEARCH_STRIDE> none{};
   writes.add(page.search, uint64_t{agent} * sizeof none, none);

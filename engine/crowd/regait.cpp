@@ -32,7 +32,7 @@ constexpr double quickness = 0.75;
 constexpr int fewGroups = 2, mostGroups = 8;
 // Shares of the desired velocity that are tried, the largest first.
 constexpr double triedShares[] = {1, 0.9, 0.8, 0.7, 0.6, 0.5};
-// As many stand while others step, or all but one.
+// So many legs stand while others step, or all but one.
 constexpr size_t fewestThatWalk = shared::FEWEST_THAT_WALK;
 // Most of the body's height by which it is lowered.
 constexpr float lowestShare = 0.3f;

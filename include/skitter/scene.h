@@ -114,7 +114,7 @@ struct Herd {
   // then, too. Of controller adaptive, with the solver activeSet.
   bool reactions = false;
   // Whether an agent that is hurt is not told which legs, and tries gaits until one is good (docs/evolve.md).
-  // Of controller adaptive, in herds whose legs can be hurt; its agents carry nothing.
+  // The controller is adaptive, legs can be hurt, and agents carry nothing.
   bool adapts = false;
 
   bool operator==(const Herd&) const = default;

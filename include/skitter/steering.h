@@ -94,7 +94,7 @@ struct Reaction {
   float downBefore = 0;  // seconds of all those falls from which it stood again
 };
 
-// What an agent of a herd that adapts does (Herd::adapts, docs/evolve.md#while-they-walk).
+// The states of an agent whose herd adapts (Herd::adapts, docs/evolve.md#while-they-walk).
 enum class SearchPhase { atEase, searching, settled };
 constexpr const char* nameOf(SearchPhase phase) {
   constexpr std::array names = {"at ease", "searching", "settled"};

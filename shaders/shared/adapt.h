@@ -25,11 +25,10 @@ ADAPT_CONST float ADAPT_GOOD_ENOUGH = 0.9;   // share of the best in the map at 
 ADAPT_CONST float ADAPT_LENGTH = 1.2;
 
 // The map: an entry a candidate,
-//   [0] groups, share of the desired velocity, expected fitness; of the first entry: the highest of any, else
-//   unused [1] shift of the homes x, y, z (model, m); of the first entry: the first candidate that has it,
-//   else unused [2 + leg] as of a leg in `hurt`: group, lag in it, mask of the legs that must stand while it
-//   is in the air; how many times as long as others its step lasts then the legs' shares of time in which
-//   they stand, four a vec4
+//   [0] groups, share of the desired velocity, expected fitness; in the first entry the highest of these
+//   [1] shift of the homes x, y, z (model, m); in the first entry the first candidate that has the highest
+//   [2 + leg] group, lag, neighbours and slowness of a leg, as in `hurt`
+//   then the legs' shares of time in which they stand, four a vec4
 // and after the entries a row a candidate: its kernel with each candidate, four a vec4.
 ADAPT_CONST int GAIT_MAP_LEGS = 2;  // where the vec4 of legs begin
 ADAPT_FUNCTION int gaitMapStride(int legs) { return GAIT_MAP_LEGS + legs + (legs + 3) / 4; }

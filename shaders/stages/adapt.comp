@@ -177,7 +177,7 @@ void conclude(int agent, inout Search s) {
   s.clock = s.wanted = s.progress = s.unstable = 0.0;
 }
 
-// Of lame legs steps last longer.
+// Steps of lame legs last longer.
 void takeGait(int agent, vec4 masks, Search s) {
   int from = int(s.candidate) * MAP_STRIDE, to = agent * hurtStride(LEGS);
   vec4 head = LOAD4(gaitMap, from);
