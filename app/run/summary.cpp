@@ -216,7 +216,7 @@ std::optional<uint32_t> SearchFigures::trialsMost() const {
 
 std::optional<double> SearchFigures::fitness() const {
   if (settled == 0) return {};
-  return best / static_cast<double>(settled);
+  return sumOfBest / static_cast<double>(settled);
 }
 
 std::vector<SearchFigures> searchFigures(const Crowd& crowd) {
@@ -230,7 +230,7 @@ std::vector<SearchFigures> searchFigures(const Crowd& crowd) {
       if (each.phase != SearchPhase::settled) continue;
       ++herd.settled;
       herd.trials.push_back(each.trials);
-      herd.best += double{each.best};
+      herd.sumOfBest += double{each.best};
     }
     std::ranges::sort(herd.trials);
   }

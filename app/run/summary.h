@@ -45,7 +45,7 @@ struct SearchFigures {
   uint32_t herd = 0;
   uint64_t searching = 0, settled = 0;
   std::vector<uint32_t> trials = {};  // of each who is settled, ascending
-  double best = 0;                    // the sum of their highest fitnesses
+  double sumOfBest = 0;               // of their highest fitnesses
 
   std::optional<uint32_t> trialsMedian() const;
   std::optional<uint32_t> trialsMost() const;

@@ -45,8 +45,8 @@ Regait regaitByRule(const Rig& rig, const Tuning& tuning, const LegPattern& patt
 // As the rig's table has it for the pattern or for its mirror image (docs/evolve.md); else by rule.
 Regait regaitFor(const Rig& rig, const Tuning& tuning, const LegPattern& pattern);
 
-// The share of the time for which each leg stands, at a wish of so many leg lengths per second; idle legs have
-// 0.
+// The share of the time for which each leg stands, at a wish of so many leg lengths per second; idle legs
+// have 0.
 std::vector<float> standingShares(const Tuning& tuning, const Regait& gait, uint32_t idle, double wanted);
 
 // How much lower the body must be for every leg that carries to reach its home, shifted by so much (model x

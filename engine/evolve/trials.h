@@ -8,6 +8,7 @@
 #include "crowd/regait.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
+#include "shared/adapt.h"
 #include "skitter/crowd.h"
 #include "skitter/evolve.h"
 
@@ -29,9 +30,10 @@ struct TrialTask {
 // A herd on flat ground that tries one gait per agent, again and again.
 class Trials {
  public:
-  static constexpr double settleSeconds = 1, wantedSeconds = 3.2;
+  static constexpr double settleSeconds = double{shared::ADAPT_SETTLE_SECONDS};
+  static constexpr double wantedSeconds = double{shared::ADAPT_COUNTED_SECONDS};
   static constexpr uint32_t ticksOfSample = 2;
-  static constexpr double safeMargin = 0.03;  // leg lengths
+  static constexpr double safeMargin = double{shared::ADAPT_SAFE_MARGIN};  // leg lengths
 
   Trials(Device& device, const Rig& rig, uint32_t agents, float dt, const TrialShader& shader = {});
 

@@ -41,8 +41,7 @@ void main() {
   most = counts ? most : vec4(0.0);
 
   vec2 q[LEGS];
-  vec2 anchor = vec2(0.0);
-  bool supported = false;
+  uint support = 0u;
   for (int leg = 0; leg < LEGS; ++leg) {
     vec4 tip = LOAD4(tips, firstLeg + leg * BLOCK), before = LOAD4(trials, at + TRIAL_LEGS + leg);
     bool planted = LOAD4(feet, firstLeg + leg * BLOCK).w >= 1.0;
@@ -54,12 +53,9 @@ void main() {
     STORE4(trialsOut, at + TRIAL_LEGS + leg,
            vec4(place, 2.0 * (stood + (planted ? one : 0.0)) + (planted ? 1.0 : 0.0)));
     q[leg] = tip.xz - centre;
-    anchor = planted ? q[leg] : anchor;
-    supported = supported || planted;
+    support |= planted ? 1u << leg : 0u;
   }
-  for (int leg = 0; leg < LEGS; ++leg)
-    q[leg] = LOAD4(feet, firstLeg + leg * BLOCK).w >= 1.0 ? q[leg] : anchor;
-  float margin = supported ? marginOf(q, trial.legLength) : -trial.legLength;
+  float margin = marginOfPlanted(q, support, trial.legLength);
 
   float turned = phase - last.w;
   turned -= floor(turned);

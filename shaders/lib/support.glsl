@@ -28,4 +28,12 @@ float marginOf(vec2 q[LEGS], float unitLength) {
   return margin < FAR ? margin : 0.0;
 }
 
+// The same of the tips that are planted, a mask, of all legs' tips; -unitLength where none is.
+float marginOfPlanted(vec2 q[LEGS], uint planted, float unitLength) {
+  vec2 anchor = vec2(0.0);
+  for (int leg = 0; leg < LEGS; ++leg) anchor = (planted >> leg & 1u) != 0u ? q[leg] : anchor;
+  for (int leg = 0; leg < LEGS; ++leg) q[leg] = (planted >> leg & 1u) != 0u ? q[leg] : anchor;
+  return planted != 0u ? marginOf(q, unitLength) : -unitLength;
+}
+
 #endif

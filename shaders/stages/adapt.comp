@@ -133,17 +133,14 @@ void choose(inout Search s) {
 }
 
 float marginAt(int agent, Body body) {
-  int first = legRecord(agent, 0, LEGS);
-  vec2 centre = rotate(body.orientation, vec3(0.0, parameters.bodyHeight, 0.0)).xz, anchor = vec2(0.0), q[LEGS];
-  bool supported = false;
+  vec2 centre = rotate(body.orientation, vec3(0.0, parameters.bodyHeight, 0.0)).xz, q[LEGS];
+  uint planted = 0u;
   for (int leg = 0; leg < LEGS; ++leg) {
-    bool planted = LOAD4(feet, first + leg * BLOCK).w >= 1.0;
-    q[leg] = LOAD4(tips, first + leg * BLOCK).xz - centre;
-    anchor = planted ? q[leg] : anchor;
-    supported = supported || planted;
+    int record = legRecord(agent, leg, LEGS);
+    q[leg] = LOAD4(tips, record).xz - centre;
+    planted |= LOAD4(feet, record).w >= 1.0 ? 1u << leg : 0u;
   }
-  for (int leg = 0; leg < LEGS; ++leg) q[leg] = LOAD4(feet, first + leg * BLOCK).w >= 1.0 ? q[leg] : anchor;
-  return supported ? marginOf(q, parameters.legLength) : -parameters.legLength;
+  return marginOfPlanted(q, planted, parameters.legLength);
 }
 
 // How much slower lame legs make an agent.
