@@ -38,6 +38,20 @@ class Mutate(unittest.TestCase):
                     program, name = step.split(":")
                     self.assertIn(name, mutate.VALIDATIONS if program == "v" else mutate.GROUPS[program])
 
+    def test_every_scene_exists(self):
+        self.assertEqual([name for name in mutate.SCENES if not (ROOT / f"assets/scenes/{name}.json").exists()], [])
+
+    def test_a_group_that_is_called_as_the_file_is_among_the_likeliest(self):
+        first, others = mutate.steps_of("engine/crowd", "engine/crowd/load.cpp")
+        self.assertEqual(first, ["crowd:host", "crowd:load"])
+        self.assertNotIn("crowd:load", others)
+
+    def test_the_likeliest_come_first_but_for_long_ones(self):
+        bench = mutate.Bench(None)
+        bench.usual = {"v:loop": 3, "crowd:gait": 20, "crowd:hurt": 12, "crowd:load": 90, "crowd:edge": 80}
+        self.assertEqual(bench.in_order("gait.cpp", ["crowd:load", "crowd:gait", "crowd:hurt"], ["crowd:edge", "v:loop"]),
+                         ["crowd:hurt", "crowd:gait", "v:loop", "crowd:edge", "crowd:load"])
+
     def test_a_folder_is_put_back_with_its_times(self):
         with tempfile.TemporaryDirectory() as folder:
             sound, build = pathlib.Path(folder) / "sound", pathlib.Path(folder) / "build"
