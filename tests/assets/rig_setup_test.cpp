@@ -179,6 +179,13 @@ TEST_F(Sidecar, FaultsNameTheKey) {
       {[](auto& j) { j["legs"][0].erase("name"); }, "legs[0].name is missing"},
       {[](auto& j) { j["legs"][0]["group"] = "B"; }, "legs[0].group is \"B\""},
       {[](auto& j) { j["legs"][0]["joints"] = {"hip"}; }, "legs[0].joints is an array of 1"},
+      {[](auto& j) { j["legs"][0]["joints"] = std::vector<std::string>(17, "hip"); },
+       "legs[0].joints is an array of 17"},
+      {[](auto& j) {
+         j["legs"][0]["joints"] = std::vector<std::string>(16, "hip");
+         j["legs"][0]["tipOffset"] = {0, 0, -0.1};
+       },
+       "legs[0].joints is an array of 16"},
       {[](auto& j) { j["legs"][0]["joints"][1] = "elbow"; }, "legs[0].joints[1]: no node is named \"elbow\""},
       {[](auto& j) { j["legs"][0]["tipOffset"] = 1; }, "legs[0].tipOffset is 1"},
       {[](auto& j) {

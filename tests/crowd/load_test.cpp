@@ -83,6 +83,23 @@ TEST(LoadLaw, LeanHasALimitAndFeetAreWithinReach) {
   }
 }
 
+// The load's centre lies as far the other way as the lost legs make the body lean.
+TEST(LoadLaw, ALoadThatRightsTheBodyDoesNotRaiseIt) {
+  const Loaded spider;
+  int lowered = 0;
+  for (uint32_t first = 0; first < 8; ++first)
+    for (uint32_t second = first + 1; second < 8; ++second) {
+      const LegPattern pattern{.idle = 1u << first | 1u << second};
+      const Regait own = spider.own(pattern);
+      if (own.shift.y <= 0) continue;
+      ++lowered;
+      const glm::vec3 offset = glm::vec3(own.shift.x, 0, own.shift.z) * (-2 / spider.rig.legLength);
+      const Regait righted = spider.with({.mass = 1, .offset = offset}, pattern);
+      EXPECT_NEAR(righted.shift.x, 0, 1e-6) << pattern.idle;
+      EXPECT_FLOAT_EQ(righted.shift.y, own.shift.y + 0.1f * spider.rig.bodyHeight) << pattern.idle;
+    }
+  EXPECT_GT(lowered, 0);
+}
 TEST(LoadLaw, WhoLiesOnItsBellyCarriesWithoutAGait) {
   const Loaded spider;
   const LegPattern two{.idle = 0xfc};

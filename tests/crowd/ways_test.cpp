@@ -240,6 +240,12 @@ TEST(Eikonal, GrowsWithTheTimesBesideTheCell) {
     }
   }
   EXPECT_EQ(shared::eikonal(shared::WAY_FAR, shared::WAY_FAR, 0.5f), shared::WAY_FAR);
+  // From 2^24 units on, float32 has not every whole number.
+  const float unit = 64 * 0x1p-24f;
+  for (int k = 1; k < 1000; ++k) {
+    const float a = 63 + static_cast<float>(k) * unit;
+    EXPECT_TRUE(shared::eikonal(a, 64, 1) > 64 || a + 1 == 64) << k;
+  }
 }
 
 // Discs of another cost come, move and go, in the way of some goals and aside of others.

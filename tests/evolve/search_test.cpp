@@ -221,6 +221,29 @@ TEST_F(EvolutionTest, ItsGaitsAreATableThatIsJudged) {
   }
 }
 
+TEST_F(EvolutionTest, EveryCreatureTriesGaits) {
+  Evolution search(device(), spiderRig(), {.batch = 240, .dt = 1.0f / 20});
+  search.step();
+  const std::vector<AdaptationReport> reports = search.adapt(8, 3);
+  ASSERT_FALSE(reports.empty());
+  for (const AdaptationReport& report : reports) {
+    EXPECT_GE(report.used, std::max(report.trials, 1u)) << report.lost;
+    EXPECT_LE(report.used, 20u) << report.lost;
+  }
+}
+
+// Spiders begin a centimetre from each other, with the same legs down. With all of them, they go as fast as
+// they want to, but for their start.
+TEST_F(EvolutionTest, ASpeedIsThatOfTheWayFromWhereOneBegan) {
+  const std::vector<GaitJudgement> judged =
+      judgeGaits(device(), spiderRig(), std::vector<uint32_t>(9, 0), 4, 1.0f / 20);
+  for (const GaitJudgement& one : judged) {
+    EXPECT_LE(one.speed, Evolution::wantedSpeed);
+    EXPECT_NEAR(one.speed, judged[0].speed, 1e-4 * Evolution::wantedSpeed);
+  }
+  EXPECT_GT(judged[0].speed, 0.85 * Evolution::wantedSpeed);
+}
+
 // A table's gait is slower than the rule's, so that one is not taken for the other.
 TEST_F(EvolutionTest, ATableIsJudgedForItsPatternsAndTheRuleForOthers) {
   Rig rig = spiderRig();

@@ -100,16 +100,8 @@ validation::IkRun foldedBack(Device& device, const ik::Limit& limit, const std::
   const ik::Chain chain = evenChain(5, 0, limit);
   const ik::Options options{
       .solver = ik::Solver::fabrik, .iterations = 1, .restarts = false, .shaders = shaders};
-  validation::IkRun run{.name = "folded back",
-                        .chain = chain,
-                        .options = options,
-                        .targets = {{1e-4f, far, 0}, {-1e-4f, far, 0}, {0, far, 1e-4f}, {0, far, -1e-4f}}};
-  ik::Batch batch(device, chain, static_cast<uint32_t>(run.targets.size()), options);
-  batch.setTargets(run.targets);
-  batch.solve();
-  run.joints = batch.downloadJoints();
-  run.reports = batch.downloadReports();
-  return run;
+  return runToward(device, "folded back", chain, options,
+                   {{1e-4f, far, 0}, {-1e-4f, far, 0}, {0, far, 1e-4f}, {0, far, -1e-4f}});
 }
 
 using FoldedTest = GpuTest;

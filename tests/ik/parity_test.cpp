@@ -100,6 +100,22 @@ TEST_F(LengthTest, LongLimitedChains) {
   compareSolver(device(), "mixed", 16, activeSet, ++seed);
 }
 
+// A target nearer on the line of a straight chain is reached by bending it first (docs/ik.md, Deadlock).
+TEST_F(LengthTest, StraightChains) {
+  using enum ik::Solver;
+  const std::vector<glm::vec3> targets = {{0, 0.9f, 0}, {0, 0.6f, 0}, {0, 0.2f, 0}, {0, 0.9995f, 0}};
+  for (const ik::Limit& limit :
+       {ik::Limit(ik::Free{}), ik::Limit(ik::Cone{1}), ik::Limit(ik::Ellipse{0.8f, 1.1f, 0.9f, 1}),
+        ik::Limit(ik::Hinge{{1, 0, 0}, -1.5f, 1.5f})})
+    for (const ik::Solver solver : {fabrik, activeSet}) {
+      const ik::Chain chain = evenChain(5, 0, limit);
+      if (!isComparable(chain, solver)) continue;
+      expectParity(runToward(device(), "straight", chain,
+                             {.solver = solver, .iterations = 1, .restarts = false}, targets),
+                   0);
+    }
+}
+
 TEST_F(LengthTest, PulledToRest) {
   uint64_t seed = 700;
   for (const char* limits : {"hinge", "mixed"}) {

@@ -54,6 +54,17 @@ validation::IkRun randomRun(Device& device, const std::string& name, const ik::C
   return run;
 }
 
+validation::IkRun runToward(Device& device, const std::string& name, const ik::Chain& chain,
+                            const ik::Options& options, const std::vector<glm::vec3>& targets) {
+  validation::IkRun run{.name = name, .chain = chain, .options = options, .targets = targets};
+  ik::Batch batch(device, chain, static_cast<uint32_t>(targets.size()), options);
+  batch.setTargets(targets);
+  batch.solve();
+  run.joints = batch.downloadJoints();
+  run.reports = batch.downloadReports();
+  return run;
+}
+
 void expectParity(const validation::IkRun& run, double tieShare) {
   const validation::IkParity parity = checkIkBatch(run);
   EXPECT_EQ(parity.chains, run.targets.size());

@@ -18,7 +18,11 @@ namespace skitter::test {
 validation::IkRun randomRun(Device& device, const std::string& name, const ik::Chain& chain, size_t chains,
                             ik::Options options, uint64_t seed);
 
-// As randomRun(), compared.
+// Solves from rest toward the targets.
+validation::IkRun runToward(Device& device, const std::string& name, const ik::Chain& chain,
+                            const ik::Options& options, const std::vector<glm::vec3>& targets);
+
+// Compares a run.
 void expectParity(const validation::IkRun& run, double tieShare);
 
 }  // namespace skitter::test

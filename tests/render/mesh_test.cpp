@@ -227,9 +227,9 @@ TEST(Ribbons, taperAsTheirBonesDo) {
   EXPECT_NEAR(ribbon.to.along, length, 1e-6f);
   EXPECT_NEAR(ribbon.from.radius, 0.06f, 1e-6f);
   EXPECT_NEAR(ribbon.to.radius, 0.04f, 1e-6f);
-  // The middle's grey is in both.
-  EXPECT_NEAR(ribbon.from.colour.x, 0.5f / 3, 2e-3f);
-  EXPECT_NEAR(ribbon.to.colour.x, 2.5f / 3, 2e-3f);
+  // The middle's grey is in both, and a thousandth of the other end's colour.
+  EXPECT_NEAR(ribbon.from.colour.x, (0.5f * 0.501f + 0.001f) / 1.503f, 1e-5f);
+  EXPECT_NEAR(ribbon.to.colour.x, (0.5f * 0.501f + 1.001f) / 1.503f, 1e-5f);
 }
 
 // Dark and thin at its joints, light and thick between them, as a spider's leg is.
@@ -310,6 +310,24 @@ TEST(Ribbons, spanBonesThatAreAlmostStraight) {
 }
 
 // A triangle between a thin bone and the body is no ribbon's.
+TEST(Ribbons, ofSeveralBonesHaveTheColoursOfBothEnds) {
+  Rig rig = spiderRig();
+  const auto bones = size_t(rig.maxBones());
+  for (SkinVertex& vertex : rig.vertices) {
+    const size_t bone =
+        (vertex.bones[std::max_element(vertex.weights, vertex.weights + 4) - vertex.weights] - 1) % bones;
+    vertex.colour = {bone < 2 ? 0 : 1, 0.25f, 1};
+  }
+  const Ribbon whole = ribbonsOf(rig, 1, 1, false).ribbons.at(0);
+  ASSERT_EQ(whole.from.bone, 1);
+  ASSERT_EQ(whole.to.bone, 4);
+  EXPECT_LT(whole.from.colour.x, 0.45f);
+  EXPECT_GT(whole.to.colour.x, 0.55f);
+  for (const Ribbon::End& end : {whole.from, whole.to}) {
+    EXPECT_NEAR(end.colour.y, 0.25f, 1e-6f);
+    EXPECT_NEAR(end.colour.z, 1, 1e-6f);
+  }
+}
 TEST(Ribbons, leaveTheBodyAlone) {
   const Rig rig = spiderRig();
   const Ribbons all = ribbonsOf(rig, 1, 0, false);

@@ -221,6 +221,20 @@ TEST_P(SplineBatchTest, TheCallersBuffers) {
 
 using SplinePathsTest = GpuTest;
 
+TEST_F(SplinePathsTest, BeginAsPointsAtZeroThatAreMetAtEvenTimes) {
+  for (const bool closed : {false, true}) {
+    const SplineBatch batch(device(), 3, {.points = 4, .closed = closed});
+    const SplineBatch::Span span = batch.keys(0);
+    std::vector<glm::vec4> keys(span.bytes / sizeof(glm::vec4));
+    const gpu::Buffer theirs = gpu::Buffer::borrowed(context(), span.buffer, span.bytes, "theirs");
+    gpu::downloadBytes(context(), theirs, std::as_writable_bytes(std::span(keys)));
+    const uint32_t each = batch.keys();
+    ASSERT_EQ(each, closed ? 5u : 4u);
+    ASSERT_GE(keys.size(), size_t{3} * each);
+    for (size_t n = 0; n < 3 * each; ++n) EXPECT_EQ(keys[n], glm::vec4(0, 0, 0, n % each)) << n;
+  }
+}
+
 TEST_F(SplinePathsTest, RecordPathsAgreeToTheBit) {
   if (!hasTexelPath()) GTEST_SKIP() << "the device has one load path only";
   for (const DeviceRequest& request : everyRecordPath()) {

@@ -154,6 +154,7 @@ TEST_F(ColonyTest, RefusesWhatCannotBe) {
   refused([](ColonyCase& wrong) { wrong.grid.cost.pop_back(); }, "7 x 3 cells has 20 costs");
   refused([](ColonyCase& wrong) { wrong.grid.cell = 0; }, "is 0 m, expected more than 0");
   refused([](ColonyCase& wrong) { wrong.grid.cost[8] = 0.5f; }, "cell (1, 1) of a colony's grid costs 0.5");
+  refused([](ColonyCase& wrong) { wrong.grid.cost[20] = 0; }, "cell (6, 2) of a colony's grid costs 0");
   refused([](ColonyCase& wrong) { wrong.grid.cost[8] = NAN; }, "costs nan, expected 1 to 1000 or infinity");
   refused([](ColonyCase& wrong) { wrong.nest = {7, 0}; }, "the nest of a colony is cell (7, 0)");
   refused([](ColonyCase& wrong) { wrong.goal = {0, 3}; }, "the goal of a colony is cell (0, 3)");

@@ -111,24 +111,28 @@ TEST_F(ColonyParityTest, TripsThatBecomeTooLong) {
   }
 }
 
+// Where what is near ends at the middle of the map, and where it would end beyond each of its edges.
 TEST_F(ColonyParityTest, ChangesOfTheMap) {
+  const std::vector<glm::uvec2> places[] = {
+      {{1, 4}, {0, 4}, {2, 4}, {4, 4}}, {{1, 0}, {0, 1}}, {{11, 6}, {12, 5}}};
   for (const ColonyRule rule : allColonyRules)
-    for (const float forget : {0.0f, 0.4f, 1.0f}) {
-      ColonyCase each = drawnCase(fmt::format("changes, {}", nameOf(rule)), trap);
-      each.options.rule = rule;
-      each.options.forget = forget;
-      Colony colony(device(), each.grid, each.nest, each.goal, each.options);
-      reference::Colony truth = referenceOf(each);
-      EXPECT_EQ(differenceOf(colony, truth, each, 3), "");
-      const std::vector<glm::uvec2> cells = {{1, 4}, {0, 4}, {2, 4}, {4, 4}};
-      const std::vector<float> costs = {INFINITY, INFINITY, 7.5f, 1};
-      std::vector<uint32_t> indices;
-      for (const glm::uvec2 cell : cells) indices.push_back(indexOf(each, cell));
-      colony.setCosts(cells, costs);
-      truth.change(indices, costs);
-      EXPECT_EQ(differenceNow(colony, truth, each), "");
-      EXPECT_EQ(differenceOf(colony, truth, each, 3), "");
-    }
+    for (const float forget : {0.0f, 0.4f, 1.0f})
+      for (const std::vector<glm::uvec2>& cells : places) {
+        ColonyCase each = drawnCase(fmt::format("changes, {}", nameOf(rule)), trap);
+        each.options.rule = rule;
+        each.options.forget = forget;
+        Colony colony(device(), each.grid, each.nest, each.goal, each.options);
+        reference::Colony truth = referenceOf(each);
+        EXPECT_EQ(differenceOf(colony, truth, each, 3), "");
+        std::vector<float> costs = {INFINITY, INFINITY, 7.5f, 1};
+        costs.resize(cells.size());
+        std::vector<uint32_t> indices;
+        for (const glm::uvec2 cell : cells) indices.push_back(indexOf(each, cell));
+        colony.setCosts(cells, costs);
+        truth.change(indices, costs);
+        EXPECT_EQ(differenceNow(colony, truth, each), "");
+        EXPECT_EQ(differenceOf(colony, truth, each, 3), "");
+      }
 }
 
 }  // namespace
