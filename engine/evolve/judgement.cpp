@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/glm.hpp>
 
 #include "crowd/herd.h"
 #include "crowd/regait.h"
@@ -17,10 +16,9 @@ constexpr double judgedSide = 72;  // leg lengths
 constexpr double mostJudged = 20;  // seconds that the ground has room for
 constexpr uint32_t ticksAtOnce = 64;
 
-glm::dvec2 worldOfBody(const HerdState& state, size_t agent) {
+double worldZOf(const HerdState& state, size_t agent) {
   const float* body = &state.body[agent * 4 * shared::BODY_STRIDE];
-  return {double{body[0]} + double{shared::TILE_SIZE} * double{shared::tileX(body[3])},
-          double{body[2]} + double{shared::TILE_SIZE} * double{shared::tileZ(body[3])}};
+  return double{body[2]} + double{shared::TILE_SIZE} * double{shared::tileZ(body[3])};
 }
 
 void checkJudgement(const Rig& rig, std::span<const uint32_t> patterns, double seconds, float dt) {
@@ -74,7 +72,7 @@ std::vector<GaitJudgement> judged(Device& device, const Rig& rig, std::span<cons
   const std::vector<Fidelity> fidelity = crowd.agentFidelity(0);
   std::vector<GaitJudgement> all;
   for (size_t agent = 0; agent < patterns.size(); ++agent) {
-    const double way = worldOfBody(after, agent).y - worldOfBody(before, agent).y;
+    const double way = worldZOf(after, agent) - worldZOf(before, agent);
     all.push_back({.idle = patterns[agent],
                    .speed = way / (double{rig.legLength} * ticks * double{dt}),
                    .unstable = fidelity[agent].unstable,

@@ -536,6 +536,19 @@ Results pushedUnderLoads(Device& device, Controller controller, const CrowdOptio
   return replay.results();
 }
 
+// Bellies are higher above the ground than the body itself stands, so who falls has nowhere to sink.
+Results pushedOnHighBellies(Device& device, Controller controller, const CrowdOptions& options) {
+  constexpr uint32_t agents = 16;
+  Scene scene = sceneOf(agents, 1, 1, controller);
+  scene.herds[0].reactions = true;
+  scene.herds[0].tuning.bellyClearance = 1.3f;
+  Underway underway(device, scene, options);
+  auto& [crowd, replay] = underway;
+  for (uint32_t agent = 0; agent < agents; ++agent) pushAside(crowd, agent, 14);
+  replayTicks(device, crowd, replay, 150);
+  return replay.results();
+}
+
 // A camera that comes and goes, so that every rate is had, and changed from to every other.
 Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOptions& options) {
   Scene scene = sceneOf(60, 1, 1, controller);
@@ -583,6 +596,7 @@ const std::vector<Situation>& situations() {
       {"foldingBack", {Controller::clip}, foldingBack},
       {"beyondTheLimits", {Controller::planted}, beyondTheLimits},
       {"gettingPushed", {Controller::adaptive}, gettingPushed, true},
+      {"pushedOnHighBellies", {Controller::adaptive}, pushedOnHighBellies},
       {"pushedUnderLoads", {Controller::adaptive}, pushedUnderLoads, true},
       {"atRatesOfTheirOwn", {Controller::adaptive, Controller::loop}, atRatesOfTheirOwn, true},
       {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs, true},

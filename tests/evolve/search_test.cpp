@@ -136,6 +136,27 @@ TEST(Genes, EveryGeneMakesAGaitThatATableMayHave) {
   EXPECT_EQ(parseGaits(writeGaits(rig, gaits, R"({"by": "a test"})"), "table", rig), gaits);
 }
 
+// Phases go round; all else ends where its range does. One gene in sixteen is drawn anew.
+TEST(Genes, OnlyPhasesGoRound) {
+  const GeneSpace space(spiderRig(), Tuning{}, Evolution::wantedSpeed);
+  const Genes least(space.count(), 0);
+  base::SplitMix64 random(5);
+  std::vector<int> high(space.count());
+  constexpr int children = 2000;
+  for (int n = 0; n < children; ++n) {
+    const Genes child = space.varied(least, least, random);
+    for (size_t gene = 0; gene < child.size(); ++gene) high[gene] += child[gene] > 32767;
+  }
+  constexpr size_t firstPhase = 7, legs = 8;
+  for (size_t gene = 0; gene < high.size(); ++gene) {
+    const double share = high[gene] / double{children};
+    if (gene >= firstPhase && gene < firstPhase + legs)
+      EXPECT_NEAR(share, 0.5, 0.1) << gene;
+    else
+      EXPECT_NEAR(share, 1.0 / 32, 0.02) << gene;
+  }
+}
+
 TEST(Genes, ACycleIsNoLongerThanATrialHasRoomFor) {
   const Rig rig = spiderRig();
   const Tuning tuning;

@@ -19,11 +19,11 @@ class SubmitTest : public test::GpuTest {};
 
 TEST_F(SubmitTest, RingKeepsOrderAndCounts) {
   const HostBuffer counter(context(), 4 * 8, HostUse::readback, "counter");
-  CommandRing ring(context(), 2);
+  CommandRing ring(context(), 3);
   EXPECT_EQ(ring.completed(), 0u);
   for (uint32_t i = 0; i < 8; ++i) {
     const vk::CommandBuffer cmd = ring.begin();
-    EXPECT_EQ(ring.slot(), i % 2);
+    EXPECT_EQ(ring.slot(), i % 3);
     cmd.fillBuffer(counter.handle(), 4 * i, 4, i + 1);
     transferToHost(cmd);
     EXPECT_EQ(ring.submit(), i + 1);

@@ -1,0 +1,55 @@
+// What pictures of rigs are drawn on.
+#include "app/rig/canvas.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace skitter::test {
+namespace {
+
+constexpr uint32_t width = 100, height = 40;
+
+std::vector<uint8_t> drawn(const std::array<glm::vec3, 3>& corners) {
+  app::Canvas canvas(width, height, glm::vec3(0));
+  canvas.triangle(corners.data(), [](const glm::vec3&) { return glm::vec3(1); });
+  return canvas.rgba();
+}
+
+// Pixels of which some or all is covered.
+std::pair<uint32_t, uint32_t> coveredIn(const std::vector<uint8_t>& rgba) {
+  std::pair<uint32_t, uint32_t> counts;
+  for (size_t i = 0; i < rgba.size(); i += 4) {
+    counts.first += rgba[i] > 0;
+    counts.second += rgba[i] == 255;
+  }
+  return counts;
+}
+
+TEST(Canvas, ATriangleCoversItsAreaWhateverItsCornersOrder) {
+  std::array<glm::vec3, 3> corners{{{60, 2, 0}, {95, 30, 0}, {50, 38, 0}}};
+  const glm::vec3 u = corners[1] - corners[0], v = corners[2] - corners[0];
+  const float area = 0.5f * std::abs(u.x * v.y - u.y * v.x);
+  const std::vector<uint8_t> first = drawn(corners);
+  const auto [some, all] = coveredIn(first);
+  EXPECT_GT(static_cast<float>(some), area);
+  EXPECT_LT(static_cast<float>(all), area);
+  EXPECT_LT(some - all, 2 * (width + height));  // the pixels of its edges
+  const auto before = [](const glm::vec3& a, const glm::vec3& b) { return a.x < b.x; };
+  std::sort(corners.begin(), corners.end(), before);
+  do EXPECT_EQ(coveredIn(drawn(corners)), coveredIn(first));
+  while (std::next_permutation(corners.begin(), corners.end(), before));
+}
+
+TEST(Canvas, WhatReachesBeyondItIsCut) {
+  const auto [some, all] = coveredIn(drawn({{{-200, -300, 0}, {500, -10, 0}, {-10, 400, 0}}}));
+  EXPECT_EQ(all, width * height);
+  EXPECT_EQ(coveredIn(drawn({{{-9, -9, 0}, {-1, -9, 0}, {-9, -1, 0}}})).first, 0u);
+}
+
+}  // namespace
+}  // namespace skitter::test
