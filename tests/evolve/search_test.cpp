@@ -225,6 +225,7 @@ TEST_F(EvolutionTest, ItsGaitsAreATableThatIsJudged) {
   const std::vector<RigGait> gaits = search.gaits();
   EXPECT_EQ(search.patternCount(), 114u);
   EXPECT_GT(gaits.size(), 57u);
+  EXPECT_EQ(gaits.back().idle, patternsOf(rig).back());
   EXPECT_GE(search.filledCount(), gaits.size());
   EXPECT_LT(search.filledCount(), search.cellCount());
   for (const RigGait& gait : gaits) EXPECT_GT(gait.fitness, 0) << gait.idle;
