@@ -45,6 +45,27 @@ TEST(Canvas, ATriangleCoversItsAreaWhateverItsCornersOrder) {
   while (std::next_permutation(corners.begin(), corners.end(), before));
 }
 
+// One lies in the picture's plane, the other one tips out of it to the left and into it to the right.
+TEST(Canvas, TheNearerTriangleHidesTheOther) {
+  const std::array<glm::vec3, 3> flat{{{-300, -300, 0}, {500, -300, 0}, {0, 700, 0}}},
+      tipped{{{0, 20, 10}, {100, -80, -10}, {100, 120, -10}}};
+  for (const bool flatFirst : {true, false}) {
+    app::Canvas canvas(width, height, glm::vec3(0));
+    const auto drawFlat = [&] {
+      canvas.triangle(flat.data(), [](const glm::vec3&) { return glm::vec3(1, 0, 0); });
+    };
+    if (flatFirst) drawFlat();
+    canvas.triangle(tipped.data(), [](const glm::vec3&) { return glm::vec3(0, 1, 0); });
+    if (!flatFirst) drawFlat();
+    const std::vector<uint8_t> rgba = canvas.rgba();
+    for (const uint32_t x : {10u, 30u, 48u, 52u, 70u, 99u}) {
+      const size_t pixel = 4 * (20 * width + x);
+      EXPECT_EQ(rgba[pixel] == 255, x >= 50) << x;
+      EXPECT_EQ(rgba[pixel + 1] == 255, x < 50) << x;
+    }
+  }
+}
+
 TEST(Canvas, WhatReachesBeyondItIsCut) {
   const auto [some, all] = coveredIn(drawn({{{-200, -300, 0}, {500, -10, 0}, {-10, 400, 0}}}));
   EXPECT_EQ(all, width * height);
