@@ -1,4 +1,4 @@
-// What pictures of rigs are drawn on.
+// A canvas draws the pictures of `skitter rig` in software.
 #include "app/rig/canvas.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::vector<uint8_t> drawn(const std::array<glm::vec3, 3>& corners) {
   return canvas.rgba();
 }
 
-// Pixels of which some or all is covered.
+// Counts the pixels that are covered at least in part, and those that are covered whole.
 std::pair<uint32_t, uint32_t> coveredIn(const std::vector<uint8_t>& rgba) {
   std::pair<uint32_t, uint32_t> counts;
   for (size_t i = 0; i < rgba.size(); i += 4) {

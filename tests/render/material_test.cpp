@@ -125,7 +125,8 @@ std::optional<glm::dvec3> expectedAt(const Shot& shot, int column, int row, doub
        .toSun = lightModel({}).towards}));
 }
 
-// Of its pixels: docs/stages/pictures.md has none below 0.16, and a texture may ask for any.
+// No pixel of the shot is smoother. docs/stages/pictures.md has no roughness below 0.16, and a texture may
+// ask for any.
 double leastRoughness(const Shot& shot) {
   const Material& m = shot.material;
   return m.texture(TextureRole::metallicRoughness).image == -1 ? std::max(0.16, double(m.roughness)) : 0.16;

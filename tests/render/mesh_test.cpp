@@ -309,7 +309,6 @@ TEST(Ribbons, spanBonesThatAreAlmostStraight) {
   EXPECT_FALSE(parted.others.empty());
 }
 
-// A triangle between a thin bone and the body is no ribbon's.
 TEST(Ribbons, ofSeveralBonesHaveTheColoursOfBothEnds) {
   Rig rig = spiderRig();
   const auto bones = size_t(rig.maxBones());
@@ -328,6 +327,8 @@ TEST(Ribbons, ofSeveralBonesHaveTheColoursOfBothEnds) {
     EXPECT_NEAR(end.colour.z, 1, 1e-6f);
   }
 }
+
+// A triangle between a thin bone and the body is no ribbon's.
 TEST(Ribbons, leaveTheBodyAlone) {
   const Rig rig = spiderRig();
   const Ribbons all = ribbonsOf(rig, 1, 0, false);
