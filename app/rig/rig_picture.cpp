@@ -12,7 +12,7 @@
 namespace skitter::app {
 namespace {
 
-constexpr glm::vec3 background{0.80f, 0.82f, 0.85f}, ground{0.45f, 0.47f, 0.50f}, ahead{0.05f, 0.05f, 0.05f};
+constexpr glm::vec3 background{0.80f, 0.82f, 0.85f}, groundColour{0.45f, 0.47f, 0.50f}, ahead{0.05f, 0.05f, 0.05f};
 constexpr std::array groupColours = {glm::vec3(0.90f, 0.18f, 0.02f), glm::vec3(0.02f, 0.16f, 0.80f),
                                      glm::vec3(0.05f, 0.50f, 0.08f), glm::vec3(0.60f, 0.05f, 0.60f),
                                      glm::vec3(0.05f, 0.50f, 0.55f), glm::vec3(0.65f, 0.45f, 0.02f)};
@@ -75,7 +75,7 @@ class RigView {
     }
     const std::array corners = {glm::vec3(least.x, 0, least.y), glm::vec3(most.x, 0, least.y),
                                 glm::vec3(most.x, 0, most.y), glm::vec3(least.x, 0, most.y)};
-    for (size_t i = 0; i < 4; ++i) line(corners[i], corners[(i + 1) % 4], ground, 1.5f, 1);
+    for (size_t i = 0; i < 4; ++i) line(corners[i], corners[(i + 1) % 4], groundColour, 1.5f, 1);
     const glm::vec3 head(0, 0, std::max(most.y, 0.3f * rig_.legLength));
     const float barb = 0.08f * rig_.legLength;
     line({0, 0, 0}, head, ahead, 2, 1);

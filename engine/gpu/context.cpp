@@ -15,14 +15,6 @@ constexpr uint64_t kLeastChecked = 1 << 20;
 
 std::string mebibytes(uint64_t bytes) { return fmt::format("{:.1f} MiB", double(bytes) / (1 << 20)); }
 
-std::optional<uint32_t> findType(const vk::PhysicalDeviceMemoryProperties& memory, uint32_t allowed,
-                                 vk::MemoryPropertyFlags flags) {
-  for (uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
-    if ((allowed >> i & 1u) && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
-  }
-  return {};
-}
-
 }  // namespace
 
 Context::Context(Parts parts)
@@ -53,8 +45,8 @@ vk::raii::DeviceMemory Context::allocate(const vk::MemoryRequirements& requireme
                                          vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred,
                                          const std::string& what) const {
   const auto memory = physical().getMemoryProperties();
-  auto type = findType(memory, requirements.memoryTypeBits, wanted | preferred);
-  if (!type) type = findType(memory, requirements.memoryTypeBits, wanted);
+  auto type = memoryTypeOf(memory, requirements.memoryTypeBits, wanted | preferred);
+  if (!type) type = memoryTypeOf(memory, requirements.memoryTypeBits, wanted);
   if (!type) {
     throw deviceError(fmt::format("\"{}\" needs {} of {} memory, which {} does not have", what,
                                   mebibytes(requirements.size), vk::to_string(wanted), report().name));

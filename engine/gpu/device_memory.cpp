@@ -6,6 +6,14 @@
 
 namespace skitter::gpu {
 
+std::optional<uint32_t> memoryTypeOf(const vk::PhysicalDeviceMemoryProperties& memory, uint32_t allowed,
+                                     vk::MemoryPropertyFlags flags) {
+  for (uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+    if ((allowed >> i & 1u) && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
+  }
+  return {};
+}
+
 uint64_t largestDeviceHeap(const vk::PhysicalDeviceMemoryProperties& memory) {
   uint64_t bytes = 0;
   for (uint32_t i = 0; i < memory.memoryHeapCount; ++i) {

@@ -480,11 +480,11 @@ std::vector<glm::vec3> Batch::downloadJoints() const {
   const std::vector<glm::vec4> records = impl_->download(&Impl::Page::joint, 2, n);
   std::vector<glm::vec4> bases;
   if (impl_->options.bases) bases = impl_->download(&Impl::Page::base, 1, shared::BASE_STRIDE);
-  std::vector<glm::vec3> joints;
-  joints.reserve(size_t{impl_->chains} * (n + 1));
-  for (uint32_t c = 0; c < impl_->chains; ++c) {
-    joints.emplace_back(bases.empty() ? glm::vec3(0) : glm::vec3(bases[size_t{c} * shared::BASE_STRIDE]));
-    for (uint32_t i = 0; i < n; ++i) joints.emplace_back(records[size_t{c} * n + i]);
+  std::vector<glm::vec3> joints(size_t{impl_->chains} * (n + 1));
+  for (size_t c = 0; c < impl_->chains; ++c) {
+    glm::vec3* chain = &joints[c * (n + 1)];
+    chain[0] = bases.empty() ? glm::vec3(0) : glm::vec3(bases[c * shared::BASE_STRIDE]);
+    for (uint32_t i = 0; i < n; ++i) chain[1 + i] = glm::vec3(records[c * n + i]);
   }
   return joints;
 }

@@ -76,8 +76,7 @@ shared::ColonyConstants constantsOf(const Colony::Options& options, const CostGr
           .evaporation = fixedShare(options.evaporation, 4096),
           .least = fixedShare(options.least, 0x1p20),
           .bestEvery = options.bestEvery,
-          .greed = static_cast<uint32_t>(
-              std::min(std::floor(static_cast<double>(options.greed) * 0x1p32), 0x1p32 - 1)),
+          .greed = static_cast<uint32_t>(std::min(static_cast<double>(options.greed) * 0x1p32, 0x1p32 - 1)),
           .wear = fixedShare(options.wear, 4096),
           .forget = fixedShare(options.forget, 4096)};
 }

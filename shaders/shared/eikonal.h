@@ -52,7 +52,7 @@ EIKONAL float eikonal(float a, float b, float h) {
   m = isBeyond(m + 1u, wholeApart, wholeAcross) ? m : m + 1u;
   // The next whole number that float32 has.
   float later = second < 16777216.0f ? second + 1.0f : uintBitsToFloat(floatBitsToUint(second) + 1u);
-  return (second < alone ? min(max(first + float(m), later), alone) : alone) * unit;
+  return (second < alone ? max(first + float(m), later) : alone) * unit;
 }
 
 #undef EIKONAL

@@ -1,5 +1,3 @@
-#include <png.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include "app/fields/field_map.h"
 #include "app/fields/stroke_font.h"
 #include "process.h"
+#include "read_png.h"
 
 namespace skitter::test {
 namespace {
@@ -30,23 +29,6 @@ constexpr const char* walledScene = R"({
     {"agents": 3, "ways": {}, "sizes": [0.5, 2]},
     {"agents": 5}
   ]})";
-
-struct Png {
-  png_image image{};
-  std::vector<uint8_t> rgb;
-
-  explicit Png(const std::string& file) {
-    image.version = PNG_IMAGE_VERSION;
-    EXPECT_TRUE(png_image_begin_read_from_file(&image, file.c_str())) << file;
-    image.format = PNG_FORMAT_RGB;
-    rgb.resize(PNG_IMAGE_SIZE(image));
-    EXPECT_TRUE(png_image_finish_read(&image, nullptr, rgb.data(), 0, nullptr)) << file;
-  }
-  std::array<int, 3> at(size_t x, size_t y) const {
-    const uint8_t* pixel = &rgb[3 * (y * image.width + x)];
-    return {pixel[0], pixel[1], pixel[2]};
-  }
-};
 
 TEST_F(Fields, AreDrawnForEachKindAndGoal) {
   write("walled.json", walledScene);

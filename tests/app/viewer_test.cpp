@@ -1,9 +1,8 @@
-#include <png.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "process.h"
+#include "read_png.h"
 
 namespace skitter::test {
 namespace {
@@ -54,16 +53,10 @@ class Viewer : public AppTest {
   }
 
   std::vector<uint8_t> shot(int number) {
-    const std::string name = file("skitter-000" + std::to_string(number) + ".png");
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    EXPECT_TRUE(png_image_begin_read_from_file(&image, name.c_str())) << name;
-    EXPECT_EQ(image.width, 480u);
-    EXPECT_EQ(image.height, 360u);
-    image.format = PNG_FORMAT_RGB;
-    std::vector<uint8_t> pixels(PNG_IMAGE_SIZE(image));
-    EXPECT_TRUE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr));
-    return pixels;
+    const Png png(file("skitter-000" + std::to_string(number) + ".png"));
+    EXPECT_EQ(png.image.width, 480u);
+    EXPECT_EQ(png.image.height, 360u);
+    return png.rgb;
   }
 };
 

@@ -1,6 +1,7 @@
 // Agents that keep clear of each other (docs/stages/avoid.md).
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "crowd/grid.h"
@@ -162,6 +163,27 @@ TEST_F(AvoidTest, InOnePlaceTheyPart) {
   for (size_t i = 0; i < 20; ++i)
     for (size_t j = 0; j < 20; ++j) together += apart(positionOf(a, i), positionOf(b, j)) < radius ? 1 : 0;
   EXPECT_LT(together, 40) << "of 400 pairs";
+}
+
+// Each of a lattice that lacks every fourth place has two others at 1 m, four at the root of 2 and four at 2
+// m: numbers say which of these are the seventh and the eighth. Places and distances are whole quanta.
+TEST_F(AvoidTest, NumbersChooseAmongTheEquallyNear) {
+  const Heightfield ground = flatGround();
+  std::vector<glm::vec2> lattice;
+  for (int x = -12; x <= 12; ++x)
+    for (int z = -12; z <= 12; ++z)
+      if (x % 2 != 0 || z % 2 != 0) lattice.push_back(glm::vec2(x, z));
+  std::mt19937 random(3);
+  for (size_t i = lattice.size() - 1; i > 0; --i) std::swap(lattice[i], lattice[random() % (i + 1)]);
+  const auto agents = static_cast<uint32_t>(lattice.size());
+  Scene scene = sceneOf(agents, 1, 3);
+  scene.herds[0].avoid = true;
+  Crowd crowd(device(), ground, scene);
+  std::vector<AgentPlace> places;
+  for (uint32_t i = 0; i < agents; ++i)
+    places.push_back({crowd.agentId(0, i), {lattice[i], 0.37f * static_cast<float>(i)}});
+  crowd.teleport(places);
+  expectAllPass(replayAll(device(), crowd, ground, 1).front());
 }
 
 TEST_F(AvoidTest, HeadOnPairsPass) {

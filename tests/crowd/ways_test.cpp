@@ -248,6 +248,30 @@ TEST(Eikonal, GrowsWithTheTimesBesideTheCell) {
   }
 }
 
+// A time is that of the greatest whole number of units whose square and that of its distance from the later
+// time are not beyond the crossing's, or the next one after this, whatever of a unit the times beside the
+// cell have over whole ones.
+TEST(Eikonal, IsTheRootInWholeUnits) {
+  std::mt19937 random(11);
+  constexpr uint32_t unitsOfPower = 1u << 18;
+  for (int i = 0; i < 200000; ++i) {
+    const uint64_t across = unitsOfPower + random() % unitsOfPower;
+    // A fifth of the later times are within four units of those that do not count any more.
+    const uint64_t apart = i % 5 == 0 ? across - 1 - random() % 4 : random() % across;
+    const auto over = [&] { return i % 3 == 0 ? 0 : static_cast<float>(random() % 16) / 16; };
+    uint64_t root = 0;
+    for (uint64_t bit = 2 * unitsOfPower; bit > 0; bit /= 2) {
+      const uint64_t next = root + bit, off = next > apart ? next - apart : apart - next;
+      if (next * next + off * off <= across * across) root = next;
+    }
+    const float unit = std::ldexp(1.0f, static_cast<int>(random() % 20) - 30), first = over(),
+                second = static_cast<float>(apart) + over(), h = static_cast<float>(across) + over() / 64;
+    ASSERT_EQ(shared::eikonal(unit * first, unit * second, unit * h),
+              unit * static_cast<float>(std::max(root, apart + 1)))
+        << apart << " of " << across << " units of " << unit;
+  }
+}
+
 // Discs of another cost come, move and go, in the way of some goals and aside of others.
 void changeSomewhere(std::mt19937& random, CostGrid& grid) {
   const auto below = [&](uint32_t count) { return random() % count; };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "crowd/symmetry.h"
 #include "evolve/archive.h"
@@ -243,6 +244,17 @@ TEST_F(EvolutionTest, ItsGaitsAreATableThatIsJudged) {
   }
 }
 
+// The legs that a pattern has idle never stand in its trials, and the others do.
+TEST_F(EvolutionTest, APatternIsTriedWithItsOwnLegsIdle) {
+  Evolution search(device(), spiderRig(), {.batch = 240, .dt = 1.0f / 20});
+  search.step();
+  const nlohmann::json map = nlohmann::json::parse(search.map());
+  ASSERT_GT(map["elites"].size(), 50u);
+  for (const nlohmann::json& elite : map["elites"])
+    for (size_t leg = 0; leg < 8; ++leg)
+      EXPECT_EQ(elite[5][leg] == 0, (elite[0].get<uint32_t>() >> leg & 1u) != 0) << elite;
+}
+
 TEST_F(EvolutionTest, EveryCreatureTriesGaits) {
   Evolution search(device(), spiderRig(), {.batch = 240, .dt = 1.0f / 20});
   search.step();
@@ -252,6 +264,24 @@ TEST_F(EvolutionTest, EveryCreatureTriesGaits) {
     EXPECT_GE(report.used, std::max(report.trials, 1u)) << report.lost;
     EXPECT_LE(report.used, 20u) << report.lost;
   }
+}
+
+// A creature finds the gait that it finds alone, whatever others there are, and in whichever batch it tries.
+TEST_F(EvolutionTest, CreaturesThatTryInBatchesFindWhatTheyFindAtOnce) {
+  const Rig rig = loadRig(SKITTER_ROOT "/assets/quadruped.glb");
+  Evolution search(device(), rig, {.batch = 16, .dt = 1.0f / 20});
+  for (int i = 0; i < 4; ++i) search.step();
+  // Only those without the same legs as in a gait of the map try any.
+  const std::vector<AdaptationReport> few = search.adapt(30, 3), many = search.adapt(120, 3);
+  ASSERT_GT(few.size(), 4u);
+  ASSERT_LE(few.size(), 16u);
+  ASSERT_GT(many.size(), 2 * 16u);
+  for (size_t i = 0; i < few.size(); ++i) {
+    EXPECT_EQ(many[i].lost, few[i].lost) << i;
+    EXPECT_EQ(many[i].found, few[i].found) << i;
+    EXPECT_EQ(many[i].used, few[i].used) << i;
+  }
+  for (const AdaptationReport& report : many) EXPECT_GE(report.used, 1u) << report.lost;
 }
 
 // Spiders begin a centimetre from each other, with the same legs down. With all of them, they go as fast as

@@ -71,6 +71,26 @@ TEST_P(RendererTest, equalHerdsAreWhereOthersAre) {
   EXPECT_LT(odd, (left + right) / 50);
 }
 
+// Who can lose legs is drawn as who cannot, until one is lost.
+TEST_P(RendererTest, legsThatMayBeLostAreDrawn) {
+  Scene scene = smallScene(4), hurt = scene;
+  for (Scene* each : {&scene, &hurt})
+    each->herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2, .centre = {0, 0}};
+  hurt.herds[0].hurt = true;
+  Stage never(device(), scene, 320, 180), can(device(), hurt, 320, 180);
+  const View view{.eye = {0, 4, -6}, .target = {0, 0.5f, 0}};
+  never.tick(5);
+  can.tick(5);
+  const Picture whole = never.draw(view);
+  EXPECT_EQ(differing(whole, can.draw(view)), 0u);
+  for (uint32_t agent = 0; agent < 4; ++agent) can.crowd.hurt(can.crowd.agentId(0, agent), 1);
+  never.tick(1);
+  can.tick(1);
+  const size_t lost = differing(never.draw(view), can.draw(view));
+  EXPECT_GT(lost, 60u);
+  EXPECT_LT(lost, 320u * 180 / 8);
+}
+
 // A herd's colour and tint change its own pixels, and those of no other herd of its kind.
 TEST_P(RendererTest, aHerdHasTheColourThatItsSceneSays) {
   for (const Controller controller : {Controller::adaptive, Controller::clip}) {

@@ -56,6 +56,25 @@ Darkness darkness(const Picture& with, const Picture& without) {
   return {int(shares.size()), shares[shares.size() / 2]};
 }
 
+// Places are stored by tiles of 16 m. Below clouds, who stands beyond the edge of the eye's tile darkens as
+// much ground as who stands within it.
+TEST_P(RendererTest, tilesDoNotShowInContacts) {
+  const Heightfield ground = groundOf(257, 257, [](float, float) { return 0.0f; });
+  Scene scene = smallScene(4), none = smallScene(0);
+  scene.light.sky = none.light.sky = Sky::overcast;
+  scene.herds[0].goal.kind = Goal::Kind::none;
+  const auto darkenedAt = [&](const glm::vec2& place) {
+    scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1.5f, .centre = place, .heading = 0.5f};
+    Stage stage(device(), scene, ground, 400, 400), empty(device(), none, ground, 400, 400);
+    stage.tick(2);
+    const View view{.eye = {place.x, 4, place.y - 3}, .target = {place.x, 0, place.y}};
+    return darkness(stage.draw(view), empty.draw(view)).pixels;
+  };
+  const int within = darkenedAt({8, 8}), across = darkenedAt({8, 16});
+  EXPECT_GT(within, 8000);
+  EXPECT_NEAR(across, within, within / 30);
+}
+
 // Shadows are part of what ties a foot to the ground: there must be some, darker than the ground without.
 TEST_P(RendererTest, agentsCastShadows) {
   Stage stage(device(), smallScene(1), 160, 160), empty(device(), smallScene(0), 160, 160);

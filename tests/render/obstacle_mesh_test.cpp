@@ -91,6 +91,34 @@ TEST(ObstacleMesh, HasTheOutlineOfTheObstacle) {
   EXPECT_TRUE(near(extent(5).second, {20, 1}, 1e-5f));
 }
 
+// The top begins as far from the outline as the wall ends below it: a tenth of the height, a third of a
+// radius or a quarter of the way to the middle of a polygon, whatever is least.
+TEST(ObstacleMesh, HasARoundedEdge) {
+  const std::vector<Obstacle> shapes = everyShape();
+  const float thin = kWall / 24;  // half as wide as can be seen
+  for (const auto& [shape, rounding] : {std::pair{0u, kWall / 10},
+                                        {1u, thin / 3},
+                                        {2u, kWall / 10},
+                                        {3u, thin / 3},
+                                        {4u, kWall / 10},
+                                        {5u, kWall / 10}}) {
+    float wall = 0, outline = 0, top = 0;
+    const ObstacleMesh mesh = obstacleMesh({&shapes[shape], 1}, kWall, 0.5f);
+    for (const ObstacleVertex& vertex : mesh.vertices) {
+      if (vertex.place.z < kWall) wall = std::max(wall, vertex.place.z);
+      float& most = vertex.place.z < kWall ? outline : top;
+      most = std::max(most, vertex.place.x - mesh.vertices[0].place.x + 100);
+    }
+    EXPECT_NEAR(kWall - wall, rounding, 1e-5f) << shape;
+    EXPECT_NEAR(outline - top, rounding, 1e-3f) << shape;
+  }
+  const std::vector<Obstacle> narrow = {{ConvexPolygon{.corners = {{0, 0}, {20, 0}, {20, 0.2f}, {0, 0.2f}}}}};
+  float wall = 0;
+  for (const ObstacleVertex& vertex : obstacleMesh(narrow, kWall, 0.5f).vertices)
+    if (vertex.place.z < kWall) wall = std::max(wall, vertex.place.z);
+  EXPECT_NEAR(kWall - wall, 0.1f / 4, 1e-5f);
+}
+
 // As many and as large as a scene may have.
 TEST(ObstacleMesh, IsBounded) {
   const std::vector<Obstacle> discs(4096, {Disc{.radius = 4096}});
