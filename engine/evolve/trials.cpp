@@ -1,6 +1,7 @@
 #include "evolve/trials.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -291,6 +292,7 @@ std::vector<float> Trials::records() const {
 }
 
 std::vector<TrialFigures> Trials::run(std::span<const TrialTask> tasks) {
+  assert(tasks.size() <= crowd_.places(0));
   write(tasks);
   gpu::submitAndWait(*context_, [&](vk::CommandBuffer cmd) {
     recordBeginning(cmd);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -111,7 +112,7 @@ struct Colony::Impl {
   void makeKernels();
   gpu::Kernel makeKernel(const char* entry, std::span<const uint8_t> builtin, std::vector<int> bindings);
   gpu::Bindings bind(const gpu::Kernel&) const;
-  const gpu::Buffer& bufferOf(uint32_t binding) const;
+  std::array<const gpu::Buffer*, 10> buffers() const;  // by binding
   void begin();
   void recordUpdate(vk::CommandBuffer, uint32_t kind) const;
   void recordTightening(vk::CommandBuffer) const;
@@ -206,14 +207,12 @@ void Colony::Impl::makeKernels() {
 gpu::Bindings Colony::Impl::bind(const gpu::Kernel& kernel) const {
   std::vector<gpu::Binding> list;
   for (const gpu::BindingDecl& declared : kernel.layout().declarations())
-    list.push_back({declared.binding, &bufferOf(declared.binding)});
+    list.push_back({declared.binding, buffers().at(declared.binding)});
   return kernel.bind(*context, list);
 }
 
-const gpu::Buffer& Colony::Impl::bufferOf(uint32_t binding) const {
-  const gpu::Buffer* const all[] = {&ground, &pheromone, &weight,   &mark,  &move,
-                                    &trip,   &chain,     &crossing, &trail, &best};
-  return *all[binding];
+std::array<const gpu::Buffer*, 10> Colony::Impl::buffers() const {
+  return {&ground, &pheromone, &weight, &mark, &move, &trip, &chain, &crossing, &trail, &best};
 }
 
 void Colony::Impl::begin() {
@@ -327,10 +326,8 @@ const Colony::Options& Colony::options() const { return impl_->options; }
 uint32_t Colony::iteration() const { return impl_->constants.iteration; }
 
 uint64_t Colony::memoryBytes() const {
-  const Impl& colony = *impl_;
   uint64_t bytes = 0;
-  for (uint32_t binding = 0; binding <= static_cast<uint32_t>(shared::COLONY_BEST); ++binding)
-    bytes += colony.bufferOf(binding).size();
+  for (const gpu::Buffer* buffer : impl_->buffers()) bytes += buffer->size();
   return bytes;
 }
 

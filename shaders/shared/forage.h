@@ -20,7 +20,6 @@ FORAGE PLACE_NONE = 0;
 FORAGE PLACE_NEST = 1;
 FORAGE PLACE_FOOD = 2;
 FORAGE PLACE_BRANCH = PLACE_FOOD + MOST_SOURCES;
-FORAGE PLACES = PLACE_BRANCH + MOST_BRANCHES;
 
 // A forager's deed in a tick: none, it came home without or with a load, took one from a source, or came
 // into a branch. Those of sources and branches follow from their places.
@@ -28,7 +27,6 @@ FORAGE DEED_NONE = 0;
 FORAGE DEED_EMPTY = 1;
 FORAGE DEED_BROUGHT = 2;
 FORAGE DEED_AT = 1;  // from a place to its deed
-FORAGE DEEDS = PLACES + DEED_AT;
 
 // States of a forager.
 FORAGE FORAGE_REST = 0;
@@ -77,7 +75,7 @@ struct TrailConstants {
 #undef FORAGE
 #undef FORAGE_UINT
 #ifdef __cplusplus
-static_assert(DEEDS <= TRAIL_CELLS);
+static_assert(PLACE_BRANCH + MOST_BRANCHES + DEED_AT <= TRAIL_CELLS);
 }  // namespace skitter::shared
 #endif
 #endif

@@ -115,6 +115,12 @@ TEST(Archive, ABehaviourIsHowLongFrontAndRearLegsStand) {
   EXPECT_EQ(cell(0.41f, 0.48f, 0), 1u);
   EXPECT_EQ(cell(0.48f, 0.41f, 0), Archive::steps);
   EXPECT_EQ(cell(0.48f, 0.41f, 1), Archive::steps);  // an idle leg does not count
+  // Front and rear are about the middle of the legs, wherever the body has its origin.
+  Rig ahead = rig;
+  for (Leg& leg : ahead.legs) leg.home.z += 2 * rig.legLength;
+  std::vector<float> shares;
+  for (const Leg& leg : rig.legs) shares.push_back(leg.name[1] <= '2' ? 0.48f : 0.41f);
+  EXPECT_EQ(cellOf(ahead, 0, shares), Archive::steps);
 }
 
 TEST(Genes, EveryGeneMakesAGaitThatATableMayHave) {
@@ -186,6 +192,7 @@ TEST(Genes, TheGaitByRuleIsAmongThem) {
     EXPECT_EQ(made.groups, rule.groups) << idle;
     EXPECT_NEAR(made.speed, rule.speed, 1e-4f) << idle;
     EXPECT_NEAR(made.shift.z, rule.shift.z, 1e-4f * rig.legLength) << idle;
+    EXPECT_NEAR(made.shift.y, rule.shift.y, 1e-4f * rig.legLength) << idle;
     for (size_t leg = 0; leg < 8; ++leg) {
       EXPECT_EQ(made.legs[leg].neighbours, rule.legs[leg].neighbours) << idle << ", leg " << leg;
       if ((idle >> leg & 1u) != 0) continue;
@@ -252,7 +259,8 @@ TEST_F(EvolutionTest, APatternIsTriedWithItsOwnLegsIdle) {
   ASSERT_GT(map["elites"].size(), 50u);
   for (const nlohmann::json& elite : map["elites"])
     for (size_t leg = 0; leg < 8; ++leg)
-      EXPECT_EQ(elite[5][leg] == 0, (elite[0].get<uint32_t>() >> leg & 1u) != 0) << elite;
+      EXPECT_EQ(elite[5][leg] == 0, (elite[0].get<uint32_t>() >> leg & 1u) != 0)
+          << "pattern " << elite[0] << ", leg " << leg;
 }
 
 TEST_F(EvolutionTest, EveryCreatureTriesGaits) {

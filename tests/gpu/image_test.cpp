@@ -3,6 +3,7 @@
 #include "gpu/kernel.h"
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
+#include "skitter/error.h"
 #include "support/gpu_fixture.h"
 
 #include <gmock/gmock.h>
@@ -27,6 +28,20 @@ TEST_F(ImageTest, RoundTripsInChunksOfRows) {
   for (const uint64_t chunk : {uint64_t(1), uint64_t(33 * 4), uint64_t(1000), kStagingChunk}) {
     uploadImage(context(), image, data, ImageState::sampled, chunk);
     EXPECT_EQ(downloadImage<float>(context(), image, ImageState::sampled, chunk), data);
+  }
+}
+
+TEST_F(ImageTest, OneWithoutPixelsIsRefused) {
+  for (const vk::Extent2D extent : {vk::Extent2D{0, 4}, vk::Extent2D{4, 0}, vk::Extent2D{0, 0}}) {
+    try {
+      const Image image(
+          context(),
+          {.format = vk::Format::eR32Sfloat, .extent = extent, .usage = vk::ImageUsageFlagBits::eSampled},
+          "nothing");
+      ADD_FAILURE() << extent.width << " x " << extent.height;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("it is empty"));
+    }
   }
 }
 

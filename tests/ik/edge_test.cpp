@@ -106,6 +106,20 @@ TEST_F(TargetTest, BeyondReachAFreeChainIsStraight) {
   }
 }
 
+// So far that the square of it is no number.
+TEST_F(TargetTest, AnywhereBeyondReachAFreeChainPointsThere) {
+  const ik::Chain chain = evenChain(5, 0.4);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float far : {-1e30f, 1e30f}) {
+      vec3 target(0), tip(0);
+      target[axis] = far;
+      tip[axis] = std::copysign(1.0f, far);
+      const Solved solved = solve(device(), chain, {.solver = ik::Solver::stretchAlign}, {target});
+      EXPECT_EQ(solved.report[0].stop, ik::Stop::unreachable);
+      EXPECT_LE(glm::length(solved.chain(0)[4] - tip), 1e-6f) << axis << ", " << far;
+    }
+}
+
 TEST_F(TargetTest, BeyondReachALimitedChainIsLegalAndNear) {
   // Straight chains turned about their base are legal: half the reach is left.
   const ik::Chain chain = evenChain(5, 0, wide);

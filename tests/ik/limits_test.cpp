@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
+
+#include "ik/skeleton.h"
 
 namespace skitter::test {
 namespace {
@@ -44,6 +47,17 @@ TEST(Limits, WhatIsBeyondThemIsClampedTowardRest) {
   EXPECT_LT(glm::distance(ik::clamped(knee, {0.3, std::sin(0.1), std::cos(0.1)}),
                           {0, std::sin(0.1), std::cos(0.1)}),
             1e-6);
+}
+
+// Of what may twist, if only to one side.
+TEST(Limits, ATwistToOneSideIsOne) {
+  ik::Chain chain{.bones = std::vector<ik::Bone>(3, {.length = 1, .limit = ik::Cone{1}}), .pole = {}};
+  EXPECT_FALSE(ik::Skeleton(chain).hasTwists());
+  chain.bones[1].twistMax = 0.4f;
+  EXPECT_TRUE(ik::Skeleton(chain).hasTwists());
+  chain.bones[1].twistMax = 0;
+  chain.bones[2].twistMin = -0.4f;
+  EXPECT_TRUE(ik::Skeleton(chain).hasTwists());
 }
 
 }  // namespace

@@ -309,6 +309,18 @@ TEST(Ribbons, spanBonesThatAreAlmostStraight) {
   EXPECT_FALSE(parted.others.empty());
 }
 
+// A joint beyond the ends is on their line, and yet far from both.
+TEST(Ribbons, doNotSpanBonesThatFoldBack) {
+  Rig rig = spiderRig();
+  std::vector<Bone>& bones = rig.legs[0].bones;
+  bones.resize(2);
+  const auto spans = [&] { return ribbonsOf(rig, 1, 0.5f * bones[1].length, false).ribbons[0].to.bone > 1; };
+  bones[1].direction = bones[0].direction;
+  EXPECT_TRUE(spans());
+  bones[1].direction = -bones[0].direction;
+  EXPECT_FALSE(spans());
+}
+
 TEST(Ribbons, ofSeveralBonesHaveTheColoursOfBothEnds) {
   Rig rig = spiderRig();
   const auto bones = size_t(rig.maxBones());

@@ -126,6 +126,27 @@ TEST_F(SplineRefuseTest, WhatIsWrongOnTheDeviceIsMarkedAndHurtsNoOther) {
   }
 }
 
+// Tangents that the device is given may be wrong on one side alone.
+TEST_F(SplineRefuseTest, ATangentThatCannotBeIsMarkedOnEitherSide) {
+  SplineBatch batch(device(), 4, {.points = 3, .tangents = {SplineRule::given}});
+  std::vector<vec3> points;
+  for (int spline = 0; spline < 4; ++spline) points.insert(points.end(), three.begin(), three.end());
+  batch.setPoints(points);
+  batch.setTangents(std::vector<vec3>(12, vec3(1)));
+  const SplineBatch::Span span = batch.tangents(0);
+  const gpu::Buffer tangents = gpu::Buffer::borrowed(context(), span.buffer, span.bytes, "tangents");
+  std::vector<glm::vec4> records = gpu::download<glm::vec4>(context(), tangents);
+  records[2 * (3 * 1 + 1)].y = nan;        // arriving at a point of spline 1
+  records[2 * (3 * 2 + 1) + 1].x = 2e12f;  // leaving one of spline 2
+  gpu::upload(context(), tangents, records);
+  gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+    batch.recordPrepare(cmd);
+    batch.record(cmd, 0.5f);
+  });
+  const std::vector<SplineMotion> motions = batch.downloadMotions();
+  for (size_t n = 0; n < 4; ++n) EXPECT_EQ(motions[n].state == SplineState::refused, n == 1 || n == 2) << n;
+}
+
 // Out and back by the largest tangents over the longest time.
 TEST_F(SplineRefuseTest, ALengthThatFloat32CannotSumIsMarked) {
   SplineBatch batch(device(), 1, {.tangents = {SplineRule::given}});

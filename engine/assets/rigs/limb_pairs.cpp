@@ -33,8 +33,8 @@ void pairLimbs(BodyPlan& plan) {
     paired[a] = paired[best] = true;
     // Mirrored feet end alike.
     if (plan.limbs[a].footJoint == plan.limbs[best].footJoint) continue;
-    for (const size_t i : {a, best}) {
-      if (!plan.limbs[i].footJoint && plan.limbs[i].boneCount() > 2) plan.limbs[i].endAtJoint(plan.model);
+    for (Limb* limb : {&plan.limbs[a], &plan.limbs[best]}) {
+      if (!limb->footJoint && limb->boneCount() > 2) limb->endAtJoint(plan.model);
     }
   }
   if (std::find(paired.begin(), paired.end(), true) == paired.end()) return;
