@@ -62,6 +62,19 @@ TEST_F(Fields, AreDrawnForEachKindAndGoal) {
   const std::array<int, 3> goal = Png(file("out/herd0_goal0.png")).at(36 + 520, 92 + 747);
   EXPECT_GT(goal[0], 200);
   EXPECT_LT(goal[1], 80);
+  // The legend, right of the map, has the crossed mark of a stop where that is not the goal.
+  const auto redInLegend = [&](const char* picture) {
+    const Png png(file(picture));
+    int count = 0;
+    for (size_t y = 92; y < png.image.height; ++y)
+      for (size_t x = 1080; x < png.image.width; ++x) {
+        const std::array<int, 3> c = png.at(x, y);
+        count += c[0] > c[1] + 90 && c[0] > c[2] + 90;
+      }
+    return count;
+  };
+  EXPECT_GT(redInLegend("out/herd0_goal0.png"), 100);
+  EXPECT_GT(redInLegend("out/herd0_goal1.png"), redInLegend("out/herd0_goal0.png") + 40);
   const std::string page = [&] {
     std::ifstream in(file("out/index.html"));
     std::stringstream all;
