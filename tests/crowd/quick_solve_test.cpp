@@ -1,4 +1,4 @@
-// How few legs the first dispatch of stage ik leaves to the second (docs/stages/ik.md).
+// The first dispatch of stage ik leaves few legs to the second (docs/stages/ik.md).
 #include "crowd/page.h"
 #include "crowd/simulation.h"
 #include "gpu/transfer.h"

@@ -1,4 +1,4 @@
-// What is chosen of a device's memory.
+// The type and the heap that are chosen of a device's memory.
 #include "gpu/device_memory.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace skitter::gpu {
 namespace {
 
-// As a GPU with a window into its memory has it.
+// A GPU with a window into its memory has these.
 vk::PhysicalDeviceMemoryProperties properties() {
   using Flag = vk::MemoryPropertyFlagBits;
   vk::PhysicalDeviceMemoryProperties memory;

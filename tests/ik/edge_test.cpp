@@ -106,7 +106,7 @@ TEST_F(TargetTest, BeyondReachAFreeChainIsStraight) {
   }
 }
 
-// So far that the square of it is no number.
+// The target is so far that its square is no number.
 TEST_F(TargetTest, AnywhereBeyondReachAFreeChainPointsThere) {
   const ik::Chain chain = evenChain(5, 0.4);
   for (int axis = 0; axis < 3; ++axis)

@@ -1,4 +1,4 @@
-// What `skitter ik` reports of many solves.
+// The figures that `skitter ik` reports of many solves.
 #include "app/ik/figures.h"
 
 #include <gtest/gtest.h>

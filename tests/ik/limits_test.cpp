@@ -1,4 +1,4 @@
-// What the host makes of limits.
+// Limits as the host has them: greatest angles, clamping, twists.
 #include "ik/limits.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(Limits, WhatIsBeyondThemIsClampedTowardRest) {
             1e-6);
 }
 
-// Of what may twist, if only to one side.
+// A chain has twists where one bone may twist, if only to one side.
 TEST(Limits, ATwistToOneSideIsOne) {
   ik::Chain chain{.bones = std::vector<ik::Bone>(3, {.length = 1, .limit = ik::Cone{1}}), .pole = {}};
   EXPECT_FALSE(ik::Skeleton(chain).hasTwists());

@@ -3,7 +3,6 @@
 namespace skitter::test {
 namespace {
 
-// A creature of size 2 is drawn twice as large.
 // Beside a foot, on the side of the sun, where its shadow does not fall and away from the leg.
 TEST_P(RendererTest, feetDarkenTheGroundThatTheyTouchAndNoOther) {
   const uint32_t width = 480, height = 480;

@@ -314,7 +314,8 @@ TEST(Ribbons, doNotSpanBonesThatFoldBack) {
   Rig rig = spiderRig();
   std::vector<Bone>& bones = rig.legs[0].bones;
   bones.resize(2);
-  const auto spans = [&] { return ribbonsOf(rig, 1, 0.5f * bones[1].length, false).ribbons[0].to.bone > 1; };
+  const float bend = 0.5f * std::min(bones[0].length, bones[1].length);
+  const auto spans = [&] { return ribbonsOf(rig, 1, bend, false).ribbons[0].to.bone > 1; };
   bones[1].direction = bones[0].direction;
   EXPECT_TRUE(spans());
   bones[1].direction = -bones[0].direction;
