@@ -12,7 +12,8 @@
 namespace skitter::app {
 namespace {
 
-constexpr glm::vec3 background{0.80f, 0.82f, 0.85f}, groundColour{0.45f, 0.47f, 0.50f}, ahead{0.05f, 0.05f, 0.05f};
+constexpr glm::vec3 background{0.80f, 0.82f, 0.85f}, groundColour{0.45f, 0.47f, 0.50f},
+    ahead{0.05f, 0.05f, 0.05f};
 constexpr std::array groupColours = {glm::vec3(0.90f, 0.18f, 0.02f), glm::vec3(0.02f, 0.16f, 0.80f),
                                      glm::vec3(0.05f, 0.50f, 0.08f), glm::vec3(0.60f, 0.05f, 0.60f),
                                      glm::vec3(0.05f, 0.50f, 0.55f), glm::vec3(0.65f, 0.45f, 0.02f)};

@@ -112,7 +112,8 @@ struct Colony::Impl {
   void makeKernels();
   gpu::Kernel makeKernel(const char* entry, std::span<const uint8_t> builtin, std::vector<int> bindings);
   gpu::Bindings bind(const gpu::Kernel&) const;
-  std::array<const gpu::Buffer*, 10> buffers() const;  // by binding
+  using Buffers = std::array<const gpu::Buffer*, shared::COLONY_BEST + 1>;
+  Buffers buffers() const;  // by binding
   void begin();
   void recordUpdate(vk::CommandBuffer, uint32_t kind) const;
   void recordTightening(vk::CommandBuffer) const;
@@ -211,7 +212,7 @@ gpu::Bindings Colony::Impl::bind(const gpu::Kernel& kernel) const {
   return kernel.bind(*context, list);
 }
 
-std::array<const gpu::Buffer*, 10> Colony::Impl::buffers() const {
+Colony::Impl::Buffers Colony::Impl::buffers() const {
   return {&ground, &pheromone, &weight, &mark, &move, &trip, &chain, &crossing, &trail, &best};
 }
 

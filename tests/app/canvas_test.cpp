@@ -1,4 +1,4 @@
-// A canvas draws the pictures of `skitter rig` in software.
+// A canvas draws the pictures of `skitter inspect` in software.
 #include "app/rig/canvas.h"
 
 #include <gtest/gtest.h>

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <glm/glm.hpp>
 
 #include "../assets/files.h"
+#include "../support/srgb.h"
 #include "read_png.h"
 
 namespace skitter::test {
@@ -37,10 +37,6 @@ Rig flatRig() {
   return rig;
 }
 
-int codeOf(float linear) {
-  return static_cast<int>(std::lround(255 * (1.055f * std::pow(linear, 1 / 2.4f) - 0.055f)));
-}
-
 // The last quarter is the view from above: ahead is up, and the creature's left is on the left.
 TEST(RigPicture, ATriangleHasTheColoursOfItsCorners) {
   const TemporaryFolder folder;
@@ -55,7 +51,7 @@ TEST(RigPicture, ATriangleHasTheColoursOfItsCorners) {
         png.at(static_cast<size_t>(300 - perMetre * at.x), static_cast<size_t>(300 - perMetre * at.z));
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(pixel[static_cast<size_t>(c)],
-                  codeOf((0.45f * shares[c] + 0.55f * 0.6f) * (0.45f + 0.55f * light.y)), 3)
+                  encodedSrgb((0.45f * shares[c] + 0.55f * 0.6f) * (0.45f + 0.55f * light.y)), 3)
           << "channel " << c << " at " << at.x << ", " << at.z;
   }
   EXPECT_EQ(png.at(210, 210), png.at(390, 210));  // beside it

@@ -13,10 +13,13 @@
 #include "base/srgb.h"
 #include "files.h"
 #include "support/image_bytes.h"
+#include "support/srgb.h"
 
 namespace skitter {
 namespace {
 
+using test::decodedSrgb;
+using test::encodedSrgb;
 using test::pngFile;
 using test::texelsOf;
 
@@ -189,14 +192,6 @@ double coveredShare(uint32_t i, uint32_t n, uint32_t texel, uint32_t size) {
   return std::max(0.0, std::min(to, texel + 1.0) - std::max(from, double(texel))) / (to - from);
 }
 
-double lightOf(double code) {
-  const double s = code / 255;
-  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-}
-double codeOf(double light) {
-  return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
-}
-
 TEST(MipLevels, AreMeansByAreaOfTheLevelBefore) {
   for (const auto& [width, height] : {std::pair(16u, 8u), std::pair(13u, 7u), std::pair(1u, 6u)}) {
     const Texels image = texelsOf(width, height, [](uint32_t x, uint32_t y) {
@@ -220,10 +215,10 @@ TEST(MipLevels, AreMeansByAreaOfTheLevelBefore) {
                 for (uint32_t u = 0; u < from.width; ++u) {
                   const double code = from.rgba[4 * (v * from.width + u) + k];
                   sum += coveredShare(x, to.width, u, from.width) *
-                         coveredShare(y, to.height, v, from.height) * (light ? lightOf(code) : code);
+                         coveredShare(y, to.height, v, from.height) * (light ? decodedSrgb(code) : code);
                 }
               // Rounded to the nearest byte. Single precision may round the other way at half of one.
-              EXPECT_NEAR(to.rgba[4 * (y * to.width + x) + k], light ? codeOf(sum) : sum, 0.502)
+              EXPECT_NEAR(to.rgba[4 * (y * to.width + x) + k], light ? encodedSrgb(sum) : sum, 0.502)
                   << width << " x " << height << ", level " << level << ": " << x << ", " << y << ", " << k;
             }
       }
@@ -244,7 +239,7 @@ TEST(MipLevels, OfColoursKeepTheLight) {
 
 TEST(Srgb, BytesSurviveTheWayThere) {
   for (int code = 0; code < 256; ++code) {
-    EXPECT_NEAR(base::linearOfByte(uint8_t(code)), lightOf(code), 1e-6);
+    EXPECT_NEAR(base::linearOfByte(uint8_t(code)), decodedSrgb(code), 1e-6);
     EXPECT_EQ(base::byteOfLinear(base::linearOfByte(uint8_t(code))), code);
   }
   EXPECT_EQ(base::byteOfLinear(-1), 0);

@@ -279,7 +279,7 @@ TEST_F(EvolutionTest, CreaturesThatTryInBatchesFindWhatTheyFindAtOnce) {
   const Rig rig = loadRig(SKITTER_ROOT "/assets/quadruped.glb");
   Evolution search(device(), rig, {.batch = 16, .dt = 1.0f / 20});
   for (int i = 0; i < 4; ++i) search.step();
-  // Only those without the same legs as in a gait of the map try any.
+  // A creature tries gaits only where the map has one without the legs that it lost.
   const std::vector<AdaptationReport> few = search.adapt(30, 3), many = search.adapt(120, 3);
   ASSERT_GT(few.size(), 4u);
   ASSERT_LE(few.size(), 16u);

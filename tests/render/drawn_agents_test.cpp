@@ -1,6 +1,7 @@
 #include "render/mesh.h"
 #include "render/pictures.h"
 #include "support/image_bytes.h"
+#include "support/rounding.h"
 
 namespace skitter::test {
 namespace {
@@ -71,7 +72,7 @@ TEST_P(RendererTest, equalHerdsAreWhereOthersAre) {
   EXPECT_LT(odd, (left + right) / 50);
 }
 
-// Who can lose legs is drawn as who cannot, until one is lost.
+// An agent that can lose legs is drawn as one that cannot, until it loses one.
 TEST_P(RendererTest, legsThatMayBeLostAreDrawn) {
   Scene scene = smallScene(4), hurt = scene;
   for (Scene* each : {&scene, &hurt})
@@ -82,7 +83,9 @@ TEST_P(RendererTest, legsThatMayBeLostAreDrawn) {
   never.tick(5);
   can.tick(5);
   const Picture whole = never.draw(view);
-  EXPECT_EQ(differing(whole, can.draw(view)), 0u);
+  // Other kernels move and draw it. Where they round differently, an edge may take another pixel.
+  const size_t mostPixels = kernelsRoundAlike(device()) ? 0 : 320 * 180 / 200;
+  EXPECT_LE(differing(whole, can.draw(view)), mostPixels);
   for (uint32_t agent = 0; agent < 4; ++agent) can.crowd.hurt(can.crowd.agentId(0, agent), 1);
   never.tick(1);
   can.tick(1);

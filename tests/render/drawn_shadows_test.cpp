@@ -55,8 +55,8 @@ Darkness darkness(const Picture& with, const Picture& without) {
   return {int(shares.size()), shares[shares.size() / 2]};
 }
 
-// Places are stored by tiles of 16 m. Below clouds, who stands beyond the edge of the eye's tile darkens as
-// much ground as who stands within it.
+// Places are stored by tiles of 16 m. Below clouds, agents across the edge of the eye's tile darken as much
+// ground as agents within it.
 TEST_P(RendererTest, tilesDoNotShowInContacts) {
   const Heightfield ground = groundOf(257, 257, [](float, float) { return 0.0f; });
   Scene scene = smallScene(4), none = smallScene(0);
