@@ -50,11 +50,7 @@ Avoiding avoidingOf(const Setting& setting, const Moment& moment) {
                  .desired = desiredOf(moment.after, moment.agent),
                  .mayRest = mayRest(moment.after, moment.agent)};
   if (agent.body.absent) return agent;
-  const int64_t number = setting.firstNumber + static_cast<int64_t>(moment.number());
-  const auto found = walkerAt(moment, number);
-  if (found == moment.around.end())
-    throw inputError("replay: the surroundings lack an agent whose herd avoids");
-  agent.self = *found;
+  agent.self = selfAround(setting, moment);
   return agent;
 }
 
@@ -120,6 +116,13 @@ Sample compareAvoid(const Avoiding& agent, const reference::AvoidResult& expecte
 }
 
 }  // namespace
+
+const reference::Walker& selfAround(const Setting& setting, const Moment& moment) {
+  const auto found = walkerAt(moment, setting.firstNumber + static_cast<int64_t>(moment.number()));
+  if (found == moment.around.end())
+    throw inputError("replay: the surroundings lack an agent whose herd avoids");
+  return *found;
+}
 
 void checkAvoid(const Setting& setting, const Moment& moment, Judge& judge) {
   const Avoiding agent = avoidingOf(setting, moment);

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "cpu_reference/heightfield.h"
+#include "cpu_reference/stages/avoid.h"
 #include "cpu_reference/stages/foothold.h"
 #include "cpu_reference/stages/hurt.h"
 #include "cpu_reference/stages/tolerances.h"
@@ -26,11 +29,12 @@ struct Case {
   reference::Gait gait;
   reference::Step before, got;
   bool lifts;
+  std::span<const reference::Passer> passers;
   std::optional<glm::dvec3> hanging;  // where its foot is, of a leg that lifts without having carried
 
   reference::FootholdResult run(const reference::FootholdChoices& choices) const {
     return reference::foothold(setting.tuning, setting.heights, limb, body, gait, before, lifts, moment.now(),
-                               choices, hanging);
+                               choices, hanging, passers);
   }
 };
 
@@ -62,6 +66,8 @@ CandidateBounds boundsOf(const Case& c, const reference::FootholdResult& result,
   const glm::dvec3 miss = candidate.point - c.body.orientation * result.target;
   bound.score = 2 * glm::length(miss) * (bound.horizontal + bound.vertical) / (t.legLength * t.legLength) +
                 8 * tolerance::roundoff * candidate.score;
+  const double beyond = bound.horizontal + candidate.beyondError;
+  bound.score += 2 * 100 * (candidate.beyond + beyond) * beyond / (t.legLength * t.legLength);
   if (!t.nearestOnly) {
     const double strain = std::max(0.0, candidate.distance / c.limb.reach - t.reachComfort);
     bound.score += t.slopeWeight * bound.facing +
@@ -221,11 +227,28 @@ void checkLeg(const Case& c, size_t l, Judge& judge) {
   judge.add(c.moment.n, c.moment.number(), leg, sample);
 }
 
+// Whom the agent's feet keep clear of, where its herd avoids.
+std::vector<reference::Passer> passersOf(const Setting& setting, const Moment& moment) {
+  const bool avoids = setting.avoid.look > 0;
+  if (!avoids) return {};
+  const reference::Walker& self = selfAround(setting, moment);
+  const double quanta = setting.avoid.quanta;
+  std::vector<reference::Passer> passers;
+  for (const reference::Walker& other : reference::neighboursOf(setting.avoid, self, moment.around))
+    passers.push_back({.place = glm::dvec2(other.x - self.x, other.z - self.z) / quanta,
+                       .velocity = other.velocity,
+                       .ownVelocity = self.velocity,
+                       .radius = static_cast<double>(other.radius) / quanta,
+                       .ownRadius = static_cast<double>(self.radius) / quanta});
+  return passers;
+}
+
 }  // namespace
 
 void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge) {
   const reference::Gait gait = gaitOf(moment.after, moment.agent);
   const reference::AgentBody body = bodyOf(moment.after, moment.agent);
+  const std::vector<reference::Passer> passers = passersOf(setting, moment);
   const size_t legs = static_cast<size_t>(setting.legs);
   for (size_t l = 0; l < legs; ++l) {
     const size_t leg = moment.agent * legs + l;
@@ -241,6 +264,7 @@ void checkFoothold(const Setting& setting, const Moment& moment, Judge& judge) {
              moment.stepOf(moment.before, leg),
              moment.stepOf(moment.after, leg),
              lifts,
+             passers,
              {}};
       if (lifts && reaims)
         c.hanging = reference::heldLeg(limb, body, chainOf(moment.before, leg, setting.bones)).tip;

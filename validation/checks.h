@@ -20,6 +20,9 @@ struct Moment {
   size_t number() const { return after.sample.first + agent * after.sample.stride; }
 };
 
+// The agent as others see it, where its herd avoids. Throws Error(input) where the surroundings lack it.
+const reference::Walker& selfAround(const Setting& setting, const Moment& moment);
+
 // A sleeper's records must be those of before the tick, bit for bit; adds what is not.
 void checkKept(const Setting& setting, const Moment& moment, Record record, Judge& judge);
 

@@ -11,6 +11,7 @@ namespace {
 
 // docs/stages/avoid.md. Seconds, shares and leg lengths a second.
 constexpr double horizon = 2, pushTime = 0.5;
+constexpr double roomHeldUp = 1.5, roomGoing = 2.7;  // times the footprints
 constexpr double rightBias = 0.05;
 constexpr double softness = 0.05;
 constexpr int sweeps = 6;
@@ -74,19 +75,29 @@ glm::dvec2 partingLine(int64_t a, int64_t b) {
   return glm::normalize(a < b ? line : -line);
 }
 
-HalfPlane planeOf(const AvoidTuning& tuning, const Walker& self, const Seen& seen, int right,
+// How many times the footprints are apart that agents try to keep.
+double roomOf(double speed, double wanted) {
+  return std::lerp(roomHeldUp, roomGoing, std::min(1.0, 2 * speed / std::max(wanted, 1e-6)));
+}
+
+HalfPlane planeOf(const AvoidTuning& tuning, const Walker& self, const Seen& seen, double room, int right,
                   Rounding& rounded) {
   const Walker& other = *seen.walker;
   HalfPlane plane{.neighbour = other.number, .sideMargin = std::numeric_limits<double>::infinity()};
   const glm::dvec2 p = glm::dvec2(seen.x, seen.z) / tuning.quanta;
   const double d = std::sqrt(static_cast<double>(seen.distance2)) / tuning.quanta;
-  const double radii = static_cast<double>(seen.radii) / tuning.quanta;
+  const double footprints = static_cast<double>(seen.radii) / tuning.quanta;
+  const double radii = rounded(room, 4 * room) * footprints;
+  const double power = rounded(d * d - radii * radii, 4 * (d * d + radii * radii));
   const double size = glm::length(self.velocity) + glm::length(other.velocity) + (d + radii) / horizon;
   const glm::dvec2 v = rounded(self.velocity - other.velocity, 2 * size);
   glm::dvec2 change;
-  if (seen.distance2 <= seen.radii * seen.radii) {
+  if (power <= 0) {
     plane.n = seen.distance2 > 0 ? -p / d : partingLine(self.number, other.number);
-    change = ((radii - d) / pushTime - glm::dot(plane.n, v)) * plane.n;
+    // Footprints part at once, what is between them slowly.
+    const double push =
+        std::max(0.0, footprints - d) / pushTime + (radii - std::max(footprints, d)) / horizon;
+    change = (push - glm::dot(plane.n, v)) * plane.n;
   } else {
     const glm::dvec2 w = rounded(v - p / horizon, 2 * size);
     const double along = glm::dot(w, p), speed = glm::length(w);
@@ -94,8 +105,7 @@ HalfPlane planeOf(const AvoidTuning& tuning, const Walker& self, const Seen& see
       plane.n = w / std::max(speed, 1e-9);
       change = (radii / horizon - speed) * plane.n;
     } else {
-      const double leg =
-          std::sqrt(static_cast<double>(seen.distance2 - seen.radii * seen.radii)) / tuning.quanta;
+      const double leg = std::sqrt(power);
       const double across = p.x * w.y - p.y * w.x + rightBias * d * speed;
       plane.sideMargin = std::abs(across) / d;
       plane.right = right >= 0 ? right : (across >= 0 ? 1 : 0);
@@ -293,6 +303,13 @@ Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yiel
           radius, body.speed * body.heading,         yields};
 }
 
+std::vector<Walker> neighboursOf(const AvoidTuning& tuning, const Walker& self, std::span<const Walker> all) {
+  std::vector<Walker> neighbours;
+  for (const Seen& seen : inReach(tuning, self, all))
+    if (neighbours.size() < mostNeighbours) neighbours.push_back(*seen.walker);
+  return neighbours;
+}
+
 AvoidResult avoid(const AvoidTuning& tuning, const AvoidTick& tick, const AgentBody& body, const Walker& self,
                   std::span<const Walker> all, const glm::dvec2& desired, bool asleep,
                   const AvoidChoices& choices, const AvoidErrors& errors) {
@@ -309,6 +326,7 @@ AvoidResult avoid(const AvoidTuning& tuning, const AvoidTick& tick, const AgentB
   if (seen.size() > mostNeighbours) seen.resize(mostNeighbours);
 
   const double speed = glm::length(desired);
+  const double room = roomOf(body.speed, speed);
   double close = 0, press = 0;
   std::vector<CellSide> sides;
   for (const Seen& other : seen) {
@@ -320,7 +338,7 @@ AvoidResult avoid(const AvoidTuning& tuning, const AvoidTick& tick, const AgentB
     press = std::max(press, closeness * std::max(0.0, glm::dot(p, desired)) / std::max(d * speed, 1e-6));
     const size_t place = result.planes.size();
     const int right = place < choices.right.size() ? choices.right[place] : -1;
-    result.planes.push_back(planeOf(tuning, self, other, right, rounded));
+    result.planes.push_back(planeOf(tuning, self, other, room, right, rounded));
     sides.push_back(sideOf(tuning, tick, self, other, desired, rounded));
     result.mostSpeed = std::min(result.mostSpeed, speedAlong(sides.back(), body.heading, rounded));
   }

@@ -84,6 +84,9 @@ constexpr size_t mostNeighbours = 8, mostObstacles = 4;
 // A walker of that body, with a footprint of that radius in quanta.
 Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yields, double quanta);
 
+// Those of `all` whom the agent keeps clear of, the nearest first.
+std::vector<Walker> neighboursOf(const AvoidTuning& tuning, const Walker& self, std::span<const Walker> all);
+
 // `self` as others see it; `all` are the walkers of the crowd, itself among them. `desired` and `asleep` are
 // navigate's.
 AvoidResult avoid(const AvoidTuning& tuning, const AvoidTick& tick, const AgentBody& body, const Walker& self,

@@ -5,12 +5,48 @@
 #include "cpu_reference/heightfield.h"
 #include "cpu_reference/stages/gait.h"
 #include "cpu_reference/stages/swing.h"
+#include "cpu_reference/stages/tolerances.h"
 
 namespace skitter::reference {
 namespace {
 
+constexpr double othersMargin = 0.15, othersWeight = 100;
+
+// When the foot lands, in the middle of its stance, and at its end.
+std::vector<Border> bordersOf(std::span<const Passer> passers, double landing, double stance) {
+  std::vector<Border> borders;
+  for (const Passer& passer : passers) {
+    const double radii = passer.radius + passer.ownRadius;
+    for (const double time : {landing, landing + stance / 2, landing + stance}) {
+      const glm::dvec2 then = passer.place + time * (passer.velocity - passer.ownVelocity);
+      const double apart = glm::length(then), goes = time * glm::length(passer.ownVelocity);
+      Border border;
+      border.n = then / std::max(apart, 1e-6);
+      border.most = std::max(apart, radii) * passer.ownRadius / radii +
+                    time * glm::dot(border.n, passer.ownVelocity) - othersMargin * passer.ownRadius;
+      // The vector errs by 8 roundings of what it is the sum of, times among it; its direction by that over
+      // its length.
+      const double errs =
+          8 * tolerance::roundoff * (glm::length(passer.place) + goes + time * glm::length(passer.velocity));
+      border.turns = std::min(2.0, 2 * errs / std::max(apart, 1e-6) + 4 * tolerance::roundoff);
+      border.shifts = errs + goes * border.turns + 8 * tolerance::roundoff * (apart + radii + goes);
+      borders.push_back(border);
+    }
+  }
+  return borders;
+}
+
+// How far a place is beyond the borders.
+void judgeAmong(const std::vector<Border>& borders, Candidate& candidate) {
+  const glm::dvec2 q{candidate.point.x, candidate.point.z};
+  for (const Border& border : borders) {
+    candidate.beyond = std::max(candidate.beyond, glm::dot(border.n, q) - border.most);
+    candidate.beyondError = std::max(candidate.beyondError, border.turns * glm::length(q) + border.shifts);
+  }
+}
+
 Candidate evaluate(const Tuning& tuning, const Heights& heights, const Limb& limb, const AgentBody& body,
-                   const FootholdResult& plan, const glm::dvec2& ground) {
+                   const FootholdResult& plan, const std::vector<Border>& borders, const glm::dvec2& ground) {
   Candidate candidate;
   const glm::dvec2 position = body.world();
   glm::dvec3 q = body.orientation * glm::dvec3(ground.x, plan.target.y, ground.y);
@@ -33,11 +69,14 @@ Candidate evaluate(const Tuning& tuning, const Heights& heights, const Limb& lim
     const double strain = std::max(0.0, candidate.distance / limb.reach - tuning.reachComfort);
     candidate.score += tuning.slopeWeight * (1 - candidate.facing) + tuning.reachWeight * strain * strain;
   }
+  judgeAmong(borders, candidate);
+  candidate.score +=
+      othersWeight * candidate.beyond * candidate.beyond / (tuning.legLength * tuning.legLength);
   return candidate;
 }
 
 void layLadder(const Tuning& tuning, const Heights& heights, const Limb& limb, const AgentBody& body,
-               FootholdResult& plan) {
+               const std::vector<Border>& borders, FootholdResult& plan) {
   const glm::dvec2 target{plan.target.x, plan.target.z};
   glm::dvec2 o = target - glm::dvec2(plan.root.x, plan.root.z);
   plan.side = glm::length(o);
@@ -49,7 +88,7 @@ void layLadder(const Tuning& tuning, const Heights& heights, const Limb& limb, c
     for (int j = -k; j <= k; ++j) {
       const glm::dvec2 c =
           (target - o * plan.stretch) + o * (k * plan.stretch / 3) + across * (j * plan.stretch / 6);
-      plan.candidates.push_back(evaluate(tuning, heights, limb, body, plan, c));
+      plan.candidates.push_back(evaluate(tuning, heights, limb, body, plan, borders, c));
     }
   }
 }
@@ -70,7 +109,8 @@ void choose(FootholdResult& plan) {
 
 FootholdResult foothold(const Tuning& tuning, const Heights& heights, const Limb& limb, const AgentBody& body,
                         const Gait& gait, const Step& step, bool lifts, double tick,
-                        const FootholdChoices& choices, const std::optional<glm::dvec3>& hanging) {
+                        const FootholdChoices& choices, const std::optional<glm::dvec3>& hanging,
+                        std::span<const Passer> passers) {
   FootholdResult result;
   const double flown = tick - 1 - step.firstTick, lasted = std::abs(step.duration);
   const double fresh = limb.stepTicks(gait.duration);
@@ -79,7 +119,7 @@ FootholdResult foothold(const Tuning& tuning, const Heights& heights, const Limb
   const double stanceTime = gait.cycle - fresh * tuning.dt;
   result.target = predictedLanding(limb, body, seconds, stanceTime);
   result.root = predictedRoot(limb, body, seconds);
-  layLadder(tuning, heights, limb, body, result);
+  layLadder(tuning, heights, limb, body, bordersOf(passers, seconds, stanceTime), result);
   choose(result);
   if (choices.candidate) {
     result.chosen = *choices.candidate;

@@ -24,7 +24,6 @@ uint32_t invocations(const Kind& kind, const Page& page, Stage::Over over) {
     case Stage::Over::blocks:
       return agents / shared::BLOCK;
     case Stage::Over::everyone:
-    case Stage::Over::crowd:
     case Stage::Over::agents:
     case Stage::Over::listed:
     case Stage::Over::watched:
@@ -46,13 +45,14 @@ bool watchesGround(const Crowd::Impl& crowd) {
 }
 
 shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page,
-                                  Stage::Over over, uint64_t tick) {
+                                  const Stage& stage, uint64_t tick) {
+  const Stage::Over over = stage.over;
   if (over == Stage::Over::watched) {
     const Watch watch = watchAt(tick, crowd.watchEvery, page);
     return {watch.count, static_cast<float>(tick), watch.first, crowd.watchEvery, watch.watched, 0, 0};
   }
   if (over == Stage::Over::blocks && crowd.rates) return crowd.rates->constantsOf(crowd, page, tick);
-  if (over == Stage::Over::crowd) return crowd.grid->constantsOf(crowd, kind, page);
+  if (stage.seesCrowd) return crowd.grid->constantsOf(crowd, kind, page, stage, tick);
   const bool isForaging = over == Stage::Over::everyone && kind.trails != nullptr;
   return {page.agents,
           static_cast<float>(tick),
@@ -149,7 +149,7 @@ void Frame::record(StageSet made) const {
 void Frame::dispatch(const Kind& kind, const Page& page, size_t index) const {
   const ReadyStage& stage = kind.stages[index];
   const gpu::Kernel& kernel = stage.afterEdit && watchesGround(crowd_) ? stage.afterEdit : stage.first;
-  const shared::TickConstants constants = constantsOf(crowd_, kind, page, stage.over, tick_);
+  const shared::TickConstants constants = constantsOf(crowd_, kind, page, stage, tick_);
   const auto push = gpu::bytesOf(constants);
   if (stage.over == Stage::Over::listed)
     kernel.dispatchIndirect(cmd_, page.bindings[index], push, page.counters);
@@ -166,7 +166,7 @@ void Frame::solveListed(const Kind& kind, const Page& page) const {
 
 void Frame::dispatchListed(const Kind& kind, const Page& page, size_t index) const {
   const ReadyStage& stage = kind.stages[index];
-  const shared::TickConstants constants = constantsOf(crowd_, kind, page, stage.over, tick_);
+  const shared::TickConstants constants = constantsOf(crowd_, kind, page, stage, tick_);
   stage.listed.dispatchIndirect(cmd_, page.bindings[index], gpu::bytesOf(constants), page.counters,
                                 static_cast<uint64_t>(stage.listedArguments) * sizeof(uint32_t));
 }

@@ -74,8 +74,7 @@ void bindPages(Crowd::Impl& crowd) {
                                                           {BINDING_GRID_PLACE_OUT, &grid.places},
                                                           {BINDING_GRID_WALKER_OUT, &grid.walkers}});
       for (size_t i = 0; i < kind.stages.size(); ++i)
-        if (kind.stages[i].over == Stage::Over::crowd)
-          page.bindings[i] = bindingsOf(crowd, kind, page, kind.stages[i]);
+        if (kind.stages[i].seesCrowd) page.bindings[i] = bindingsOf(crowd, kind, page, kind.stages[i]);
     }
 }
 
@@ -200,9 +199,10 @@ shared::GridConstants Grid::gridConstantsOf(const Crowd::Impl& crowd, const Kind
           .avoids = kind.avoids ? 1.0f : 0.0f};
 }
 
-shared::TickConstants Grid::constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page) const {
+shared::TickConstants Grid::constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page,
+                                        const Stage& stage, uint64_t tick) const {
   return {.count = page.agents,
-          .tick = static_cast<float>(turnOf(crowd)),
+          .tick = static_cast<float>(stage.makes.has(StageId::avoid) ? turnOf(crowd) : tick),
           .first = numberOf(crowd, kind) + page.firstAgent,
           .every = buckets,
           .watched = row,

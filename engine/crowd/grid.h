@@ -41,8 +41,9 @@ struct Grid {
   // Sorts all agents, as their bodies are, and measures overlaps if that is asked for, with a barrier after
   // it.
   void record(const Crowd::Impl& crowd, vk::CommandBuffer cmd) const;
-  // The constants of stage avoid.
-  shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page) const;
+  // The constants of a stage that sees the crowd.
+  shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page,
+                                    const Stage& stage, uint64_t tick) const;
   shared::GridConstants gridConstantsOf(const Crowd::Impl& crowd, const Kind& kind, const Page& page) const;
   float cellsAQuantum() const;
 

@@ -296,7 +296,7 @@ std::vector<Page> makePages(const Crowd::Impl& crowd, const Kind& kind, std::spa
     if (kind.herdSteps > 0) uploadHerds(*crowd.context, kind, page);
     for (const ReadyStage& stage : kind.stages) {
       page.bindings.emplace_back();
-      if (stage.over != Stage::Over::crowd) page.bindings.back() = bindingsOf(crowd, kind, page, stage);
+      if (!stage.seesCrowd) page.bindings.back() = bindingsOf(crowd, kind, page, stage);
     }
   }
   return pages;

@@ -96,6 +96,7 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
   if (forms.findsWays) std::ranges::replace_if(stages, isOf(StageId::navigate), wayNavigateStage());
   if (forms.forages) std::ranges::replace_if(stages, isOf(StageId::navigate), forageNavigateStage());
   if (forms.amongWalls) std::ranges::replace_if(stages, isOf(StageId::avoid), wallAvoidStage());
+  if (forms.avoids) std::ranges::replace_if(stages, isOf(StageId::foothold), amongFootholdStage());
   for (Stage& stage : stages)
     if (forms.hurts && stage.hurtCode) takeHurtForm(stage, forms.reacts);
   for (Stage& stage : stages)

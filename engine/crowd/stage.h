@@ -27,9 +27,8 @@ struct StageNeeds {
 // One compute shader: the stages that it makes, the records that it binds, and what it runs over.
 struct Stage {
   // agents, legs, joints (of the clips' palette): of those that are awake, or whose turn it is; listed: the
-  // legs that begin a step, counted on the device; watched: agents whom measure looks at; crowd: everyone,
-  // who sees the whole crowd in its grid.
-  enum class Over { everyone, crowd, everyLeg, blocks, agents, legs, joints, listed, watched };
+  // legs that begin a step, counted on the device; watched: agents whom measure looks at.
+  enum class Over { everyone, everyLeg, blocks, agents, legs, joints, listed, watched };
 
   StageSet makes;
   gpu::ShaderCode code;
@@ -40,6 +39,8 @@ struct Stage {
   // Where the counters have the indirect dispatch over what few agents or legs need and the first dispatch
   // leaves out; -1: it leaves out nothing.
   int listedArguments = -1;
+  // In the crowd's grid, whose constants it has.
+  bool seesCrowd = false;
   // In herds that can be hurt: its form, and what that binds beside BINDING_HURT.
   std::optional<gpu::ShaderCode> hurtCode = {};
   std::vector<gpu::BindingDecl> hurtBindings = {};
@@ -96,6 +97,7 @@ SKITTER_STAGES(SKITTER_STAGE)
 Stage wayNavigateStage();
 Stage forageNavigateStage();
 Stage wallAvoidStage();
+Stage amongFootholdStage();
 Stage blindBodyStage();
 Stage bodyAndGaitStage();
 Stage navigateBodyAndGaitStage();

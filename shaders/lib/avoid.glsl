@@ -4,6 +4,7 @@
 // How an agent keeps clear of its neighbours (docs/stages/avoid.md).
 
 const float AVOID_HORIZON = 2.0, AVOID_PUSH_TIME = 0.5;
+const float AVOID_ROOM = 1.5, AVOID_ROOM_GOING = 1.2;  // times the footprints
 const float AVOID_RIGHT_BIAS = 0.05;
 const float AVOID_SOFTNESS = 0.05;
 const int AVOID_SWEEPS = 6;
@@ -56,15 +57,23 @@ struct HalfPlane {
   float bound;
 };
 
-// `p` leads to the neighbour, d long; `radii` of both; `power`: d^2 - radii^2. `own` is the agent's velocity,
+// How many times the footprints agents keep apart. Who gets on as it wants to keeps the room that legs take.
+float roomOf(float speed, float wanted) {
+  return AVOID_ROOM + AVOID_ROOM_GOING * clamp(2.0 * speed / max(wanted, 1e-6), 0.0, 1.0);
+}
+
+// `p` leads to the neighbour, d long; `footprints` of both, apart by `room` times that. `own` is the agent's velocity,
 // `v` less the neighbour's; `apart`: where they part if d is 0.
-HalfPlane halfPlaneOf(vec2 p, float d, float radii, float power, vec2 own, vec2 v, float share, vec2 apart) {
+HalfPlane halfPlaneOf(vec2 p, float d, float footprints, float room, vec2 own, vec2 v, float share, vec2 apart) {
+  float radii = footprints * room, power = (d - radii) * (d + radii);
   vec2 w = v - p * (1.0 / AVOID_HORIZON);
   float along = dot(w, p), speed2 = dot(w, w), speed = sqrt(speed2);
   vec2 n, change;
   if (power <= 0.0) {
     n = d > 0.0 ? p * (-1.0 / d) : apart;
-    change = ((radii - d) * (1.0 / AVOID_PUSH_TIME) - dot(n, v)) * n;
+    float push = max(footprints - d, 0.0) * (1.0 / AVOID_PUSH_TIME) +
+                 (radii - max(d, footprints)) * (1.0 / AVOID_HORIZON);
+    change = (push - dot(n, v)) * n;
   } else if (along < 0.0 && along * along > radii * radii * speed2) {
     n = w * (1.0 / max(speed, 1e-9));
     change = (radii * (1.0 / AVOID_HORIZON) - speed) * n;

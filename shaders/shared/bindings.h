@@ -110,8 +110,9 @@ struct TickConstants {
   // is 2^32 times the chance to leave the nest.
   // wake with levels of rate: `every`, `watched`, `room` are the camera's x, y, z (quarter metres, signed);
   // `sleepTime` is a sum of LEVELS_ flags (shared/levels.h).
-  // avoid: `first` is the number in the crowd of the page's first agent, `every` are the grid's buckets,
-  // `watched` those in a row, `room` is how far agents look (quanta), `sleepTime` metres per quantum.
+  // Stages that see the crowd: `first` is the number in the crowd of the page's first agent, `every` are the
+  // grid's buckets, `watched` those in a row, `room` is how far agents look (quanta), `sleepTime` metres per
+  // quantum. avoid: `tick` counts turns.
   float sleepTime;
 #else
   uint count;

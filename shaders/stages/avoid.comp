@@ -2,17 +2,13 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "stages/stage.glsl"
-#include "lib/rarely.glsl"
 #include "lib/avoid.glsl"
-#include "lib/cells.glsl"
 #include "lib/sum64.glsl"
+#include "stages/neighbours.glsl"
 
 LOAD4_BUFFER(BINDING_STEER, steers);
 STORE4_BUFFER(BINDING_AVOID_OUT, avoidsOut);
 LOAD4_BUFFER(BINDING_BODY, bodies);
-LOAD4_BUFFER(BINDING_CELL, cells);
-LOAD4_BUFFER(BINDING_PLACE, places);
-LOAD4_BUFFER(BINDING_WALKER, walkers);
 layout(set = 0, binding = BINDING_CROWDING, std430) buffer CrowdingBlock { uint crowding[]; };
 #include "stages/absent.glsl"
 #ifdef WALLS
@@ -41,29 +37,6 @@ Walls wallsAround(vec2 place, float radius, float sight) {
 }
 #endif
 
-int buckets = int(constants.every), row = int(constants.watched), look = int(constants.room);
-float metres = constants.sleepTime;
-
-// The nearest to an agent, and how many are in reach.
-Nearest nearestTo(int number, vec4 self, int bucket, out int seen) {
-  Nearest nearest = nobodyNear();
-  Runs runs = LOAD_RUNS(bucket, row, buckets);
-  int count = agentsIn(runs);
-  seen = 0;
-  for (int i = 0; i < count; ++i) {
-    vec4 other = LOAD4(places, placeIn(runs, i));
-    int x = abs(int(other.x - self.x)), z = abs(int(other.y - self.y)), radii = int(other.z + self.z);
-    int reach = radii + look, distance2 = x * x + z * z, who = int(other.w);
-    // Where x or z is beyond reach, the square may be beyond an int.
-    bool inReach = who != number && max(x, z) <= reach && distance2 <= reach * reach;
-    int power = distance2 - radii * radii;
-    seen += inReach ? 1 : 0;
-    RARELY(inReach && isBefore(power, who, nearest.power[NEIGHBOURS - 1], nearest.number[NEIGHBOURS - 1]))
-      insertNearest(nearest, power, who);
-  }
-  return nearest;
-}
-
 void main() {
   int agent = int(gl_GlobalInvocationID.x);
   if (agent >= int(constants.count)) return;
@@ -71,7 +44,7 @@ void main() {
     STORE4(avoidsOut, agent, vec4(0.0, 0.0, 1.0, 0.0));
     return;
   }
-  int number = int(constants.first) + agent;
+  int number = numberOf(agent);
   vec4 steer = LOAD4(steers, agent), moving = LOAD4(bodies, agent * BODY_STRIDE + 1);
   vec4 self = LOAD4(walkers, number * WALKER_STRIDE), going = LOAD4(walkers, number * WALKER_STRIDE + 1);
   int seen;
@@ -80,6 +53,7 @@ void main() {
 
   vec2 wanted = steer.xy;
   float speed = length(wanted), near = 0.0, press = 0.0, most = AVOID_FREE * parameters.legLength;
+  float room = roomOf(moving.z, speed);
   HalfPlane planes[NEIGHBOURS];
   CellSide sides[NEIGHBOURS];
   [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
@@ -94,7 +68,7 @@ void main() {
     near = max(near, closeness);
     press = max(press, closeness * max(0.0, dot(p, wanted)) / max(d * speed, 1e-6));
     float share = other.w != 0.0 ? 0.5 : 1.0;
-    planes[k] = halfPlaneOf(p, d, r, float(power) * (metres * metres), going.xy, going.xy - moves.xy, share,
+    planes[k] = halfPlaneOf(p, d, r, room, going.xy, going.xy - moves.xy, share,
                             partingLine(number, nearest.number[k]));
     bool yields = other.w == 0.0 || goesFirst(nearest.number[k], number, constants.tick);
     sides[k] = cellSideOf(p, d, r, float(min(self.z, other.z)) * metres, wanted / max(speed, 1e-6),

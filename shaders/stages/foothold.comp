@@ -21,6 +21,9 @@ STORE4_BUFFER(BINDING_STEP_OUT, stepsOut);
 STORE4_BUFFER(BINDING_ARC_OUT, arcsOut);
 layout(set = 0, binding = BINDING_LIST, std430) readonly buffer ListBlock { uint list[]; };
 #include "stages/counters.glsl"
+#ifdef AMONG
+#include "stages/others.glsl"
+#endif
 
 #ifdef HURT
 // Where a foot hangs that has not carried: the end of the leg's pose, relative to the body.
@@ -72,6 +75,9 @@ Candidate bestOn(Search search) {
       q[i].y = ground[i].x - search.height;
       Candidate candidate =
           judge(parameters, q[i], ground[i], search.up, search.root, search.predicted, search.range);
+#ifdef AMONG
+      candidate.score += costOfOthers(q[i].xz, search.range.inverseSquare);
+#endif
       if (candidate.fits && candidate.score < best.score) best = candidate;
     }
   }
@@ -175,6 +181,9 @@ void main() {
                          rotate(body.orientation, vec3(-o.y, 0.0, o.x)) * (rho / 6.0));
   search.range = rangeOf(parameters, reach);
 
+#ifdef AMONG
+  drawLines(agent, time, stance);
+#endif
   Candidate best = bestOn(search);
   bool lastResort = !best.fits;
   takeLastResort(search, lastResort, agent, best.point);

@@ -52,6 +52,17 @@ Results meeting(Device& device, Controller controller, const CrowdOptions& optio
   return replay(device, crowd, ground, 200);
 }
 
+// The same, who begin so close that nothing but their cells keeps them apart.
+Results crowding(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(49, 1, 1, controller);
+  scene.herds[0].avoid = true;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f};
+  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0.3f, 0.2f}};
+  Crowd crowd(device, ground, scene, options);
+  return replay(device, crowd, ground, 100);
+}
+
 // Agents begin in each other, and part.
 Results parting(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = smallRollingGround();
@@ -577,6 +588,7 @@ const std::vector<Situation>& situations() {
   static const std::vector<Situation> all = {
       {"walking", {Controller::adaptive}, walking, true},
       {"meeting", {Controller::adaptive, Controller::clip}, meeting},
+      {"crowding", {Controller::adaptive}, crowding},
       {"parting", {Controller::adaptive}, parting},
       {"facing", {Controller::adaptive}, facing},
       {"amongObstacles", {Controller::adaptive, Controller::clip}, amongObstacles, true},

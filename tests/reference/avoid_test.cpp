@@ -43,22 +43,33 @@ TEST_F(Avoid, aLoneAgentGoesAsItWants) {
   EXPECT_TRUE(result.planes.empty());
 }
 
-// w is (0, 1), and the cone's right side is at an angle of 30 degrees to the way.
+// Who stands keeps one and a half footprints apart. w is (0, 0.5), and the cone's right side is at an angle
+// of 30 degrees to the way.
 TEST_F(Avoid, headOnBothPassOnTheirRight) {
-  const double lacking = 0.5 / 1.05, c = std::sqrt(3) / 2;
-  const std::vector<Walker> all = {at(3, 0, 0, {0, 1}), at(5, 0, 2, {0, -1})};
-  const AvoidResult result = first(all, {0, 1});
+  const double lacking = 1 / 1.05, c = std::sqrt(3) / 2;
+  const AvoidResult result = first({at(3, 0, 0), at(5, 0, 3, {0, -2})}, {0, 1});
   ASSERT_EQ(result.planes.size(), 1u);
   EXPECT_EQ(result.planes[0].neighbour, 5);
   EXPECT_EQ(result.planes[0].right, 1);
   EXPECT_NEAR(result.planes[0].n.x, -c, 1e-12);
   EXPECT_NEAR(result.planes[0].n.y, -0.5, 1e-12);
-  EXPECT_NEAR(result.planes[0].bound, 0, 1e-12);
+  EXPECT_NEAR(result.planes[0].bound, 0.5, 1e-12);
   EXPECT_NEAR(result.velocity.x, -c * lacking, 1e-9);
   EXPECT_NEAR(result.velocity.y, 1 - 0.5 * lacking, 1e-9);
-  const AvoidResult other = first({all[1], all[0]}, {0, -1});
+  const AvoidResult other = first({at(5, 0, 3), at(3, 0, 0, {0, 2})}, {0, -1});
   EXPECT_NEAR(other.velocity.x, c * lacking, 1e-9);
   EXPECT_NEAR(other.velocity.y, -1 + 0.5 * lacking, 1e-9);
+}
+
+// The bound is half of what is missing over two seconds, and of how fast the two come together.
+TEST_F(Avoid, whoGetsOnKeepsMoreRoom) {
+  const auto boundAt = [&](double speed, double wanted) {
+    return first({at(0, 0, 0, {0, speed}), at(1, 0, 1.25)}, {0, wanted}).planes.at(0).bound;
+  };
+  EXPECT_NEAR(boundAt(0, 1), (1.5 - 1.25) / 4, 1e-12);
+  EXPECT_NEAR(boundAt(0.25, 1), (2.1 - 1.25) / 4 - 0.125, 1e-12);
+  EXPECT_NEAR(boundAt(0.5, 1), (2.7 - 1.25) / 4 - 0.25, 1e-12) << "half of what it wants is all";
+  EXPECT_NEAR(boundAt(1, 1), (2.7 - 1.25) / 4 - 0.5, 1e-12);
 }
 
 // The wall is 0.5 m from the footprint, which is a second's way at 1 m/s.
@@ -165,13 +176,13 @@ TEST_F(Avoid, agentsMakeRoomInTurns) {
   EXPECT_NEAR(first({at(0, 0, 0, {0, 0.5}), stranger}, {0, 1}).mostSpeed, 0.27 / 0.4 + 1e-4, 1e-9);
 }
 
-// A gap of 0.02 is 0.08 less than the room.
+// A gap of 0.02 is 0.08 less than the room. The wish is so strong that half-planes yield more than that.
 TEST_F(Avoid, whoIsInTheWayOfATurnGoesBack) {
   const std::vector<Walker> close = {at(1, 0, 0), at(0, 0, 1.02)};
-  EXPECT_NEAR(first(close, {0, 1}).velocity.y, -(1.1 - 1.02) / 0.4, 2e-3);
-  EXPECT_GE(first({at(0, 0, 0), at(1, 0, 1.02)}, {0, 1}).velocity.y, 0);
+  EXPECT_NEAR(first(close, {0, 20}).velocity.y, -(1.1 - 1.02) / 0.4, 2e-3);
+  EXPECT_GE(first({at(0, 0, 0), at(1, 0, 1.02)}, {0, 20}).velocity.y, 0);
   tuning.legLength = 0.5;
-  EXPECT_NEAR(first(close, {0, 1}).velocity.y, -0.15, 2e-3) << "0.3 leg lengths a second at most";
+  EXPECT_NEAR(first(close, {0, 20}).velocity.y, -0.15, 2e-3) << "0.3 leg lengths a second at most";
 }
 
 TEST_F(Avoid, nobodyGoesBackIntoAWall) {
@@ -182,8 +193,8 @@ TEST_F(Avoid, nobodyGoesBackIntoAWall) {
 }
 
 TEST_F(Avoid, whoIsBlockedTurnsRight) {
-  const AvoidResult result = first({at(0, 0, 0), at(1, 0, 1)}, {0, 1});
-  EXPECT_LT(result.velocity.x, -0.6);
+  const AvoidResult result = first({at(0, 0, 0), at(1, 0, 1.5)}, {0, 1});
+  EXPECT_LT(result.velocity.x, -0.4);
   EXPECT_LT(std::abs(result.velocity.y), 0.1);
 }
 

@@ -88,6 +88,26 @@ TEST_F(Foothold, nearestOnlyIgnoresEverythingElse) {
   }
 }
 
+// The one that stands beside the foot's home leaves a third of the way to it; the one that goes away, all.
+TEST_F(Foothold, feetStayOnTheirSideOfWhoPasses) {
+  ground(flatField(0));
+  const glm::dvec3 home = creature.limbs[1].home;
+  const glm::dvec2 side = glm::normalize(glm::dvec2(home.x, home.z));
+  const double way = glm::length(glm::dvec2(home.x, home.z));
+  reference::Passer passer{.place = side * way, .radius = 0.25 * way, .ownRadius = 0.25 * way};
+  const auto reachAmong = [&] {
+    const auto result = reference::foothold(tuning, heights, creature.limbs[1], body, gait, steps[1], true,
+                                            10, {}, {}, std::span(&passer, 1));
+    EXPECT_FALSE(result.lastResort);
+    const glm::dvec3 at = landing(result.step) - landing(steps[1]) + home;
+    return glm::dot(side, glm::dvec2(at.x, at.z)) / way;
+  };
+  const double alone = reachAmong();
+  EXPECT_LT(alone, 0.7);
+  passer.velocity = side * (10 * way / tuning.dt / 60);
+  EXPECT_GT(reachAmong(), alone + 0.2);
+}
+
 TEST_F(Foothold, stepRisesOverWhatLiesBetween) {
   const glm::dvec3 home = creature.limbs[1].home;
   steps[1] = plantedAt(body, home + glm::dvec3(0, 0, -0.4));

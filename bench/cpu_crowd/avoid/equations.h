@@ -7,6 +7,7 @@
 namespace skitter::cpu_avoid {
 
 constexpr float horizon = 2, pushTime = 0.5f;
+constexpr float roomHeldUp = 1.5f, roomGoing = 2.7f;  // times the footprints
 constexpr float rightBias = 0.05f;
 constexpr float softness = 0.05f;
 constexpr int sweeps = 6;
@@ -36,7 +37,6 @@ struct Neighbour {
   F d;        // |p|
   F radii;    // of both
   F lesser;   // the smaller of both
-  F power;
   Vec2<F> v;  // the agent's velocity less its own
   F share;    // of the change that the agent takes
   Mask<F> goesFirst;
@@ -74,10 +74,17 @@ struct HalfPlane {
   F bound;
 };
 
-// "3. Half-planes". As n . u, of a neighbour's u, is all that a bound needs, u is that number here.
+// "3. Half-planes": m, of an agent that goes at speed s.
 template <class F>
-HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own) {
-  const auto& [isThere, p, d, radii, lesser, power, v, share, goesFirst, part] = other;
+F roomOf(const F& s, const F& wanted) {
+  return F(roomHeldUp) + F(roomGoing - roomHeldUp) * clamp(F(2) * s / larger(wanted, F(1e-6f)), 0, 1);
+}
+
+// As n . u, of a neighbour's u, is all that a bound needs, u is that number here.
+template <class F>
+HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own, const F& room) {
+  const auto& [isThere, p, d, footprints, lesser, v, share, goesFirst, part] = other;
+  const F radii = footprints * room, power = (d - radii) * (d + radii);
   const Vec2<F> w{v.x - p.x * F(1 / horizon), v.z - p.z * F(1 / horizon)};
   const F along = dot(w, p), speed2 = dot(w, w), speed = squareRoot(speed2);
   // one of the cone's sides
@@ -99,7 +106,9 @@ HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own) {
     const Mask<F> apart = F(0) < d;
     const Vec2<F> away{select(apart, p.x * inverse, part.x), select(apart, p.z * inverse, part.z)};
     n = {select(overlaps, away.x, n.x), select(overlaps, away.z, n.z)};
-    u = select(overlaps, (radii - d) * F(1 / pushTime) - dot(away, v), u);
+    const F push =
+        larger(F(0), footprints - d) * F(1 / pushTime) + (radii - larger(d, footprints)) * F(1 / horizon);
+    u = select(overlaps, push - dot(away, v), u);
   }
   // Who is not there forbids nothing.
   return {{select(isThere, n.x, F(0)), select(isThere, n.z, F(0))},

@@ -86,7 +86,6 @@ class SoftAvoider final : public Avoider {
     other.lesser =
         smaller(toFloats(load<Ints<F>>(&grid_.radius[first])), toFloats(lookUp(grid_.radius.data(), at))) *
         metres;
-    other.power = toFloats(power) * (metres * metres);
     other.v = {own.x - lookUp(grid_.velocityX.data(), at), own.z - lookUp(grid_.velocityZ.data(), at)};
     other.share = lookUp(grid_.share.data(), at);
     const Ints<F> order(order_);
@@ -118,15 +117,16 @@ class SoftAvoider final : public Avoider {
     const auto own = [&](const std::vector<float>& of) { return lookUp(of.data(), number); };
     const Vec2<F> velocity{load<F>(&grid_.velocityX[first]), load<F>(&grid_.velocityZ[first])};
     Wish<F> wish({own(walkers_.wantedX), own(walkers_.wantedZ)});
+    const F speed = own(walkers_.speed), room = roomOf(speed, wish.speed);
     HalfPlane<F> planes[mostNeighbours];
     CellSide<F> sides[mostNeighbours];
     for (int k = 0; k < nearest.most; ++k) {
       const Neighbour<F> other = neighbourOf(nearest, k, first, velocity);
       wish.see(other);
-      planes[k] = halfPlaneOf(other, velocity);
+      planes[k] = halfPlaneOf(other, velocity, room);
       sides[k] = cellSideOf(other, velocity, wish, walkers_.dt, walkers_.legLength);
     }
-    Vec2<F> v = wish.wanted(own(walkers_.speed));
+    Vec2<F> v = wish.wanted(speed);
     if (isForbidden(planes, nearest.most, v)) v = solved(planes, nearest.most, v);
     const Vec2<F> heading{own(walkers_.headingX), own(walkers_.headingZ)};
     v = withinCell(sides, nearest.most, resultOf(v, wish, heading, walkers_.legLength));

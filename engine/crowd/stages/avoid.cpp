@@ -10,17 +10,19 @@ namespace skitter::crowd {
 Stage avoidStage() {
   using namespace shared;
   using enum gpu::BindingKind;
-  return {StageId::avoid,
-          {embedded::avoid_comp_texel(), embedded::avoid_comp_storage()},
-          {{BINDING_PARAMETERS, uniform},
-           {BINDING_STEER, load4},
-           {BINDING_AVOID_OUT, store},
-           {BINDING_BODY, load4},
-           {BINDING_CELL, load4},
-           {BINDING_PLACE, load4},
-           {BINDING_WALKER, load4},
-           {BINDING_CROWDING, store}},
-          Stage::Over::crowd};
+  Stage stage{StageId::avoid,
+              {embedded::avoid_comp_texel(), embedded::avoid_comp_storage()},
+              {{BINDING_PARAMETERS, uniform},
+               {BINDING_STEER, load4},
+               {BINDING_AVOID_OUT, store},
+               {BINDING_BODY, load4},
+               {BINDING_CELL, load4},
+               {BINDING_PLACE, load4},
+               {BINDING_WALKER, load4},
+               {BINDING_CROWDING, store}},
+              Stage::Over::everyone};
+  stage.seesCrowd = true;
+  return stage;
 }
 
 Stage wallAvoidStage() {

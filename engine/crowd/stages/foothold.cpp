@@ -1,4 +1,10 @@
 #include "crowd/stage.h"
+#include "embedded/foothold_among_comp_storage.h"
+#include "embedded/foothold_among_comp_texel.h"
+#include "embedded/foothold_among_hurt_comp_storage.h"
+#include "embedded/foothold_among_hurt_comp_texel.h"
+#include "embedded/foothold_among_react_comp_storage.h"
+#include "embedded/foothold_among_react_comp_texel.h"
 #include "embedded/foothold_comp_storage.h"
 #include "embedded/foothold_comp_texel.h"
 #include "embedded/foothold_hurt_comp_storage.h"
@@ -29,6 +35,20 @@ Stage footholdStage() {
                             {embedded::foothold_hurt_comp_texel(), embedded::foothold_hurt_comp_storage()},
                             {{BINDING_CHAIN, load4}}),
                    {embedded::foothold_react_comp_texel(), embedded::foothold_react_comp_storage()});
+}
+
+Stage amongFootholdStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  Stage stage = footholdStage();
+  stage.code = {embedded::foothold_among_comp_texel(), embedded::foothold_among_comp_storage()};
+  stage.hurtCode = {embedded::foothold_among_hurt_comp_texel(), embedded::foothold_among_hurt_comp_storage()};
+  stage.reactCode = {embedded::foothold_among_react_comp_texel(),
+                     embedded::foothold_among_react_comp_storage()};
+  stage.seesCrowd = true;
+  for (const int binding : {BINDING_CELL, BINDING_PLACE, BINDING_WALKER})
+    stage.bindings.push_back({static_cast<uint32_t>(binding), load4});
+  return stage;
 }
 
 }  // namespace skitter::crowd

@@ -1,0 +1,41 @@
+// What the neighbours leave of the ground for an agent's feet (docs/stages/foothold.md), where its herd avoids.
+#include "stages/neighbours.glsl"
+
+const int OTHERS_TIMES = 3;
+const float OTHERS_MARGIN = 0.15;   // of the footprint
+const float OTHERS_WEIGHT = 100.0;  // of the square of leg lengths beyond a line
+
+// Between the agent and each neighbour at each time: n from one to the other, and the most that n . q may be of a place
+// q, relative to the body.
+vec3 lines[NEIGHBOURS * OTHERS_TIMES];
+
+// For a foot that lands after `landing` seconds and stands for `stance`.
+void drawLines(int agent, float landing, float stance) {
+  int number = numberOf(agent), seen;
+  vec4 self = LOAD4(walkers, number * WALKER_STRIDE), going = LOAD4(walkers, number * WALKER_STRIDE + 1);
+  Nearest nearest = nearestTo(number, self, int(going.z), seen);
+  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
+    bool there = nearest.number[k] >= 0;
+    int at = max(nearest.number[k], 0) * WALKER_STRIDE;
+    vec4 other = LOAD4(walkers, at), moves = LOAD4(walkers, at + 1);
+    vec2 between = (other.xy - self.xy) * metres;
+    float radii = (self.z + other.z) * metres, share = self.z / (self.z + other.z);
+    float margin = OTHERS_MARGIN * self.z * metres;
+    [[unroll]] for (int i = 0; i < OTHERS_TIMES; ++i) {
+      float time = landing + 0.5 * stance * float(i);
+      vec2 d = between + time * (moves.xy - going.xy);
+      float apart = length(d);
+      vec2 n = d * (1.0 / max(apart, 1e-6));
+      float most = max(apart, radii) * share + time * dot(n, going.xy) - margin;
+      lines[k * OTHERS_TIMES + i] = there ? vec3(n, most) : vec3(0.0);
+    }
+  }
+}
+
+// What a place costs, relative to the body along world axes.
+float costOfOthers(vec2 place, float inverseSquare) {
+  float beyond = 0.0;
+  [[unroll]] for (int i = 0; i < NEIGHBOURS * OTHERS_TIMES; ++i)
+    beyond = max(beyond, dot(lines[i].xy, place) - lines[i].z);
+  return OTHERS_WEIGHT * beyond * beyond * inverseSquare;
+}
