@@ -117,9 +117,10 @@ TEST_F(HardWaysTest, AllMayBeginAtOnePoint) {
     simulate(device(), crowd, 1);
     for (const glm::dvec2& at : placesOf(crowd)) EXPECT_LT(glm::distance(at, {0, -6}), 0.1);
     simulate(device(), crowd, 1800);
-    // Sixteen discs of 0.7 m take a disc of 1.4 m and the room between them.
+    // Who stands tries to keep one and a half footprints apart: sixteen discs of 1.05 m take a disc of 2.1 m
+    // and the room between them.
     for (const glm::dvec2& at : placesOf(crowd))
-      EXPECT_LT(glm::distance(at, {0, 7}), avoid ? 3 : 1) << (avoid ? "who avoid" : "who do not");
+      EXPECT_LT(glm::distance(at, {0, 7}), avoid ? 4 : 1) << (avoid ? "who avoid" : "who do not");
   }
 }
 
