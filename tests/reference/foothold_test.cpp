@@ -88,7 +88,7 @@ TEST_F(Foothold, nearestOnlyIgnoresEverythingElse) {
   }
 }
 
-// The one that stands beside the foot's home leaves a third of the way to it; the one that goes away, all.
+// Who stands where the foot's home is leaves less than half of the way there; who goes away leaves more.
 TEST_F(Foothold, feetStayOnTheirSideOfWhoPasses) {
   ground(flatField(0));
   const glm::dvec3 home = creature.limbs[1].home;
