@@ -67,7 +67,8 @@ CandidateBounds boundsOf(const Case& c, const reference::FootholdResult& result,
   bound.score = 2 * glm::length(miss) * (bound.horizontal + bound.vertical) / (t.legLength * t.legLength) +
                 8 * tolerance::roundoff * candidate.score;
   const double beyond = bound.horizontal + candidate.beyondError;
-  bound.score += 2 * 100 * (candidate.beyond + beyond) * beyond / (t.legLength * t.legLength);
+  bound.score +=
+      2 * reference::othersWeight * (candidate.beyond + beyond) * beyond / (t.legLength * t.legLength);
   if (!t.nearestOnly) {
     const double strain = std::max(0.0, candidate.distance / c.limb.reach - t.reachComfort);
     bound.score += t.slopeWeight * bound.facing +

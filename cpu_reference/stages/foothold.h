@@ -9,6 +9,9 @@
 
 namespace skitter::reference {
 
+// The cost of a leg length beyond a border, squared.
+inline constexpr double othersWeight = 100;
+
 // Another agent, as one sees it that chooses a foothold: metres, metres per second.
 struct Passer {
   glm::dvec2 place{0};  // from the agent to it
@@ -21,7 +24,7 @@ struct Passer {
 struct Border {
   glm::dvec2 n{0};
   double most = 0;
-  // What float32 may err by: of n, and of `most`, metres.
+  // Float32 errors of n, and of `most` in metres.
   double turns = 0, shifts = 0;
 };
 

@@ -62,7 +62,7 @@ void main() {
     vec4 other = LOAD4(walkers, at), moves = LOAD4(walkers, at + 1);
     int power = there ? nearest.power[k] : 1, radii = int(other.z + self.z);
     vec2 p = (other.xy - self.xy) * metres;
-    // Their squares are whole numbers, and power is known: nothing cancels.
+    // It is the root of a whole number, which is exact.
     float d = sqrt(float(there ? power + radii * radii : 1)) * metres, r = float(radii) * metres;
     float closeness = there ? clamp(2.0 - d / r, 0.0, 1.0) : 0.0;
     near = max(near, closeness);

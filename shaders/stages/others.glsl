@@ -1,4 +1,5 @@
-// What the neighbours leave of the ground for an agent's feet (docs/stages/foothold.md), where its herd avoids.
+// Lines between an agent and its neighbours, on whose near side its feet land (docs/stages/foothold.md), for herds that
+// avoid.
 #include "stages/neighbours.glsl"
 
 const int OTHERS_TIMES = 3;
@@ -32,7 +33,7 @@ void drawLines(int agent, float landing, float stance) {
   }
 }
 
-// What a place costs, relative to the body along world axes.
+// The cost of a place, relative to the body along world axes.
 float costOfOthers(vec2 place, float inverseSquare) {
   float beyond = 0.0;
   [[unroll]] for (int i = 0; i < NEIGHBOURS * OTHERS_TIMES; ++i)

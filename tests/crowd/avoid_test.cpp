@@ -83,6 +83,19 @@ TEST_P(AvoidReplayTest, FewAndMany) {
   simulate(device(), many, 60);
   expectEachPasses(replayAll(device(), many, rollingGround(), 2));
 }
+
+// Both have forms of foothold of their own.
+TEST_P(AvoidReplayTest, WhoCanBeHurtAndWhoReacts) {
+  const Heightfield ground = smallRollingGround();
+  for (const bool reacts : {false, true}) {
+    Scene scene = meetingScene(24, Controller::adaptive, 0.8f);
+    for (Herd& herd : scene.herds) (reacts ? herd.reactions : herd.hurt) = true;
+    Crowd crowd(device(), ground, scene);
+    crowd.hurt(crowd.agentId(0, 3), 1);
+    simulate(device(), crowd, 100);
+    expectAllPass(replayAll(device(), crowd, ground, 60).front());
+  }
+}
 INSTANTIATE_TEST_SUITE_P(, AvoidReplayTest, bothLoadPaths(), loadPathName);
 
 TEST_F(AvoidTest, NobodyIsNoCase) {

@@ -117,8 +117,8 @@ TEST_F(HardWaysTest, AllMayBeginAtOnePoint) {
     simulate(device(), crowd, 1);
     for (const glm::dvec2& at : placesOf(crowd)) EXPECT_LT(glm::distance(at, {0, -6}), 0.1);
     simulate(device(), crowd, 1800);
-    // Who stands tries to keep one and a half footprints apart: sixteen discs of 1.05 m take a disc of 2.1 m
-    // and the room between them.
+    // Agents that stand try to keep one and a half footprints apart: sixteen discs of 1.05 m take a disc of
+    // 2.1 m and the room between them.
     for (const glm::dvec2& at : placesOf(crowd))
       EXPECT_LT(glm::distance(at, {0, 7}), avoid ? 4 : 1) << (avoid ? "who avoid" : "who do not");
   }

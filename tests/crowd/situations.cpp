@@ -40,26 +40,26 @@ void raiseAll(Crowd& crowd, float by) {
   crowd.editHeights(0, 0, crowd.terrain().columns, crowd.terrain().rows, heights);
 }
 
-// Agents around one place walk to it.
-Results meeting(Device& device, Controller controller, const CrowdOptions& options) {
-  const Heightfield ground = smallRollingGround();
+// Agents in rows around one place, who walk to it and keep clear of each other.
+Scene gathering(Controller controller, float spacing) {
   Scene scene = sceneOf(49, 1, 1, controller);
   scene.herds[0].avoid = true;
-  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1.4f};
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = spacing};
   scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0.3f, 0.2f}};
-  Crowd crowd(device, ground, scene, options);
+  return scene;
+}
+
+Results meeting(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Crowd crowd(device, ground, gathering(controller, 1.4f), options);
   simulate(device, crowd, 20);
   return replay(device, crowd, ground, 200);
 }
 
-// The same, who begin so close that nothing but their cells keeps them apart.
+// They begin so close that nothing but their cells keeps them apart.
 Results crowding(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = smallRollingGround();
-  Scene scene = sceneOf(49, 1, 1, controller);
-  scene.herds[0].avoid = true;
-  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f};
-  scene.herds[0].goal = {.kind = Goal::Kind::point, .target = {0.3f, 0.2f}};
-  Crowd crowd(device, ground, scene, options);
+  Crowd crowd(device, ground, gathering(controller, 0.7f), options);
   return replay(device, crowd, ground, 100);
 }
 

@@ -43,8 +43,8 @@ TEST_F(Avoid, aLoneAgentGoesAsItWants) {
   EXPECT_TRUE(result.planes.empty());
 }
 
-// Who stands keeps one and a half footprints apart. w is (0, 0.5), and the cone's right side is at an angle
-// of 30 degrees to the way.
+// An agent that stands keeps one and a half footprints apart. w is (0, 0.5), and the cone's right side is at
+// an angle of 30 degrees to the way.
 TEST_F(Avoid, headOnBothPassOnTheirRight) {
   const double lacking = 1 / 1.05, c = std::sqrt(3) / 2;
   const AvoidResult result = first({at(3, 0, 0), at(5, 0, 3, {0, -2})}, {0, 1});

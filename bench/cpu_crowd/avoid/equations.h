@@ -80,7 +80,7 @@ F roomOf(const F& s, const F& wanted) {
   return F(roomHeldUp) + F(roomGoing - roomHeldUp) * clamp(F(2) * s / larger(wanted, F(1e-6f)), 0, 1);
 }
 
-// As n . u, of a neighbour's u, is all that a bound needs, u is that number here.
+// A bound needs no more of a neighbour's u than n . u, so u is that number here.
 template <class F>
 HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own, const F& room) {
   const auto& [isThere, p, d, footprints, lesser, v, share, goesFirst, part] = other;
