@@ -2,6 +2,9 @@
 # share a device and with it the pipelines that it keeps (support/gpu_fixture.h). A test is called AREA.SUITE, with .LABEL
 # where the suite has tests of several labels, and .NUMBER where it has more.
 set(most 16)
+# CTest runs as many tests side by side as there are processors, so lavapipe's own threads would mostly wake each other: its
+# work stays on the thread that asks for it. The command, and groups with a test of what may not depend on threads, keep them.
+set(threaded "[Ss]ame(Bits|Hash|Picture)|TwiceTheSame")
 
 # list_tests(PREFIX FILTER): the suites, and in PREFIX_SUITE the tests of each.
 macro(list_tests prefix filter)
@@ -40,8 +43,12 @@ foreach(suite IN LISTS chosen_suites)
     if(count GREATER most)
       string(APPEND name .${number})
     endif()
+    set(environment "ENVIRONMENT LP_NUM_THREADS=0")
+    if(AREA STREQUAL app OR filter MATCHES "${threaded}")
+      set(environment)
+    endif()
     string(APPEND content "add_test([==[${name}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${filter}]==])\n"
-      "set_tests_properties([==[${name}]==] PROPERTIES WORKING_DIRECTORY [==[${folder}]==] LABELS ${LABEL} TIMEOUT ${TIMEOUT})\n")
+      "set_tests_properties([==[${name}]==] PROPERTIES WORKING_DIRECTORY [==[${folder}]==] LABELS ${LABEL} TIMEOUT ${TIMEOUT} ${environment})\n")
     math(EXPR first "${first} + ${most}")
     math(EXPR number "${number} + 1")
   endwhile()
