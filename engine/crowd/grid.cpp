@@ -32,8 +32,8 @@ namespace {
 // Squares of reaches must be ints.
 constexpr uint32_t longestReachInQuanta = 32767;
 constexpr float finestQuanta = 1024;  // in a metre
-// Cells are longer than any reach by this, for the float32 cell number of a place within 4 km, of cells of at
-// least `leastCell`, errs by a 250th.
+// Two cells are longer than any reach by this, for the float32 cell number of a place within 4 km, of cells
+// of at least `leastCell`, errs by a 250th.
 constexpr float cellMargin = 1.01f;
 constexpr uint32_t leastCell = 128;  // quanta
 constexpr double secondsATurn = 2;
@@ -51,7 +51,7 @@ uint32_t bucketsFor(const Crowd::Impl& crowd) {
   return static_cast<uint32_t>(std::min(wanted, std::bit_floor(bytesABinding(*crowd.context) / 16)));
 }
 
-uint64_t walkerBytes(uint64_t agents) { return agents * shared::WALKER_STRIDE * 16; }
+uint64_t walkerBytes(uint64_t agents) { return agents * shared::WALKER_PARTS * 16; }
 
 bool hasGrid(const Crowd::Impl& crowd) { return crowd.options.crowding || avoids(crowd); }
 
@@ -92,6 +92,14 @@ uint32_t Quanta::radiusOf(const Kind& kind) const {
 
 uint32_t Quanta::lookOf(const Kind& kind) const {
   return static_cast<uint32_t>(std::lround(lookLegLengths * kind.rig.legLength * inMetre));
+}
+
+uint32_t Quanta::droppedBits() const {
+  // The greatest power has its own key, and one that is greater is nobody's.
+  constexpr uint64_t powers = (uint64_t{1} << (31 - shared::NEIGHBOUR_KEY_BITS)) - 1;
+  uint32_t bits = 0;
+  while (uint64_t{longestReach} * longestReach >> bits >= powers) ++bits;
+  return bits;
 }
 
 Quanta quantaOf(const Crowd::Impl& crowd) {
@@ -169,10 +177,10 @@ Grid::Grid(const Crowd::Impl& crowd) : quanta(quantaOf(crowd)), buckets(bucketsF
   if (crowd.options.crowding) {
     overlap =
         kernel("grid_overlap", {embedded::grid_overlap_comp_texel(), embedded::grid_overlap_comp_storage()},
-               {{BINDING_GRID_CELL, load4}, {BINDING_GRID_PLACE, load4}, {BINDING_GRID_CROWDING, store}});
+               {{BINDING_GRID_CELL, load4}, {BINDING_GRID_WALKER, load4}, {BINDING_GRID_CROWDING, store}});
     overlapped = overlap.bind(
         context,
-        {{BINDING_GRID_CELL, &cells}, {BINDING_GRID_PLACE, &places}, {BINDING_GRID_CROWDING, &crowding}});
+        {{BINDING_GRID_CELL, &cells}, {BINDING_GRID_WALKER, &walkers}, {BINDING_GRID_CROWDING, &crowding}});
   }
   gpu::submitAndWait(context, [&](vk::CommandBuffer cmd) {
     cmd.fillBuffer(counts.handle(), 0, VK_WHOLE_SIZE, GRID_EMPTY);
@@ -183,7 +191,8 @@ Grid::Grid(const Crowd::Impl& crowd) : quanta(quantaOf(crowd)), buckets(bucketsF
 }
 
 float Grid::cellsAQuantum() const {
-  return 1 / std::max(cellMargin * static_cast<float>(quanta.longestReach), static_cast<float>(leastCell));
+  return 1 /
+         std::max(cellMargin / 2 * static_cast<float>(quanta.longestReach), static_cast<float>(leastCell));
 }
 
 shared::GridConstants Grid::gridConstantsOf(const Crowd::Impl& crowd, const Kind& kind,
@@ -205,7 +214,7 @@ shared::TickConstants Grid::constantsOf(const Crowd::Impl& crowd, const Kind& ki
           .tick = static_cast<float>(stage.makes.has(StageId::avoid) ? turnOf(crowd) : tick),
           .first = numberOf(crowd, kind) + page.firstAgent,
           .every = buckets,
-          .watched = row,
+          .watched = quanta.droppedBits(),
           .room = quanta.lookOf(kind),
           .sleepTime = 1 / quanta.inMetre};
 }

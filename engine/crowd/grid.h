@@ -21,6 +21,7 @@ struct Quanta {
 
   uint32_t radiusOf(const Kind& kind) const;  // of its agents' footprints
   uint32_t lookOf(const Kind& kind) const;    // how far they see beyond footprints
+  uint32_t droppedBits() const;               // of a power, so that the rest fits into a key
 };
 Quanta quantaOf(const Crowd::Impl& crowd);
 

@@ -96,13 +96,15 @@ SKITTER_CONST int NEIGHBOURS = 8;
 
 // Where everybody is in a crowd with a herd that avoids, built anew in each tick (shaders/grid). Agents are
 // numbered through the crowd, kind after kind. Lengths are in quanta (docs/stages/avoid.md).
-//   cell, each    [0] place of the first agent in the three cells of its row, agents in these, place of its
-//                 own first agent, agents in all
-//   place, each   [0] X, Z, radius, agent                        cell after cell
-//   walker, each agent
-//                 [0] X, Z, radius, 1 if its herd avoids
-//                 [1] velocity x, z (m/s), cell, unused
-SKITTER_CONST int WALKER_STRIDE = 2;
+//   cell, each    [0] first walker in the five cells of its row, walkers in these, its own first walker,
+//                     all walkers
+//   place, each agent
+//                 [0] its walker, its cell, all walkers, unused
+//   walker, each, cell after cell
+//                 [0] X, Z, radius, agent
+//                 and, after those of all walkers,
+//                 [1] velocity x, z (m/s), 1 if its herd avoids, unused
+SKITTER_CONST int WALKER_PARTS = 2;
 
 // Figures of the grid since the start, unsigned integers of which the first three have two words, low and
 // high: neighbours that the cap dropped; overlaps of pairs, a share each, in CROWDING_SHARES; pairs that

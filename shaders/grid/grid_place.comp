@@ -22,18 +22,19 @@ void main() {
     all += sum.x + sum.y + (sum.z + sum.w);
   }
   uint fours = grid.run / 4u, first = run * fours;
-  float before = agentsIn(first - 1u).w;
+  vec2 before = agentsIn(first - 1u).zw;
   vec4 own = agentsIn(first);
   for (uint i = first; i < first + fours; ++i) {
     vec4 next = agentsIn(i + 1u);
-    float row[6] = float[6](before, own.x, own.y, own.z, own.w, next.x);
+    float row[8] = float[8](before.x, before.y, own.x, own.y, own.z, own.w, next.x, next.y);
     [[unroll]] for (int k = 0; k < 4; ++k) {
-      float begin = place - row[k];
+      float begin = place - row[k] - row[k + 1];
       STORE4(cellsOut, 4u * i + uint(k),
-             vec4(begin < 0.0 ? begin + all : begin, row[k] + row[k + 1] + row[k + 2], place, all));
-      place += row[k + 1];
+             vec4(begin < 0.0 ? begin + all : begin,
+                  row[k] + row[k + 1] + (row[k + 2] + row[k + 3]) + row[k + 4], place, all));
+      place += row[k + 2];
     }
-    before = own.w;
+    before = own.zw;
     own = next;
   }
 }

@@ -17,7 +17,9 @@ void main() {
   uint bucket = bucketOf(place), number = grid.first + agent;
   // Counts down again: the next tick begins with empty buckets.
   uint others = atomicAdd(counts[bucket], 0xFFFFFFFFu) - GRID_EMPTY - 1u;
-  STORE4(placesOut, uint(LOAD4(cells, bucket).z) + others, vec4(place, grid.radius, float(number)));
-  STORE4_TWO(walkersOut, number * uint(WALKER_STRIDE), vec4(place, grid.radius, grid.avoids),
-             vec4(moving.xy * moving.z, float(bucket), 0.0));
+  vec4 cell = LOAD4(cells, bucket);
+  uint walker = uint(cell.z) + others;
+  STORE4(placesOut, number, vec4(float(walker), float(bucket), cell.w, 0.0));
+  STORE4(walkersOut, walker, vec4(place, grid.radius, float(number)));
+  STORE4(walkersOut, uint(cell.w) + walker, vec4(moving.xy * moving.z, grid.avoids, 0.0));
 }

@@ -14,34 +14,9 @@ const float AVOID_FRONT = 0.1, AVOID_NEAR = 0.02, AVOID_DEEP = 0.01, AVOID_LOOSE
 const float AVOID_EASE = 0.4, AVOID_SLACK = 1e-4, AVOID_FREE = 100.0;
 const int AVOID_CELL_SWEEPS = 2;
 
-// 1. The agents of least power, the least first, of equal ones that with the lesser number; unused ones last.
-struct Nearest {
-  int power[NEIGHBOURS], number[NEIGHBOURS];
-};
-
-Nearest nobodyNear() {
-  Nearest n;
-  [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
-    n.power[k] = 0x7FFFFFFF;
-    n.number[k] = -1;
-  }
-  return n;
-}
-
+// 1. The order of neighbours.
 bool isBefore(int power, int number, int otherPower, int otherNumber) {
   return power < otherPower || (power == otherPower && number < otherNumber);
-}
-
-void insertNearest(inout Nearest n, int power, int number) {
-  bool before = isBefore(power, number, n.power[NEIGHBOURS - 1], n.number[NEIGHBOURS - 1]);
-  [[unroll]] for (int k = NEIGHBOURS - 1; k > 0; --k) {
-    bool earlier = isBefore(power, number, n.power[k - 1], n.number[k - 1]);
-    n.power[k] = earlier ? n.power[k - 1] : before ? power : n.power[k];
-    n.number[k] = earlier ? n.number[k - 1] : before ? number : n.number[k];
-    before = earlier;
-  }
-  n.power[0] = before ? power : n.power[0];
-  n.number[0] = before ? number : n.number[0];
 }
 
 // 3. Where two agents part that are in one place.

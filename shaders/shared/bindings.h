@@ -111,8 +111,8 @@ struct TickConstants {
   // wake with levels of rate: `every`, `watched`, `room` are the camera's x, y, z (quarter metres, signed);
   // `sleepTime` is a sum of LEVELS_ flags (shared/levels.h).
   // Stages that see the crowd: `first` is the number in the crowd of the page's first agent, `every` are the
-  // grid's buckets, `watched` those in a row, `room` is how far agents look (quanta), `sleepTime` metres per
-  // quantum. avoid: `tick` counts turns.
+  // grid's buckets, `watched` the bits of a power that keys leave out, `room` is how far agents look
+  // (quanta), `sleepTime` metres per quantum. avoid: `tick` counts turns.
   float sleepTime;
 #else
   uint count;

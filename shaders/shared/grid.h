@@ -20,8 +20,12 @@ GRID BINDING_GRID_CELL = 4;
 GRID BINDING_GRID_CELL_OUT = 5;
 GRID BINDING_GRID_PLACE_OUT = 6;
 GRID BINDING_GRID_WALKER_OUT = 7;
-GRID BINDING_GRID_PLACE = 8;
+GRID BINDING_GRID_WALKER = 8;
 GRID BINDING_GRID_CROWDING = 9;
+
+// A key, of an agent near another one, is its power times 2^NEIGHBOUR_KEY_BITS plus where it stands among all
+// who are looked at (shaders/stages/neighbours.glsl).
+GRID NEIGHBOUR_KEY_BITS = 7;
 
 // Counts begin as the bits of 2^23 as a float, whose last place is 1: integer atomics count in them, and
 // loads of vec4 read them as numbers.

@@ -46,9 +46,10 @@ void main() {
   }
   int number = numberOf(agent);
   vec4 steer = LOAD4(steers, agent), moving = LOAD4(bodies, agent * BODY_STRIDE + 1);
-  vec4 self = LOAD4(walkers, number * WALKER_STRIDE), going = LOAD4(walkers, number * WALKER_STRIDE + 1);
-  int seen;
-  Nearest nearest = nearestTo(number, self, int(going.z), seen);
+  vec4 place = LOAD4(places, number);
+  int own = int(place.x);
+  vec4 self = LOAD4(walkers, own), going = LOAD4(walkers, own + int(place.z));
+  int seen = findNearest(own, self, int(place.y));
   RARELY(seen > NEIGHBOURS) ADD64(crowding, CROWDING_DROPPED, uint(seen - NEIGHBOURS));
 
   vec2 wanted = steer.xy;
@@ -57,20 +58,21 @@ void main() {
   HalfPlane planes[NEIGHBOURS];
   CellSide sides[NEIGHBOURS];
   [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
-    bool there = nearest.number[k] >= 0;
-    int at = max(nearest.number[k], 0) * WALKER_STRIDE;
-    vec4 other = LOAD4(walkers, at), moves = LOAD4(walkers, at + 1);
-    int power = there ? nearest.power[k] : 1, radii = int(other.z + self.z);
+    bool there = nearest[k] >= 0;
+    int at = max(nearest[k], 0);
+    vec4 other = LOAD4(walkers, at), moves = LOAD4(walkers, at + int(place.z));
+    int x = there ? int(other.x - self.x) : 1, z = there ? int(other.y - self.y) : 0;
     vec2 p = (other.xy - self.xy) * metres;
     // It is the root of a whole number, which is exact.
-    float d = sqrt(float(there ? power + radii * radii : 1)) * metres, r = float(radii) * metres;
+    float d = sqrt(float(x * x + z * z)) * metres, r = (other.z + self.z) * metres;
     float closeness = there ? clamp(2.0 - d / r, 0.0, 1.0) : 0.0;
     near = max(near, closeness);
     press = max(press, closeness * max(0.0, dot(p, wanted)) / max(d * speed, 1e-6));
-    float share = other.w != 0.0 ? 0.5 : 1.0;
+    int who = int(other.w);
+    float share = moves.z != 0.0 ? 0.5 : 1.0;
     planes[k] = halfPlaneOf(p, d, r, room, going.xy, going.xy - moves.xy, share,
-                            partingLine(number, nearest.number[k]));
-    bool yields = other.w == 0.0 || goesFirst(nearest.number[k], number, constants.tick);
+                            partingLine(number, who));
+    bool yields = moves.z == 0.0 || goesFirst(who, number, constants.tick);
     sides[k] = cellSideOf(p, d, r, float(min(self.z, other.z)) * metres, wanted / max(speed, 1e-6),
                           moves.xy, share, yields, parameters);
     sides[k].n = there ? sides[k].n : vec2(0.0);

@@ -12,13 +12,14 @@ vec3 lines[NEIGHBOURS * OTHERS_TIMES];
 
 // For a foot that lands after `landing` seconds and stands for `stance`.
 void drawLines(int agent, float landing, float stance) {
-  int number = numberOf(agent), seen;
-  vec4 self = LOAD4(walkers, number * WALKER_STRIDE), going = LOAD4(walkers, number * WALKER_STRIDE + 1);
-  Nearest nearest = nearestTo(number, self, int(going.z), seen);
+  vec4 place = LOAD4(places, numberOf(agent));
+  int own = int(place.x);
+  vec4 self = LOAD4(walkers, own), going = LOAD4(walkers, own + int(place.z));
+  findNearest(own, self, int(place.y));
   [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
-    bool there = nearest.number[k] >= 0;
-    int at = max(nearest.number[k], 0) * WALKER_STRIDE;
-    vec4 other = LOAD4(walkers, at), moves = LOAD4(walkers, at + 1);
+    bool there = nearest[k] >= 0;
+    int at = max(nearest[k], 0);
+    vec4 other = LOAD4(walkers, at), moves = LOAD4(walkers, at + int(place.z));
     vec2 between = (other.xy - self.xy) * metres;
     float radii = (self.z + other.z) * metres, share = self.z / (self.z + other.z);
     float margin = OTHERS_MARGIN * self.z * metres;

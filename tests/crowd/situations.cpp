@@ -63,15 +63,32 @@ Results crowding(Device& device, Controller controller, const CrowdOptions& opti
   return replay(device, crowd, ground, 100);
 }
 
-// Agents begin in each other, and part.
-Results parting(Device& device, Controller controller, const CrowdOptions& options) {
+Results partingFrom(Device& device, Controller controller, const CrowdOptions& options, uint32_t agents,
+                    const Spawn& spawn, uint64_t ticks) {
   const Heightfield ground = smallRollingGround();
-  Scene scene = sceneOf(25, 1, 1, controller);
+  Scene scene = sceneOf(agents, 1, 1, controller);
   scene.herds[0].avoid = true;
-  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.4f};
+  scene.herds[0].spawn = spawn;
   scene.herds[0].goal = {.kind = Goal::Kind::none};
   Crowd crowd(device, ground, scene, options);
-  return replay(device, crowd, ground, 100);
+  return replay(device, crowd, ground, ticks);
+}
+
+// Agents begin in each other, and part.
+Results parting(Device& device, Controller controller, const CrowdOptions& options) {
+  return partingFrom(device, controller, options, 25, {.kind = Spawn::Kind::grid, .spacing = 0.4f}, 100);
+}
+
+// They are whole quanta from each other, many of them equally far: numbers say who is nearer. The middle of
+// the ground is a corner of cells, of whose agents those of lesser numbers come first anyway.
+Results ranking(Device& device, Controller controller, const CrowdOptions& options) {
+  const Spawn spawn{.kind = Spawn::Kind::grid, .spacing = 0.15625f, .centre = {-15, 0}};
+  return partingFrom(device, controller, options, 49, spawn, 5);
+}
+
+// They are more, near each other, than keys tell apart.
+Results packing(Device& device, Controller controller, const CrowdOptions& options) {
+  return partingFrom(device, controller, options, 144, {.kind = Spawn::Kind::grid, .spacing = 0.163f}, 5);
 }
 
 // Pairs walk at each other, a little beside or straight, so that a rule and not their places says on which
@@ -590,6 +607,8 @@ const std::vector<Situation>& situations() {
       {"meeting", {Controller::adaptive, Controller::clip}, meeting},
       {"crowding", {Controller::adaptive}, crowding},
       {"parting", {Controller::adaptive}, parting},
+      {"ranking", {Controller::adaptive}, ranking},
+      {"packing", {Controller::adaptive}, packing},
       {"facing", {Controller::adaptive}, facing},
       {"amongObstacles", {Controller::adaptive, Controller::clip}, amongObstacles, true},
       {"findingWays", {Controller::adaptive, Controller::clip}, findingWays, true},
