@@ -16,6 +16,7 @@ namespace {
 
 constexpr double oftenSeconds = 0.1, rarelySeconds = 1;
 constexpr size_t secondsOfStanding = 10;
+constexpr double jammedShare = 0.5;  // of the speed that is wanted: less is a jam
 
 uint64_t ticksOf(double seconds, double dt) {
   return std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(seconds / dt)));
@@ -73,6 +74,8 @@ CrowdingWatch::Moment CrowdingWatch::momentOf(const Crowd& crowd) const {
       moment.places.push_back(body.present ? glm::dvec2(body.position.x, body.position.z) : glm::dvec2(NAN));
       const float* steer = &state.steer[4 * agent * shared::STEER_STRIDE];
       moment.wanted.emplace_back(steer[0], steer[1]);
+      moment.isJammed.push_back(body.present && double{glm::length(body.velocity)} <
+                                                    jammedShare * glm::length(moment.wanted.back()));
       moment.hasPoint.push_back(state.goal[4 * agent * shared::GOAL_STRIDE + 6] == shared::GOAL_POINT);
     }
   }
@@ -136,12 +139,23 @@ void CrowdingWatch::countCrossings(const Crowd& crowd, const Moment& now) {
       looked_ += isThere;
     }
   }
-  crossed_ += crossingAgents(legs, now.places, reach_);
+  const std::vector<bool> crosses = crossingAgents(legs, now.places, reach_);
+  for (size_t i = 0; i < crosses.size(); ++i) {
+    crossed_ += crosses[i];
+    jammed_ += now.isJammed[i];
+    jammedCrossed_ += crosses[i] && now.isJammed[i];
+  }
 }
 
 Jams CrowdingWatch::jams() const {
   Jams jams{.flow = flow_.most()};
-  if (looked_ > 0) jams.legCrossings = static_cast<double>(crossed_) / static_cast<double>(looked_);
+  const auto share = [](uint64_t of, uint64_t all) -> std::optional<double> {
+    if (all == 0) return std::nullopt;
+    return static_cast<double>(of) / static_cast<double>(all);
+  };
+  jams.legCrossings = share(crossed_, looked_);
+  jams.legCrossingsOutsideJams = share(crossed_ - jammedCrossed_, looked_ - jammed_);
+  jams.jammed = share(jammed_, looked_);
   jams.stuck = static_cast<uint64_t>(std::ranges::count(stuck_, true));
   jams.arrived = static_cast<uint64_t>(std::ranges::count(arrived_, true));
   return jams;

@@ -13,7 +13,9 @@ namespace skitter::app {
 // How a crowd gets on, beside Crowd::crowding (docs/json.md). Without --crowding there are none.
 struct Jams {
   std::optional<uint64_t> stuck = {}, arrived = {};
-  std::optional<double> legCrossings = {}, flow = {};
+  // Shares of the agents that were looked at.
+  std::optional<double> legCrossings = {}, legCrossingsOutsideJams = {}, jammed = {};
+  std::optional<Flow> flow = {};
 };
 
 // Looks at a crowd ten times a second, and closely once a second. Waits for the device then. The crowd has
@@ -31,7 +33,7 @@ class CrowdingWatch {
   // All agents, herd after herd and place after place.
   struct Moment {
     std::vector<glm::dvec2> places, wanted;  // NaN where nobody is
-    std::vector<bool> hasPoint;
+    std::vector<bool> hasPoint, isJammed;
   };
   Moment momentOf(const Crowd& crowd) const;
   void follow(const Crowd& crowd);
@@ -45,7 +47,8 @@ class CrowdingWatch {
   std::optional<Moment> last_;
   std::deque<Moment> seconds_;  // of the last ten, the earliest first
   std::vector<bool> stuck_, arrived_;
-  uint64_t looked_ = 0, crossed_ = 0;  // agents, each time that they were looked at closely
+  // Agents, each time that they were looked at closely.
+  uint64_t looked_ = 0, crossed_ = 0, jammed_ = 0, jammedCrossed_ = 0;
 };
 
 }  // namespace skitter::app

@@ -114,17 +114,25 @@ std::vector<Standing> standingsOf(std::span<const Advance> agents) {
 }
 
 void FlowMap::add(const glm::dvec2& from, const glm::dvec2& to, double seconds) {
-  const auto [square, isNew] = squares_.try_emplace(cellAt(0.5 * (from + to), side_));
-  if (isNew) square->second.first = seconds;
-  square->second.last = seconds;
-  square->second.way += glm::distance(from, to);
+  const auto [found, isNew] = squares_.try_emplace(cellAt(0.5 * (from + to), side_));
+  Square& square = found->second;
+  if (isNew) square.first = square.came = seconds;
+  square.last = seconds;
+  square.way += glm::distance(from, to);
+  if (cellAt(from, side_) == cellAt(to, side_)) return;
+  if (const auto entered = squares_.find(cellAt(to, side_)); entered != squares_.end()) {
+    entered->second.pause = std::max(entered->second.pause, seconds - entered->second.came);
+    entered->second.came = seconds;
+  }
 }
 
-std::optional<double> FlowMap::most() const {
-  std::optional<double> most;
+std::optional<Flow> FlowMap::most() const {
+  std::optional<Flow> most;
   for (const auto& [cell, square] : squares_) {
     const double time = square.last - square.first;
-    if (time >= leastTime) most = std::max(most.value_or(0), square.way / (side_ * side_ * time));
+    if (time < leastTime) continue;
+    const Flow flow{square.way / (side_ * side_ * time), square.pause};
+    if (!most || flow.flow > most->flow) most = flow;
   }
   return most;
 }
@@ -135,7 +143,8 @@ bool legsCross(const LegLines& a, const LegLines& b) {
   });
 }
 
-uint64_t crossingAgents(std::span<const LegLines> agents, std::span<const glm::dvec2> places, double reach) {
+std::vector<bool> crossingAgents(std::span<const LegLines> agents, std::span<const glm::dvec2> places,
+                                 double reach) {
   const Near near(places, 2 * reach);
   std::vector<bool> crosses(agents.size());
   for (size_t i = 0; i < agents.size(); ++i) {
@@ -145,7 +154,7 @@ uint64_t crossingAgents(std::span<const LegLines> agents, std::span<const glm::d
       if (legsCross(agents[i], agents[j])) crosses[i] = crosses[j] = true;
     });
   }
-  return static_cast<uint64_t>(std::ranges::count(crosses, true));
+  return crosses;
 }
 
 }  // namespace skitter::app

@@ -28,6 +28,12 @@ enum class Standing {
 };
 std::vector<Standing> standingsOf(std::span<const Advance> agents);
 
+// What goes through a place.
+struct Flow {
+  double flow = 0;   // agents per second and metre
+  double pause = 0;  // the longest time in which nobody came, seconds
+};
+
 // How much goes through places: squares, of which each counts the way that agents go in it.
 class FlowMap {
  public:
@@ -35,13 +41,13 @@ class FlowMap {
 
   // An agent's move, in the time that ends at `seconds`.
   void add(const glm::dvec2& from, const glm::dvec2& to, double seconds);
-  // Agents per second and metre in the square with most, of those in which agents were for ten seconds or
-  // more between the first one and the last; none without such a square.
-  std::optional<double> most() const;
+  // Of the square with most, of those in which agents were for ten seconds or more between the first one and
+  // the last; none without such a square.
+  std::optional<Flow> most() const;
 
  private:
   struct Square {
-    double way = 0, first = 0, last = 0;  // metres, seconds
+    double way = 0, first = 0, last = 0, came = 0, pause = 0;  // metres, seconds
   };
   double side_;
   std::map<std::pair<int64_t, int64_t>, Square> squares_;
@@ -51,7 +57,8 @@ class FlowMap {
 using LegLines = std::vector<std::vector<glm::dvec2>>;
 // Whether a leg of one crosses a leg of the other.
 bool legsCross(const LegLines& a, const LegLines& b);
-// How many agents cross somebody's legs, nobody's own. Legs reach `reach` from a place at most.
-uint64_t crossingAgents(std::span<const LegLines> agents, std::span<const glm::dvec2> places, double reach);
+// Which agents cross somebody's legs, not their own. Legs reach `reach` from a place at most.
+std::vector<bool> crossingAgents(std::span<const LegLines> agents, std::span<const glm::dvec2> places,
+                                 double reach);
 
 }  // namespace skitter::app

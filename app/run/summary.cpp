@@ -64,11 +64,14 @@ void printCrowding(const Crowding& crowding, const Jams& jams) {
                          100 * *crowding.overlapMost, 100 * crowding.overlapMean.value_or(0),
                          crowding.pairs.value_or(0)));
   if (jams.stuck)
-    printRow("jams",
-             fmt::format("{} agents were stuck, {} have arrived; legs cross another's in {:.3f} % of the "
-                         "time; at most {:.2f} agents pass a second and metre",
-                         *jams.stuck, jams.arrived.value_or(0), 100 * jams.legCrossings.value_or(0),
-                         jams.flow.value_or(0)));
+    printRow(
+        "jams",
+        fmt::format("{} agents were stuck, {} have arrived; {:.1f} % of the time in jams; legs cross "
+                    "another's in {:.3f} % of the time, outside of jams in {:.3f} %; at most {:.2f} agents "
+                    "pass a second and metre, with pauses of {:.1f} s at most",
+                    *jams.stuck, jams.arrived.value_or(0), 100 * jams.jammed.value_or(0),
+                    100 * jams.legCrossings.value_or(0), 100 * jams.legCrossingsOutsideJams.value_or(0),
+                    jams.flow.value_or(Flow()).flow, jams.flow.value_or(Flow()).pause));
   if (crowding.droppedNeighbours.value_or(0) > 0)
     printRow("neighbours", fmt::format("{} were in reach beyond the nearest {}", *crowding.droppedNeighbours,
                                        shared::NEIGHBOURS));
@@ -94,7 +97,10 @@ nlohmann::ordered_json jsonOf(const Crowding& crowding, const Jams& jams) {
           {"stuck", orNull(jams.stuck)},
           {"arrived", orNull(jams.arrived)},
           {"legCrossings", orNull(jams.legCrossings)},
-          {"flow", orNull(jams.flow)},
+          {"legCrossingsOutsideJams", orNull(jams.legCrossingsOutsideJams)},
+          {"jammed", orNull(jams.jammed)},
+          {"flow", jams.flow ? nlohmann::ordered_json(jams.flow->flow) : nullptr},
+          {"pause", jams.flow ? nlohmann::ordered_json(jams.flow->pause) : nullptr},
           {"pairs", orNull(crowding.pairs)},
           {"droppedNeighbours", orNull(crowding.droppedNeighbours)}};
 }

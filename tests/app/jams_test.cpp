@@ -56,7 +56,19 @@ TEST(Jams, FlowIsThatOfTheBusiestSquare) {
       flow.add({1, 0.5 * step}, {1, 0.5 * (step + 1)}, second + 0.2 * step);
   flow.add({9, 9}, {9, 9.9}, 3);  // too short a time to tell
   ASSERT_TRUE(flow.most());
-  EXPECT_NEAR(*flow.most(), 21 * 2 / (4 * 20.6), 1e-9);
+  EXPECT_NEAR(flow.most()->flow, 21 * 2 / (4 * 20.6), 1e-9);
+}
+
+TEST(Jams, APauseEndsWithWhoComesIn) {
+  FlowMap flow(2);
+  // They come at 0, 1, 2, 7 and 12 s; the last one turns about inside.
+  for (const double second : {0, 1, 2, 7, 12}) {
+    flow.add({1, -0.5}, {1, 0.5}, second);
+    flow.add({1, 0.5}, {1, 1.5}, second + 0.1);
+  }
+  flow.add({1, 1.5}, {1, 0.5}, 19);
+  ASSERT_TRUE(flow.most());
+  EXPECT_NEAR(flow.most()->pause, 5, 1e-9);
 }
 
 TEST(Jams, LegsCrossAsSeenFromAbove) {
@@ -68,10 +80,10 @@ TEST(Jams, LegsCrossAsSeenFromAbove) {
   EXPECT_FALSE(app::legsCross(along, {}));
   const std::vector<LegLines> agents = {along, across, beside, along};
   EXPECT_EQ(app::crossingAgents(agents, std::vector<glm::dvec2>{{0, 0}, {1.5, 0}, {1.5, 0.5}, {NAN, NAN}}, 2),
-            2u);
+            (std::vector{true, true, false, false}));
   // Too far from each other to be looked at.
   EXPECT_EQ(app::crossingAgents(agents, std::vector<glm::dvec2>{{0, 0}, {9, 9}, {1.5, 0.5}, {NAN, NAN}}, 2),
-            0u);
+            std::vector<bool>(4));
 }
 
 }  // namespace

@@ -44,6 +44,9 @@ TEST_F(Running, CrowdingIsMeasuredWhereItIsAskedFor) {
   EXPECT_EQ(avoiding.at("arrived"), 0) << "nobody goes to a place";
   EXPECT_GE(avoiding.at("legCrossings"), 0);
   EXPECT_LT(avoiding.at("legCrossings"), 1);
+  EXPECT_GE(avoiding.at("legCrossingsOutsideJams"), 0);
+  EXPECT_LT(avoiding.at("jammed"), 1);
+  EXPECT_GE(avoiding.at("pause"), 0);
   EXPECT_GT(avoiding.at("flow"), 0.1);
 }
 
@@ -149,8 +152,9 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
   EXPECT_TRUE(run.at("sleeping").is_null()) << "nobody may";
   EXPECT_TRUE(run.at("resumedAt").is_null()) << "it began at the start";
   EXPECT_EQ(keysOf(run.at("crowding")),
-            (std::set<std::string>{"overlapMost", "overlapMean", "stuck", "arrived", "legCrossings", "flow",
-                                   "pairs", "droppedNeighbours"}));
+            (std::set<std::string>{"overlapMost", "overlapMean", "stuck", "arrived", "legCrossings",
+                                   "legCrossingsOutsideJams", "jammed", "flow", "pause", "pairs",
+                                   "droppedNeighbours"}));
   for (const nlohmann::json& figure : run.at("crowding")) EXPECT_TRUE(figure.is_null()) << "not asked for";
   EXPECT_EQ(run.at("agents"), 20);
   EXPECT_EQ(run.at("ticks"), 30);
