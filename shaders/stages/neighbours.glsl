@@ -18,7 +18,7 @@ int numberOf(int agent) { return int(constants.first) + agent; }
 // The walkers of the nearest, the nearest first; -1 is nobody.
 int nearest[NEIGHBOURS];
 
-// Of a walker: how far it is in power, and whether it is in reach of `self`.
+// How far a walker is in power, and whether it is in reach of `self`.
 int powerOf(vec4 other, vec4 self, out bool inReach) {
   int x = abs(int(other.x - self.x)), z = abs(int(other.y - self.y)), radii = int(other.z + self.z);
   int reach = radii + look, distance2 = x * x + z * z;
@@ -73,12 +73,13 @@ void sortNearest(vec4 self) {
     }
 }
 
-// Finds the nearest to the agent whose walker is `own` and has `self`, in a cell. Returns how many are in reach.
+// Finds the nearest to the agent with walker `own`, which holds `self`, in a cell. Returns how many are in
+// reach.
 int findNearest(int own, vec4 self, int cell) {
   Runs runs = LOAD_RUNS(cell, row, buckets);
   int seen = 0;
-  // A key is a power, but for its lowest bits, and who of the runs it is of, so that minima and maxima sort them. One more
-  // is kept than is asked for, to tell whether it could as well be among these.
+  // A key is a power, but for its lowest bits, and who of the runs it is of, so that minima and maxima sort
+  // them. One more is kept than is asked for, to tell whether it could as well be among these.
   const int nobody = 0x7FFFFFFF, keyed = 1 << NEIGHBOUR_KEY_BITS;
   int keys[NEIGHBOURS + 1];
   [[unroll]] for (int k = 0; k <= NEIGHBOURS; ++k) keys[k] = nobody;
