@@ -131,7 +131,7 @@ std::optional<Flow> FlowMap::most() const {
   for (const auto& [cell, square] : squares_) {
     const double time = square.last - square.first;
     if (time < leastTime) continue;
-    const Flow flow{square.way / (side_ * side_ * time), square.pause};
+    const Flow flow{square.way / (side_ * side_ * time), std::max(square.pause, square.last - square.came)};
     if (!most || flow.flow > most->flow) most = flow;
   }
   return most;

@@ -28,10 +28,10 @@ enum class Standing {
 };
 std::vector<Standing> standingsOf(std::span<const Advance> agents);
 
-// What goes through a place.
+// The traffic through a place.
 struct Flow {
   double flow = 0;   // agents per second and metre
-  double pause = 0;  // the longest time in which nobody came, seconds
+  double pause = 0;  // the longest time for which nobody came, until nobody is there any more, seconds
 };
 
 // How much goes through places: squares, of which each counts the way that agents go in it.
@@ -41,8 +41,8 @@ class FlowMap {
 
   // An agent's move, in the time that ends at `seconds`.
   void add(const glm::dvec2& from, const glm::dvec2& to, double seconds);
-  // Of the square with most, of those in which agents were for ten seconds or more between the first one and
-  // the last; none without such a square.
+  // The flow through the square with most, among those in which agents were for ten seconds or more between
+  // the first one and the last; none without such a square.
   std::optional<Flow> most() const;
 
  private:

@@ -64,14 +64,17 @@ void printCrowding(const Crowding& crowding, const Jams& jams) {
                          100 * *crowding.overlapMost, 100 * crowding.overlapMean.value_or(0),
                          crowding.pairs.value_or(0)));
   if (jams.stuck)
-    printRow(
-        "jams",
-        fmt::format("{} agents were stuck, {} have arrived; {:.1f} % of the time in jams; legs cross "
-                    "another's in {:.3f} % of the time, outside of jams in {:.3f} %; at most {:.2f} agents "
-                    "pass a second and metre, with pauses of {:.1f} s at most",
-                    *jams.stuck, jams.arrived.value_or(0), 100 * jams.jammed.value_or(0),
-                    100 * jams.legCrossings.value_or(0), 100 * jams.legCrossingsOutsideJams.value_or(0),
-                    jams.flow.value_or(Flow()).flow, jams.flow.value_or(Flow()).pause));
+    printRow("jams",
+             fmt::format("{} agents were stuck, {} have arrived; agents are in jams {:.1f} % of the time",
+                         *jams.stuck, jams.arrived.value_or(0), 100 * jams.jammed.value_or(0)));
+  if (jams.legCrossings)
+    printRow("crossings",
+             fmt::format("legs cross another's in {:.3f} % of the time, outside of jams in {:.3f} %",
+                         100 * *jams.legCrossings, 100 * jams.legCrossingsOutsideJams.value_or(0)));
+  if (jams.flow)
+    printRow("flow",
+             fmt::format("at most {:.2f} agents pass a second and metre, with pauses of up to {:.1f} s",
+                         jams.flow->flow, jams.flow->pause));
   if (crowding.droppedNeighbours.value_or(0) > 0)
     printRow("neighbours", fmt::format("{} were in reach beyond the nearest {}", *crowding.droppedNeighbours,
                                        shared::NEIGHBOURS));

@@ -145,7 +145,7 @@ Grid::Grid(const Crowd::Impl& crowd) : quanta(quantaOf(crowd)), buckets(bucketsF
   if (walkerBytes(agents) > reach)
     throw deviceError(fmt::format("{}: a binding reaches {} bytes, {} agents among whom some avoid need {}",
                                   context.report().name, reach, agents, walkerBytes(agents)));
-  row = 1u << (std::bit_width(buckets) - 1) / 2;
+  row = GRID_ROW(std::bit_width(buckets) - 1);
   run = std::max(leastRun, buckets / mostRuns);
   counts = gpu::Buffer(context, uint64_t{buckets} * 4, "grid counts");
   sums = gpu::Buffer(context, uint64_t{buckets / run} * 4, "grid sums");

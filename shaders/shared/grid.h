@@ -23,6 +23,9 @@ GRID BINDING_GRID_WALKER_OUT = 7;
 GRID BINDING_GRID_WALKER = 8;
 GRID BINDING_GRID_CROWDING = 9;
 
+// The buckets from a cell to the next one in z, by the highest bit of the number of buckets.
+#define GRID_ROW(highestBit) (1 << (highestBit) / 2)
+
 // A key, of an agent near another one, is its power times 2^NEIGHBOUR_KEY_BITS plus where it stands among all
 // who are looked at (shaders/stages/neighbours.glsl).
 GRID NEIGHBOUR_KEY_BITS = 7;

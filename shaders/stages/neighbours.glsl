@@ -8,7 +8,7 @@ LOAD4_BUFFER(BINDING_CELL, cells);
 LOAD4_BUFFER(BINDING_PLACE, places);
 LOAD4_BUFFER(BINDING_WALKER, walkers);
 
-int buckets = int(constants.every), row = 1 << findMSB(buckets) / 2, look = int(constants.room);
+int buckets = int(constants.every), row = GRID_ROW(findMSB(buckets)), look = int(constants.room);
 // The lowest bits of a power that a key leaves out.
 int dropped = int(constants.watched);
 float metres = constants.sleepTime;
@@ -100,7 +100,8 @@ int findNearest(int own, vec4 self, int cell) {
   }
   bool unsorted = false;
   [[unroll]] for (int k = 0; k < NEIGHBOURS - 1; ++k) unsorted = unsorted || alike[k];
-  RARELY(unsorted) sortNearest(self);
-  RARELY(alike[NEIGHBOURS - 1] || runs.count > keyed) findNearestExactly(runs, own, self);
+  bool unsure = alike[NEIGHBOURS - 1] || runs.count > keyed;
+  RARELY(unsorted && !unsure) sortNearest(self);
+  RARELY(unsure) findNearestExactly(runs, own, self);
   return seen;
 }

@@ -88,7 +88,8 @@ TEST_F(Foothold, nearestOnlyIgnoresEverythingElse) {
   }
 }
 
-// Who stands where the foot's home is leaves less than half of the way there; who goes away leaves more.
+// A passer that stands where the foot's home is leaves less than half of the way there; one that goes away
+// leaves more.
 TEST_F(Foothold, feetStayOnTheirSideOfWhoPasses) {
   ground(flatField(0));
   const glm::dvec3 home = creature.limbs[1].home;
