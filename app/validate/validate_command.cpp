@@ -32,7 +32,7 @@ namespace {
 
 using validation::Lockstep;
 
-constexpr uint64_t defaultAgents = 64, defaultFrames = 120, maxFrames = 1000000;
+constexpr uint64_t defaultAgents = 64, defaultFrames = 120, mostFrames = 1000000;
 constexpr double longestTimeout = 1e6;  // seconds
 
 struct ValidateOptions {
@@ -283,7 +283,7 @@ void addValidate(CLI::App& app, Command& chosen) {
       ->add_option_function<std::string>(
           "--frames",
           [options](const std::string& text) {
-            options->frames = parseWhole("--frames", text, 1, maxFrames);
+            options->frames = parseWhole("--frames", text, 1, mostFrames);
           },
           fmt::format("ticks to compare [{}]", defaultFrames))
       ->type_name("N");
