@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "gpu/barrier.h"
+#include "gpu/blit.h"
 #include "gpu/submit.h"
 #include "gpu/timer.h"
 #include "gpu/transfer.h"
@@ -20,7 +23,7 @@ namespace {
 
 constexpr vk::Format kColour = vk::Format(Renderer::colourFormat);
 constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
-constexpr uint32_t kPasses = 7;  // cull, splats, shadow, crowd, ground, sky, filter
+constexpr uint32_t kPasses = 8;  // cull, splats, shadow, crowd, ground, sky, filter, enlarge
 
 vk::Extent2D checkedExtent(const gpu::Context& context, uint32_t width, uint32_t height) {
   const uint32_t most = context.limits().maxImageDimension2D;
@@ -40,12 +43,22 @@ const gpu::Context& checkedContext(const gpu::Context& context) {
   return context;
 }
 
-float checkedDetail(const RendererOptions& options) {
-  // Also refuses NaN.
-  if (!(options.detail >= RendererOptions::leastDetail && options.detail <= RendererOptions::mostDetail))
-    throw inputError(fmt::format("detail is {}, expected {} to {}", options.detail,
-                                 RendererOptions::leastDetail, RendererOptions::mostDetail));
-  return options.detail;
+const RendererOptions& checked(const RendererOptions& options) {
+  const auto expect = [](const char* name, float value, float least, float most) {
+    // Also refuses NaN.
+    if (!(value >= least && value <= most))
+      throw inputError(fmt::format("{} is {}, expected {} to {}", name, value, least, most));
+  };
+  expect("detail", options.detail, RendererOptions::leastDetail, RendererOptions::mostDetail);
+  expect("scale", options.scale, RendererOptions::leastScale, 1);
+  return options;
+}
+
+vk::Extent2D scaled(const vk::Extent2D& extent, float scale) {
+  const auto side = [&](uint32_t pixels) {
+    return std::max(1u, uint32_t(std::lround(double(scale) * double(pixels))));
+  };
+  return {side(extent.width), side(extent.height)};
 }
 
 // Four samples where a GPU gives them almost for nothing; a software device pays sevenfold.
@@ -56,15 +69,20 @@ vk::SampleCountFlagBits sampleCount(const gpu::Context& context) {
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(const gpu::Context& context, const Crowd::Impl& crowd, uint32_t width, uint32_t height, float detail);
+  Impl(const gpu::Context& context, const Crowd::Impl& crowd, uint32_t width, uint32_t height,
+       const RendererOptions& options);
 
   void record(vk::CommandBuffer, const View&, const std::function<void(VkCommandBuffer)>& over);
   bool filtered() const { return samples == vk::SampleCountFlagBits::e1; }
+  bool enlarged() const { return drawn.extent() != colour.extent(); }
   vk::Format drawnFormat() const { return filtered() ? vk::Format::eR8G8B8A8Unorm : kColour; }
+  // What the picture is before it is enlarged, if it is.
+  const gpu::Image& finished() const { return enlarged() ? small : colour; }
   void lookForCasters();
   void drawShadows(vk::CommandBuffer);
   void drawPicture(vk::CommandBuffer);
   void smoothEdges(vk::CommandBuffer);
+  void enlarge(vk::CommandBuffer);
 
   const gpu::Context& context;
   const Crowd::Impl& live;
@@ -73,8 +91,9 @@ struct Renderer::Impl {
   bool drew = false;   // a picture was recorded
   gpu::StageTimer timer;
   vk::SampleCountFlagBits samples;
-  gpu::Image colour, depth;
-  gpu::Image drawn;  // before its edges are smoothed: multisampled, or to be filtered
+  gpu::Image colour;
+  gpu::Image drawn, depth;  // before edges are smoothed: multisampled, or to be filtered
+  gpu::Image small;         // smooth, before it is enlarged; none where it is not
   render::LightModel light;
   gpu::Buffer picture;
   gpu::Image ground;
@@ -90,7 +109,7 @@ struct Renderer::Impl {
 };
 
 Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height,
-                     float detail)
+                     const RendererOptions& options)
     : context(checkedContext(c)),
       live(source),
       revision(source.revision),
@@ -101,9 +120,16 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
               .extent = checkedExtent(c, width, height),
               .usage = vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc},
              "picture"),
+      drawn(c,
+            {.format = drawnFormat(),
+             .extent = scaled(colour.extent(), options.scale),
+             .usage = vk::ImageUsageFlagBits::eColorAttachment |
+                      (filtered() ? vk::ImageUsageFlagBits::eSampled : vk::ImageUsageFlags()),
+             .samples = samples},
+            "picture, drawn"),
       depth(c,
             {.format = kDepth,
-             .extent = {width, height},
+             .extent = drawn.extent(),
              .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment,
              .samples = samples},
             "picture depth"),
@@ -111,22 +137,32 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       picture(c, sizeof(shared::Picture), "picture block", gpu::BufferUse::uniform),
       ground(render::makeGroundMap(c, source.terrain, glm::vec3(light.towards))),
       groundSampler(gpu::makeSampler(c, {.name = "ground map"})),
-      shadow(c, height),
-      setting{c,      source.terrain, source.heights, picture, ground,          *groundSampler,
-              shadow, drawnFormat(),  kDepth,         samples, colour.extent(), render::lightConstants(light),
-              detail},
+      shadow(c, height, options.scale),
+      setting{c,
+              source.terrain,
+              source.heights,
+              picture,
+              ground,
+              *groundSampler,
+              shadow,
+              drawnFormat(),
+              kDepth,
+              samples,
+              drawn.extent(),
+              render::lightConstants(light),
+              options.detail},
       terrain(setting),
       obstacles(setting, source),
       crowd(setting, source, textures),
       sky(setting, light.stars) {
   timer.measure(false);
-  drawn = gpu::Image(c,
-                     {.format = drawnFormat(),
-                      .extent = {width, height},
-                      .usage = vk::ImageUsageFlagBits::eColorAttachment |
-                               (filtered() ? vk::ImageUsageFlagBits::eSampled : vk::ImageUsageFlags()),
-                      .samples = samples},
-                     "picture, drawn");
+  if (enlarged())
+    small =
+        gpu::Image(c,
+                   {.format = kColour,
+                    .extent = drawn.extent(),
+                    .usage = vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc},
+                   "picture, to be enlarged");
   if (filtered()) antialias = render::Antialias(c, drawn, kColour);
   lookForCasters();
 }
@@ -142,7 +178,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
     lookForCasters();
   }
   drew = true;
-  const vk::Extent2D extent = colour.extent();
+  const vk::Extent2D extent = drawn.extent();
   const render::Composition composition =
       render::compose(view, light, setting.terrain, terrain.lowest(), terrain.highest(), extent.width,
                       extent.height, shadow.texels());
@@ -168,12 +204,14 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   if (casts) drawShadows(cmd);
   drawPicture(cmd);
   if (filtered()) smoothEdges(cmd);
+  if (enlarged()) enlarge(cmd);
+  const gpu::ImageState now = enlarged() ? gpu::ImageState::transferDst : gpu::ImageState::colour;
   if (over) {
-    gpu::transition(cmd, colour, gpu::ImageState::colour, gpu::ImageState::colour);
+    gpu::transition(cmd, colour, now, gpu::ImageState::colour);
     const gpu::Rendering rendering(cmd, {.colour = &colour, .drawnOver = true}, false);
     over(cmd);
   }
-  gpu::transition(cmd, colour, gpu::ImageState::colour, gpu::ImageState::transferSrc);
+  gpu::transition(cmd, colour, over ? gpu::ImageState::colour : now, gpu::ImageState::transferSrc);
   context.endLabel(cmd);
 }
 
@@ -198,7 +236,7 @@ void Renderer::Impl::drawShadows(vk::CommandBuffer cmd) {
 }
 
 void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
-  gpu::transition(cmd, colour, gpu::ImageState::discard, gpu::ImageState::colour);
+  gpu::transition(cmd, finished(), gpu::ImageState::discard, gpu::ImageState::colour);
   gpu::transition(cmd, depth, gpu::ImageState::discard, gpu::ImageState::depth);
   gpu::transition(cmd, drawn, gpu::ImageState::discard, gpu::ImageState::colour);
   // Timed, each pass renders by itself: a software device takes all timestamps of one rendering at its end.
@@ -214,7 +252,7 @@ void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
     if (!rendering)
       rendering.emplace(cmd,
                         gpu::RenderTargets{.colour = &drawn,
-                                           .resolve = filtered() || (parted && !last) ? nullptr : &colour,
+                                           .resolve = filtered() || (parted && !last) ? nullptr : &finished(),
                                            .depth = &depth,
                                            .keepDepth = parted,
                                            .drawnOver = !first,
@@ -237,15 +275,23 @@ void Renderer::Impl::smoothEdges(vk::CommandBuffer cmd) {
   timer.next(cmd, "filter");
   gpu::transition(cmd, drawn, gpu::ImageState::colour, gpu::ImageState::sampled);
   {
-    const gpu::Rendering rendering(cmd, {.colour = &colour, .covered = true}, true);
+    const gpu::Rendering rendering(cmd, {.colour = &finished(), .covered = true}, true);
     antialias.draw(cmd);
   }
   timer.end(cmd, "filter");
 }
 
+void Renderer::Impl::enlarge(vk::CommandBuffer cmd) {
+  timer.next(cmd, "enlarge");
+  gpu::transition(cmd, small, gpu::ImageState::colour, gpu::ImageState::transferSrc);
+  gpu::transition(cmd, colour, gpu::ImageState::discard, gpu::ImageState::transferDst);
+  gpu::blit(cmd, {small.handle(), small.extent()}, {colour.handle(), colour.extent()});
+  timer.end(cmd, "enlarge");
+}
+
 Renderer::Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height,
                    const RendererOptions& options)
-    : impl_(std::make_unique<Impl>(device.context(), implOf(crowd), width, height, checkedDetail(options))) {}
+    : impl_(std::make_unique<Impl>(device.context(), implOf(crowd), width, height, checked(options))) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 

@@ -1,14 +1,20 @@
 #include "render/shadow.h"
 
+#include <cmath>
+
 namespace skitter::render {
 namespace {
 
-constexpr uint32_t kTallest = 1440;  // pixels; a taller picture would show the texels of the smaller map
+// A taller picture would show the texels of the smaller map. Whole tiles of a software device.
+uint32_t texelsFor(uint32_t rows, float scale) {
+  constexpr uint32_t tile = 64;
+  return uint32_t(std::ceil(scale * float(rows > 1440 ? 4096 : 2048) / tile)) * tile;
+}
 
 }  // namespace
 
-ShadowMap::ShadowMap(const gpu::Context& context, uint32_t pictureHeight)
-    : texels_(pictureHeight > kTallest ? 4096 : 2048) {
+ShadowMap::ShadowMap(const gpu::Context& context, uint32_t pictureRows, float scale)
+    : texels_(texelsFor(pictureRows, scale)) {
   const vk::Format format = vk::Format::eD16Unorm;
   image_ = gpu::Image(
       context,

@@ -11,7 +11,8 @@ namespace skitter::render {
 class ShadowMap {
  public:
   ShadowMap() = default;
-  ShadowMap(const gpu::Context&, uint32_t pictureHeight);
+  // `scale`: RendererOptions::scale.
+  ShadowMap(const gpu::Context&, uint32_t pictureRows, float scale);
 
   uint32_t texels() const { return texels_; }  // side of a cascade
   const gpu::Image& image() const { return image_; }

@@ -17,6 +17,7 @@
 #include "app/common/files.h"
 #include "app/common/manifest.h"
 #include "app/common/progress.h"
+#include "app/common/render_scale.h"
 #include "app/common/scene_options.h"
 #include "app/common/signals.h"
 #include "app/common/values.h"
@@ -45,9 +46,9 @@ struct BenchOptions {
   std::optional<std::vector<double>> agents;
   std::vector<Controller> controllers = {Controller::adaptive, Controller::clip};
   std::optional<uint64_t> rounds;
-  std::string json, baseline;
+  std::string json, baseline, levels;
   std::optional<double> failAbove;  // per cent
-  std::optional<Size> size;         // of pictures
+  FrameOptions frames;
   bool avoid = false, poses = false, quick = false, quiet = false, draw = false;
 
   std::vector<double> counts() const {
@@ -103,6 +104,11 @@ void write(const BenchOptions& options, const Record& record) {
                        {"interrupted", record.matches < record.wanted}};
   if (options.draw)
     json = {{"devices", record.devices},
+            {"picture",
+             {{"width", options.frames.size.width},
+              {"height", options.frames.size.height},
+              {"renderScale", std::round(1e6 * double{options.frames.drawing.scale}) / 1e6},
+              {"levels", options.levels.empty() ? ordered_json() : ordered_json(options.levels)}}},
             {"draw", record.draw},
             {"drawsWanted", record.wanted},
             {"interrupted", record.draw.size() < record.wanted}};
@@ -221,9 +227,9 @@ void benchDevice(const BenchOptions& options, const Heightfield& terrain, const 
 }
 
 FrameOptions framesOf(const BenchOptions& options) {
-  FrameOptions frames;
+  FrameOptions frames = options.frames;
   frames.dt = options.scene.dt;
-  if (options.size) frames.size = *options.size;
+  if (!options.levels.empty()) frames.levels = loadLevels(options.levels);
   if (options.quick) {
     frames.warmUp = quickWarmUpFrames;
     frames.frames = quickFrames;
@@ -246,8 +252,10 @@ void drawOn(const BenchOptions& options, const Heightfield& terrain, const std::
   record.manifest.add(device.report());
   record.devices.push_back(describeMachine(device.report()));
   const FrameOptions frames = framesOf(options);
-  fmt::print("device        {} ({})\npictures      {} x {} pixels, {} after {}\n", device.report().name,
-             device.report().typeName(), frames.size.width, frames.size.height, frames.frames, frames.warmUp);
+  fmt::print("device        {} ({})\npictures      {} x {} pixels{}, {} after {}\n", device.report().name,
+             device.report().typeName(), frames.size.width, frames.size.height,
+             frames.drawing.scale < 1 ? fmt::format(", render scale {}", frames.drawing.scale) : "",
+             frames.frames, frames.warmUp);
   for (const double agents : options.counts()) {
     SceneOptions chosen = options.scene;
     chosen.agents = static_cast<uint64_t>(agents);
@@ -287,7 +295,9 @@ void refuseBesideAvoid(const BenchOptions& options, const CLI::App& command) {
 
 // Each option that means nothing beside the others. Throws Error(input).
 void refuseWhatMeansNothing(const BenchOptions& options, const CLI::App& command) {
-  if (!options.draw && options.size) throw inputError("--size is of pictures, expected --draw beside it");
+  for (const char* option : {"--size", renderScaleOption, "--levels"})
+    if (!options.draw && command.count(option) > 0)
+      throw inputError(fmt::format("{} is of pictures, expected --draw beside it", option));
   for (const char* option : {"--avoid", "--controllers", "--rounds", "--poses", "--baseline", "--fail-above"})
     if (options.draw && command.count(option) > 0)
       throw inputError(fmt::format("{} is of matches, expected none beside --draw", option));
@@ -313,6 +323,7 @@ int bench(const BenchOptions& options) {
   const Scene scene = options.scene.load();
   options.scene.declare(files, scene);
   files.reads("--baseline", options.baseline);
+  if (options.levels != "default") files.reads("--levels", options.levels);
   files.writes("--json", options.json);
   files.check();
   if (options.draw) return draw(options, scene);
@@ -394,9 +405,15 @@ void addBench(CLI::App& app, Command& chosen) {
                     "time frames instead: a tick, its picture, and the picture's way to the host");
   command
       ->add_option_function<std::string>(
-          "--size", [options](const std::string& text) { options->size = parseSize("--size", text); },
+          "--size", [options](const std::string& text) { options->frames.size = parseSize("--size", text); },
           "of the pictures that --draw draws, in pixels [1280x720]")
       ->type_name("WxH");
+  addRenderScale(*command, options->frames.drawing.scale);
+  command
+      ->add_option("--levels", options->levels,
+                   "with --draw: who is far from the camera ticks less often, as in skitter run [those of "
+                   "the scene, else none]")
+      ->type_name("default|FILE");
   command->add_flag("--quick", options->quick, "3 short rounds; with --draw 10 frames");
   command->add_option("--json", options->json, "write all figures to a file, for scripts/plots")
       ->type_name("FILE");

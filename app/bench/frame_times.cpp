@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "app/common/simulate.h"
 #include "app/common/warnings.h"
 #include "base/clock.h"
 #include "bench/statistics.h"
@@ -23,8 +24,8 @@ class Studio {
   Studio(Device& device, const Heightfield& terrain, const Scene& scene, const FrameOptions& options)
       : scene_(scene),
         dt_(options.dt),
-        crowd_(device, terrain, scene, optionsOf()),
-        renderer_(device, crowd_, options.size.width, options.size.height),
+        crowd_(device, terrain, scene, optionsOf(options)),
+        renderer_(device, crowd_, options.size.width, options.size.height, options.drawing),
         read_(device.context(), options.size.width, options.size.height, framesInFlight),
         ring_(device.context(), framesInFlight) {
     warnOfImages(renderer_);
@@ -33,7 +34,7 @@ class Studio {
   // Waits for the frame before the last one only.
   void frame() {
     const vk::CommandBuffer cmd = ring_.begin();
-    crowd_.record(cmd, static_cast<float>(dt_));
+    tick(cmd);
     renderer_.record(cmd, view());
     read_.record(cmd, renderer_.image(), ring_.slot());
     const uint64_t value = ring_.submit();
@@ -42,8 +43,7 @@ class Studio {
   void finish() { ring_.waitAll(); }
 
   void timedFrame(std::vector<StageTime>& parts) {
-    parts.push_back(
-        {"simulation", alone([&](vk::CommandBuffer cmd) { crowd_.record(cmd, static_cast<float>(dt_)); })});
+    parts.push_back({"simulation", alone([&](vk::CommandBuffer cmd) { tick(cmd); })});
     renderer_.timeStages(true);
     alone([&](vk::CommandBuffer cmd) { renderer_.record(cmd, view()); });
     std::ranges::copy(renderer_.stageTimes(), std::back_inserter(parts));
@@ -56,10 +56,15 @@ class Studio {
   PictureCounts counts() const { return renderer_.counts(); }
 
  private:
-  static CrowdOptions optionsOf() {
-    CrowdOptions options;
-    options.measure = false;  // to judge is no part of animating
-    return options;
+  static CrowdOptions optionsOf(const FrameOptions& options) {
+    CrowdOptions crowd;
+    crowd.measure = false;  // to judge is no part of animating
+    crowd.levels = options.levels;
+    return crowd;
+  }
+  void tick(vk::CommandBuffer cmd) {
+    lookAt(scene_, crowd_, dt_);
+    crowd_.record(cmd, static_cast<float>(dt_));
   }
   View view() const { return viewOf(scene_, crowd_, static_cast<double>(crowd_.tick()) * dt_); }
   template <class Commands>

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "app/common/values.h"
@@ -15,10 +16,12 @@ namespace skitter::app {
 
 struct FrameOptions {
   Size size{1280, 720};
-  double dt = 1.0 / 60;       // seconds a tick
-  uint32_t warmUp = 20;       // frames before the first that counts
-  uint32_t frames = 100;      // that count
-  uint32_t timedFrames = 20;  // after these, each part by itself
+  RendererOptions drawing;
+  std::optional<Levels> levels;  // of rate, by the picture's camera; else those of the scene
+  double dt = 1.0 / 60;          // seconds a tick
+  uint32_t warmUp = 20;          // frames before the first that counts
+  uint32_t frames = 100;         // that count
+  uint32_t timedFrames = 20;     // after these, each part by itself
 };
 
 // What a frame costs: a tick, the drawing of it, and its copy in host memory.

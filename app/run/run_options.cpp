@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
+#include "app/common/render_scale.h"
 #include "app/run/trace.h"
 #include "app/viewer/window.h"
 #include "skitter/error.h"
@@ -96,6 +97,7 @@ void addNumbers(CLI::App& command, RunOptions& options) {
           },
           "draw agents as finely as if they were so many times larger; 0.5 is faster, 100000 full detail [1]")
       ->type_name("X");
+  addRenderScale(command, options.drawing.scale);
 }
 
 }  // namespace

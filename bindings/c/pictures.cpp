@@ -52,6 +52,7 @@ skitter_result skitter_renderer_create(skitter_crowd* crowd, uint32_t width, uin
     given(renderer, "renderer");
     RendererOptions made;
     if (options != nullptr && options->detail != 0) made.detail = options->detail;
+    if (options != nullptr && options->scale != 0) made.scale = options->scale;
     *renderer = new skitter_renderer{live, Renderer(*live->device, live->crowd, width, height, made)};
   });
 }

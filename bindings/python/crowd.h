@@ -20,7 +20,7 @@ struct PythonCrowd {
   Crowd crowd;
   bindings::Walk walk;
   std::optional<Renderer> renderer = {};  // of the last picture
-  float detail = 1;                       // of the renderer
+  RendererOptions drawing;                // of the renderer
   size_t warned = 0;                      // how many of its notes have been warnings
 
   PythonCrowd(std::shared_ptr<SharedDevice> on, Scene from, const Heightfield& terrain,

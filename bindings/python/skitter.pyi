@@ -658,7 +658,12 @@ class Crowd:
         page_agents: int = 0,
     ) -> Crowd: ...
     def render(
-        self, width: int = 1280, height: int = 720, view: Optional[View] = None, detail: float = 1.0
+        self,
+        width: int = 1280,
+        height: int = 720,
+        view: Optional[View] = None,
+        detail: float = 1.0,
+        scale: float = 1.0,
     ) -> npt.NDArray[np.uint8]: ...
 
 class ik:

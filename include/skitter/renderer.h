@@ -43,12 +43,16 @@ struct RendererOptions {
   // Less is cheaper; the most leaves no level of detail out and draws nobody without triangles.
   float detail = 1;
   static constexpr float leastDetail = 0.25f, mostDetail = 100000;
+  // Pixels that are shaded along each side of the picture, as a share of those that it has, leastScale to 1.
+  // With less than 1 the picture is enlarged from fewer pixels, whose number then also decides on detail.
+  float scale = 1;
+  static constexpr float leastScale = 0.25f;
 };
 
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.
 class SKITTER_API Renderer {
  public:
-  // Throws Error(input) for a picture without pixels, a crowd without poses or another detail, Error(device)
+  // Throws Error(input) for a picture without pixels, a crowd without poses or other options, Error(device)
   // for a device whose queue has no graphics, when width or height exceed the device's limits or memory does
   // not suffice. The crowd outlives the renderer and stays where it is.
   Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height,

@@ -1938,7 +1938,7 @@ static void testPictures(void) {
   skitter_crowd_options bare = {0};
   skitter_scene* scene = NULL;
   skitter_renderer *renderer = NULL, *fine = NULL;
-  skitter_renderer_options options = {0.1f};
+  skitter_renderer_options options = {0.1f, 0};
   skitter_view view = {{0}, {0}, 0}, up;
   VkImage image = VK_NULL_HANDLE;
   const char* note = "";
@@ -1954,7 +1954,11 @@ static void testPictures(void) {
   REFUSED(skitter_renderer_create(crowd, 0, 5, NULL, &renderer), "a picture of 0 x 5 pixels");
   REFUSED(skitter_renderer_create(crowd, 5, 5, NULL, NULL), "renderer is NULL");
   REFUSED(skitter_renderer_create(crowd, 5, 5, &options, &renderer), "detail is 0.1, expected 0.25 to 100000");
+  options.detail = 0;
+  options.scale = 1.5f;
+  REFUSED(skitter_renderer_create(crowd, 5, 5, &options, &renderer), "scale is 1.5, expected 0.25 to 1");
   options.detail = 100000;
+  options.scale = 0.5f;
   CHECK(skitter_renderer_create(crowd, 1u << 30, 5, NULL, &renderer) == SKITTER_ERROR_DEVICE);
   bare.no_poses = 1;
   {

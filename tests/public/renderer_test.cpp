@@ -81,6 +81,8 @@ TEST_F(PublicRenderer, RefusesWhatCannotBe) {
   expectRefused("pose", [&] { Renderer(device(), poseless, 64, 48); });
   for (const float detail : {0.0f, 0.2f, -1.0f, 2e5f, NAN, INFINITY})
     expectRefused("detail is ", [&] { Renderer(device(), crowd, 64, 48, {.detail = detail}); });
+  for (const float scale : {0.0f, 0.2f, -1.0f, 1.01f, NAN, INFINITY})
+    expectRefused("scale is ", [&] { Renderer(device(), crowd, 64, 48, {.scale = scale}); });
 }
 
 }  // namespace

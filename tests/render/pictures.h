@@ -49,13 +49,14 @@ struct Stage {
   Renderer renderer;
   gpu::Context& context;
 
-  Stage(Device& device, const Scene& s, uint32_t width, uint32_t height)
-      : Stage(device, s, s.loadTerrain(), width, height) {}
-  Stage(Device& device, const Scene& s, const Heightfield& ground, uint32_t width, uint32_t height)
+  Stage(Device& device, const Scene& s, uint32_t width, uint32_t height, const RendererOptions& options = {})
+      : Stage(device, s, s.loadTerrain(), width, height, options) {}
+  Stage(Device& device, const Scene& s, const Heightfield& ground, uint32_t width, uint32_t height,
+        const RendererOptions& options = {})
       : scene(s),
         terrain(ground),
         crowd(device, terrain, scene),
-        renderer(device, crowd, width, height),
+        renderer(device, crowd, width, height, options),
         context(device.context()) {}
 
   void tick(int count) {

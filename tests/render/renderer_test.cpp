@@ -81,30 +81,93 @@ TEST_P(RendererTest, timingAPictureDoesNotChangeIt) {
   EXPECT_THAT(passes, ::testing::ElementsAre("cull", "splats", "shadow", "crowd", "ground", "sky"));
 }
 
-TEST_P(RendererTest, whatIsDrawnOverKeepsThePictureAroundIt) {
-  Stage stage(device(), smallScene(20), 200, 120);
+// Light is linear where it is interpolated.
+double lightOf(int code) {
+  const double c = code / 255.0;
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+double codeOf(double light) {
+  return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
+}
+
+// The colour of a picture of twice the size at one of its pixels: bilinear between the middles of pixels.
+glm::dvec3 enlargedAt(const Picture& small, int x, int y) {
+  const auto along = [](int at, uint32_t size) {
+    const double place = std::clamp((at + 0.5) / 2 - 0.5, 0.0, double(size - 1));
+    const int first = std::min(int(place), int(size) - 2);
+    return std::pair(first, place - first);
+  };
+  const auto [left, right] = along(x, small.width);
+  const auto [top, down] = along(y, small.height);
+  glm::dvec3 codes;
+  for (int c = 0; c < 3; ++c) {
+    const auto light = [&](int dx, int dy) { return lightOf(small.at(left + dx, top + dy)[c]); };
+    codes[c] = codeOf(std::lerp(std::lerp(light(0, 0), light(1, 0), right),
+                                std::lerp(light(0, 1), light(1, 1), right), down));
+  }
+  return codes;
+}
+
+TEST_P(RendererTest, fewerShadedPixelsAreTheSmallerPictureEnlarged) {
+  for (const uint32_t agents : {0u, 40u}) {
+    Stage stage(device(), smallScene(agents), 200, 120, {.scale = 0.5f});
+    stage.tick(1);
+    const View view = viewOf(stage.scene, stage.crowd, 0);
+    const Picture large = stage.draw(view);
+    Renderer half(device(), stage.crowd, 100, 60);
+    gpu::submitAndWait(stage.context, [&](vk::CommandBuffer cmd) { half.record(cmd, view); });
+    const Picture small{100, 60, half.download()};
+    ASSERT_EQ(large.rgba.size(), 200u * 120 * 4);
+    int off = 0;
+    for (int y = 0; y < 120; ++y)
+      for (int x = 0; x < 200; ++x) {
+        const glm::dvec3 by = glm::abs(glm::dvec3(large.at(x, y)) - enlargedAt(small, x, y));
+        // Half a code of rounding, and 0.6 on the way from light to sRGB.
+        off += std::max({by.r, by.g, by.b}) > 1.2;
+      }
+    // The shadow map has half the texels, too.
+    EXPECT_LE(off, agents == 0 ? 0 : 200 * 120 / 10) << agents << " agents";
+  }
+}
+
+TEST_P(RendererTest, timingAnEnlargedPictureDoesNotChangeIt) {
+  Stage stage(device(), smallScene(40), 200, 120, {.scale = 0.5f});
   stage.tick(1);
   const View view = viewOf(stage.scene, stage.crowd, 0);
-  const Picture without = stage.draw(view);
+  const Picture large = stage.draw(view);
+  stage.renderer.timeStages(true);
+  EXPECT_EQ(differing(large, stage.draw(view)), 0u);
+  if (!context().timestamps()) return;
+  EXPECT_EQ(stage.renderer.stageTimes().back().stage, std::string("enlarge"));
+}
+
+TEST_P(RendererTest, whatIsDrawnOverKeepsThePictureAroundIt) {
   const auto red = [](VkCommandBuffer cmd) {
     const vk::ClearAttachment colour{.aspectMask = vk::ImageAspectFlagBits::eColor,
                                      .clearValue = {vk::ClearColorValue(std::array{1.0f, 0.0f, 0.0f, 1.0f})}};
     vk::CommandBuffer(cmd).clearAttachments(colour, vk::ClearRect{{{10, 20}, {30, 40}}, 0, 1});
   };
-  gpu::submitAndWait(stage.context, [&](vk::CommandBuffer cmd) { stage.renderer.record(cmd, view, red); });
-  const Picture with{200, 120, stage.renderer.download()};
-  EXPECT_EQ(differing(without, with), 30u * 40u);
-  EXPECT_EQ(with.at(10, 20), glm::ivec3(255, 0, 0));
-  EXPECT_EQ(with.at(39, 59), glm::ivec3(255, 0, 0));
+  for (const float scale : {1.0f, 0.5f}) {
+    Stage stage(device(), smallScene(20), 200, 120, {.scale = scale});
+    stage.tick(1);
+    const View view = viewOf(stage.scene, stage.crowd, 0);
+    const Picture without = stage.draw(view);
+    gpu::submitAndWait(stage.context, [&](vk::CommandBuffer cmd) { stage.renderer.record(cmd, view, red); });
+    const Picture with{200, 120, stage.renderer.download()};
+    EXPECT_EQ(differing(without, with), 30u * 40u) << scale;
+    EXPECT_EQ(with.at(10, 20), glm::ivec3(255, 0, 0));
+    EXPECT_EQ(with.at(39, 59), glm::ivec3(255, 0, 0));
+  }
 }
 
 TEST_P(RendererTest, anySizeIsDrawn) {
   const Scene scene = smallScene(3);
-  for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 37u}, {333u, 2u}, {67u, 45u}}) {
-    Stage stage(device(), scene, width, height);
-    stage.tick(1);
-    EXPECT_EQ(stage.draw(viewOf(scene, stage.crowd, 0)).rgba.size(), size_t(width) * height * 4);
-  }
+  for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 37u}, {333u, 2u}, {67u, 45u}})
+    for (const float scale : {1.0f, 0.7f, 0.25f}) {
+      Stage stage(device(), scene, width, height, {.scale = scale});
+      stage.tick(1);
+      EXPECT_EQ(stage.draw(viewOf(scene, stage.crowd, 0)).rgba.size(), size_t(width) * height * 4);
+    }
 }
 
 TEST_P(RendererTest, strangeViewsAreDrawn) {

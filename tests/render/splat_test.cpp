@@ -145,7 +145,7 @@ class SplatTest : public test::GpuLoadTest {
     const gpu::Buffer picture(context(), sizeof(shared::Picture), "picture", gpu::BufferUse::uniform);
     const gpu::Image map = makeGroundMap(context(), ground, glm::vec3(light.towards));
     const vk::raii::Sampler sampler = gpu::makeSampler(context(), {.name = "ground map"});
-    const ShadowMap shadow(context(), kHeight);
+    const ShadowMap shadow(context(), kHeight, 1);
     const Setting setting{.context = context(),
                           .terrain = ground,
                           .heights = impl.heights,
