@@ -6,14 +6,15 @@
 #include <cmath>
 #include <optional>
 
+#include "embedded/antialias_frag.h"
+#include "embedded/enlarge_frag.h"
 #include "gpu/barrier.h"
-#include "gpu/blit.h"
 #include "gpu/submit.h"
 #include "gpu/timer.h"
 #include "gpu/transfer.h"
-#include "render/antialias.h"
 #include "render/composition.h"
 #include "render/crowd_drawing.h"
+#include "render/image_pass.h"
 #include "render/obstacle_drawing.h"
 #include "render/sky.h"
 #include "render/terrain.h"
@@ -105,7 +106,8 @@ struct Renderer::Impl {
   render::TextureStore textures;
   render::CrowdDrawing crowd;
   render::Sky sky;
-  render::Antialias antialias;  // where there are no samples to resolve
+  render::ImagePass antialias;    // where there are no samples to resolve
+  render::ImagePass enlargement;  // where fewer pixels are shaded
 };
 
 Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t width, uint32_t height,
@@ -118,7 +120,8 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       colour(c,
              {.format = kColour,
               .extent = checkedExtent(c, width, height),
-              .usage = vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc},
+              .usage = vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc,
+              .codes = options.scale < 1},
              "picture"),
       drawn(c,
             {.format = drawnFormat(),
@@ -156,14 +159,17 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       crowd(setting, source, textures),
       sky(setting, light.stars) {
   timer.measure(false);
-  if (enlarged())
-    small =
-        gpu::Image(c,
-                   {.format = kColour,
-                    .extent = drawn.extent(),
-                    .usage = vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc},
-                   "picture, to be enlarged");
-  if (filtered()) antialias = render::Antialias(c, drawn, kColour);
+  if (enlarged()) {
+    small = gpu::Image(c,
+                       {.format = kColour,
+                        .extent = drawn.extent(),
+                        .usage = vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eSampled,
+                        .codes = true},
+                       "picture, to be enlarged");
+    enlargement =
+        render::ImagePass(c, "enlarge", embedded::enlarge_frag(), small.codes(), colour.codes().format());
+  }
+  if (filtered()) antialias = render::ImagePass(c, "antialias", embedded::antialias_frag(), drawn, kColour);
   lookForCasters();
 }
 
@@ -205,13 +211,12 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   drawPicture(cmd);
   if (filtered()) smoothEdges(cmd);
   if (enlarged()) enlarge(cmd);
-  const gpu::ImageState now = enlarged() ? gpu::ImageState::transferDst : gpu::ImageState::colour;
   if (over) {
-    gpu::transition(cmd, colour, now, gpu::ImageState::colour);
+    gpu::transition(cmd, colour, gpu::ImageState::colour, gpu::ImageState::colour);
     const gpu::Rendering rendering(cmd, {.colour = &colour, .drawnOver = true}, false);
     over(cmd);
   }
-  gpu::transition(cmd, colour, over ? gpu::ImageState::colour : now, gpu::ImageState::transferSrc);
+  gpu::transition(cmd, colour, gpu::ImageState::colour, gpu::ImageState::transferSrc);
   context.endLabel(cmd);
 }
 
@@ -283,9 +288,13 @@ void Renderer::Impl::smoothEdges(vk::CommandBuffer cmd) {
 
 void Renderer::Impl::enlarge(vk::CommandBuffer cmd) {
   timer.next(cmd, "enlarge");
-  gpu::transition(cmd, small, gpu::ImageState::colour, gpu::ImageState::transferSrc);
-  gpu::transition(cmd, colour, gpu::ImageState::discard, gpu::ImageState::transferDst);
-  gpu::blit(cmd, {small.handle(), small.extent()}, {colour.handle(), colour.extent()});
+  gpu::transition(cmd, small, gpu::ImageState::colour, gpu::ImageState::sampled);
+  gpu::transition(cmd, colour, gpu::ImageState::discard, gpu::ImageState::colour);
+  {
+    // A software device pays more for making light of codes and codes of light than for all else.
+    const gpu::Rendering rendering(cmd, {.colour = &colour.codes(), .covered = true}, true);
+    enlargement.draw(cmd);
+  }
   timer.end(cmd, "enlarge");
 }
 

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 namespace skitter::gpu {
 namespace {
+
+constexpr vk::Format kCodes = vk::Format::eR8G8B8A8Unorm;
 
 vk::ImageAspectFlags aspectOf(vk::Format format) {
   switch (format) {
@@ -25,6 +29,10 @@ vk::ImageUsageFlags withTransfer(const Context& context, const ImageInfo& info) 
   return usage;
 }
 
+vk::ImageCreateFlags flagsOf(const ImageInfo& info) {
+  return info.codes ? vk::ImageCreateFlagBits::eMutableFormat : vk::ImageCreateFlags();
+}
+
 void checkSupport(const Context& context, const ImageInfo& info, const std::string& name) {
   const auto refuse = [&](const std::string& reason) {
     return deviceError(fmt::format("the image \"{}\" ({} x {}, {} layers, {}, {} samples): {}", name,
@@ -34,7 +42,7 @@ void checkSupport(const Context& context, const ImageInfo& info, const std::stri
   vk::ImageFormatProperties most;
   try {
     most = context.physical().getImageFormatProperties(info.format, vk::ImageType::e2D,
-                                                       vk::ImageTiling::eOptimal, info.usage);
+                                                       vk::ImageTiling::eOptimal, info.usage, flagsOf(info));
   } catch (const vk::FormatNotSupportedError&) {
     throw refuse(
         fmt::format("{} does not have this format for {}", context.report().name, vk::to_string(info.usage)));
@@ -59,8 +67,13 @@ Image::Image(const Context& context, const ImageInfo& info, std::string name)
   info_.usage = withTransfer(context, info);
   checkSupport(context, info_, name_);
   guarded("the image \"" + name_ + "\"", [&] {
+    const std::array formats{info_.format, kCodes};
+    const vk::ImageFormatListCreateInfo list{.viewFormatCount = uint32_t(formats.size()),
+                                             .pViewFormats = formats.data()};
     image_ = vk::raii::Image(context.device(),
-                             vk::ImageCreateInfo{.imageType = vk::ImageType::e2D,
+                             vk::ImageCreateInfo{.pNext = info_.codes ? &list : nullptr,
+                                                 .flags = flagsOf(info_),
+                                                 .imageType = vk::ImageType::e2D,
                                                  .format = info_.format,
                                                  .extent = {info_.extent.width, info_.extent.height, 1},
                                                  .mipLevels = info_.levels,
@@ -68,25 +81,38 @@ Image::Image(const Context& context, const ImageInfo& info, std::string name)
                                                  .samples = info_.samples,
                                                  .tiling = vk::ImageTiling::eOptimal,
                                                  .usage = info_.usage});
+    handle_ = *image_;
     context.name(*image_, name_);
     memory_ =
         context.allocate(image_.getMemoryRequirements(), vk::MemoryPropertyFlagBits::eDeviceLocal, {}, name_);
     context.name(*memory_, name_);
     image_.bindMemory(*memory_, 0);
-    // An image that is only copied to and from takes no view.
-    using Usage = vk::ImageUsageFlagBits;
-    if (!(info_.usage &
-          (Usage::eSampled | Usage::eStorage | Usage::eColorAttachment | Usage::eDepthStencilAttachment)))
-      return;
-    view_ = vk::raii::ImageView(
-        context.device(),
-        vk::ImageViewCreateInfo{
-            .image = *image_,
-            .viewType = info_.layers > 1 ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
-            .format = info_.format,
-            .subresourceRange = {aspect_, 0, info_.levels, 0, info_.layers}});
-    context.name(*view_, name_);
+    makeView(context);
+    if (!info_.codes) return;
+    codes_ = std::make_unique<Image>();
+    codes_->info_ = info_;
+    codes_->info_.format = kCodes;
+    codes_->aspect_ = aspect_;
+    codes_->name_ = name_ + ", codes";
+    codes_->handle_ = handle_;
+    codes_->makeView(context);
   });
+}
+
+void Image::makeView(const Context& context) {
+  // An image that is only copied to and from takes no view.
+  using Usage = vk::ImageUsageFlagBits;
+  if (!(info_.usage &
+        (Usage::eSampled | Usage::eStorage | Usage::eColorAttachment | Usage::eDepthStencilAttachment)))
+    return;
+  view_ = vk::raii::ImageView(
+      context.device(),
+      vk::ImageViewCreateInfo{
+          .image = handle_,
+          .viewType = info_.layers > 1 ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
+          .format = info_.format,
+          .subresourceRange = {aspect_, 0, info_.levels, 0, info_.layers}});
+  context.name(*view_, name_);
 }
 
 }  // namespace skitter::gpu

@@ -2,6 +2,7 @@
 
 #include "gpu/context.h"
 
+#include <memory>
 #include <string>
 
 namespace skitter::gpu {
@@ -14,6 +15,7 @@ struct ImageInfo {
   uint32_t layers = 1;  // more than one makes the view an array
   vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   uint32_t levels = 1;  // each half as wide and high as the one before, rounded down, at least 1
+  bool codes = false;   // of R8G8B8A8 sRGB: whether Image::codes() is there
 };
 
 // A device-local 2D image and a view of all of it: heights, colour, depth, shadow, textures. It does
@@ -29,17 +31,24 @@ class Image {
   vk::Format format() const { return info_.format; }
   vk::ImageAspectFlags aspect() const { return aspect_; }
   const std::string& name() const { return name_; }
-  vk::Image handle() const { return *image_; }
+  vk::Image handle() const { return handle_; }
   vk::ImageView view() const { return *view_; }
   explicit operator bool() const { return !!*image_; }
 
+  // The same image, whose sRGB codes are read and written as plain numbers. It belongs to this one.
+  const Image& codes() const { return *codes_; }
+
  private:
+  void makeView(const Context&);
+
   ImageInfo info_;
   vk::ImageAspectFlags aspect_;
   std::string name_;
   vk::raii::DeviceMemory memory_ = nullptr;
   vk::raii::Image image_ = nullptr;
+  vk::Image handle_;
   vk::raii::ImageView view_ = nullptr;
+  std::unique_ptr<Image> codes_;
 };
 
 }  // namespace skitter::gpu

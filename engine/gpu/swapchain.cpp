@@ -1,7 +1,6 @@
 #include "gpu/swapchain.h"
 
 #include "gpu/barrier.h"
-#include "gpu/blit.h"
 
 #include <algorithm>
 #include <array>
@@ -18,6 +17,10 @@ vk::SurfaceFormatKHR chooseFormat(const std::vector<vk::SurfaceFormatKHR>& offer
     }
   }
   throw deviceError("the window offers no 8-bit sRGB pictures");
+}
+
+std::array<vk::Offset3D, 2> wholeOf(vk::Extent2D extent) {
+  return {vk::Offset3D{}, vk::Offset3D{.x = int32_t(extent.width), .y = int32_t(extent.height), .z = 1}};
 }
 
 }  // namespace
@@ -105,9 +108,20 @@ void Swapchain::show(vk::CommandBuffer cmd, vk::Image picture, vk::Extent2D exte
   }
   showing_ = true;
 
+  const vk::ImageSubresourceLayers colour{.aspectMask = vk::ImageAspectFlagBits::eColor, .layerCount = 1};
+  const vk::ImageBlit2 blit{.srcSubresource = colour,
+                            .srcOffsets = wholeOf(extent),
+                            .dstSubresource = colour,
+                            .dstOffsets = wholeOf(extent_)};
   transition(cmd, images_[image_], vk::ImageAspectFlagBits::eColor, ImageState::discard,
              ImageState::transferDst);
-  blit(cmd, {picture, extent}, {images_[image_], extent_});
+  cmd.blitImage2(vk::BlitImageInfo2{.srcImage = picture,
+                                    .srcImageLayout = layoutOf(ImageState::transferSrc),
+                                    .dstImage = images_[image_],
+                                    .dstImageLayout = layoutOf(ImageState::transferDst),
+                                    .regionCount = 1,
+                                    .pRegions = &blit,
+                                    .filter = vk::Filter::eLinear});
   transition(cmd, images_[image_], vk::ImageAspectFlagBits::eColor, ImageState::transferDst,
              ImageState::present);
 }
