@@ -19,13 +19,14 @@ namespace {
 class Timer {
  public:
   Timer(Device& device, const Heightfield& ground, const Settings& settings, const Subject& subject,
-        bool drawn, std::vector<TickCost>& costs)
+        bool drawn, Budget& budget)
       : device_(device),
         ground_(ground),
         settings_(settings),
         subject_(subject),
         drawn_(drawn),
-        costs_(costs) {}
+        renderScale_(budget.renderScale),
+        costs_(budget.costs) {}
 
   TickCost cost(uint32_t agents) {
     for (const TickCost& known : costs_)
@@ -42,7 +43,9 @@ class Timer {
     options.measure = false;  // what is judged elsewhere is no part of animating
     Walk walk(device_, ground_, scene, settings_.dt, options);
     std::optional<Renderer> renderer;
-    if (drawn_) renderer.emplace(device_, walk.crowd(), settings_.width, settings_.height);
+    if (drawn_)
+      renderer.emplace(device_, walk.crowd(), settings_.width, settings_.height,
+                       RendererOptions{.scale = renderScale_});
     const auto frame = [&] {
       return base::timed([&] {
         gpu::CommandRing& ring = walk.ring();
@@ -75,6 +78,7 @@ class Timer {
   const Settings& settings_;
   const Subject& subject_;
   bool drawn_;
+  float renderScale_;
   std::vector<TickCost>& costs_;
 };
 
@@ -143,10 +147,11 @@ AgentLimit search(Timer& timer, const Settings& settings, uint32_t from, double 
 Budget measureBudget(Device& device, const Heightfield& ground, const Settings& settings, bool drawn,
                      Course& course) {
   Budget made;
+  if (drawn && bench::isCpu(device.report())) made.renderScale = settings.softwareScale;
   const double searches = static_cast<double>(subjects.size() * settings.budgets.size());
   double done = 0;
   for (const Subject& subject : subjects) {
-    Timer timer(device, ground, settings, subject, drawn, made.costs);
+    Timer timer(device, ground, settings, subject, drawn, made);
     // What the dissertation had: its number of agents of that kind.
     if (subject.dissertationAgents > 0 && settings.budgetFrom > 2)
       timer.cost(static_cast<uint32_t>(subject.dissertationAgents));

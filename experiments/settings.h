@@ -25,6 +25,7 @@ struct Settings {
   uint32_t drawnFrom = 8;          // the same, where each frame is drawn
   uint32_t drawnSettle = 20, drawnFrames = 21;
   uint32_t width = 1280, height = 720;         // of the frames that are timed
+  float softwareScale = 0.5f;                  // RendererOptions::scale of these, on software devices
   std::vector<double> budgets = {16.7, 33.3};  // milliseconds
 
   std::vector<uint32_t> collectionLegs = {1, 4, 8, 64, 1000, 8000, 80000};

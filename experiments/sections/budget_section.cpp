@@ -75,6 +75,14 @@ Table ownCounts(const Budget& simulated, const Budget& drawn) {
   return table;
 }
 
+std::string pictureOf(const Budget& drawn, const Settings& settings) {
+  std::string picture = fmt::format("{}x{}", settings.width, settings.height);
+  if (drawn.renderScale < 1)
+    picture += fmt::format(", of which {:.0f} % of the pixels are shaded and the others interpolated",
+                           100 * drawn.renderScale * drawn.renderScale);
+  return picture;
+}
+
 }  // namespace
 
 void showBudget(const Budget& simulated, const Budget& drawn, const Settings& settings, Report& report) {
@@ -101,7 +109,7 @@ void showBudget(const Budget& simulated, const Budget& drawn, const Settings& se
       "and shared the work evenly, which tells what others on the machine took.",
       settings.budgetSettle, settings.drawnSettle, settings.budgetTicks, settings.drawnFrames,
       settings.budgetFrom, settings.drawnFrom, 100 * settings.budgetPrecision));
-  const std::string drawing = fmt::format("simulation and drawing {}x{}", settings.width, settings.height);
+  const std::string drawing = "simulation and drawing " + pictureOf(drawn, settings);
   page.drawings(
       {costPlot(simulated, settings, "simulation alone", "a tick, milliseconds (median)"),
        costPlot(drawn, settings, drawing.c_str(), "a frame, milliseconds (median)")},
@@ -109,7 +117,7 @@ void showBudget(const Budget& simulated, const Budget& drawn, const Settings& se
       "with planted feet and the key poses.");
   page.heading("Simulation alone");
   page.table(limitTable(simulated, settings));
-  page.heading(fmt::format("With drawing {}x{}", settings.width, settings.height));
+  page.heading("With drawing " + pictureOf(drawn, settings));
   page.table(limitTable(drawn, settings));
   double empty = 1e9;
   for (const TickCost& cost : drawn.costs)
