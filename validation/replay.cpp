@@ -133,7 +133,10 @@ reference::Step Moment::stepOf(const HerdState& state, size_t leg) const {
 const Setting& Replay::settingFor(const HerdState& after, size_t agent, crowd::StageId stage, uint64_t span) {
   if (span > 1) {
     const auto [found, isNew] = over_.try_emplace(span, setting_);
-    if (isNew) found->second.tuning = reference::overTicks(setting_.tuning, static_cast<int>(span));
+    if (isNew) {
+      found->second.tuning = reference::overTicks(setting_.tuning, static_cast<int>(span));
+      found->second.ik = reference::overTicks(setting_.ik, static_cast<int>(span));
+    }
     return found->second;
   }
   if (after.hurt.empty()) return setting_;

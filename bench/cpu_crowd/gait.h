@@ -33,7 +33,7 @@ template <class F, int N>
   const float groups = float(world.groups);
   const F v = a.surfaceSpeed + absolute(a.turnRate) * q.homeRadius;
   const F pace = reciprocal(F(1) + v * (1 / q.swingSpeed));
-  a.duration = larger(F(3), roundDown(pace * (q.swingStill / q.dt) + 0.5f));
+  a.duration = larger(F(2), roundDown(pace * (q.swingStill / q.dt) + 0.5f));
   const F swing = a.duration * q.dt, duty = larger(F(q.dutyLeast), F(q.dutyStill) - v * q.dutyGain);
   const F cycle =
       larger(smaller(F(q.cycleMax), swing * reciprocal(F(1) - duty)), swing * (groups * q.windowSlack));

@@ -135,7 +135,7 @@ Stride strideOf(const Tuning& tuning, int groups, const AgentBody& body,
   Stride stride;
   const double pace = body.pace(tuning) + hurry;
   const double unrounded = tuning.swingStill / (1 + pace / tuning.swingSpeed) / tuning.dt + 0.5;
-  stride.duration = duration.value_or(std::max(3.0, std::floor(unrounded)));
+  stride.duration = duration.value_or(std::max(2.0, std::floor(unrounded)));
   stride.durationMargin = std::abs(unrounded - std::round(unrounded));
   stride.swingTime = stride.duration * tuning.dt;
   const double duty = std::max(tuning.dutyLeast, tuning.dutyStill - tuning.dutyGain * pace);

@@ -68,7 +68,8 @@ Chain ik(const Tuning& tuning, const Limb& limb, const AgentBody& body, const Fo
     const glm::dvec3 aim = target + arithmetic.targetErrors();
     breakDeadlock(aim, posture, arithmetic);
     approach(plan, tuning.approachError, aim, posture, arithmetic);
-    if (plan.polishIterations > 0) polish(tuning, plan.polishIterations - 1, aim, posture, arithmetic);
+    for (int round = 0; plan.polishIterations > 0 && round < plan.rounds; ++round)
+      polish(tuning, plan.polishIterations - 1, aim, posture, arithmetic);
   }
   chain.directions = posture.directions();
   chain.tip = body.orientation * (limb.root + limb.reach * posture.tip());

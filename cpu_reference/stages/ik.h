@@ -7,10 +7,11 @@
 namespace skitter::reference {
 
 // What a tick does: the approach's solver with its iterations, at most, while the error is above
-// approachError; then one active-set step with chord steps.
+// approachError; then active-set steps, each with chord steps.
 struct IkPlan {
   IkSolver approach = IkSolver::fabrik;  // or ccd, transpose, pseudoinverse, dls, targetAttached
   int approachIterations = 0, polishIterations = 0;
+  int rounds = 1;  // of the active-set step with its chord steps
 };
 
 // `previous` gives the warm start. A target that is not finite keeps the pose and counts as

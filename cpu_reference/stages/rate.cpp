@@ -74,4 +74,10 @@ Tuning overTicks(const Tuning& tuning, int ticks) {
   return over;
 }
 
+IkPlan overTicks(const IkPlan& plan, int ticks) {
+  IkPlan over = plan;
+  if (ticks > 2) over.rounds = 2;
+  return over;
+}
+
 }  // namespace skitter::reference

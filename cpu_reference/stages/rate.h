@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "cpu_reference/stages/ik.h"
 #include "cpu_reference/types.h"
 
 // Levels of rate (docs/levels.md).
@@ -48,7 +49,8 @@ struct RateResult {
 RateResult rate(const RateTuning& tuning, const RatedBlock& block, uint64_t tick,
                 const std::optional<double>& square, const RateBounds<double>& edges);
 
-// The tuning of an agent that ticks in every so many-th tick.
+// The tuning of an agent that ticks in every so many-th tick, and how it solves its legs.
 Tuning overTicks(const Tuning& tuning, int ticks);
+IkPlan overTicks(const IkPlan& plan, int ticks);
 
 }  // namespace skitter::reference

@@ -18,7 +18,7 @@ struct Stride {
 Stride strideFor(Parameters q, float surfaceSpeed, float turnRate, float groups) {
   Stride s;
   float v = surfaceSpeed + abs(turnRate) * q.homeRadius;
-  s.ticks = max(3.0, floor(q.swingStill / (1.0 + v / q.swingSpeed) / q.dt + 0.5));
+  s.ticks = max(2.0, floor(q.swingStill / (1.0 + v / q.swingSpeed) / q.dt + 0.5));
   s.swing = s.ticks * q.dt;
   float duty = max(q.dutyLeast, q.dutyStill - q.dutyGain * v);
   s.cycle = max(min(q.cycleMax, s.swing / (1.0 - duty)), groups * s.swing * q.windowSlack);

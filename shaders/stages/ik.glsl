@@ -36,12 +36,15 @@ layout(set = 0, binding = BINDING_LIST, std430) buffer ListBlock { uint list[]; 
 int recordToSolve() {
   int place = int(gl_GlobalInvocationID.x);
   if (PASS != PASS_LISTED) return legAt(place);
-  return place < int(counters[COUNTER_IK_LISTED]) ? int(list[place]) : -1;
+  if (place >= int(counters[COUNTER_IK_LISTED])) return -1;
+  uint entry = list[place];
+  if (LEVELS) tickOver(float(1u << (entry / uint(LIST_LEVEL))));
+  return int(entry & uint(LIST_LEVEL - 1));
 }
 
 void enlist(int record) {
   uint place = atomicAdd(counters[COUNTER_IK_LISTED], 1u);
-  list[place] = uint(record);
+  list[place] = uint(record) + (LEVELS ? uint(LIST_LEVEL) * uint(findMSB(uint(tickSpan))) : 0u);
   atomicMax(counters[COUNTER_IK_DISPATCH_X], place / uint(WORK_GROUP) + 1u);
 }
 
@@ -85,12 +88,22 @@ Aim aimAt(vec3 target, Pose pose) {
 
 float pullAt(float error) { return POLISH_ITERATIONS > 1 && error < parameters.pullError ? parameters.restPull : 0.0; }
 
+// Rounds of the active-set step: who ticks in every fourth or eighth tick has farther to go in one.
+int roundsOfPolish() { return LEVELS && tickSpan > 2.0 ? 2 : 1; }
+
 // The first dispatch's solve, false where the leg needs the second one's, which begins anew: a device that masks lanes
 // makes every path for every lane.
 bool solveQuickly(Limb limb, inout Aim aim, inout Pose pose) {
   bool near = !aim.lost && !aim.stuck && aim.error <= parameters.approachError;
   bool clear = unheldStep(limb, aim.target, POLISH_ITERATIONS - 1, pullAt(aim.error), parameters.ikTolerance, pose, aim.error);
-  return near && clear;
+  bool solved = near && clear;
+  for (int round = 1; round < roundsOfPolish(); ++round) {
+    forwardKinematics(limb, pose);
+    near = aim.error <= parameters.approachError;
+    clear = unheldStep(limb, aim.target, POLISH_ITERATIONS - 1, pullAt(aim.error), parameters.ikTolerance, pose, aim.error);
+    solved = solved && near && clear;
+  }
+  return solved;
 }
 
 void approach(Limb limb, vec3 target, inout Pose pose) {
@@ -137,7 +150,12 @@ void solveWhole(Limb limb, int agent, inout Aim aim, inout Pose pose) {
     aim.error = better ? e : aim.error;
   }
   forwardKinematics(limb, pose);
-  if (POLISH_ITERATIONS > 0) polish(limb, aim.target, aim.lost, pose, pose, aim.error);
+  if (POLISH_ITERATIONS == 0) return;
+  polish(limb, aim.target, aim.lost, pose, pose, aim.error);
+  for (int round = 1; round < roundsOfPolish(); ++round) {
+    forwardKinematics(limb, pose);
+    polish(limb, aim.target, aim.lost, pose, pose, aim.error);
+  }
 }
 
 // Where the tip of a pose that nobody solved is.

@@ -286,7 +286,7 @@ Results onLastResorts(Device& device, Controller controller, const CrowdOptions&
 Results inLongTicks(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = rollingGround();
   Crowd crowd(device, ground, sceneOf(16, 1, 1, controller), options);
-  return replay(device, crowd, ground, 40, 0.2f);
+  return replay(device, crowd, ground, 40, 0.3f);
 }
 
 // From none to all agents fade from one clip to another, one more in each tick, so that the last of their
