@@ -19,6 +19,11 @@ CrowdOptions optionsOf(const skitter_crowd_options& asked) {
   options.watchEvery = asked.watch_every;
   options.footfalls = asked.footfalls;
   options.sleep = asked.sleep != 0;
+  if (asked.levels != nullptr) {
+    Levels& levels = options.levels.emplace();
+    std::ranges::copy(asked.levels->distances, levels.distances.begin());
+    std::ranges::copy(asked.levels->most, levels.most.begin());
+  }
   return options;
 }
 
@@ -77,6 +82,7 @@ skitter_result skitter_crowd_resume(skitter_device* device, const skitter_state*
       from.options.pose = asked.pose;
       from.options.footfalls = asked.footfalls;
       from.options.sleep = asked.sleep;
+      from.options.levels = asked.levels;
     }
     *crowd = handleOf(on, Crowd(*on, from));
   });

@@ -115,6 +115,15 @@ SKITTER_C skitter_result skitter_scene_destroy(skitter_scene* scene);
 typedef struct skitter_crowd skitter_crowd;
 
 /* All zero: the defaults. */
+/* Levels of rate (docs/levels.md): who is far from the camera ticks in every second, fourth or eighth tick.
+ */
+typedef struct skitter_levels {
+  float distances[3]; /* metres from the camera to which full, half and quarter rate reach */
+  uint32_t most[3];   /* agents that may have full, half and quarter rate */
+} skitter_levels;
+/* "default", or a JSON file. */
+SKITTER_C skitter_result skitter_levels_load(const char* file_or_default, skitter_levels* levels);
+
 typedef struct skitter_crowd_options {
   int no_poses;         /* without bones: neither joints nor pictures */
   int no_figures;       /* without fidelity figures */
@@ -122,6 +131,7 @@ typedef struct skitter_crowd_options {
                            more */
   uint32_t footfalls;   /* keep so many touchdowns per tick and page (docs/architecture.md#words); 0: none */
   int sleep;            /* agents that have stood still for seconds are passed over */
+  const skitter_levels* levels; /* NULL: those of the scene, if it has any */
 } skitter_crowd_options;
 
 /* A crowd as it was between two ticks, with all that it needs to go on (docs/state.md). */
@@ -150,6 +160,21 @@ SKITTER_C skitter_result skitter_crowd_record(skitter_crowd* crowd, VkCommandBuf
  * one that failed are made, and skitter_crowd_tick() tells how many; of its events have happened those that
  * skitter_crowd_record() says. */
 SKITTER_C skitter_result skitter_crowd_step(skitter_crowd* crowd, uint64_t ticks, float dt);
+
+/* Where the camera is from the next tick on, world metres. Rates depend on it where there are levels of them,
+ * and nothing else does. Before the first call everybody has full rate. */
+SKITTER_C skitter_result skitter_crowd_look_from(skitter_crowd* crowd, const float camera[3]);
+/* What became of a level. */
+typedef struct skitter_level_figures {
+  uint32_t rate;        /* its agents tick in every so many-th tick */
+  uint64_t agents;      /* that have it after the last tick */
+  uint64_t agent_ticks; /* that were made at it, since the crowd was made */
+  double slip; /* mean slide of a planted foot per stance, leg lengths; NaN without a stance or figures */
+} skitter_level_figures;
+/* One of each level, full rate first; none without levels. Writes up to `room` of them, and to `count` how
+ * many there are. Waits for the device. */
+SKITTER_C skitter_result skitter_crowd_levels(const skitter_crowd* crowd, skitter_level_figures* levels,
+                                              size_t room, size_t* count);
 
 /* Ticks recorded so far. */
 SKITTER_C skitter_result skitter_crowd_tick(const skitter_crowd* crowd, uint64_t* tick);

@@ -35,6 +35,7 @@ namespace py = pybind11;
 void bindErrors(py::module_& module);
 void bindDevice(py::module_& module);
 void bindTuning(py::module_& module);
+void bindLevels(py::module_& module);
 void bindScene(py::module_& module);
 void bindCrowd(py::module_& module);
 void bindIk(py::module_& module);

@@ -148,32 +148,35 @@ auto eachBody(PythonCrowd& self, uint32_t herd, Take take) {
 }
 
 void bindMaking(CrowdClass& bound) {
-  bound.def(py::init([](const std::shared_ptr<SharedDevice>& device, const PythonScene& scene,
-                        const std::shared_ptr<Heightfield>& terrain, bool pose, bool measure,
-                        uint32_t watchEvery, bool feet, uint32_t footfallRoom, bool sleep, bool fuse,
-                        bool timestamps, uint32_t pageAgents) -> std::shared_ptr<PythonCrowd> {
-              CrowdOptions options;
-              options.pose = pose;
-              options.measure = measure;
-              options.watchEvery = watchEvery;
-              options.feet = feet;
-              options.footfalls = footfallRoom;
-              options.sleep = sleep;
-              options.fuse = fuse;
-              options.timestamps = timestamps;
-              options.pageAgents = pageAgents;
-              return makeCrowd(device, scene, terrain, options);
-            }),
-            "device"_a, "scene"_a, "terrain"_a = py::none(), py::kw_only(), "pose"_a = true,
-            "measure"_a = true, "watch_every"_a = 0, "feet"_a = false, "footfalls"_a = 0, "sleep"_a = false,
-            "fuse"_a = true, "timestamps"_a = false, "page_agents"_a = 0,
-            R"(The scene's herds, on its terrain or on the one that is given.
+  bound.def(
+      py::init([](const std::shared_ptr<SharedDevice>& device, const PythonScene& scene,
+                  const std::shared_ptr<Heightfield>& terrain, bool pose, bool measure, uint32_t watchEvery,
+                  bool feet, uint32_t footfallRoom, bool sleep, bool fuse, bool timestamps,
+                  uint32_t pageAgents, const std::optional<Levels>& levels) -> std::shared_ptr<PythonCrowd> {
+        CrowdOptions options;
+        options.pose = pose;
+        options.measure = measure;
+        options.watchEvery = watchEvery;
+        options.feet = feet;
+        options.footfalls = footfallRoom;
+        options.sleep = sleep;
+        options.fuse = fuse;
+        options.timestamps = timestamps;
+        options.pageAgents = pageAgents;
+        options.levels = levels;
+        return makeCrowd(device, scene, terrain, options);
+      }),
+      "device"_a, "scene"_a, "terrain"_a = py::none(), py::kw_only(), "pose"_a = true, "measure"_a = true,
+      "watch_every"_a = 0, "feet"_a = false, "footfalls"_a = 0, "sleep"_a = false, "fuse"_a = true,
+      "timestamps"_a = false, "page_agents"_a = 0, "levels"_a = py::none(),
+      R"(The scene's herds, on its terrain or on the one that is given.
 
 pose: bones, for joints() and render(). measure: the figures of fidelity(). watch_every: figures of one agent of
 this many at a time; 0: of all in a crowd of at most 256, of one in 64 in a larger one. feet: keep the records
 foot and tip. footfalls: keep so many touchdowns per tick and page; 0: none. sleep: agents that have stood
 still for seconds are passed over. fuse: stages that are faster when fused are fused. timestamps: time every
-stage. page_agents: most agents of a page of records; 0: as many as the device allows.)");
+stage. page_agents: most agents of a page of records; 0: as many as the device allows. levels: of rate; None:
+those of the scene, if it has any.)");
 }
 
 void bindTicks(CrowdClass& bound) {
@@ -385,6 +388,7 @@ void bindCrowd(py::module_& module) {
   bindPlaces(bound);
   bindRecords(bound);
   bindStates(module, bound);
+  bindRates(bound);
   bound.def("render", &render, "width"_a = 1280, "height"_a = 720, "view"_a = py::none(), "detail"_a = 1.0f,
             "scale"_a = 1.0f,
             "A picture of the crowd and its ground, by the scene's camera or from a View: RGBA8 sRGB, uint8 "

@@ -46,5 +46,6 @@ using CrowdClass = py::class_<PythonCrowd, std::shared_ptr<PythonCrowd>>;
 void bindSteering(CrowdClass& bound);
 void bindPicking(py::module_& module, CrowdClass& bound);
 void bindStates(py::module_& module, CrowdClass& bound);
+void bindRates(CrowdClass& bound);
 
 }  // namespace skitter::python

@@ -29,6 +29,7 @@ PYBIND11_MODULE(skitter, module) {
   bindDevice(module);
   bindTuning(module);
   bindScene(module);
+  bindLevels(module);
   bindCrowd(module);
   bindIk(module);
   bindSplines(module);

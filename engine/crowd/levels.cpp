@@ -34,6 +34,18 @@ uint32_t squareOf(float metres) {
       std::min(std::floor(16.0 * double{metres} * double{metres}), double{UINT32_MAX}));
 }
 
+void expectLevels(const Levels& levels) {
+  float least = 0;
+  for (size_t k = 0; k < levels.distances.size(); ++k) {
+    const float distance = levels.distances[k];
+    // Also refuses NaN.
+    if (!(distance >= least && distance <= Levels::farthest))
+      throw inputError(fmt::format("levels of rate: distances[{}] is {}, expected {} to {}", k, distance,
+                                   least, Levels::farthest));
+    least = distance;
+  }
+}
+
 }  // namespace
 
 RateLevels::RateLevels(const gpu::Context& context, const Levels& from)
@@ -103,6 +115,7 @@ void expectLevelled(const skitter::Herd& herd, const std::string& name) {
 }
 
 void expectLevelled(const CrowdOptions& options, const Scene& scene) {
+  expectLevels(*options.levels);
   if (options.sleep) throw inputError("levels of rate with sleep, expected only one of them");
   if (options.footfalls > 0) throw inputError("levels of rate with footfalls, expected only one of them");
   for (size_t h = 0; h < scene.herds.size(); ++h)

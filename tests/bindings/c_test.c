@@ -2018,6 +2018,54 @@ static void testPictures(void) {
   closeHost(&h);
 }
 
+/* A crowd that walks, with a camera so far above it that it ticks in every eighth tick. */
+static void testLevels(void) {
+  static const char* const walking =
+      "{\"terrain\": {\"columns\": 65, \"rows\": 65, \"amplitude\": 0}, \"herds\": [{\"agents\": 16}]}";
+  skitter_device* device = openDevice();
+  skitter_crowd_options options = {0};
+  skitter_levels levels = {{0}, {0}};
+  skitter_level_figures figures[4];
+  static const float away[3] = {0, 500, 0}, nowhere[3] = {NAN, 0, 0};
+  skitter_crowd* crowd = makeCrowdOf(walking, device, NULL);
+  skitter_scene* scene = NULL;
+  size_t count = 9;
+
+  OK(skitter_crowd_levels(crowd, figures, 4, &count));
+  CHECK(count == 0);
+  OK(skitter_crowd_destroy(crowd));
+
+  REFUSED(skitter_levels_load(NULL, &levels), "file_or_default is NULL");
+  REFUSED(skitter_levels_load("default", NULL), "levels is NULL");
+  REFUSED(skitter_levels_load("/none.json", &levels), "/none.json");
+  OK(skitter_levels_load("default", &levels));
+  CHECK(levels.distances[0] == 20 && levels.distances[2] == 180 && levels.most[0] == 1000);
+  options.levels = &levels;
+  levels.distances[1] = 10;
+  NEED(skitter_scene_parse(walking, NULL, &scene));
+  REFUSED(skitter_crowd_create(device, scene, &options, &crowd), "distances[1] is 10, expected 20 to 8000");
+  OK(skitter_scene_destroy(scene));
+  levels.distances[1] = 60;
+  crowd = makeCrowdOf(walking, device, &options);
+  OK(skitter_crowd_step(crowd, 8, dt));
+  OK(skitter_crowd_levels(crowd, figures, 4, &count));
+  CHECK(count == 4 && figures[0].rate == 1 && figures[3].rate == 8);
+  CHECK(figures[0].agents == 16 && figures[0].agent_ticks == 8 * 16);
+  REFUSED(skitter_crowd_look_from(NULL, away), "crowd is NULL");
+  REFUSED(skitter_crowd_look_from(crowd, NULL), "camera is NULL");
+  REFUSED(skitter_crowd_look_from(crowd, nowhere), "camera");
+  OK(skitter_crowd_look_from(crowd, away));
+  OK(skitter_crowd_step(crowd, 800, dt));
+  OK(skitter_crowd_levels(crowd, figures, 4, &count));
+  CHECK(figures[0].agents == 0 && figures[3].agents == 16);
+  CHECK(figures[3].agent_ticks >= 16 * 90 && figures[3].slip >= 0 && figures[3].slip < 0.05);
+  REFUSED(skitter_crowd_levels(crowd, figures, 4, NULL), "count is NULL");
+  OK(skitter_crowd_levels(crowd, NULL, 0, &count));
+  CHECK(count == 4);
+  OK(skitter_crowd_destroy(crowd));
+  OK(skitter_device_destroy(device));
+}
+
 static void testIk(void) {
   host h = makeHost();
   skitter_device* device = adopt(&h);
@@ -2183,7 +2231,7 @@ int main(int argc, char** argv) {
                {"herds", testHerds},     {"state", testState},       {"adoption", testAdoption},
                {"ground", testGround},   {"records", testRecords},   {"readback", testReadback},
                {"drawing", testDrawing}, {"pictures", testPictures}, {"ik", testIk},
-               {"splines", testSplines},
+               {"splines", testSplines}, {"levels", testLevels},
                {"ways", testWays}};
   size_t i;
   for (i = 0; argc == 2 && i < COUNT(tests); ++i) {

@@ -269,6 +269,12 @@ TEST_F(LevelsRefusalTest, NamesWhatTheyAreNotMadeFor) {
   options.sleep = false;
   options.footfalls = 8;
   expectRefused(sceneOf(9), options, "levels of rate with footfalls");
+  for (const auto& [distances, fault] : {std::pair<std::array<float, 3>, const char*>{
+                                             {20, 10, 180}, "distances[1] is 10, expected 20 to 8000"},
+                                         {{-1, 10, 180}, "distances[0] is -1, expected 0 to 8000"},
+                                         {{1, NAN, 180}, "distances[1] is nan"},
+                                         {{1, 2, 9000}, "distances[2] is 9000"}})
+    expectRefused(sceneOf(9), levelled({.distances = distances, .most = {1, 1, 1}}), fault);
 }
 
 TEST_F(LevelsRefusalTest, OfLongTicksStatesAndCameras) {

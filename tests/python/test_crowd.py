@@ -171,6 +171,27 @@ def test_who_stands_sleeps(device):
     assert crowd.sleeping() == 10
 
 
+def test_who_is_far_from_the_camera_ticks_less_often(device):
+    scene = skitter.Scene.parse({"herds": [{"agents": 16}]})
+    assert skitter.Crowd(device, scene).levels() == []
+    usual = skitter.Levels.load()
+    assert usual.distances == [20, 60, 180] and usual.most == skitter.Levels().most == [1000, 9000, 90000]
+    with pytest.raises(skitter.InputError, match="none.json"):
+        skitter.Levels.load("none.json")
+    with pytest.raises(skitter.InputError, match="distances"):
+        skitter.Crowd(device, scene, levels=skitter.Levels(distances=(20, 10, 180)))
+    crowd = skitter.Crowd(device, scene, levels=skitter.Levels(distances=(5, 10, 20)))
+    crowd.step(8)
+    assert [level.rate for level in crowd.levels()] == [1, 2, 4, 8]
+    assert crowd.levels()[0].agentTicks == 8 * 16
+    with pytest.raises(skitter.InputError):
+        crowd.look_from((float("nan"), 0, 0))
+    crowd.look_from((0, 500, 0))
+    crowd.step(800)
+    slow = crowd.levels()[3]
+    assert slow.agents == 16 and slow.agentTicks >= 16 * 90 and 0 <= slow.slip < 0.05
+
+
 def test_a_picture_is_an_array(device, scene):
     crowd = skitter.Crowd(device, scene)
     crowd.step(10)
