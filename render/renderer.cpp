@@ -77,7 +77,7 @@ struct Renderer::Impl {
   bool filtered() const { return samples == vk::SampleCountFlagBits::e1; }
   bool enlarged() const { return drawn.extent() != colour.extent(); }
   vk::Format drawnFormat() const { return filtered() ? vk::Format::eR8G8B8A8Unorm : kColour; }
-  // What the picture is before it is enlarged, if it is.
+  // The whole picture. It is enlarged afterwards where fewer pixels are shaded.
   const gpu::Image& finished() const { return enlarged() ? small : colour; }
   void lookForCasters();
   void drawShadows(vk::CommandBuffer);
@@ -291,7 +291,7 @@ void Renderer::Impl::enlarge(vk::CommandBuffer cmd) {
   gpu::transition(cmd, small, gpu::ImageState::colour, gpu::ImageState::sampled);
   gpu::transition(cmd, colour, gpu::ImageState::discard, gpu::ImageState::colour);
   {
-    // A software device pays more for making light of codes and codes of light than for all else.
+    // Making light of codes and codes of light again would cost a software device half as much more.
     const gpu::Rendering rendering(cmd, {.colour = &colour.codes(), .covered = true}, true);
     enlargement.draw(cmd);
   }

@@ -91,19 +91,23 @@ float pullAt(float error) { return POLISH_ITERATIONS > 1 && error < parameters.p
 // Rounds of the active-set step: who ticks in every fourth or eighth tick has farther to go in one.
 int roundsOfPolish() { return LEVELS && tickSpan > 2.0 ? 2 : 1; }
 
+// False where the leg is not near its target, may meet a limit, or is led away: it is of no use then.
+bool stepQuickly(Limb limb, inout Aim aim, inout Pose pose) {
+  bool near = aim.error <= parameters.approachError;
+  bool clear = unheldStep(limb, aim.target, POLISH_ITERATIONS - 1, pullAt(aim.error), parameters.ikTolerance, pose, aim.error);
+  return near && clear;
+}
+
 // The first dispatch's solve, false where the leg needs the second one's, which begins anew: a device that masks lanes
 // makes every path for every lane.
 bool solveQuickly(Limb limb, inout Aim aim, inout Pose pose) {
-  bool near = !aim.lost && !aim.stuck && aim.error <= parameters.approachError;
-  bool clear = unheldStep(limb, aim.target, POLISH_ITERATIONS - 1, pullAt(aim.error), parameters.ikTolerance, pose, aim.error);
-  bool solved = near && clear;
+  bool solved = stepQuickly(limb, aim, pose);
   for (int round = 1; round < roundsOfPolish(); ++round) {
     forwardKinematics(limb, pose);
-    near = aim.error <= parameters.approachError;
-    clear = unheldStep(limb, aim.target, POLISH_ITERATIONS - 1, pullAt(aim.error), parameters.ikTolerance, pose, aim.error);
-    solved = solved && near && clear;
+    bool again = stepQuickly(limb, aim, pose);
+    solved = solved && again;
   }
-  return solved;
+  return solved && !aim.lost && !aim.stuck;
 }
 
 void approach(Limb limb, vec3 target, inout Pose pose) {
@@ -149,12 +153,9 @@ void solveWhole(Limb limb, int agent, inout Aim aim, inout Pose pose) {
     keepIf(better, pose, trial);
     aim.error = better ? e : aim.error;
   }
-  forwardKinematics(limb, pose);
-  if (POLISH_ITERATIONS == 0) return;
-  polish(limb, aim.target, aim.lost, pose, pose, aim.error);
-  for (int round = 1; round < roundsOfPolish(); ++round) {
+  for (int round = 0; round < roundsOfPolish(); ++round) {
     forwardKinematics(limb, pose);
-    polish(limb, aim.target, aim.lost, pose, pose, aim.error);
+    if (POLISH_ITERATIONS > 0) polish(limb, aim.target, aim.lost, pose, pose, aim.error);
   }
 }
 

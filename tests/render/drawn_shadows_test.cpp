@@ -1,4 +1,5 @@
 #include "render/pictures.h"
+#include "render/shadow.h"
 
 namespace skitter::test {
 namespace {
@@ -104,6 +105,14 @@ TEST_P(RendererTest, shadowsComeAndGoWithTheirHerd) {
   EXPECT_EQ(differing(stage.draw(aside), never.draw(aside)), 0u);
   stage.crowd.removeHerd(guest);
   for (int frame = 0; frame < 2; ++frame) EXPECT_EQ(differing(stage.draw(above), empty), 0u) << frame;
+}
+
+// Texels along a cascade follow the pixels that are shaded, in whole squares of 64.
+TEST_P(RendererTest, theShadowMapIsAsFineAsThePicture) {
+  EXPECT_EQ(render::ShadowMap(context(), 720, 1).texels(), 2048u);
+  EXPECT_EQ(render::ShadowMap(context(), 720, 0.5f).texels(), 1024u);
+  EXPECT_EQ(render::ShadowMap(context(), 720, 0.667f).texels(), 1408u);
+  EXPECT_EQ(render::ShadowMap(context(), 1441, 0.25f).texels(), 1024u);
 }
 
 // From afar and from near, and across the light, along which the cascades end where the eye is.
