@@ -93,10 +93,10 @@ Contact::Contact(const Setting& s, const crowd::Kind& kind) {
            .constants = {{shared::CONSTANT_ROOTS, s.filtered()}, {shared::CONSTANT_STUMPS, kind.hurts}}}));
 }
 
-Contact::Page Contact::makePage(const Setting& s, const crowd::Page& records) const {
+Contact::Page Contact::makePage(const Setting& s, const gpu::Buffer& body, const gpu::Buffer& pose) const {
   const std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &s.picture},
-                                       {shared::DRAW_BODY, &records.body},
-                                       {shared::DRAW_POSE, &records.pose},
+                                       {shared::DRAW_BODY, &body},
+                                       {shared::DRAW_POSE, &pose},
                                        {shared::DRAW_HEIGHTS, &s.heights}};
   Page page;
   page.bindings = pipeline_.bind(s.context, list);

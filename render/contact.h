@@ -18,7 +18,7 @@ class Contact {
     gpu::Buffer draw;  // indirect
     gpu::Bindings bindings;
   };
-  Page makePage(const Setting&, const crowd::Page&) const;
+  Page makePage(const Setting&, const gpu::Buffer& body, const gpu::Buffer& pose) const;
   explicit operator bool() const { return indexCount_ > 0; }
 
   // Between computeToTransfer() and transferToGraphics().

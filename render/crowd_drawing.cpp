@@ -199,6 +199,7 @@ gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Mat
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureStore& store)
     : cull_(s.context, s.detail) {
   if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
+  if (crowd.rates) interpolation_ = Interpolation(s.context);
   for (const crowd::Kind& source : crowd.kinds) {
     Kind kind;
     if (source.pages.empty()) {  // of a herd that is gone; kinds keep their numbers
@@ -230,12 +231,17 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       if (records.agents == 0) continue;
       Page page;
       page.firstAgent = records.firstAgent;
-      page.culled = cull_.makePage(s.context, s.picture, records.body, records.agents);
-      const std::vector<gpu::Binding> shadow{{shared::DRAW_PICTURE, &s.picture},
-                                             {shared::DRAW_BODY, &records.body},
-                                             {shared::DRAW_POSE, &records.pose}};
+      const Interpolation::Source live{records.body, records.pose, records.rate};
+      if (interpolation_) page.shown = interpolation_.makePage(s.context, live);
+      const gpu::Buffer& body = interpolation_ ? page.shown.body : records.body;
+      const gpu::Buffer& pose = interpolation_ ? page.shown.pose : records.pose;
+      const gpu::Buffer& tint = source.tinted ? records.tint : body;
+      page.culled = cull_.makePage(s.context, s.picture, body, records.agents, bool(interpolation_));
+      if (interpolation_) interpolation_.bindLists(s.context, live, page.culled, page.shown);
+      const std::vector<gpu::Binding> shadow{
+          {shared::DRAW_PICTURE, &s.picture}, {shared::DRAW_BODY, &body}, {shared::DRAW_POSE, &pose}};
       std::vector<gpu::Binding> draw = shadow;
-      draw.push_back({shared::DRAW_TINT, source.tinted ? &records.tint : &records.body});
+      draw.push_back({shared::DRAW_TINT, &tint});
       draw.push_back({shared::DRAW_GROUND, &s.ground, s.groundSampler});
       draw.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
       page.shadow = kind.shadow.bind(s.context, shadow);
@@ -245,8 +251,8 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
         page.fading = kind.fading.bind(s.context, draw);
         page.fadingShadow = kind.fadingShadow.bind(s.context, shadow);
       }
-      if (kind.splat) page.splat = splats_.bind(s, kind.splat, source, records, page.culled);
-      if (kind.contact) page.contact = kind.contact.makePage(s, records);
+      if (kind.splat) page.splat = splats_.bind(s, kind.splat, body, pose, tint, page.culled);
+      if (kind.contact) page.contact = kind.contact.makePage(s, body, pose);
       if (!kind.parts.empty()) bindParts(s, *textures, shadow, draw, kind, page);
       kind.pages.push_back(std::move(page));
     }
@@ -317,16 +323,36 @@ void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
         draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
       for (const int list : {shared::FADING, shared::NEAR_FADING, shared::FAR_FADING})
         draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
-      draws[shared::SPLATS] = std::bit_cast<VkDrawIndexedIndirectCommand>(SplatDispatch{});
+      for (const int list : {shared::SPLATS, shared::SHOWN})
+        draws[list] = std::bit_cast<VkDrawIndexedIndirectCommand>(ListDispatch{});
       cmd.updateBuffer(page.culled.commands.handle(), 0, sizeof draws, draws);
     }
   if (hasSplats()) splats_.prepare(cmd);
 }
 
-void CrowdDrawing::cull(vk::CommandBuffer cmd) const {
+void CrowdDrawing::cull(vk::CommandBuffer cmd, uint64_t tick) {
+  const auto interpolated = [&](const Kind& kind, const Page& page) -> shared::InterpolationConstants {
+    return {.agents = page.culled.agents,
+            .palette = kind.palette,
+            .tick = float(tick),
+            .before = before_ ? float(*before_) : -1};
+  };
+  if (interpolation_) {
+    for (const Kind& kind : kinds_)
+      for (const Page& page : kind.pages)
+        interpolation_.recordBodies(cmd, page.shown, interpolated(kind, page));
+    gpu::computeToCompute(cmd);
+  }
   for (const Kind& kind : kinds_)
     for (const Page& page : kind.pages)
       cull_.record(cmd, page.culled, kind.mesh.radius, bool(kind.splat), kind.splat.fades);
+  if (interpolation_) {
+    gpu::computeToIndirectAndCompute(cmd);
+    for (const Kind& kind : kinds_)
+      for (const Page& page : kind.pages)
+        interpolation_.recordPoses(cmd, page.shown, page.culled, interpolated(kind, page));
+    before_ = tick;
+  }
 }
 
 void CrowdDrawing::splat(vk::CommandBuffer cmd) const {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+
 #include "crowd/herd.h"
 #include "render/contact.h"
 #include "render/cull.h"
+#include "render/interpolation.h"
 #include "render/mesh.h"
 #include "render/setting.h"
 #include "render/splats.h"
@@ -32,8 +35,8 @@ class CrowdDrawing {
 
   // Outside rendering, before a transferToCompute(): empties the lists.
   void prepare(vk::CommandBuffer) const;
-  // Fills them.
-  void cull(vk::CommandBuffer) const;
+  // Fills them, `tick` ticks after the crowd began, and poses who is on them.
+  void cull(vk::CommandBuffer, uint64_t tick);
   // Draws small agents; after that, before a computeToGraphics().
   void splat(vk::CommandBuffer) const;
   // Gives each part of a kind with materials, and contacts, their counts of agents; after the
@@ -51,6 +54,7 @@ class CrowdDrawing {
  private:
   struct Page {
     uint32_t firstAgent = 0;
+    Interpolation::Page shown;  // where agents have rates of their own
     CulledPage culled;
     gpu::Bindings draw, lit, shadow, splat, fading, fadingShadow;
     Contact::Page contact;
@@ -90,6 +94,8 @@ class CrowdDrawing {
   bool hasSplats() const;
   shared::CrowdConstants constantsOf(uint32_t kind, const Page&, int view) const;
 
+  Interpolation interpolation_;     // none where all agents tick in every tick
+  std::optional<uint64_t> before_;  // the last picture's tick
   Cull cull_;
   Splats splats_;
   std::vector<Kind> kinds_;

@@ -1,23 +1,30 @@
 #pragma once
 
+#include <cstddef>
+
 #include "gpu/kernel.h"
 #include "render/picture.h"
 
 namespace skitter::render {
 
-// What the list of splats has where the others have a draw.
-struct SplatDispatch {
+// What lists that shaders go through have where the others have a draw: SPLATS and SHOWN.
+struct ListDispatch {
   uint32_t unused = 0;
-  uint32_t agents = 0;                        // as many as a draw has instances
-  VkDispatchIndirectCommand groups{0, 1, 1};  // of splat.comp
+  uint32_t agents = 0;  // as many as a draw has instances
+  VkDispatchIndirectCommand groups{0, 1, 1};
 };
-static_assert(sizeof(SplatDispatch) == sizeof(VkDrawIndexedIndirectCommand));
+static_assert(sizeof(ListDispatch) == sizeof(VkDrawIndexedIndirectCommand));
+// Where the groups of such a list are among the commands of a page, bytes.
+constexpr uint64_t groupsOffset(int list) {
+  return uint64_t(list) * sizeof(ListDispatch) + offsetof(ListDispatch, groups);
+}
 
 // A page's instance lists and their indirect draws, chosen on the device.
 struct CulledPage {
   uint32_t agents = 0;
-  gpu::Buffer instances;  // uint32: list after list of `agents` entries each
-  gpu::Buffer commands;   // a VkDrawIndexedIndirectCommand a list
+  bool interpolates = false;  // whether there is the list SHOWN
+  gpu::Buffer instances;      // uint32: list after list of `agents` entries each
+  gpu::Buffer commands;       // a VkDrawIndexedIndirectCommand a list
   gpu::Bindings bindings;
 };
 
@@ -27,8 +34,9 @@ class Cull {
   // `detail`: RendererOptions::detail.
   Cull(const gpu::Context&, float detail);
 
+  // `interpolates`: whether there is the list SHOWN.
   CulledPage makePage(const gpu::Context&, const gpu::Buffer& picture, const gpu::Buffer& bodies,
-                      uint32_t agents) const;
+                      uint32_t agents, bool interpolates = false) const;
   // `splats`: whether small agents may be drawn as such; `fades`: whether they go over to them by and by.
   void record(vk::CommandBuffer, const CulledPage&, float radius, bool splats, bool fades) const;
 

@@ -200,7 +200,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   gpu::transferToCompute(cmd);
   gpu::transferToGraphics(cmd);
 
-  crowd.cull(cmd);
+  crowd.cull(cmd, live.tick);
   timer.next(cmd, "splats");
   crowd.splat(cmd);
   gpu::computeToGraphics(cmd);

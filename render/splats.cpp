@@ -1,7 +1,5 @@
 #include "render/splats.h"
 
-#include <cstddef>
-
 #include "embedded/shade_frag.h"
 #include "embedded/splat_comp_storage.h"
 #include "embedded/splat_comp_texel.h"
@@ -94,12 +92,12 @@ Splats::Kind Splats::makeKind(const Setting& s, const crowd::Kind& source, float
   return kind;
 }
 
-gpu::Bindings Splats::bind(const Setting& s, const Kind& kind, const crowd::Kind& source,
-                           const crowd::Page& records, const CulledPage& culled) const {
+gpu::Bindings Splats::bind(const Setting& s, const Kind& kind, const gpu::Buffer& body,
+                           const gpu::Buffer& pose, const gpu::Buffer& tint, const CulledPage& culled) const {
   return kind.kernel.bind(s.context, {{shared::DRAW_PICTURE, &s.picture},
-                                      {shared::DRAW_BODY, &records.body},
-                                      {shared::DRAW_POSE, &records.pose},
-                                      {shared::DRAW_TINT, source.tinted ? &records.tint : &records.body},
+                                      {shared::DRAW_BODY, &body},
+                                      {shared::DRAW_POSE, &pose},
+                                      {shared::DRAW_TINT, &tint},
                                       {shared::DRAW_HEIGHTS, &s.heights},
                                       {shared::DRAW_GROUND, &s.ground, s.groundSampler},
                                       {shared::DRAW_INSTANCES, &culled.instances},
@@ -132,8 +130,8 @@ void Splats::record(vk::CommandBuffer cmd, const Kind& kind, const gpu::Bindings
   constants.agents = culled.agents;
   constants.radius = kind.radius;
   constants.fades = kind.fades;
-  constexpr uint64_t groups = shared::SPLATS * sizeof(SplatDispatch) + offsetof(SplatDispatch, groups);
-  kind.kernel.dispatchIndirect(cmd, page, gpu::bytesOf(constants), culled.commands, groups);
+  kind.kernel.dispatchIndirect(cmd, page, gpu::bytesOf(constants), culled.commands,
+                               groupsOffset(shared::SPLATS));
 }
 
 void Splats::draw(vk::CommandBuffer cmd) const {

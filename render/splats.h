@@ -27,8 +27,9 @@ class Splats {
     explicit operator bool() const { return bool(kernel); }
   };
   Kind makeKind(const Setting&, const crowd::Kind&, float radius) const;
-  gpu::Bindings bind(const Setting&, const Kind&, const crowd::Kind& source, const crowd::Page&,
-                     const CulledPage&) const;
+  // `tint` is the record of a kind that is tinted, else any.
+  gpu::Bindings bind(const Setting&, const Kind&, const gpu::Buffer& body, const gpu::Buffer& pose,
+                     const gpu::Buffer& tint, const CulledPage&) const;
 
   // Before a transferToCompute(): empties what the last picture left.
   void prepare(vk::CommandBuffer) const;

@@ -27,6 +27,12 @@ BINDING DRAW_SPLAT_PARTS = 16;  // LOAD4, SplatPart (picture.h)
 BINDING DRAW_SPLATS = 17;       // uint a pixel (splat.glsl)
 BINDING DRAW_SPLAT_TILES = 18;  // uint a square of SPLAT_TILE pixels: whether there are any
 
+BINDING DRAW_RATE = 19;        // LOAD4
+BINDING DRAW_SHOWN_BODY = 20;  // LOAD4 (InterpolationConstants), and so the others
+BINDING DRAW_SHOWN_BODY_OUT = 21;
+BINDING DRAW_SHOWN_POSE = 22;
+BINDING DRAW_SHOWN_POSE_OUT = 23;
+
 BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter

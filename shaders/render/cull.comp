@@ -27,6 +27,12 @@ uint append(uint list, uint entry) {
   return place;
 }
 
+// The same of a list that a shader goes through, and its work groups.
+void appendForDispatch(int list, uint agent) {
+  uint place = append(uint(list), agent);
+  if (place % WORK_GROUP == 0u) atomicAdd(commands[list * DRAW_WORDS + 2], 1u);
+}
+
 // The further of the ways along a cascade's sides, half of which is 1; `margin` is an agent's radius.
 float outOfCascade(int cascade, vec3 p, out float margin) {
   vec4 clip = picture.clipFromPicture[1 + cascade] * vec4(p, 1.0);
@@ -55,9 +61,8 @@ void main() {
   if (seen) {
     uint list = 0u;
     for (int i = 0; i < CAMERA_LODS - 1; ++i) list += pixels < constants.lodPixels[i] ? 1u : 0u;
-    if (splat) list = SPLATS;
-    uint place = append(list, agent);
-    if (splat && place % WORK_GROUP == 0u) atomicAdd(commands[SPLATS * DRAW_WORDS + 2], 1u);
+    if (splat) appendForDispatch(SPLATS, agent);
+    else append(list, agent);
     if (splat && fade < FADED) append(uint(FADING), agent | fade << FADE_SHIFT);
     if (pixels >= constants.contactPixels) append(uint(CONTACTS), agent);
   }
@@ -68,8 +73,10 @@ void main() {
   float outOfNear = outOfCascade(0, p, nearMargin), outOfFar = outOfCascade(1, p, farMargin);
   float nearAlone = 0.98 - 2.0 * FAR_REACH * picture.shadow.y / (picture.shadow.x * picture.shadow.w);
   uint caster = shade ? agent | shadeFade << FADE_SHIFT : agent;
-  if (casts && outOfNear < 1.0 + nearMargin)
+  bool castsNear = casts && outOfNear < 1.0 + nearMargin;
+  bool castsFar = casts && outOfFar < 1.0 + farMargin && outOfNear + nearMargin > nearAlone;
+  if (castsNear)
     append(uint(shade ? NEAR_FADING : pixels < constants.lodPixels[1] ? NEAR_COARSE : NEAR_FINE), caster);
-  if (casts && outOfFar < 1.0 + farMargin && outOfNear + nearMargin > nearAlone)
-    append(uint(shade ? FAR_FADING : FAR_SHADOWS), caster);
+  if (castsFar) append(uint(shade ? FAR_FADING : FAR_SHADOWS), caster);
+  if (constants.interpolates != 0u && (seen || castsNear || castsFar)) appendForDispatch(SHOWN, agent);
 }

@@ -21,7 +21,8 @@ SKITTER_PICTURE_CONST SHADOW_CASCADES = 2;
 // Instance lists of a page, and their indirect draws: the camera's levels of detail, then the near cascade's
 // finer and coarser shadows, the far cascade's, who darkens the ground that it touches, and who is drawn as
 // splats (splat.comp). Last, who goes over to splats, and is on that list, too, and whose shadow does,
-// near and far: an entry holds the agent and how far it has gone (fade.glsl).
+// near and far: an entry holds the agent and how far it has gone (fade.glsl). Where agents have rates of
+// their own there is one more, of all that the others have.
 SKITTER_PICTURE_CONST CAMERA_LODS = 5;
 SKITTER_PICTURE_CONST NEAR_FINE = 5;
 SKITTER_PICTURE_CONST NEAR_COARSE = 6;
@@ -31,7 +32,8 @@ SKITTER_PICTURE_CONST SPLATS = 9;
 SKITTER_PICTURE_CONST FADING = 10;
 SKITTER_PICTURE_CONST NEAR_FADING = 11;
 SKITTER_PICTURE_CONST FAR_FADING = 12;
-SKITTER_PICTURE_CONST INSTANCE_LISTS = 13;
+SKITTER_PICTURE_CONST SHOWN = 13;
+SKITTER_PICTURE_CONST INSTANCE_LISTS = 14;
 // The camera's levels from this one on are lit at their vertices.
 SKITTER_PICTURE_CONST FIRST_VERTEX_LIT = 2;
 // clipFromPicture[VIEW_CAMERA], then one of each cascade.
@@ -39,7 +41,7 @@ SKITTER_PICTURE_CONST VIEW_CAMERA = 0;
 SKITTER_PICTURE_CONST VIEWS = 3;
 // Cells along a patch of the ground.
 SKITTER_PICTURE_CONST PATCH_CELLS = 8;
-// uint32 of a VkDrawIndexedIndirectCommand, or of what splats have in its place (SplatDispatch).
+// uint32 of a VkDrawIndexedIndirectCommand, or of what lists without draws have in its place (ListDispatch).
 SKITTER_PICTURE_CONST DRAW_WORDS = 5;
 // Pixels along a square of the picture that is looked at for splats.
 SKITTER_PICTURE_CONST SPLAT_TILE = 32;
@@ -81,6 +83,19 @@ struct CullConstants {
   float splatPixels;                 // the radius in pixels below which an agent is splats
   float shadePixels;                 // the same of its shadow
   uint fades;                        // whether both begin by and by
+  uint interpolates;                 // whether there is the list SHOWN
+};
+
+// Push constants of interpolate_bodies and interpolate_poses (docs/levels.md, Pictures). They write records
+// of an agent as it is shown. Its pose is as `pose` is; its body, of BODY_STRIDE vec4, has
+//   [0] local x, y (world), local z, tile: as in `body`
+//   [1] the share of the way from the last picture to the agent's state that this one goes;
+//       the tick of the last picture that showed the pose, -1 if it was not the last picture; unused x 2
+struct InterpolationConstants {
+  uint agents;   // of the page
+  uint palette;  // pose entries an agent
+  float tick;    // of the crowd, in this picture
+  float before;  // in the last one; -1 before the first
 };
 
 // Push constants of splats and of what draws them.

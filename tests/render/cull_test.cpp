@@ -17,7 +17,8 @@ namespace {
 using test::Sight;
 using Lists = std::vector<int>;  // ascending: 0 to 4 the camera's levels, 5 and 6 the near
                                  // cascade, 7 the far one, 8 contacts, 9 splats, 10 who fades
-                                 // into them, 11 and 12 whose near and far shadow does
+                                 // into them, 11 and 12 whose near and far shadow does, 13 who is
+                                 // interpolated
 
 constexpr uint32_t kWidth = 640, kHeight = 360;
 constexpr float kRadius = 0.8f;
@@ -26,7 +27,8 @@ class CullTest : public test::GpuLoadTest {
  protected:
   // The lists that each agent is on.
   std::vector<Lists> cull(const shared::Picture& picture, const std::vector<glm::dvec3>& places,
-                          bool splats = false, float detail = 1, bool fades = false) {
+                          bool splats = false, float detail = 1, bool fades = false,
+                          bool interpolates = false) {
     std::vector<float> bodies(places.size() * shared::BODY_STRIDE * 4);
     for (size_t i = 0; i < places.size(); ++i) {
       const glm::dvec3 tile = glm::floor(places[i] / double(shared::TILE_SIZE));
@@ -42,7 +44,7 @@ class CullTest : public test::GpuLoadTest {
     gpu::upload(context(), block, std::span(&picture, 1));
     gpu::upload(context(), records, bodies);
     const Cull cull(context(), detail);
-    const CulledPage page = cull.makePage(context(), block, records, agents);
+    const CulledPage page = cull.makePage(context(), block, records, agents, interpolates);
     gpu::clear(context(), page.commands);
     gpu::submitAndWait(context(),
                        [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius, splats, fades); });
@@ -50,18 +52,20 @@ class CullTest : public test::GpuLoadTest {
     const auto draws = gpu::download<VkDrawIndexedIndirectCommand>(context(), page.commands);
     const auto instances = gpu::download<uint32_t>(context(), page.instances);
     groups_ = draws.at(shared::SPLATS).firstIndex;
+    shownGroups_ = draws.at(shared::SHOWN).firstIndex;
     std::vector<Lists> found(agents);
     steps_.assign(agents, {});
     for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
       for (uint32_t i = 0; i < draws.at(size_t(list)).instanceCount; ++i) {
         const uint32_t entry = instances.at(size_t(list) * agents + i), agent = entry & 0xFFFFFF;
         found.at(agent).push_back(list);
-        if (list >= shared::FADING) steps_.at(agent).push_back(entry >> 24);
+        if (list >= shared::FADING && list < shared::SHOWN) steps_.at(agent).push_back(entry >> 24);
       }
     return found;
   }
 
   uint32_t groups_ = 0;                       // that splats were dispatched over
+  uint32_t shownGroups_ = 0;                  // that those who are interpolated were
   std::vector<std::vector<uint32_t>> steps_;  // how far each agent has faded, on each list of those
 };
 INSTANTIATE_TEST_SUITE_P(Loads, CullTest, test::bothLoadPaths(), test::loadPathName);
@@ -241,6 +245,32 @@ TEST_P(CullTest, whoIsOutsideCastsTriangles) {
   EXPECT_EQ(found[0], Lists{9});
   EXPECT_TRUE(std::ranges::any_of(found[1], isShadow));
   EXPECT_TRUE(std::ranges::all_of(found[1], isShadow));
+}
+
+// Whoever or whose shadow is drawn is interpolated where that is asked for, and nobody else.
+TEST_P(CullTest, whoIsOnAListIsInterpolated) {
+  const Sight s(kView, kWidth, kHeight);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> any(-1.3, 1.3);
+  std::vector<glm::dvec3> places;
+  for (int i = 0; i < 1000; ++i) {
+    const double away = 110 * (1 + any(random));
+    places.push_back(s.at(away, any(random), any(random)));
+  }
+  const std::vector<Lists> without = cull(picture(), places, true, 1, true);
+  const std::vector<Lists> with = cull(picture(), places, true, 1, true, true);
+  size_t shown = 0, shadowsAlone = 0;
+  for (size_t i = 0; i < places.size(); ++i) {
+    Lists expected = without[i];
+    if (!expected.empty()) expected.push_back(shared::SHOWN);
+    EXPECT_EQ(with[i], expected) << "agent " << i;
+    shown += !without[i].empty();
+    shadowsAlone += !without[i].empty() && std::ranges::all_of(without[i], isShadow);
+  }
+  EXPECT_EQ(shownGroups_, (shown + 127) / 128);
+  EXPECT_GT(shown, 128u);
+  EXPECT_GT(places.size() - shown, 128u);
+  EXPECT_GT(shadowsAlone, 5u);
 }
 
 // Those near enough have contacts.

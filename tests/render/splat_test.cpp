@@ -168,8 +168,9 @@ class SplatTest : public test::GpuLoadTest {
     const Splats splats(setting);
     Splats::Kind look = splats.makeKind(setting, kind, radius);
     look.fades = fades;
-    const gpu::Bindings bindings = splats.bind(setting, look, kind, page, culled);
-    std::vector<SplatDispatch> commands(shared::INSTANCE_LISTS);
+    const gpu::Bindings bindings =
+        splats.bind(setting, look, page.body, page.pose, kind.tinted ? page.tint : page.body, culled);
+    std::vector<ListDispatch> commands(shared::INSTANCE_LISTS);
     gpu::upload(context(), culled.commands, commands);
     gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
       splats.prepare(cmd);

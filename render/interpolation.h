@@ -1,0 +1,40 @@
+#pragma once
+
+#include "gpu/kernel.h"
+#include "render/cull.h"
+#include "render/picture.h"
+
+namespace skitter::render {
+
+// Who does not tick in every tick of the crowd goes on in every picture all the same (docs/levels.md,
+// Pictures): from how the last picture showed the agent to how its last tick left it.
+class Interpolation {
+ public:
+  Interpolation() = default;
+  explicit Interpolation(const gpu::Context&);
+  explicit operator bool() const { return bool(bodies_); }
+
+  // The records of a page as pictures show them.
+  struct Page {
+    gpu::Buffer body, pose;  // shaders/render/interpolation.h; as the record `pose`
+    gpu::Bindings bodies, poses;
+  };
+  // What the crowd has of a page: records of as many agents, of `palette` pose entries each.
+  struct Source {
+    const gpu::Buffer &body, &pose, &rate;
+  };
+  Page makePage(const gpu::Context&, const Source&) const;
+  // After the page's lists are made, which lie about the shown bodies.
+  void bindLists(const gpu::Context&, const Source&, const CulledPage&, Page&) const;
+
+  // Before the cull and a computeToCompute().
+  void recordBodies(vk::CommandBuffer, const Page&, const shared::InterpolationConstants&) const;
+  // After the cull and a computeToIndirectAndCompute(), before poses are read.
+  void recordPoses(vk::CommandBuffer, const Page&, const CulledPage&,
+                   const shared::InterpolationConstants&) const;
+
+ private:
+  gpu::Kernel bodies_, poses_;
+};
+
+}  // namespace skitter::render

@@ -1,0 +1,258 @@
+// How slow agents are shown between their ticks, held against docs/levels.md, Pictures: a straight way at an
+// even speed from where the last tick found an agent to where it left it.
+#include "render/interpolation.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "gpu/submit.h"
+#include "gpu/transfer.h"
+#include "render/pictures.h"
+#include "skitter/records.h"
+#include "support/gpu_fixture.h"
+
+namespace skitter::render {
+namespace {
+
+constexpr uint32_t kPalette = 3;
+constexpr float kMostTurn = 0.1f;  // radians, from one tick to the next
+
+// An agent's state after one of its ticks. Its bones turn about one axis each, so that angles can be added.
+struct State {
+  glm::dvec3 place;  // world
+  std::array<double, kPalette> angles;
+  std::array<glm::dvec3, kPalette> starts;
+};
+
+State operator+(const State& a, const State& b) {
+  State sum = a;
+  sum.place += b.place;
+  for (size_t i = 0; i < kPalette; ++i) sum.angles[i] += b.angles[i], sum.starts[i] += b.starts[i];
+  return sum;
+}
+State operator*(double share, const State& s) {
+  State part{share * s.place, {}, {}};
+  for (size_t i = 0; i < kPalette; ++i)
+    part.angles[i] = share * s.angles[i], part.starts[i] = share * s.starts[i];
+  return part;
+}
+
+// What the crowd and the test know of an agent.
+struct Agent {
+  State now{};
+  int level = 0;
+  uint64_t tick = 0;  // its last one
+  // The way that it is on in pictures.
+  State from{};
+  uint64_t left = 0, arrives = 0;
+  std::optional<uint64_t> shown;  // the last picture's tick that it was in
+
+  State at(uint64_t picture) const {
+    if (picture >= arrives) return now;
+    const double share = double(picture - left) / double(arrives - left);
+    return from + share * (now + -1.0 * from);
+  }
+};
+
+glm::dvec3 axisOf(size_t entry) {
+  return glm::normalize(glm::dvec3(0.3, 1.0 - 0.4 * double(entry), 0.2 + 0.5 * double(entry)));
+}
+
+class InterpolationTest : public test::GpuLoadTest {
+ protected:
+  struct Random {
+    std::mt19937 draw;
+    double operator()(double from, double to) {
+      return std::uniform_real_distribution<double>(from, to)(draw);
+    }
+  };
+
+  // `pictures` pictures of so many agents, some ticks after each other; those that are in a picture change.
+  void expectEvenWays(uint32_t count, int pictures, uint32_t seed) {
+    Random random{std::mt19937(seed)};
+    std::vector<Agent> agents(count);
+    for (Agent& agent : agents) {
+      // About the corner of four tiles far from the origin.
+      agent.now.place = glm::dvec3(-800 + random(-1, 1), random(-9, 9), 1600 + random(-1, 1));
+      for (size_t i = 0; i < kPalette; ++i) {
+        agent.now.angles[i] = random(-3, 3);
+        agent.now.starts[i] = {random(-1, 1), random(-1, 1), random(-1, 1)};
+      }
+    }
+    const gpu::Buffer body(context(), count * shared::BODY_STRIDE * sizeof(glm::vec4), "bodies");
+    const gpu::Buffer pose(context(), count * kPalette * shared::POSE_STRIDE * sizeof(glm::vec4), "poses");
+    const gpu::Buffer rate(context(), count * shared::RATE_STRIDE * sizeof(glm::vec4), "rates");
+    const Interpolation interpolation(context());
+    const Interpolation::Source live{body, pose, rate};
+    Interpolation::Page page = interpolation.makePage(context(), live);
+    CulledPage culled;
+    culled.agents = count;
+    culled.interpolates = true;
+    culled.instances =
+        gpu::Buffer(context(), uint64_t(count) * shared::INSTANCE_LISTS * sizeof(uint32_t), "lists");
+    culled.commands = gpu::Buffer(context(), shared::INSTANCE_LISTS * sizeof(ListDispatch), "commands",
+                                  gpu::BufferUse::indirect);
+    interpolation.bindLists(context(), live, culled, page);
+
+    uint64_t tick = 0;
+    std::optional<uint64_t> before;
+    for (int picture = 0; picture < pictures; ++picture) {
+      const uint64_t ticks = uint64_t(random(0, 3.99));
+      for (uint64_t t = 0; t < ticks; ++t) {
+        ++tick;
+        for (uint32_t a = 0; a < count; ++a) tickOf(agents[a], a, tick, random);
+      }
+      std::vector<uint32_t> list;
+      for (uint32_t a = 0; a < count; ++a)
+        if (random(0, 1) < 0.8) list.push_back(a);
+      upload(agents, body, pose, rate);
+      std::vector<uint32_t> instances(size_t(count) * shared::INSTANCE_LISTS);
+      std::ranges::copy(list, instances.begin() + long(count) * shared::SHOWN);
+      std::vector<ListDispatch> commands(shared::INSTANCE_LISTS);
+      commands[shared::SHOWN].agents = uint32_t(list.size());
+      commands[shared::SHOWN].groups.x = gpu::groupsFor(uint32_t(list.size()), shared::WORK_GROUP);
+      gpu::upload(context(), culled.instances, instances);
+      gpu::upload(context(), culled.commands, commands);
+      const shared::InterpolationConstants constants{.agents = count,
+                                                     .palette = kPalette,
+                                                     .tick = float(tick),
+                                                     .before = before ? float(*before) : -1.0f};
+      gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+        interpolation.recordBodies(cmd, page, constants);
+        gpu::computeToIndirectAndCompute(cmd);
+        interpolation.recordPoses(cmd, page, culled, constants);
+        gpu::allToAll(cmd);
+      });
+
+      const auto bodies = gpu::download<glm::vec4>(context(), page.body);
+      const auto poses = gpu::download<glm::vec4>(context(), page.pose);
+      for (uint32_t a = 0; a < count; ++a) {
+        Agent& agent = agents[a];
+        // Who was not in the last picture is where its tick left it.
+        if (!before || agent.shown != before) agent.left = agent.arrives = 0;
+        expectPlace(agent.at(tick), bodies[size_t(a) * shared::BODY_STRIDE], seed, picture, a);
+      }
+      for (const uint32_t a : list) {
+        expectPose(agents[a].at(tick), &poses[size_t(a) * kPalette * shared::POSE_STRIDE], seed, picture, a);
+        agents[a].shown = tick;
+      }
+      before = tick;
+      if (HasFailure()) return;
+    }
+  }
+
+ private:
+  // A tick of the crowd, in which the agent has a turn or not, as wake says.
+  static void tickOf(Agent& agent, uint32_t number, uint64_t tick, Random& random) {
+    const uint64_t turn = tick + number / shared::BLOCK;
+    if (turn % (uint64_t{1} << agent.level) != 0) return;
+    int level = int(random(0, 3.99));
+    while (turn % (uint64_t{1} << level) != 0) --level;
+    // It sets out from where the last picture showed it, when that was.
+    const uint64_t picture = agent.shown.value_or(0);
+    agent.from = agent.at(picture);
+    agent.left = picture;
+    agent.arrives = tick + (uint64_t{1} << level) - 1;
+    agent.level = level;
+    agent.tick = tick;
+    agent.now.place += glm::dvec3(random(-0.2, 0.2), random(-0.1, 0.1), random(-0.2, 0.2));
+    for (size_t i = 0; i < kPalette; ++i) {
+      agent.now.angles[i] += random(-double(kMostTurn), double(kMostTurn));
+      agent.now.starts[i] += glm::dvec3(random(-0.1, 0.1), random(-0.1, 0.1), random(-0.1, 0.1));
+    }
+  }
+
+  void upload(const std::vector<Agent>& agents, const gpu::Buffer& body, const gpu::Buffer& pose,
+              const gpu::Buffer& rate) {
+    std::vector<glm::vec4> bodies(agents.size() * shared::BODY_STRIDE), rates(agents.size()), poses;
+    for (size_t a = 0; a < agents.size(); ++a) {
+      const Agent& agent = agents[a];
+      const glm::dvec3 tile = glm::floor(agent.now.place / double(shared::TILE_SIZE));
+      bodies[a * shared::BODY_STRIDE] = {
+          glm::vec3(agent.now.place - glm::dvec3(tile.x, 0, tile.z) * double(shared::TILE_SIZE)),
+          shared::packedTile(float(tile.x), float(tile.z))};
+      rates[a] = {float(agent.level), 0, float(agent.tick), 0};
+      for (size_t i = 0; i < kPalette; ++i) {
+        // The host does not care which of a rotation's two quaternions it gives.
+        const double half = 0.5 * agent.now.angles[i], sign = (agent.tick + i) % 2 == 0 ? 1 : -1;
+        poses.emplace_back(sign * glm::dvec4(axisOf(i) * std::sin(half), std::cos(half)));
+        poses.emplace_back(glm::vec3(agent.now.starts[i]), 0.0f);
+      }
+    }
+    gpu::upload(context(), body, bodies);
+    gpu::upload(context(), pose, poses);
+    gpu::upload(context(), rate, rates);
+  }
+
+  static std::string named(uint32_t seed, int picture, uint32_t agent) {
+    return "seed " + std::to_string(seed) + ", picture " + std::to_string(picture) + ", agent " +
+           std::to_string(agent);
+  }
+
+  // Numbers below 32 are rounded by at most 2^-20 in each of a few operations; what earlier pictures rounded
+  // fades with the way that is left.
+  static constexpr double kRounding = 8e-6;
+
+  static void expectPlace(const State& expected, const glm::vec4& shown, uint32_t seed, int picture,
+                          uint32_t agent) {
+    const glm::dvec3 place =
+        glm::dvec3(shown) +
+        double(shared::TILE_SIZE) * glm::dvec3(shared::tileX(shown.w), 0, shared::tileZ(shown.w));
+    EXPECT_LT(glm::distance(place, expected.place), kRounding) << named(seed, picture, agent);
+  }
+
+  static void expectPose(const State& expected, const glm::vec4* entries, uint32_t seed, int picture,
+                         uint32_t agent) {
+    // Normalised means of quaternions a turn of x apart stray from an even turn by at most 0.004 x^3. A way
+    // has at most eight parts, and is at most as long as the turns of three ticks and of the way that was
+    // left. The cosine of an angle is rounded by 2^-23.
+    const double stray = 8 * 0.004 * std::pow(4 * double(kMostTurn), 3) + 2 * std::sqrt(2 * 0x1p-23);
+    for (size_t i = 0; i < kPalette; ++i) {
+      const glm::dvec4 rotation(entries[i * shared::POSE_STRIDE]);
+      const double half = 0.5 * expected.angles[i];
+      const glm::dvec4 wanted(axisOf(i) * std::sin(half), std::cos(half));
+      EXPECT_NEAR(glm::length(rotation), 1, 1e-6) << named(seed, picture, agent);
+      EXPECT_LT(2 * std::acos(std::min(1.0, std::abs(glm::dot(rotation, wanted)))), stray)
+          << named(seed, picture, agent) << ", entry " << i;
+      EXPECT_LT(glm::distance(glm::dvec3(entries[i * shared::POSE_STRIDE + 1]), expected.starts[i]),
+                kRounding)
+          << named(seed, picture, agent) << ", entry " << i;
+    }
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Loads, InterpolationTest, test::bothLoadPaths(), test::loadPathName);
+
+TEST_P(InterpolationTest, waysBetweenTicksAreEven) {
+  for (const uint32_t count : {1u, 9u, 131u}) expectEvenWays(count, 60, 40 + count);
+}
+
+// A block at an eighth of the rate, which ticks in every eighth tick of the crowd. It sets out at the first
+// of them in sight.
+TEST_P(InterpolationTest, slowAgentsMoveInEveryPicture) {
+  Scene scene = test::smallScene(shared::BLOCK);
+  scene.herds[0].spawn = Spawn{.kind = Spawn::Kind::grid, .spacing = 2};
+  scene.levels = Levels{.distances = {0, 0, 0}, .most = {0, 0, 0}};
+  test::Stage stage(device(), scene, 160, 90);
+  const View view{.eye = {2, 5, -13}, .target = {0, 0, 1}};
+  stage.crowd.lookFrom(view.eye);
+  stage.tick(24);
+  test::Picture last = stage.draw(view);
+  EXPECT_EQ(test::differing(last, stage.draw(view)), 0u);
+  std::vector<double> differences;
+  for (int picture = 0; picture < 40; ++picture) {
+    stage.tick(1);
+    const test::Picture next = stage.draw(view);
+    double sum = 0;
+    for (size_t i = 0; i < next.rgba.size(); ++i) sum += std::abs(int(next.rgba[i]) - int(last.rgba[i]));
+    if (picture >= 8) differences.push_back(sum);
+    last = next;
+  }
+  std::ranges::sort(differences);
+  const double median = differences[differences.size() / 2];
+  EXPECT_GT(differences.front(), 0.5 * median);
+  EXPECT_LT(differences.back(), 2 * median);
+}
+
+}  // namespace
+}  // namespace skitter::render
