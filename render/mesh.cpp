@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <queue>
+#include <tuple>
 
 #include "assets/materials/worn_colours.h"
 #include "crowd/radius.h"
@@ -20,8 +23,12 @@ namespace {
 constexpr std::array<float, shared::CAMERA_LODS - 1> kShare{0.35f, 0.12f, 0.04f, 0.015f};
 // The same of surfaces without ribbons.
 constexpr std::array<float, kSurfacePixels.size()> kSurfaceShare{0.35f, 0.12f, 0.05f};
-constexpr float kLargestError = 0.05f;    // of the mesh's extent
-constexpr float kLastError = 0.1f;        // the same at the last level
+constexpr float kLargestError = 0.05f;  // of the mesh's extent
+constexpr float kLastError = 0.1f;      // the same at the last level
+// At the first level after the finest the simplifier sees white surfaces so much further out than black ones,
+// so that it keeps bands and spots as it does bumps; of the mesh's extent. Later levels have too few vertices
+// for both colours and outline.
+constexpr float kBump = 0.05f;
 constexpr float kLeastHalfWidth = 1e-6f;  // metres, so that a point has two sides
 // That the radius of a bone has, at most, where the bone is a ribbon; of an agent as near as the level
 // allows.
@@ -125,19 +132,6 @@ Welded weld(const std::vector<SkinVertex>& vertices, const std::vector<uint32_t>
   return welded;
 }
 
-// Simplifies triangles of the skin.
-std::vector<uint32_t> simplified(const Welded& welded, std::vector<uint32_t> triangles, float share,
-                                 float error) {
-  if (triangles.empty()) return {};
-  for (uint32_t& index : triangles) index = welded.remap[index];
-  const size_t wanted = size_t(float(triangles.size() / 3) * share) * 3;
-  std::vector<uint32_t> indices(triangles.size());
-  indices.resize(meshopt_simplify(indices.data(), triangles.data(), triangles.size(),
-                                  &welded.vertices[0].position.x, welded.vertices.size(), sizeof(SkinVertex),
-                                  wanted, error, 0, nullptr));
-  return indices;
-}
-
 // Triangles of one material come in a row.
 void sortByMaterial(std::vector<uint32_t>& indices, const std::vector<MaterialVertex>& worn) {
   using Triangle = std::array<uint32_t, 3>;
@@ -169,6 +163,71 @@ Surface optimised(const std::vector<SkinVertex>& vertices, const std::vector<Mat
                                                       surface.indices.size(), vertices.data(),
                                                       vertices.size(), sizeof(SkinVertex)));
   return surface;
+}
+
+// The surface as the simplifier sees it: with bumps where it is light. Both sides of a seam must stay
+// together, which may differ in colour.
+std::vector<glm::vec3> seenAs(const Welded& welded, float bump) {
+  const glm::vec3 luminance(0.2126f, 0.7152f, 0.0722f);
+  const std::vector<SkinVertex>& vertices = welded.vertices;
+  const float extent = meshopt_simplifyScale(&vertices[0].position.x, vertices.size(), sizeof(SkinVertex));
+  std::vector<glm::vec3> seen;
+  for (const SkinVertex& vertex : vertices) {
+    const float lightness = std::sqrt(std::max(0.0f, glm::dot(vertex.colour, luminance)));
+    seen.push_back(vertex.position +
+                   (welded.worn.empty() ? bump * extent * lightness * vertex.normal : glm::vec3(0)));
+  }
+  return seen;
+}
+
+// Gives each vertex that is left the mean colour of the surface that it stands for: of what lies nearer to
+// it, along edges, than to any other. Else a band would go with the vertices that had its colour.
+std::vector<SkinVertex> recoloured(std::vector<SkinVertex> vertices, const std::vector<uint32_t>& triangles,
+                                   const std::vector<uint32_t>& left) {
+  std::vector<float> areas(vertices.size(), 0.0f);
+  std::vector<std::vector<uint32_t>> neighbours(vertices.size());
+  for (size_t i = 0; i < triangles.size(); i += 3) {
+    const auto at = [&](size_t corner) { return vertices[triangles[i + corner]].position; };
+    const float area = glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
+    for (size_t corner = 0; corner < 3; ++corner) {
+      areas[triangles[i + corner]] += area;
+      for (const size_t other : {1, 2})
+        neighbours[triangles[i + corner]].push_back(triangles[i + (corner + other) % 3]);
+    }
+  }
+  // The shortest ways from all that are left at once (Dijkstra 1959).
+  using Reached = std::tuple<float, uint32_t, uint32_t>;  // way, vertex, where it begins
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
+  for (const uint32_t vertex : left) next.emplace(0.0f, vertex, vertex);
+  std::vector<bool> known(vertices.size(), false);
+  std::vector<glm::vec4> sums(vertices.size(), glm::vec4(0));  // colour and area
+  while (!next.empty()) {
+    const auto [way, vertex, start] = next.top();
+    next.pop();
+    if (known[vertex]) continue;
+    known[vertex] = true;
+    sums[start] += areas[vertex] * glm::vec4(vertices[vertex].colour, 1);
+    for (const uint32_t other : neighbours[vertex])
+      if (!known[other])
+        next.emplace(way + glm::distance(vertices[vertex].position, vertices[other].position), other, start);
+  }
+  for (size_t v = 0; v < vertices.size(); ++v)
+    if (sums[v].w > 0) vertices[v].colour = glm::vec3(sums[v]) / sums[v].w;
+  return vertices;
+}
+
+// Simplifies triangles of the skin. `level` counts from 0, the finest.
+Surface simplified(const Welded& welded, std::vector<uint32_t> triangles, size_t level, float share,
+                   float error) {
+  if (triangles.empty()) return {};
+  for (uint32_t& index : triangles) index = welded.remap[index];
+  const std::vector<glm::vec3> seen = seenAs(welded, level == 1 ? kBump : 0);
+  const size_t wanted = size_t(float(triangles.size() / 3) * share) * 3;
+  std::vector<uint32_t> indices(triangles.size());
+  indices.resize(meshopt_simplify(indices.data(), triangles.data(), triangles.size(), &seen[0].x, seen.size(),
+                                  sizeof(glm::vec3), wanted, error, 0, nullptr));
+  const std::vector<SkinVertex> vertices = recoloured(welded.vertices, triangles, indices);
+  return optimised(vertices, welded.worn, std::move(indices));
 }
 
 void append(MeshData& data, MeshLod& lod, const Skin& skin, const Surface& surface) {
@@ -240,8 +299,7 @@ void appendLods(MeshData& data, const Skin& skin) {
     const Ribbons thin =
         skin.rig ? ribbonsOf(*skin.rig, kRibbonPixels * pixel, kBendPixels * pixel, i <= kLastWaists)
                  : Ribbons{{}, skin.indices};
-    append(data, data.lods[i], skin,
-           optimised(welded.vertices, welded.worn, simplified(welded, thin.others, kShare[i - 1], error)));
+    append(data, data.lods[i], skin, simplified(welded, thin.others, i, kShare[i - 1], error));
     for (const Ribbon& ribbon : thin.ribbons) append(data, data.lods[i], ribbon);
     uint32_t ribbons = 0;
     for (const Ribbon& ribbon : thin.ribbons) ribbons += indexCountOf(ribbon);
@@ -257,8 +315,8 @@ std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
   if (indices.empty()) return surfaces;
   surfaces.push_back(optimised(vertices, {}, indices));
   const Welded welded = weld(vertices, indices, {});
-  for (const float share : kSurfaceShare)
-    surfaces.push_back(optimised(welded.vertices, {}, simplified(welded, indices, share, kLargestError)));
+  for (size_t i = 0; i < kSurfaceShare.size(); ++i)
+    surfaces.push_back(simplified(welded, indices, i + 1, kSurfaceShare[i], kLargestError));
   return surfaces;
 }
 

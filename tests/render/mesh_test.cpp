@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <tuple>
 
 #include "render/mesh.h"
@@ -75,7 +77,8 @@ Rig facetted(const Rig& smooth) {
   return rig;
 }
 
-// The rig's own at the finest level; at a coarser one, where vertices share a position, the mean of theirs.
+// The rig's own at the finest level; at a coarser one, where vertices share a position, the mean of their
+// normals.
 TEST(Mesh, everyLevelWearsTheRigsNormalsAndColours) {
   const Rig rig = facetted(spiderRig());
   const MeshData mesh = makeMesh(rig);
@@ -86,23 +89,82 @@ TEST(Mesh, everyLevelWearsTheRigsNormalsAndColours) {
       const MeshVertex& vertex = mesh.vertices[index];
       if (vertex.halfWidth != 0) continue;  // below
       const glm::vec3 position = positionAtRest(rig, vertex);
-      glm::vec3 normal(0), colour(0);
-      float sharing = 0, nearest = 2;
+      glm::vec3 normal(0);
+      float nearest = 2;
       for (const SkinVertex& skin : rig.vertices) {
         if (glm::distance(skin.position, position) > 1e-6f) continue;
         normal += skin.normal;
-        colour += skin.colour;
-        ++sharing;
         nearest = std::min(
             nearest, glm::distance(skin.normal, vertex.normal) + glm::distance(skin.colour, vertex.colour));
       }
-      if (level > 0) {
-        nearest = glm::distance(glm::normalize(normal), vertex.normal) +
-                  glm::distance(colour / sharing, vertex.colour);
-      }
+      if (level > 0) nearest = glm::distance(glm::normalize(normal), vertex.normal);
       ASSERT_LT(nearest, 1e-5f) << "level " << level << ", vertex " << index;
     }
   }
+}
+
+// A tube of 40 rings about the z axis, a metre long, whose rings have colours.
+struct Tube {
+  static constexpr uint32_t rings = 40, sides = 12;
+  std::vector<SkinVertex> vertices;
+  std::vector<uint32_t> indices;
+
+  explicit Tube(const std::function<float(uint32_t)>& greyOf) {
+    for (uint32_t ring = 0; ring < rings; ++ring)
+      for (uint32_t side = 0; side < sides; ++side) {
+        const double angle = 2 * std::numbers::pi * side / sides;
+        SkinVertex vertex{};
+        vertex.normal = {std::cos(angle), std::sin(angle), 0};
+        vertex.position = 0.1f * vertex.normal + glm::vec3(0, 0, float(ring) / float(rings - 1));
+        vertex.colour = glm::vec3(greyOf(ring));
+        vertices.push_back(vertex);
+      }
+    for (uint32_t ring = 0; ring + 1 < rings; ++ring)
+      for (uint32_t side = 0; side < sides; ++side) {
+        const uint32_t a = ring * sides + side, b = ring * sides + (side + 1) % sides;
+        for (const uint32_t corner : {a, b, a + sides, b, b + sides, a + sides}) indices.push_back(corner);
+      }
+  }
+};
+
+// Where there is no room for the colours of a surface there is room for their mean.
+TEST(Mesh, coarseLevelsHaveTheMeanColour) {
+  const Tube tube([](uint32_t ring) { return float(ring % 2); });
+  const std::vector<Surface> surfaces = surfacesOf(tube.vertices, tube.indices);
+  ASSERT_EQ(surfaces.size(), 4u);
+  for (size_t level = 2; level < surfaces.size(); ++level) {
+    const Surface& surface = surfaces[level];
+    ASSERT_LT(surface.indices.size(), tube.indices.size() / 4);
+    double area = 0, off = 0;  // root mean square over the surface, from corner to corner
+    for (size_t i = 0; i < surface.indices.size(); ++i) {
+      const auto corner = [&](size_t k) { return surface.vertices[surface.indices[i - i % 3 + k]].position; };
+      const double size = double(glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))));
+      area += size;
+      off += size * std::pow(double(surface.vertices[surface.indices[i]].colour.r) - 0.5, 2);
+    }
+    EXPECT_LT(std::sqrt(off / area), 0.2) << "level " << level;
+  }
+}
+
+// A band is no edge, but the first coarse level keeps it.
+TEST(Mesh, theFirstCoarseLevelKeepsBands) {
+  const auto greyOf = [](uint32_t ring) { return ring >= 16 && ring < 24 ? 0.5f : 0.05f; };
+  const Tube tube(greyOf);
+  const std::vector<Surface> surfaces = surfacesOf(tube.vertices, tube.indices);
+  ASSERT_GT(surfaces.size(), 1u);
+  const Surface& surface = surfaces[1];
+  ASSERT_LT(surface.indices.size(), tube.indices.size() / 2);
+  double area = 0, off = 0;  // in the middle of triangles
+  for (size_t i = 0; i < surface.indices.size(); i += 3) {
+    const auto corner = [&](size_t k) { return surface.vertices[surface.indices[i + k]]; };
+    const glm::vec3 a = corner(0).position, b = corner(1).position, c = corner(2).position;
+    const double size = double(glm::length(glm::cross(b - a, c - a)));
+    const float ring = (a.z + b.z + c.z) / 3 * float(Tube::rings - 1);
+    const float grey = (corner(0).colour.r + corner(1).colour.r + corner(2).colour.r) / 3;
+    area += size;
+    off += size * double(std::abs(grey - greyOf(uint32_t(std::lround(ring)))));
+  }
+  EXPECT_LT(off / area, 0.03);
 }
 
 // docs/stages/pictures.md, cull and Ribbons.
