@@ -55,9 +55,12 @@ inline void failOnMessages(const ValidationLog& log) {
 class TestDevices : public ::testing::Environment {
  public:
   Device& of(std::optional<LoadPath> loads) {
-    std::unique_ptr<Device>& device = devices_[loads];
-    if (!device) device = std::make_unique<Device>(Device::create(validatedRequest(loads)));
-    return *device;
+    auto device = devices_.find(loads);
+    if (device == devices_.end()) {
+      auto made = std::make_unique<Device>(Device::create(validatedRequest(loads)));
+      device = devices_.emplace(loads, std::move(made)).first;
+    }
+    return *device->second;
   }
 
   void TearDown() override {
