@@ -37,9 +37,9 @@ class CrowdDrawing {
   void prepare(vk::CommandBuffer) const;
   // Fills them, `tick` ticks after the crowd began, and poses who is on them.
   void cull(vk::CommandBuffer, uint64_t tick);
-  // Draws small agents; after that, before a computeToGraphics().
+  // Draws small agents; after the shadow map, before a computeToGraphics().
   void splat(vk::CommandBuffer) const;
-  // Gives each part of a kind with materials, and contacts, their counts of agents; after the
+  // Gives each part of a kind with materials, and contacts, their counts of agents; after the cull and a
   // computeToGraphics().
   void countParts(vk::CommandBuffer) const;
   void drawShadows(vk::CommandBuffer, int cascade) const;

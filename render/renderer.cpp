@@ -24,7 +24,7 @@ namespace {
 
 constexpr vk::Format kColour = vk::Format(Renderer::colourFormat);
 constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
-constexpr uint32_t kPasses = 8;  // cull, splats, shadow, crowd, ground, sky, filter, enlarge
+constexpr uint32_t kPasses = 8;  // cull, shadow, splats, crowd, ground, sky, filter, enlarge
 
 vk::Extent2D checkedExtent(const gpu::Context& context, uint32_t width, uint32_t height) {
   const uint32_t most = context.limits().maxImageDimension2D;
@@ -201,13 +201,13 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   gpu::transferToGraphics(cmd);
 
   crowd.cull(cmd, live.tick);
+  gpu::computeToGraphics(cmd);
+  crowd.countParts(cmd);
+  timer.next(cmd, "shadow");
+  if (casts) drawShadows(cmd);
   timer.next(cmd, "splats");
   crowd.splat(cmd);
   gpu::computeToGraphics(cmd);
-  crowd.countParts(cmd);
-
-  timer.next(cmd, "shadow");
-  if (casts) drawShadows(cmd);
   drawPicture(cmd);
   if (filtered()) smoothEdges(cmd);
   if (enlarged()) enlarge(cmd);

@@ -33,7 +33,8 @@ class Splats {
 
   // Before a transferToCompute(): empties what the last picture left.
   void prepare(vk::CommandBuffer) const;
-  // After the cull and a computeToIndirectAndCompute(), before a computeToGraphics().
+  // After the cull, a computeToIndirectAndCompute() and the shadow map, which is in state sampled, before a
+  // computeToGraphics().
   void record(vk::CommandBuffer, const Kind&, const gpu::Bindings&, const CulledPage&,
               const shared::CrowdConstants&) const;
   // All of them, with their depth.

@@ -9,6 +9,7 @@
 #include "lib/load4.glsl"
 #include "lib/math.glsl"
 #include "light.glsl"
+#include "shadow_map.glsl"
 #include "splat.glsl"
 #include "variation.glsl"
 
@@ -99,7 +100,13 @@ void main() {
   bool fades = constants.fades != 0u;
   uint fade = fades ? fadeOf(pixels, constants.splatPixels) : FADED;
   float shadeShare = fades ? float(fadeOf(pixels, constants.shadePixels)) / FADE_STEPS : 1.0;
-  bool casts = pixels < constants.shadePixels && steep > LEAST_SUN && ground.w > 0.5;
+  // Looked up where the agent itself casts none.
+  vec3 clear = body + constants.radius * sun;
+  vec3 nearAt = offSurface(0, clear, sun, 0.0), farAt = offSurface(1, clear, sun, 0.0);
+  bool isNear = inNearCascade(nearAt);
+  vec3 shadowAt = isNear ? nearAt : farAt;
+  float lit = ground.w * fadedShadow(body, compared(placeOnMap(shadowAt, isNear), shadowAt.z, texelOfMap()));
+  bool casts = pixels < constants.shadePixels && steep > LEAST_SUN && lit > 0.5;
   mark(body, (casts ? 1.0 + MOST_WAY : 1.0) * pixels + 2.0);
   vec3 lifted = toEye * (0.012 + 2.0 * metresAPixel);
   uint shades = constants.width * constants.height;
@@ -127,7 +134,7 @@ void main() {
     float above = 0.5 * dot(first + second, slope);
     vec3 ambient = 0.5 * (ambientLight(oneSide) + ambientLight(otherSide)) *
                    (ground.z * clamp(0.45 + 1.1 * above, 0.3, 1.0));
-    vec3 light = SUN_LIGHT * (facing * ground.w) + ambient, rim = RIM * ambient;
+    vec3 light = SUN_LIGHT * (facing * lit) + ambient, rim = RIM * ambient;
     uvec2 colours = uvec2(packedColour(developed(hazed(varied(variation, colourFrom.rgb) * light + rim, haze))),
                           packedColour(developed(hazed(varied(variation, colourTo.rgb) * light + rim, haze))));
 

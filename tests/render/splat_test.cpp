@@ -136,7 +136,9 @@ class SplatTest : public test::GpuLoadTest {
     return made;
   }
 
-  Drawn draw(const Scene& made, const View& view, bool fades = false) {
+  // `shade` is the depth of all that casts shadows: 1 is nothing, 0 is something between everybody and the
+  // sun.
+  Drawn draw(const Scene& made, const View& view, bool fades = false, float shade = 1) {
     const Heightfield ground = level();
     Crowd crowd(device(), ground, made);
     for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
@@ -173,6 +175,12 @@ class SplatTest : public test::GpuLoadTest {
     std::vector<ListDispatch> commands(shared::INSTANCE_LISTS);
     gpu::upload(context(), culled.commands, commands);
     gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+      gpu::transition(cmd, shadow.image(), gpu::ImageState::discard, gpu::ImageState::depth);
+      {
+        const gpu::Rendering clear(cmd, {.depth = &shadow.image(), .depthClear = shade, .keepDepth = true},
+                                   false);
+      }
+      gpu::transition(cmd, shadow.image(), gpu::ImageState::depth, gpu::ImageState::sampled);
       splats.prepare(cmd);
       gpu::transferToCompute(cmd);
       cull.record(cmd, culled, radius, true, fades);
@@ -345,6 +353,24 @@ TEST_P(SplatTest, ComePixelByPixel) {
       EXPECT_GT(shaded, 10u);
     }
   }
+}
+
+// Where something keeps the sun off they are dark, and cast no shadows of their own.
+TEST_P(SplatTest, LieInTheShadowsOfOthers) {
+  const Scene made = scene(30);
+  const Drawn open = draw(made, kFar), shaded = draw(made, kFar, false, 0);
+  double before = 0, after = 0;
+  const auto lightness = [](uint32_t low) {
+    return (low >> 11) / 31.0 + (low >> 5 & 63) / 63.0 + (low & 31) / 31.0;
+  };
+  for (size_t i = 0; i < open.splats.size(); ++i) {
+    ASSERT_EQ(open.splats[i] == 0, shaded.splats[i] == 0) << i;
+    ASSERT_EQ(shaded.shades[i], 0u) << i;
+    before += lightness(open.splats[i] & 65535);
+    after += lightness(shaded.splats[i] & 65535);
+  }
+  EXPECT_GT(std::ranges::count_if(open.shades, [](uint32_t shade) { return shade != 0; }), 30);
+  EXPECT_LT(after, 0.9 * before);
 }
 
 // Nothing pops where an agent is splats from now on, and half way to it. Seen from the sun, its rectangle, of
