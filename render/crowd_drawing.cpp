@@ -12,12 +12,18 @@
 #include "embedded/cutout_frag.h"
 #include "embedded/cutout_vert_storage.h"
 #include "embedded/cutout_vert_texel.h"
+#include "embedded/fading_cutout_frag.h"
+#include "embedded/fading_cutout_vert_storage.h"
+#include "embedded/fading_cutout_vert_texel.h"
 #include "embedded/fading_frag.h"
 #include "embedded/fading_shadow_frag.h"
 #include "embedded/fading_shadow_vert_storage.h"
 #include "embedded/fading_shadow_vert_texel.h"
 #include "embedded/fading_vert_storage.h"
 #include "embedded/fading_vert_texel.h"
+#include "embedded/fading_worn_frag.h"
+#include "embedded/fading_worn_vert_storage.h"
+#include "embedded/fading_worn_vert_texel.h"
 #include "embedded/lit_frag.h"
 #include "embedded/lit_vert_storage.h"
 #include "embedded/lit_vert_texel.h"
@@ -36,9 +42,9 @@ namespace {
 
 // The level that each list of shadows draws: their outline forgives much.
 constexpr int kOtherLod[shared::CONTACTS - shared::CAMERA_LODS] = {2, 3, 4};
-// The first list of each cascade, and where the last one's end.
-constexpr int kCascadeLists[shared::SHADOW_CASCADES + 1] = {shared::NEAR_FINE, shared::FAR_SHADOWS,
-                                                            shared::CONTACTS};
+// The lists of each cascade.
+constexpr std::array kNearLists{shared::NEAR_FINE, shared::NEAR_COARSE};
+constexpr std::array kFarLists{shared::FAR_SHADOWS};
 
 using gpu::BindingKind;
 
@@ -138,13 +144,39 @@ gpu::GraphicsInfo fadingShadowInfo(const Setting& s, int influences, const Crowd
                   embedded::fading_shadow_frag());
 }
 
+gpu::GraphicsInfo fadingWornShading(int influences, const CrowdForms& forms, const Material& material,
+                                    int has) {
+  return shadedBy(wornShading(influences, forms, material, has), "fading worn crowd",
+                  {embedded::fading_worn_vert_texel(), embedded::fading_worn_vert_storage()},
+                  embedded::fading_worn_frag());
+}
+
+gpu::GraphicsInfo fadingCutoutInfo(const Setting& s, int influences, const CrowdForms& forms,
+                                   const Material& material, int has) {
+  return shadedBy(cutoutInfo(s, influences, forms, material, has), "fading cutout shadow",
+                  {embedded::fading_cutout_vert_texel(), embedded::fading_cutout_vert_storage()},
+                  embedded::fading_cutout_frag());
+}
+
 CrowdForms formsOf(const crowd::Kind& kind) {
   return {
       .matrices = crowd::traitsOf(kind.controller).playsClips, .tinted = kind.tinted, .stumps = kind.hurts};
 }
 
-// The lists that draw meshes, but for those that fade.
-constexpr int kMeshLists = shared::CONTACTS;
+// The camera's lists, and all that draw meshes.
+constexpr std::array kCameraLists{0, 1, 2, 3, 4};
+static_assert(kCameraLists.size() == shared::CAMERA_LODS);
+constexpr std::array kMeshLists{0,
+                                1,
+                                2,
+                                3,
+                                4,
+                                shared::NEAR_FINE,
+                                shared::NEAR_COARSE,
+                                shared::FAR_SHADOWS,
+                                shared::FADING,
+                                shared::NEAR_FADING,
+                                shared::FAR_FADING};
 // The level that a list draws: of the camera's each its own; what fades goes on as it was.
 int levelOf(int list) {
   if (list == shared::FADING) return shared::FIRST_VERTEX_LIT;
@@ -152,6 +184,9 @@ int levelOf(int list) {
   if (list == shared::FAR_FADING) return levelOf(shared::FAR_SHADOWS);
   return list < shared::CAMERA_LODS ? list : kOtherLod[list - shared::CAMERA_LODS];
 }
+
+// The place of a part's draw in a list among those of a kind with so many parts.
+size_t partDraw(size_t parts, int list, size_t part) { return size_t(list) * parts + part; }
 
 VkDrawIndexedIndirectCommand commandOf(const MeshLod& lod) {
   return {.indexCount = lod.indexCount,
@@ -212,21 +247,20 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
     kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
     kind.mesh =
         uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
-    kind.draw = drawPipeline(s, crowdShading(kind.mesh.influences, formsOf(source)));
-    kind.lit = drawPipeline(s, litShading(kind.mesh.influences, formsOf(source)));
-    kind.shadow = {s.context, shadowInfo(s, kind.mesh.influences, formsOf(source))};
+    const int influences = kind.mesh.influences;
+    kind.passes[kDraw] = drawPipeline(s, crowdShading(influences, formsOf(source)));
+    kind.passes[kShadow] = {s.context, shadowInfo(s, influences, formsOf(source))};
+    kind.lit = drawPipeline(s, litShading(influences, formsOf(source)));
     kind.contact = Contact(s, source);
     if (!clips) {
       if (!splats_) splats_ = Splats(s);
       kind.splat = splats_.makeKind(s, source, kind.mesh.radius);
     }
-    if (textures) makeParts(s, source, *textures, kind);
-    // A mesh with materials lacks the vertex colours with which it would fade.
-    kind.splat.fades = kind.splat && kind.parts.empty();
-    if (kind.splat.fades) {
-      kind.fading = drawPipeline(s, fadingShading(kind.mesh.influences, formsOf(source)));
-      kind.fadingShadow = {s.context, fadingShadowInfo(s, kind.mesh.influences, formsOf(source))};
+    if (kind.splat) {
+      kind.passes[kFading] = drawPipeline(s, fadingShading(influences, formsOf(source)));
+      kind.passes[kFadingShadow] = {s.context, fadingShadowInfo(s, influences, formsOf(source))};
     }
+    if (textures) makeParts(s, source, *textures, kind);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
       Page page;
@@ -244,16 +278,13 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       draw.push_back({shared::DRAW_TINT, &tint});
       draw.push_back({shared::DRAW_GROUND, &s.ground, s.groundSampler});
       draw.push_back({shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()});
-      page.shadow = kind.shadow.bind(s.context, shadow);
-      page.draw = kind.draw.bind(s.context, draw);
+      const ByPass<std::vector<gpu::Binding>> lists{draw, draw, shadow, shadow};
+      for (size_t pass = 0; pass < kPasses; ++pass)
+        if (kind.passes[pass]) page.passes[pass] = kind.passes[pass].bind(s.context, lists[pass]);
       page.lit = kind.lit.bind(s.context, draw);
-      if (kind.splat.fades) {
-        page.fading = kind.fading.bind(s.context, draw);
-        page.fadingShadow = kind.fadingShadow.bind(s.context, shadow);
-      }
       if (kind.splat) page.splat = splats_.bind(s, kind.splat, body, pose, tint, page.culled);
       if (kind.contact) page.contact = kind.contact.makePage(s, body, pose);
-      if (!kind.parts.empty()) bindParts(s, *textures, shadow, draw, kind, page);
+      if (!kind.parts.empty()) bindParts(s, *textures, lists, kind, page);
       kind.pages.push_back(std::move(page));
     }
     kinds_.push_back(std::move(kind));
@@ -278,38 +309,41 @@ void CrowdDrawing::makeParts(const Setting& s, const crowd::Kind& source, const 
     worn.textures = has;
     worn.cutout = cutout;
     worn.doubleSided = material.doubleSided;
-    worn.draw = drawPipeline(s, wornShading(kind.mesh.influences, forms, material, has));
-    if (cutout) worn.shadow = {s.context, cutoutInfo(s, kind.mesh.influences, forms, material, has)};
+    const int influences = kind.mesh.influences;
+    worn.passes[kDraw] = drawPipeline(s, wornShading(influences, forms, material, has));
+    if (cutout) worn.passes[kShadow] = {s.context, cutoutInfo(s, influences, forms, material, has)};
+    if (!kind.splat) continue;
+    worn.passes[kFading] = drawPipeline(s, fadingWornShading(influences, forms, material, has));
+    if (cutout)
+      worn.passes[kFadingShadow] = {s.context, fadingCutoutInfo(s, influences, forms, material, has)};
   }
 }
 
-const gpu::GraphicsPipeline& CrowdDrawing::drawOf(const Kind& kind, size_t part) {
+const gpu::GraphicsPipeline* CrowdDrawing::wornOf(const Kind& kind, size_t part, Pass pass) {
   const int worn = kind.parts[part].worn;
-  return worn == -1 ? kind.draw : kind.worn[size_t(worn)].draw;
-}
-
-const gpu::GraphicsPipeline& CrowdDrawing::shadowOf(const Kind& kind, size_t part) {
-  const int worn = kind.parts[part].worn;
-  return worn == -1 || !kind.worn[size_t(worn)].cutout ? kind.shadow : kind.worn[size_t(worn)].shadow;
+  if (worn == -1) return nullptr;
+  const gpu::GraphicsPipeline& pipeline = kind.worn[size_t(worn)].passes[pass];
+  return pipeline ? &pipeline : nullptr;
 }
 
 // Part draws never change but for their counts of agents, which countParts() copies.
 void CrowdDrawing::bindParts(const Setting& s, const Textures& textures,
-                             const std::vector<gpu::Binding>& shadow, const std::vector<gpu::Binding>& draw,
-                             const Kind& kind, Page& page) const {
+                             const ByPass<std::vector<gpu::Binding>>& lists, const Kind& kind,
+                             Page& page) const {
   for (size_t p = 0; p < kind.parts.size(); ++p) {
-    const auto bound = [&](const gpu::GraphicsPipeline& pipeline, const gpu::GraphicsPipeline& kinds,
-                           std::vector<gpu::Binding> list) {
-      if (&pipeline == &kinds) return gpu::Bindings();
+    ByPass<gpu::Bindings>& bindings = page.parts.emplace_back();
+    for (const Pass pass : {kDraw, kFading, kShadow, kFadingShadow}) {
+      const gpu::GraphicsPipeline* pipeline = wornOf(kind, p, pass);
+      if (pipeline == nullptr) continue;
+      std::vector<gpu::Binding> list = lists[pass];
       textures.bind(size_t(kind.mesh.parts[p].material), list);
-      return pipeline.bind(s.context, list);
-    };
-    page.drawPart.push_back(bound(drawOf(kind, p), kind.draw, draw));
-    page.shadowPart.push_back(bound(shadowOf(kind, p), kind.shadow, shadow));
+      bindings[pass] = pipeline->bind(s.context, list);
+    }
   }
-  std::vector<VkDrawIndexedIndirectCommand> draws;
-  for (int list = 0; list < kMeshLists; ++list)
-    for (const MeshPart& part : kind.mesh.parts) draws.push_back(commandOf(part.lods[size_t(levelOf(list))]));
+  std::vector<VkDrawIndexedIndirectCommand> draws(size_t(kMeshLists.back() + 1) * kind.parts.size());
+  for (const int list : kMeshLists)
+    for (size_t p = 0; p < kind.parts.size(); ++p)
+      draws[partDraw(kind.parts.size(), list, p)] = commandOf(kind.mesh.parts[p].lods[size_t(levelOf(list))]);
   page.partDraws =
       gpu::Buffer(s.context, draws.size() * sizeof draws[0], "part draws", gpu::BufferUse::indirect);
   gpu::upload(s.context, page.partDraws, draws);
@@ -319,10 +353,7 @@ void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
   for (const Kind& kind : kinds_)
     for (const Page& page : kind.pages) {
       VkDrawIndexedIndirectCommand draws[shared::INSTANCE_LISTS] = {};
-      for (int list = 0; list < kMeshLists; ++list)
-        draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
-      for (const int list : {shared::FADING, shared::NEAR_FADING, shared::FAR_FADING})
-        draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
+      for (const int list : kMeshLists) draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
       for (const int list : {shared::SPLATS, shared::SHOWN})
         draws[list] = std::bit_cast<VkDrawIndexedIndirectCommand>(ListDispatch{});
       cmd.updateBuffer(page.culled.commands.handle(), 0, sizeof draws, draws);
@@ -373,10 +404,10 @@ void CrowdDrawing::countParts(vk::CommandBuffer cmd) const {
   gpu::computeToTransfer(cmd);
   for (const Kind& kind : kinds_) {
     std::vector<vk::BufferCopy> copies;
-    for (vk::DeviceSize list = 0; list < vk::DeviceSize(kMeshLists); ++list)
-      for (vk::DeviceSize part = 0; part < kind.parts.size(); ++part)
-        copies.push_back({.srcOffset = list * stride + count,
-                          .dstOffset = (list * kind.parts.size() + part) * stride + count,
+    for (const int list : kMeshLists)
+      for (size_t part = 0; part < kind.parts.size(); ++part)
+        copies.push_back({.srcOffset = vk::DeviceSize(list) * stride + count,
+                          .dstOffset = partDraw(kind.parts.size(), list, part) * stride + count,
                           .size = sizeof(uint32_t)});
     for (const Page& page : kind.pages) {
       if (kind.contact) kind.contact.count(cmd, page.contact, page.culled);
@@ -387,26 +418,14 @@ void CrowdDrawing::countParts(vk::CommandBuffer cmd) const {
 }
 
 void CrowdDrawing::drawShadows(vk::CommandBuffer cmd, int cascade) const {
+  const bool isNear = cascade == 0;
+  const std::array fading{isNear ? shared::NEAR_FADING : shared::FAR_FADING};
+  const auto lists = isNear ? std::span<const int>(kNearLists) : std::span<const int>(kFarLists);
   for (uint32_t k = 0; k < kinds_.size(); ++k)
     for (const Page& page : kinds_[k].pages) {
       const shared::CrowdConstants constants = constantsOf(k, page, shared::VIEW_CAMERA + 1 + cascade);
-      const int first = kCascadeLists[cascade], end = kCascadeLists[cascade + 1];
-      if (kinds_[k].splat.fades) {
-        kinds_[k].fadingShadow.use(cmd, page.fadingShadow, gpu::bytesOf(constants));
-        drawList(cmd, kinds_[k], page, cascade == 0 ? shared::NEAR_FADING : shared::FAR_FADING);
-      }
-      const auto cutout = [](const Worn& worn) { return worn.cutout; };
-      if (std::ranges::none_of(kinds_[k].worn, cutout)) {
-        kinds_[k].shadow.use(cmd, page.shadow, gpu::bytesOf(constants));
-        for (int list = first; list < end; ++list) drawList(cmd, kinds_[k], page, list);
-        continue;
-      }
-      for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
-        const gpu::GraphicsPipeline& pipeline = shadowOf(kinds_[k], p);
-        const bool own = &pipeline != &kinds_[k].shadow;
-        pipeline.use(cmd, own ? page.shadowPart[p] : page.shadow, gpu::bytesOf(constants));
-        for (int list = first; list < end; ++list) drawListPart(cmd, kinds_[k], page, list, p);
-      }
+      if (kinds_[k].splat) drawPass(cmd, kinds_[k], page, kFadingShadow, fading, constants);
+      drawPass(cmd, kinds_[k], page, kShadow, lists, constants);
     }
 }
 
@@ -445,28 +464,33 @@ void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
   for (uint32_t k = 0; k < kinds_.size(); ++k)
     for (const Page& page : kinds_[k].pages) {
       const shared::CrowdConstants constants = constantsOf(k, page, shared::VIEW_CAMERA);
-      if (kinds_[k].parts.empty()) {
-        for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) {
-          if (lod == 0) kinds_[k].draw.use(cmd, page.draw, gpu::bytesOf(constants));
-          if (lod == shared::FIRST_VERTEX_LIT) kinds_[k].lit.use(cmd, page.lit, gpu::bytesOf(constants));
-          drawList(cmd, kinds_[k], page, lod);
-        }
-      }
-      if (kinds_[k].splat.fades) {
-        kinds_[k].fading.use(cmd, page.fading, gpu::bytesOf(constants));
-        drawList(cmd, kinds_[k], page, shared::FADING);
-      }
-      for (size_t p = 0; p < kinds_[k].parts.size(); ++p) {
-        const gpu::GraphicsPipeline& pipeline = drawOf(kinds_[k], p);
-        const bool own = &pipeline != &kinds_[k].draw;
-        pipeline.use(cmd, own ? page.drawPart[p] : page.draw, gpu::bytesOf(constants));
-        for (int lod = 0; lod < shared::CAMERA_LODS; ++lod) {
-          if (lod == shared::FIRST_VERTEX_LIT && !own)
-            kinds_[k].lit.use(cmd, page.lit, gpu::bytesOf(constants));
-          drawListPart(cmd, kinds_[k], page, lod, p);
-        }
-      }
+      drawPass(cmd, kinds_[k], page, kDraw, kCameraLists, constants);
+      if (kinds_[k].splat) drawPass(cmd, kinds_[k], page, kFading, std::array{shared::FADING}, constants);
     }
+}
+
+void CrowdDrawing::drawPass(vk::CommandBuffer cmd, const Kind& kind, const Page& page, Pass pass,
+                            std::span<const int> lists, const shared::CrowdConstants& constants) const {
+  const auto useOwn = [&](int list) {
+    if (list == lists.front()) kind.passes[pass].use(cmd, page.passes[pass], gpu::bytesOf(constants));
+    if (pass == kDraw && list == shared::FIRST_VERTEX_LIT)
+      kind.lit.use(cmd, page.lit, gpu::bytesOf(constants));
+  };
+  if (std::ranges::none_of(kind.worn, [&](const Worn& worn) { return bool(worn.passes[pass]); })) {
+    for (const int list : lists) {
+      useOwn(list);
+      drawList(cmd, kind, page, list);
+    }
+    return;
+  }
+  for (size_t p = 0; p < kind.parts.size(); ++p) {
+    const gpu::GraphicsPipeline* worn = wornOf(kind, p, pass);
+    if (worn) worn->use(cmd, page.parts[p][pass], gpu::bytesOf(constants));
+    for (const int list : lists) {
+      if (!worn) useOwn(list);
+      drawListPart(cmd, kind, page, list, p);
+    }
+  }
 }
 
 void CrowdDrawing::drawContacts(vk::CommandBuffer cmd) const {
@@ -498,10 +522,9 @@ void CrowdDrawing::drawListPart(vk::CommandBuffer cmd, const Kind& kind, const P
                                 size_t part) const {
   if (kind.mesh.parts[part].lods[size_t(levelOf(list))].indexCount == 0) return;
   bindBuffers(cmd, kind, page, list);
-  cmd.drawIndexedIndirect(
-      page.partDraws.handle(),
-      (vk::DeviceSize(list) * kind.parts.size() + part) * sizeof(VkDrawIndexedIndirectCommand), 1,
-      sizeof(VkDrawIndexedIndirectCommand));
+  cmd.drawIndexedIndirect(page.partDraws.handle(),
+                          partDraw(kind.parts.size(), list, part) * sizeof(VkDrawIndexedIndirectCommand), 1,
+                          sizeof(VkDrawIndexedIndirectCommand));
 }
 
 }  // namespace skitter::render

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 
 #include "crowd/herd.h"
 #include "render/contact.h"
@@ -52,21 +54,27 @@ class CrowdDrawing {
   PictureCounts counts(const gpu::Context&) const;
 
  private:
+  // How meshes are drawn: in the camera's sight and in shadow maps, each also for what goes over to splats.
+  enum Pass { kDraw, kFading, kShadow, kFadingShadow, kPasses };
+  template <class T>
+  using ByPass = std::array<T, kPasses>;
   struct Page {
     uint32_t firstAgent = 0;
     Interpolation::Page shown;  // where agents have rates of their own
     CulledPage culled;
-    gpu::Bindings draw, lit, shadow, splat, fading, fadingShadow;
+    ByPass<gpu::Bindings> passes;
+    gpu::Bindings lit, splat;
     Contact::Page contact;
-    // For a kind with materials: the indirect draws of each list, part by part, and each part's bindings.
+    // For a kind with materials: the indirect draws of each list, part by part, and the bindings of each
+    // part's pipelines.
     gpu::Buffer partDraws;
-    std::vector<gpu::Bindings> drawPart, shadowPart;
+    std::vector<ByPass<gpu::Bindings>> parts;
   };
-  // Pipelines of materials that differ in numbers and images alone.
+  // Pipelines of materials that differ in numbers and images alone; none where the kind's own serve.
   struct Worn {
     int textures = 0;  // Textures::has
     bool cutout = false, doubleSided = false;
-    gpu::GraphicsPipeline draw, shadow;  // the shadow's is none where no light falls through
+    ByPass<gpu::GraphicsPipeline> passes;
   };
   // How a part of a mesh is drawn: by one of `Kind::worn`, or, where it is none (-1), by the kind's own.
   struct Part {
@@ -75,7 +83,8 @@ class CrowdDrawing {
   struct Kind {
     uint32_t palette = 0;
     Mesh mesh;
-    gpu::GraphicsPipeline draw, lit, shadow, fading, fadingShadow;
+    ByPass<gpu::GraphicsPipeline> passes;
+    gpu::GraphicsPipeline lit;
     Contact contact;
     Splats::Kind splat;
     std::vector<Part> parts;  // as the mesh's
@@ -83,12 +92,14 @@ class CrowdDrawing {
     std::vector<Page> pages;
   };
   void makeParts(const Setting&, const crowd::Kind&, const Textures&, Kind&) const;
-  static const gpu::GraphicsPipeline& drawOf(const Kind&, size_t part);
-  static const gpu::GraphicsPipeline& shadowOf(const Kind&, size_t part);
-  void bindParts(const Setting&, const Textures&, const std::vector<gpu::Binding>& shadow,
-                 const std::vector<gpu::Binding>& draw, const Kind&, Page&) const;
+  // The pipeline of a part's material; null where the kind's own serves.
+  static const gpu::GraphicsPipeline* wornOf(const Kind&, size_t part, Pass);
+  void bindParts(const Setting&, const Textures&, const ByPass<std::vector<gpu::Binding>>&, const Kind&,
+                 Page&) const;
   void drawList(vk::CommandBuffer, const Kind&, const Page&, int list) const;
   void drawListPart(vk::CommandBuffer, const Kind&, const Page&, int list, size_t part) const;
+  void drawPass(vk::CommandBuffer, const Kind&, const Page&, Pass, std::span<const int> lists,
+                const shared::CrowdConstants&) const;
   void bindBuffers(vk::CommandBuffer, const Kind&, const Page&, int list) const;
 
   bool hasSplats() const;

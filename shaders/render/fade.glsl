@@ -9,6 +9,9 @@ const uint FADED = 16u;
 // Where the steps of an instance of a fading list lie, above the agent's number: a crowd has at most 2^24.
 const int FADE_SHIFT = 24;
 
+// Where an instance's steps are handed on, after all else that vertex shaders hand on.
+const int FADE_LOCATION = 7;
+
 // How many of the steps are done at a radius of so many pixels.
 uint fadeOf(float pixels, float limit) {
   return uint(clamp((limit - pixels) / (FADE_SHARE * limit), 0.0, 1.0) * FADE_STEPS);

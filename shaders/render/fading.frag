@@ -3,7 +3,7 @@
 // What is left of an agent, or of its shadow, that goes over to splats.
 #include "fade.glsl"
 
-layout(location = 1) flat in uint fade;
+layout(location = FADE_LOCATION) flat in uint fade;
 #ifndef SHADOW
 layout(location = 0) in vec3 colour;
 layout(location = 0) out vec4 outColour;

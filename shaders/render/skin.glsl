@@ -13,7 +13,7 @@ LOAD4_BUFFER(DRAW_POSE, poses)
 #ifdef FADES
 #include "fade.glsl"
 layout(location = 0) in uint instance;
-layout(location = 1) flat out uint outFade;
+layout(location = FADE_LOCATION) flat out uint outFade;
 uint agent = instance & ((1u << FADE_SHIFT) - 1u);
 #else
 layout(location = 0) in uint agent;

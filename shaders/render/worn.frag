@@ -6,6 +6,10 @@
 #include "shadow.glsl"
 #include "material.glsl"
 #include "tint.h"
+#ifdef FADES
+#include "fade.glsl"
+layout(location = FADE_LOCATION) flat in uint fade;
+#endif
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 wornNormal;
@@ -62,5 +66,8 @@ void main() {
   vec3 shaded = SUN_LIGHT * lit * reflected(reflector, normal, toEye, sun) + ambient * open + glowing;
   // After every look-up, whose level follows from the pixels beside.
   if (CUTOUT && base.a < material.emissive.w) discard;
+#ifdef FADES
+  if (isFaded(uvec2(gl_FragCoord.xy), fade)) discard;
+#endif
   outColour = vec4(developed(hazed(shaded, -toEye, away, picture.tile.w, sun)), 1.0);
 }

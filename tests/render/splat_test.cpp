@@ -409,5 +409,52 @@ TEST_P(SplatTest, LookAsTheTrianglesDid) {
   }
 }
 
+// Nor where it wears textures: at the first step it is the mesh that it was, pixel by pixel, and then less
+// and less of it. Its shadow likewise.
+TEST_P(SplatTest, GoOverByAndByInTextures) {
+  Scene made = scene(1);
+  made.herds[0].rig = SKITTER_ASSETS "/piebald.glb";
+  made.herds[0].goal.kind = Goal::Kind::none;
+  const Heightfield ground = level();
+  Crowd crowd(device(), ground, made);
+  for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
+  const glm::dvec3 at = placeOf(gpu::download<glm::vec4>(context(), implOf(crowd).kinds[0].pages[0].body)[0]);
+  const double radius = double(crowd::radiusOf(implOf(crowd).kinds.front().rig));
+  // The first draws a mesh at all sizes below, the last one splats.
+  Renderer finer(device(), crowd, 320, 200, {.detail = 1.15f}), between(device(), crowd, 320, 200),
+      coarser(device(), crowd, 320, 200, {.detail = 0.85f});
+  for (const double limit : {double(kSplatPixels), double(kShadePixels)})
+    for (const double share : {0.998, 0.95, 0.904, 0.898}) {
+      SCOPED_TRACE(std::to_string(share) + " of " + std::to_string(limit) + " pixels");
+      const double away = radius * 200 / (2 * std::tan(0.15)) / (limit * share);
+      const glm::dvec3 eye = at + away * glm::normalize(glm::dvec3(0.6, 0.5, 0.7));
+      std::vector<std::vector<uint8_t>> pictures;
+      for (Renderer* one : {&finer, &between, &coarser}) {
+        device().run([&](VkCommandBuffer cmd) {
+          one->record(cmd, {.eye = glm::vec3(eye), .target = glm::vec3(at), .fieldOfView = 0.3f});
+        });
+        pictures.push_back(one->download());
+      }
+      const auto apart = [&](size_t a, size_t b) {
+        int sum = 0;
+        for (size_t i = 0; i < pictures[a].size(); ++i)
+          sum += std::abs(int(pictures[a][i]) - int(pictures[b][i]));
+        return sum;
+      };
+      const int all = apart(0, 2);
+      EXPECT_GT(all, 300);
+      if (share > 0.99) {
+        EXPECT_EQ(apart(0, 1), 0);
+      } else if (share < 0.9) {
+        EXPECT_EQ(apart(1, 2), 0);
+      } else if (share < 0.91) {
+        EXPECT_LT(apart(1, 2), all / 3);  // one pixel of sixteen is left
+      } else {
+        EXPECT_GT(apart(0, 1), all / 4);
+        EXPECT_GT(apart(1, 2), all / 4);
+      }
+    }
+}
+
 }  // namespace
 }  // namespace skitter::render
