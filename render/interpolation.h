@@ -16,15 +16,15 @@ class Interpolation {
 
   // The records of a page as pictures show them.
   struct Page {
-    gpu::Buffer body, pose;  // shaders/render/interpolation.h; as the record `pose`
+    gpu::Buffer body, pose;  // InterpolationConstants says what is in them
     gpu::Bindings bodies, poses;
   };
-  // What the crowd has of a page: records of as many agents, of `palette` pose entries each.
+  // What the crowd has of a page.
   struct Source {
     const gpu::Buffer &body, &pose, &rate;
   };
   Page makePage(const gpu::Context&, const Source&) const;
-  // After the page's lists are made, which lie about the shown bodies.
+  // The lists are the page's own, which the cull makes of the shown bodies.
   void bindLists(const gpu::Context&, const Source&, const CulledPage&, Page&) const;
 
   // Before the cull and a computeToCompute().
