@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <queue>
 #include <tuple>
@@ -198,18 +199,21 @@ std::vector<SkinVertex> recoloured(std::vector<SkinVertex> vertices, const std::
   // The shortest ways from all that are left at once (Dijkstra 1959).
   using Reached = std::tuple<float, uint32_t, uint32_t>;  // way, vertex, where it begins
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
-  for (const uint32_t vertex : left) next.emplace(0.0f, vertex, vertex);
-  std::vector<bool> known(vertices.size(), false);
+  std::vector<float> ways(vertices.size(), std::numeric_limits<float>::max());
+  const auto reach = [&](uint32_t vertex, float way, uint32_t start) {
+    if (way >= ways[vertex]) return;
+    ways[vertex] = way;
+    next.emplace(way, vertex, start);
+  };
+  for (const uint32_t vertex : left) reach(vertex, 0, vertex);
   std::vector<glm::vec4> sums(vertices.size(), glm::vec4(0));  // colour and area
   while (!next.empty()) {
     const auto [way, vertex, start] = next.top();
     next.pop();
-    if (known[vertex]) continue;
-    known[vertex] = true;
+    if (way > ways[vertex]) continue;
     sums[start] += areas[vertex] * glm::vec4(vertices[vertex].colour, 1);
     for (const uint32_t other : neighbours[vertex])
-      if (!known[other])
-        next.emplace(way + glm::distance(vertices[vertex].position, vertices[other].position), other, start);
+      reach(other, way + glm::distance(vertices[vertex].position, vertices[other].position), start);
   }
   for (size_t v = 0; v < vertices.size(); ++v)
     if (sums[v].w > 0) vertices[v].colour = glm::vec3(sums[v]) / sums[v].w;
