@@ -136,12 +136,39 @@ class SplatTest : public test::GpuLoadTest {
     return made;
   }
 
+  void walk(Crowd& crowd) {
+    for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
+  }
+
+  // One agent that stands.
+  struct Standing {
+    SplatTest& test;
+    Crowd crowd;
+    glm::dvec3 at;
+
+    Standing(SplatTest& from, const Heightfield& ground, const Scene& made)
+        : test(from), crowd(from.device(), ground, made) {
+      test.walk(crowd);
+      at = placeOf(gpu::download<glm::vec4>(test.context(), implOf(crowd).kinds[0].pages[0].body)[0]);
+    }
+    // Seen from the sun, so that its radius has so many pixels of a picture 200 pixels high.
+    std::vector<uint8_t> picture(Renderer& by, double pixels) const {
+      const double radius = double(crowd::radiusOf(implOf(crowd).kinds.front().rig));
+      const double away = radius * 200 / (2 * std::tan(0.15)) / pixels;
+      const glm::dvec3 eye = at + away * glm::normalize(glm::dvec3(0.6, 0.5, 0.7));
+      test.device().run([&](VkCommandBuffer cmd) {
+        by.record(cmd, {.eye = glm::vec3(eye), .target = glm::vec3(at), .fieldOfView = 0.3f});
+      });
+      return by.download();
+    }
+  };
+
   // `shade` is the depth of all that casts shadows: 1 is nothing, 0 is something between everybody and the
   // sun.
   Drawn draw(const Scene& made, const View& view, bool fades = false, float shade = 1) {
     const Heightfield ground = level();
     Crowd crowd(device(), ground, made);
-    for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
+    walk(crowd);
     const Crowd::Impl& impl = implOf(crowd);
     const LightModel light = lightModel(made.light);
     const gpu::Buffer picture(context(), sizeof(shared::Picture), "picture", gpu::BufferUse::uniform);
@@ -379,21 +406,13 @@ TEST_P(SplatTest, LookAsTheTrianglesDid) {
   Scene made = scene(1);
   made.herds[0].goal.kind = Goal::Kind::none;
   const Heightfield ground = level();
-  Crowd crowd(device(), ground, made);
-  for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
-  const glm::dvec3 at = placeOf(gpu::download<glm::vec4>(context(), implOf(crowd).kinds[0].pages[0].body)[0]);
-  const double radius = double(crowd::radiusOf(implOf(crowd).kinds.front().rig));
-  Renderer renderer(device(), crowd, 320, 200), finer(device(), crowd, 320, 200, {.detail = 1.2f});
+  const Standing one(*this, ground, made);
+  Renderer renderer(device(), one.crowd, 320, 200), finer(device(), one.crowd, 320, 200, {.detail = 1.2f});
   for (const double share : {0.998, 0.95, 0.898}) {
-    const double away = radius * 200 / (2 * std::tan(0.15)) / (double(kSplatPixels) * share);
-    const glm::dvec3 eye = at + away * glm::normalize(glm::dvec3(0.6, 0.5, 0.7));
     std::vector<std::vector<uint8_t>> pictures;
-    for (Renderer* one : {&finer, &renderer}) {
-      device().run([&](VkCommandBuffer cmd) {
-        one->record(cmd, {.eye = glm::vec3(eye), .target = glm::vec3(at), .fieldOfView = 0.3f});
-      });
-      EXPECT_EQ(one->counts().splats, one == &finer ? 0u : 1u);
-      pictures.push_back(one->download());
+    for (Renderer* by : {&finer, &renderer}) {
+      pictures.push_back(one.picture(*by, double(kSplatPixels) * share));
+      EXPECT_EQ(by->counts().splats, by == &finer ? 0u : 1u);
     }
     double mean[3] = {}, apart = 0;
     int pixels = 0;
@@ -416,25 +435,15 @@ TEST_P(SplatTest, GoOverByAndByInTextures) {
   made.herds[0].rig = SKITTER_ASSETS "/piebald.glb";
   made.herds[0].goal.kind = Goal::Kind::none;
   const Heightfield ground = level();
-  Crowd crowd(device(), ground, made);
-  for (int i = 0; i < 20; ++i) device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, 1.0f / 60); });
-  const glm::dvec3 at = placeOf(gpu::download<glm::vec4>(context(), implOf(crowd).kinds[0].pages[0].body)[0]);
-  const double radius = double(crowd::radiusOf(implOf(crowd).kinds.front().rig));
+  const Standing one(*this, ground, made);
   // The first draws a mesh at all sizes below, the last one splats.
-  Renderer finer(device(), crowd, 320, 200, {.detail = 1.15f}), between(device(), crowd, 320, 200),
-      coarser(device(), crowd, 320, 200, {.detail = 0.85f});
+  Renderer finer(device(), one.crowd, 320, 200, {.detail = 1.15f}), between(device(), one.crowd, 320, 200),
+      coarser(device(), one.crowd, 320, 200, {.detail = 0.85f});
   for (const double limit : {double(kSplatPixels), double(kShadePixels)})
     for (const double share : {0.998, 0.95, 0.904, 0.898}) {
       SCOPED_TRACE(std::to_string(share) + " of " + std::to_string(limit) + " pixels");
-      const double away = radius * 200 / (2 * std::tan(0.15)) / (limit * share);
-      const glm::dvec3 eye = at + away * glm::normalize(glm::dvec3(0.6, 0.5, 0.7));
       std::vector<std::vector<uint8_t>> pictures;
-      for (Renderer* one : {&finer, &between, &coarser}) {
-        device().run([&](VkCommandBuffer cmd) {
-          one->record(cmd, {.eye = glm::vec3(eye), .target = glm::vec3(at), .fieldOfView = 0.3f});
-        });
-        pictures.push_back(one->download());
-      }
+      for (Renderer* by : {&finer, &between, &coarser}) pictures.push_back(one.picture(*by, limit * share));
       const auto apart = [&](size_t a, size_t b) {
         int sum = 0;
         for (size_t i = 0; i < pictures[a].size(); ++i)
