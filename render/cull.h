@@ -7,7 +7,7 @@
 
 namespace skitter::render {
 
-// What lists that shaders go through have where the others have a draw: SPLATS and SHOWN.
+// Shaders go through the lists SPLATS and SHOWN, which have this where the others have a draw.
 struct ListDispatch {
   uint32_t unused = 0;
   uint32_t agents = 0;  // as many as a draw has instances

@@ -6,8 +6,8 @@
 
 namespace skitter::render {
 
-// Who does not tick in every tick of the crowd goes on in every picture all the same (docs/levels.md,
-// Pictures): from how the last picture showed the agent to how its last tick left it.
+// Moves agents on in every picture that do not tick in every tick of the crowd (docs/levels.md, Pictures):
+// from how the last picture showed an agent to how its last tick left it.
 class Interpolation {
  public:
   Interpolation() = default;
@@ -19,7 +19,7 @@ class Interpolation {
     gpu::Buffer body, pose;  // InterpolationConstants says what is in them
     gpu::Bindings bodies, poses;
   };
-  // What the crowd has of a page.
+  // The crowd's own records of a page.
   struct Source {
     const gpu::Buffer &body, &pose, &rate;
   };

@@ -31,16 +31,6 @@ layout(location = 2) out vec4 outColour;  // linear RGB; openness to the sky
 layout(location = 3) out float outSun;    // sunlight that hills leave
 #endif
 
-#ifdef LIT
-// One comparison for a vertex: what it lights is a few pixels wide.
-float sunlight(vec3 p, vec3 normal) {
-  vec3 nearAt = offSurface(0, p, normal, 3.0), farAt = offSurface(1, p, normal, 3.0);
-  bool isNear = inNearCascade(nearAt);
-  vec3 at = isNear ? nearAt : farAt;
-  return fadedShadow(p, compared(placeOnMap(at, isNear), at.z, texelOfMap()));
-}
-#endif
-
 void main() {
   Skinned s = skinned();
   vec3 toEye = picture.eye.xyz - s.position;
@@ -71,7 +61,7 @@ void main() {
   vec3 normal = normalize(s.normal);
   // On a sphere the rim's mean is 0.1. The triangles of a coarse one would spread that of the outline over all of it,
   // and so they would the sheen.
-  outColour = chitin(seen, normal, toEye / away, away, ground.w * sunlight(s.position, normal), 0.1, 0.0);
+  outColour = chitin(seen, normal, toEye / away, away, ground.w * sunlightOnce(s.position, normal, 3.0), 0.1, 0.0);
 #else
   outColour = seen;
   outSun = ground.w;

@@ -19,10 +19,12 @@ void main() {
   int at = agent * BODY_STRIDE;
   vec4 now = LOAD4(bodies, at), was = LOAD4(shown, at), state = LOAD4(shown, at + 1), rate = LOAD4(rates, agent);
 
-  // It arrives in the last picture before its next tick. Who was not shown in the last picture is there at once.
+  // It arrives in the last picture before its next tick, or at once if the last picture did not show it. The end is
+  // compared, not divided: Vulkan lets a device round n / n down.
   bool goesOn = constants.before >= 0.0 && state.y == constants.before;
-  float arrival = rate.z + exp2(rate.x) - 1.0, left = arrival - constants.before;
-  float share = goesOn && left > 0.0 ? clamp((constants.tick - constants.before) / left, 0.0, 1.0) : 1.0;
+  float arrival = rate.z + float(1 << int(rate.x)) - 1.0;
+  float ticks = constants.tick - constants.before, left = arrival - constants.before;
+  float share = goesOn && ticks < left ? ticks / left : 1.0;
   vec3 off = was.xyz - now.xyz +
              TILE_SIZE * vec3(tileX(was.w) - tileX(now.w), 0.0, tileZ(was.w) - tileZ(now.w));
   vec3 place = share < 1.0 ? now.xyz + (1.0 - share) * off : now.xyz;

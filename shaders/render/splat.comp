@@ -100,12 +100,8 @@ void main() {
   bool fades = constants.fades != 0u;
   uint fade = fades ? fadeOf(pixels, constants.splatPixels) : FADED;
   float shadeShare = fades ? float(fadeOf(pixels, constants.shadePixels)) / FADE_STEPS : 1.0;
-  // Looked up where the agent itself casts none.
-  vec3 clear = body + constants.radius * sun;
-  vec3 nearAt = offSurface(0, clear, sun, 0.0), farAt = offSurface(1, clear, sun, 0.0);
-  bool isNear = inNearCascade(nearAt);
-  vec3 shadowAt = isNear ? nearAt : farAt;
-  float lit = ground.w * fadedShadow(body, compared(placeOnMap(shadowAt, isNear), shadowAt.z, texelOfMap()));
+  // The agent's own shadow does not reach beyond its radius towards the sun.
+  float lit = ground.w * sunlightOnce(body + constants.radius * sun, sun, 0.0);
   bool casts = pixels < constants.shadePixels && steep > LEAST_SUN && lit > 0.5;
   mark(body, (casts ? 1.0 + MOST_WAY : 1.0) * pixels + 2.0);
   vec3 lifted = toEye * (0.012 + 2.0 * metresAPixel);

@@ -38,7 +38,7 @@ State operator*(double share, const State& s) {
   return part;
 }
 
-// What the crowd and the test know of an agent.
+// An agent as the crowd and the test know it.
 struct Agent {
   State now{};
   int level = 0;
@@ -106,7 +106,7 @@ class InterpolationTest : public test::GpuLoadTest {
       std::vector<uint32_t> list;
       for (uint32_t a = 0; a < count; ++a)
         if (random(0, 1) < 0.8) list.push_back(a);
-      upload(agents, body, pose, rate);
+      const std::vector<glm::vec4> records = upload(agents, body, pose, rate);
       std::vector<uint32_t> instances(size_t(count) * shared::INSTANCE_LISTS);
       std::ranges::copy(list, instances.begin() + long(count) * shared::SHOWN);
       std::vector<ListDispatch> commands(shared::INSTANCE_LISTS);
@@ -129,8 +129,12 @@ class InterpolationTest : public test::GpuLoadTest {
       const auto poses = gpu::download<glm::vec4>(context(), page.pose);
       for (uint32_t a = 0; a < count; ++a) {
         Agent& agent = agents[a];
-        // Who was not in the last picture is where its tick left it.
+        // An agent that was not in the last picture is where its tick left it.
         if (!before || agent.shown != before) agent.left = agent.arrives = 0;
+        const size_t at = size_t(a) * shared::BODY_STRIDE;
+        if (tick >= agent.arrives) {
+          EXPECT_EQ(bodies[at], records[at]) << named(seed, picture, a);
+        }
         expectPlace(agent.at(tick), bodies[size_t(a) * shared::BODY_STRIDE], seed, picture, a);
       }
       for (const uint32_t a : list) {
@@ -163,8 +167,9 @@ class InterpolationTest : public test::GpuLoadTest {
     }
   }
 
-  void upload(const std::vector<Agent>& agents, const gpu::Buffer& body, const gpu::Buffer& pose,
-              const gpu::Buffer& rate) {
+  // Returns the bodies.
+  std::vector<glm::vec4> upload(const std::vector<Agent>& agents, const gpu::Buffer& body,
+                                const gpu::Buffer& pose, const gpu::Buffer& rate) {
     std::vector<glm::vec4> bodies(agents.size() * shared::BODY_STRIDE), rates(agents.size()), poses;
     for (size_t a = 0; a < agents.size(); ++a) {
       const Agent& agent = agents[a];
@@ -183,6 +188,7 @@ class InterpolationTest : public test::GpuLoadTest {
     gpu::upload(context(), body, bodies);
     gpu::upload(context(), pose, poses);
     gpu::upload(context(), rate, rates);
+    return bodies;
   }
 
   static std::string named(uint32_t seed, int picture, uint32_t agent) {

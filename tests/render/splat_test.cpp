@@ -428,8 +428,8 @@ TEST_P(SplatTest, LookAsTheTrianglesDid) {
   }
 }
 
-// Nor where it wears textures: at the first step it is the mesh that it was, pixel by pixel, and then less
-// and less of it. Its shadow likewise.
+// An agent in textures does not pop either: at the first step it is the mesh that it was, pixel by pixel,
+// then less and less of it. Its shadow likewise.
 TEST_P(SplatTest, GoOverByAndByInTextures) {
   Scene made = scene(1);
   made.herds[0].rig = SKITTER_ASSETS "/piebald.glb";
