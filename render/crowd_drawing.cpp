@@ -375,8 +375,7 @@ void CrowdDrawing::cull(vk::CommandBuffer cmd, uint64_t tick) {
     gpu::computeToCompute(cmd);
   }
   for (const Kind& kind : kinds_)
-    for (const Page& page : kind.pages)
-      cull_.record(cmd, page.culled, kind.mesh.radius, bool(kind.splat), kind.splat.fades);
+    for (const Page& page : kind.pages) cull_.record(cmd, page.culled, kind.mesh.radius, bool(kind.splat));
   if (interpolation_) {
     gpu::computeToIndirectAndCompute(cmd);
     for (const Kind& kind : kinds_)

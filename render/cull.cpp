@@ -36,15 +36,13 @@ CulledPage Cull::makePage(const gpu::Context& context, const gpu::Buffer& pictur
   return page;
 }
 
-void Cull::record(vk::CommandBuffer cmd, const CulledPage& page, float radius, bool splats,
-                  bool fades) const {
+void Cull::record(vk::CommandBuffer cmd, const CulledPage& page, float radius, bool splats) const {
   shared::CullConstants constants{.agents = page.agents,
                                   .radius = radius,
                                   .lodPixels = {},
                                   .contactPixels = kContactPixels / detail_,
                                   .splatPixels = splats ? kSplatPixels / detail_ : 0,
                                   .shadePixels = splats ? kShadePixels / detail_ : 0,
-                                  .fades = fades,
                                   .interpolates = page.interpolates};
   std::ranges::transform(kLodPixels, constants.lodPixels, [&](float pixels) { return pixels / detail_; });
   kernel_.dispatch(cmd, page.bindings, gpu::bytesOf(constants),

@@ -37,8 +37,8 @@ class Cull {
   // `interpolates`: whether there is the list SHOWN.
   CulledPage makePage(const gpu::Context&, const gpu::Buffer& picture, const gpu::Buffer& bodies,
                       uint32_t agents, bool interpolates = false) const;
-  // `splats`: whether small agents may be drawn as such; `fades`: whether they go over to them by and by.
-  void record(vk::CommandBuffer, const CulledPage&, float radius, bool splats, bool fades) const;
+  // `splats`: whether small agents may be drawn as such.
+  void record(vk::CommandBuffer, const CulledPage&, float radius, bool splats) const;
 
  private:
   gpu::Kernel kernel_;

@@ -131,7 +131,6 @@ void Splats::record(vk::CommandBuffer cmd, const Kind& kind, const gpu::Bindings
   constants.kind = of.kind;
   constants.agents = culled.agents;
   constants.radius = kind.radius;
-  constants.fades = kind.fades;
   kind.kernel.dispatchIndirect(cmd, page, gpu::bytesOf(constants), culled.commands,
                                groupsOffset(shared::SPLATS));
 }

@@ -22,8 +22,7 @@ class Splats {
   struct Kind {
     gpu::Kernel kernel;
     gpu::Buffer parts;
-    float radius = 0;   // about the body's position, metres
-    bool fades = true;  // whether its agents go over to splats by and by
+    float radius = 0;  // about the body's position, metres
     explicit operator bool() const { return bool(kernel); }
   };
   Kind makeKind(const Setting&, const crowd::Kind&, float radius) const;

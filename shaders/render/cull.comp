@@ -56,8 +56,8 @@ void main() {
   bool splat =
       seen && pixels < constants.splatPixels && ahead > LEAST_AHEAD * constants.radius && ahead < MOST_AHEAD;
   bool shade = splat && pixels < constants.shadePixels;
-  uint fade = constants.fades != 0u ? fadeOf(pixels, constants.splatPixels) : FADED;
-  uint shadeFade = constants.fades != 0u ? fadeOf(pixels, constants.shadePixels) : FADED;
+  uint fade = fadeOf(pixels, constants.splatPixels);
+  uint shadeFade = fadeOf(pixels, constants.shadePixels);
   if (seen) {
     uint list = 0u;
     for (int i = 0; i < CAMERA_LODS - 1; ++i) list += pixels < constants.lodPixels[i] ? 1u : 0u;

@@ -82,7 +82,6 @@ struct CullConstants {
   float contactPixels;               // the same of contacts
   float splatPixels;                 // the radius in pixels below which an agent is splats
   float shadePixels;                 // the same of its shadow
-  uint fades;                        // whether both begin by and by
   uint interpolates;                 // whether there is the list SHOWN
 };
 
@@ -108,7 +107,6 @@ struct SplatConstants {
   uint width, height;  // of the picture
   float splatPixels;   // this and the rest as in CullConstants
   float shadePixels;
-  uint fades;
 };
 
 // A shape between two ends, each relative to the rest start of a bone (entry of the pose palette).

@@ -97,9 +97,8 @@ void main() {
   float below = heightAt(heights, field, foldedAt(at, field.last).at).x - body.y;
   // Where the sun does not reach the ground nobody casts a shadow. The plane is not quite the ground that is drawn.
   float steep = dot(sun, slope);
-  bool fades = constants.fades != 0u;
-  uint fade = fades ? fadeOf(pixels, constants.splatPixels) : FADED;
-  float shadeShare = fades ? float(fadeOf(pixels, constants.shadePixels)) / FADE_STEPS : 1.0;
+  uint fade = fadeOf(pixels, constants.splatPixels);
+  float shadeShare = float(fadeOf(pixels, constants.shadePixels)) / FADE_STEPS;
   // The agent's own shadow does not reach beyond its radius towards the sun.
   float lit = ground.w * sunlightOnce(body + constants.radius * sun, sun, 0.0);
   bool casts = pixels < constants.shadePixels && steep > LEAST_SUN && lit > 0.5;

@@ -27,8 +27,7 @@ class CullTest : public test::GpuLoadTest {
  protected:
   // The lists that each agent is on.
   std::vector<Lists> cull(const shared::Picture& picture, const std::vector<glm::dvec3>& places,
-                          bool splats = false, float detail = 1, bool fades = false,
-                          bool interpolates = false) {
+                          bool splats = false, float detail = 1, bool interpolates = false) {
     std::vector<float> bodies(places.size() * shared::BODY_STRIDE * 4);
     for (size_t i = 0; i < places.size(); ++i) {
       const glm::dvec3 tile = glm::floor(places[i] / double(shared::TILE_SIZE));
@@ -46,8 +45,7 @@ class CullTest : public test::GpuLoadTest {
     const Cull cull(context(), detail);
     const CulledPage page = cull.makePage(context(), block, records, agents, interpolates);
     gpu::clear(context(), page.commands);
-    gpu::submitAndWait(context(),
-                       [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius, splats, fades); });
+    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius, splats); });
 
     const auto draws = gpu::download<VkDrawIndexedIndirectCommand>(context(), page.commands);
     const auto instances = gpu::download<uint32_t>(context(), page.instances);
@@ -173,7 +171,7 @@ TEST_P(CullTest, theRadiusInPixelsTellsHowFarAnAgentHasFaded) {
     std::vector<glm::dvec3> places{s.eye + onePixel / (1.005 * limit) * s.forward};
     for (int step = 0; step <= 16; ++step)
       places.push_back(s.eye + onePixel / (limit * (1 - 0.1 * (step + 0.5) / 16)) * s.forward);
-    const std::vector<Lists> found = cull(picture(), places, true, 1, true);
+    const std::vector<Lists> found = cull(picture(), places, true);
     for (size_t i = 0; i < places.size(); ++i) {
       const bool fades = i > 0 && i < 17;
       const auto isFading = [&](int list) { return limit == 25 ? list == 10 : list == 11 || list == 12; };
@@ -197,7 +195,10 @@ TEST_P(CullTest, detailMovesEveryThreshold) {
       const auto seen = [&](double pixels, bool splats, float detail) {
         Lists lists = cull(picture(), {s.eye + onePixel / pixels * s.forward}, splats, detail).front();
         // Which cascades hold it depends on where it is.
-        const bool casts = std::erase_if(lists, isShadow) > 0;
+        const auto inCascade = [](int list) {
+          return isShadow(list) || list == shared::NEAR_FADING || list == shared::FAR_FADING;
+        };
+        const bool casts = std::erase_if(lists, inCascade) > 0;
         if (casts) lists.push_back(-1);
         return lists;
       };
@@ -257,8 +258,8 @@ TEST_P(CullTest, whoIsOnAListIsInterpolated) {
     const double away = 110 * (1 + any(random));
     places.push_back(s.at(away, any(random), any(random)));
   }
-  const std::vector<Lists> without = cull(picture(), places, true, 1, true);
-  const std::vector<Lists> with = cull(picture(), places, true, 1, true, true);
+  const std::vector<Lists> without = cull(picture(), places, true);
+  const std::vector<Lists> with = cull(picture(), places, true, 1, true);
   size_t shown = 0, shadowsAlone = 0;
   for (size_t i = 0; i < places.size(); ++i) {
     Lists expected = without[i];

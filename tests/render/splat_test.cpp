@@ -165,7 +165,7 @@ class SplatTest : public test::GpuLoadTest {
 
   // `shade` is the depth of all that casts shadows: 1 is nothing, 0 is something between everybody and the
   // sun.
-  Drawn draw(const Scene& made, const View& view, bool fades = false, float shade = 1) {
+  Drawn draw(const Scene& made, const View& view, float shade = 1, float detail = 1) {
     const Heightfield ground = level();
     Crowd crowd(device(), ground, made);
     walk(crowd);
@@ -186,17 +186,17 @@ class SplatTest : public test::GpuLoadTest {
                           .depth = vk::Format::eD32Sfloat,
                           .samples = vk::SampleCountFlagBits::e1,
                           .extent = {kWidth, kHeight},
-                          .light = lightConstants(light)};
+                          .light = lightConstants(light),
+                          .detail = detail};
     const Composition composition = compose(view, light, ground, 0, 0, kWidth, kHeight, shadow.texels());
     gpu::upload(context(), picture, std::span(&composition.block, 1));
     const crowd::Kind& kind = impl.kinds.front();
     const crowd::Page& page = kind.pages.front();
     const float radius = crowd::radiusOf(kind.rig);
-    const Cull cull(context(), 1);
+    const Cull cull(context(), detail);
     const CulledPage culled = cull.makePage(context(), picture, page.body, page.agents);
     const Splats splats(setting);
-    Splats::Kind look = splats.makeKind(setting, kind, radius);
-    look.fades = fades;
+    const Splats::Kind look = splats.makeKind(setting, kind, radius);
     const gpu::Bindings bindings =
         splats.bind(setting, look, page.body, page.pose, kind.tinted ? page.tint : page.body, culled);
     std::vector<ListDispatch> commands(shared::INSTANCE_LISTS);
@@ -210,7 +210,7 @@ class SplatTest : public test::GpuLoadTest {
       gpu::transition(cmd, shadow.image(), gpu::ImageState::depth, gpu::ImageState::sampled);
       splats.prepare(cmd);
       gpu::transferToCompute(cmd);
-      cull.record(cmd, culled, radius, true, fades);
+      cull.record(cmd, culled, radius, true);
       gpu::computeToIndirectAndCompute(cmd);
       splats.record(cmd, look, bindings, culled,
                     {.view = 0, .palette = uint32_t(kind.rig.paletteSize()), .firstAgent = 0, .kind = 0});
@@ -363,7 +363,7 @@ TEST_P(SplatTest, ComePixelByPixel) {
     const View view{.eye = glm::vec3(at + away * glm::normalize(glm::dvec3(0.6, 0.5, 0.7))),
                     .target = glm::vec3(at),
                     .fieldOfView = 0.9f};
-    const Drawn whole = draw(made, view), half = draw(made, view, true);
+    const Drawn whole = draw(made, view, 1, 0.8f), half = draw(made, view);
     uint32_t drawn = 0, shaded = 0;
     for (uint32_t y = 0; y < kHeight; ++y)
       for (uint32_t x = 0; x < kWidth; ++x) {
@@ -385,7 +385,7 @@ TEST_P(SplatTest, ComePixelByPixel) {
 // Where something keeps the sun off they are dark, and cast no shadows of their own.
 TEST_P(SplatTest, LieInTheShadowsOfOthers) {
   const Scene made = scene(30);
-  const Drawn open = draw(made, kFar), shaded = draw(made, kFar, false, 0);
+  const Drawn open = draw(made, kFar), shaded = draw(made, kFar, 0);
   double before = 0, after = 0;
   const auto lightness = [](uint32_t low) {
     return (low >> 11) / 31.0 + (low >> 5 & 63) / 63.0 + (low & 31) / 31.0;
