@@ -265,7 +265,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       if (records.agents == 0) continue;
       Page page;
       page.firstAgent = records.firstAgent;
-      const Interpolation::Source live{records.body, records.pose, records.rate};
+      const Interpolation::Source live{records.body, records.pose, records.rate, clips};
       if (interpolation_) page.shown = interpolation_.makePage(s.context, live);
       const gpu::Buffer& body = interpolation_ ? page.shown.body : records.body;
       const gpu::Buffer& pose = interpolation_ ? page.shown.pose : records.pose;

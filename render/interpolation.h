@@ -17,11 +17,13 @@ class Interpolation {
   // The records of a page as pictures show them.
   struct Page {
     gpu::Buffer body, pose;  // InterpolationConstants says what is in them
+    bool matrices = false;
     gpu::Bindings bodies, poses;
   };
-  // The crowd's own records of a page.
+  // The crowd's own records of a page, and whether its poses are matrices, as those of clips.
   struct Source {
     const gpu::Buffer &body, &pose, &rate;
+    bool matrices = false;
   };
   Page makePage(const gpu::Context&, const Source&) const;
   // The lists are the page's own, which the cull makes of the shown bodies.
@@ -34,7 +36,9 @@ class Interpolation {
                    const shared::InterpolationConstants&) const;
 
  private:
-  gpu::Kernel bodies_, poses_;
+  const gpu::Kernel& kernelOf(const Page& page) const { return page.matrices ? matrices_ : poses_; }
+
+  gpu::Kernel bodies_, poses_, matrices_;
 };
 
 }  // namespace skitter::render

@@ -20,8 +20,8 @@ void checkKeyPoseSwing(const Setting& setting, const Moment& moment, Judge& judg
     const auto rates = springOf(moment.before, leg, setting.bones);
     const reference::SprungLeg expected =
         reference::poseSwing(setting.tuning, setting.keyPoses, limb, l, body, phase, directions, rates);
-    const auto bound =
-        tolerance::poseSwing(setting.tuning, setting.keyPoses, limb, l, body, directions, rates, expected);
+    const auto bound = tolerance::poseSwing(setting.tuning, setting.keyPoses, limb, l, body, directions,
+                                            rates, expected, static_cast<double>(moment.span));
     const reference::Foot foot = footOf(moment.after, leg);
     const reference::Chain chain = chainOf(moment.after, leg, setting.bones);
     const auto gotRates = springOf(moment.after, leg, setting.bones);

@@ -20,8 +20,9 @@ struct Bounds {
 
 // W errs by the clip's foot, turned to the world, and by the ground below it; a lock by the ground below
 // itself too, and by what its tile leaves of it.
-Bounds boundsOf(const Setting& setting, const reference::AgentBody& body, double clipFoot,
-                const PlantedFoot& expected, double reach) {
+Bounds boundsOf(const Setting& setting, const Moment& moment, double clipFoot, const PlantedFoot& expected,
+                double reach) {
+  const reference::AgentBody body = bodyOf(moment.after, moment.agent);
   const glm::dvec2 position = body.world();
   const auto ground = [&](const glm::dvec3& relative, double horizontal) {
     const auto relief =
@@ -30,8 +31,12 @@ Bounds boundsOf(const Setting& setting, const reference::AgentBody& body, double
   };
   Bounds bounds;
   const double place = clipFoot + tolerance::rotated(reach);
-  bounds.horizontal = place + tolerance::relative;
-  bounds.vertical = place + ground(expected.wanted, place) + ground(expected.foot.target, bounds.horizontal) +
+  // What is left of an offset is a power of the share that a tick leaves.
+  const double kept =
+      (static_cast<double>(moment.span) - 1) * tolerance::roundoff * glm::length(expected.plant.offset);
+  bounds.horizontal = place + tolerance::relative + kept;
+  bounds.vertical = place + kept + ground(expected.wanted, place) +
+                    ground(expected.foot.target, bounds.horizontal) +
                     16 * tolerance::roundoff * (std::abs(body.y) + reach);
   return bounds;
 }
@@ -92,7 +97,7 @@ void checkPlantedSwing(const Setting& setting, const Moment& moment, Judge& judg
     };
     const PlantedFoot expected = run({});
     const double reach = glm::length(clipLeg.joints.back()) + glm::length(expected.plant.offset);
-    const Bounds bounds = boundsOf(setting, body, legBounds.joints.back(), expected, reach);
+    const Bounds bounds = boundsOf(setting, moment, legBounds.joints.back(), expected, reach);
     Sample sample = common;
     compare(setting, moment, leg, expected, bounds, sample);
     const bool tie = !sample.passes() && expected.strayMargin <= bounds.horizontal;

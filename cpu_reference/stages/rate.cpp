@@ -71,6 +71,8 @@ Tuning overTicks(const Tuning& tuning, int ticks) {
   over.dt = tuning.dt * ticks;
   over.heightBlend = 1 - std::pow(1 - tuning.heightBlend, ticks);
   over.tiltBlend = 1 - std::pow(1 - tuning.tiltBlend, ticks);
+  over.clipFade = tuning.clipFade * ticks;
+  over.plantKeep = std::pow(tuning.plantKeep, ticks);
   return over;
 }
 

@@ -17,9 +17,10 @@ struct PoseBounds {
   double tip = 0;                         // metres
   double stance = 0, walking = 0;         // of SprungLeg's margins
 };
+// `t` is that of an agent that ticks in every `span`-th tick of the crowd, 1, 2, 4 or 8.
 inline PoseBounds poseSwing(const Tuning& t, const KeyPoses& poses, const Limb& limb, size_t leg,
                             const AgentBody& body, const KeyPoses::Directions& directions,
-                            const KeyPoses::Directions& rates, const SprungLeg& expected) {
+                            const KeyPoses::Directions& rates, const SprungLeg& expected, double span) {
   PoseBounds bound;
   const KeyPoses::Leg& pose = poses.legs[leg];
   const auto keys = static_cast<double>(pose.keys.size());
@@ -42,11 +43,15 @@ inline PoseBounds poseSwing(const Tuning& t, const KeyPoses& poses, const Limb& 
     const double goal = (1.5 * apart + 2 * tangent) * place + 32 * roundoff * (size + tangent);
     const double in = glm::length(directions[bone]) + glm::length(expected.goals[bone]);
     const double rate = glm::length(rates[bone]);
-    // E's numbers are good to 2 roundoff each; the difference, two products and sums.
+    // E's numbers are good to 2 roundoff each; the difference, two products and sums. A device squares the E
+    // of one tick: with rates in units of the frequency a spring's energy is a norm, which E does not raise,
+    // so that a square doubles what E errs by and adds 4 roundoff.
+    const double squared = (8 * span - 8) * roundoff * (in + rate / t.springFrequency);
     bound.directions.push_back(std::abs(1 - step[0][0]) * goal +
-                               8 * roundoff * (in + std::abs(step[1][0]) * rate));
+                               8 * roundoff * (in + std::abs(step[1][0]) * rate) + squared);
     bound.rates.push_back(std::abs(step[0][1]) * goal +
-                          8 * roundoff * (std::abs(step[0][1]) * in + std::abs(step[1][1]) * rate));
+                          8 * roundoff * (std::abs(step[0][1]) * in + std::abs(step[1][1]) * rate) +
+                          t.springFrequency * squared);
     // The sphere's stereographic image is half as large at its middle and larger elsewhere.
     turned += 2 * bound.directions.back();
     steepest = std::max(steepest, glm::length(expected.chain.directions[bone]));

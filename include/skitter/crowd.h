@@ -61,9 +61,9 @@ struct CrowdOptions {
   // Of a state: one for each herd, by number, that the crowd began with; herds that came later have their
   // files'.
   std::vector<Rig> rigs = {};
-  // Who is far from the camera (Crowd::lookFrom) ticks less often (docs/levels.md). Only for herds of
-  // controllers adaptive and loop that have no reserve, do not avoid, find no ways, do not forage, cannot be
-  // hurt and have no reactions; without sleep and footfalls, and not for a crowd that is made of a state.
+  // Who is far from the camera (Crowd::lookFrom) ticks less often (docs/levels.md). Only for herds that have
+  // no reserve, do not avoid, find no ways, do not forage, cannot be hurt and have no reactions; without sleep
+  // and footfalls, and not for a crowd that is made of a state.
   std::optional<Levels> levels = {};
 };
 

@@ -7,6 +7,7 @@
 #include "lib/load4.glsl"
 
 layout(local_size_x = WORK_GROUP) in;
+layout(constant_id = CONSTANT_MATRICES) const bool MATRICES = false;
 layout(push_constant) uniform ConstantBlock { InterpolationConstants constants; };
 LOAD4_BUFFER(DRAW_POSE, poses)
 LOAD4_BUFFER(DRAW_SHOWN_BODY, shownBodies)
@@ -20,11 +21,20 @@ void main() {
   uint place = gl_GlobalInvocationID.x;
   if (place >= commands[SHOWN * DRAW_WORDS + 1]) return;
   uint agent = instances[SHOWN * constants.agents + place];
-  int body = int(agent) * BODY_STRIDE + 1, first = int(agent * constants.palette) * POSE_STRIDE;
+  int body = int(agent) * BODY_STRIDE + 1, stride = MATRICES ? MATRIX_STRIDE : POSE_STRIDE;
+  int first = int(agent * constants.palette) * stride;
   float share = LOAD4(shownBodies, body).x;
   STORE4(shownBodiesOut, body, vec4(share, constants.tick, 0.0, 0.0));
   for (int entry = 0; entry < int(constants.palette); ++entry) {
-    int at = first + entry * POSE_STRIDE;
+    int at = first + entry * stride;
+    if (MATRICES) {
+      // Each point that they carry goes straight.
+      for (int row = 0; row < MATRIX_STRIDE; ++row) {
+        vec4 now = LOAD4(poses, at + row);
+        STORE4(shownOut, at + row, share < 1.0 ? mix(LOAD4(shown, at + row), now, share) : now);
+      }
+      continue;
+    }
     vec4 rotation = LOAD4(poses, at), start = LOAD4(poses, at + 1);
     vec4 wasRotation = LOAD4(shown, at), wasStart = LOAD4(shown, at + 1);
     // Both quaternions of a rotation are the same to skin; the nearer one is the way to go.

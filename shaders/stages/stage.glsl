@@ -43,10 +43,15 @@ Parameters allParameters() {
 }
 Parameters parameters = allParameters();
 
-// The blend of so many ticks (a power of two) in one, where each takes `blend` of what is left.
-float blendOver(float blend, float ticks) {
-  float keep = 1.0 - blend, two = keep * keep, four = two * two;
-  return 1.0 - (ticks >= 8.0 ? four * four : ticks >= 4.0 ? four : ticks >= 2.0 ? two : keep);
+// What is left after so many ticks (a power of two), of which each leaves `keep`.
+float keptOver(float keep, float ticks) {
+  float two = keep * keep, four = two * two;
+  return ticks >= 8.0 ? four * four : ticks >= 4.0 ? four : ticks >= 2.0 ? two : keep;
+}
+float blendOver(float blend, float ticks) { return 1.0 - keptOver(1.0 - blend, ticks); }
+mat2 springOver(mat2 step, float ticks) {
+  mat2 two = step * step, four = two * two;
+  return ticks >= 8.0 ? four * four : ticks >= 4.0 ? four : ticks >= 2.0 ? two : step;
 }
 // The invocation's agent ticks after so many ticks of the crowd. To be called once.
 void tickOver(float ticks) {
@@ -57,5 +62,13 @@ void tickOver(float ticks) {
   parameters.dt *= ticks;
   parameters.heightBlend = blendOver(parameters.heightBlend, ticks);
   parameters.tiltBlend = blendOver(parameters.tiltBlend, ticks);
+  parameters.clipFade *= ticks;
+  parameters.plantKeep = keptOver(parameters.plantKeep, ticks);
+  mat2 spring = springOver(
+      mat2(parameters.springKeep, parameters.springPull, parameters.springDrift, parameters.springCarry), ticks);
+  parameters.springKeep = spring[0].x;
+  parameters.springPull = spring[0].y;
+  parameters.springDrift = spring[1].x;
+  parameters.springCarry = spring[1].y;
 }
 #endif

@@ -233,7 +233,7 @@ TEST_P(LevelsTest, TheReferenceFollowsEveryRate) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(, LevelsTest, ::testing::Values(Controller::adaptive, Controller::loop),
+INSTANTIATE_TEST_SUITE_P(, LevelsTest, ::testing::ValuesIn(allControllers),
                          [](const auto& each) { return testNameOf(each.param); });
 
 class LevelsRefusalTest : public GpuTest {
@@ -256,8 +256,6 @@ class LevelsRefusalTest : public GpuTest {
 };
 
 TEST_F(LevelsRefusalTest, NamesWhatTheyAreNotMadeFor) {
-  expectHerdRefused([](Herd& herd) { herd.controller = Controller::keyPoses; },
-                    "levels of rate: some: herds[0].controller is key-poses, expected one of adaptive, loop");
   expectHerdRefused([](Herd& herd) { herd.reserve = 1; }, "herds[0].reserve is above 0, expected 0");
   expectHerdRefused([](Herd& herd) { herd.avoid = true; }, "herds[0].avoid is true, expected false");
   expectHerdRefused([](Herd& herd) { herd.ways = Ways{}; }, "herds[0] has ways, expected none");
