@@ -25,7 +25,7 @@ class Timer {
         settings_(settings),
         subject_(subject),
         drawn_(drawn),
-        renderScale_(budget.renderScale),
+        frame_(budget.frame),
         costs_(budget.costs) {}
 
   TickCost cost(uint32_t agents) {
@@ -41,18 +41,21 @@ class Timer {
     const Scene scene = crossing(subject_.controller, agents, 1, settings_.seed);
     CrowdOptions options;
     options.measure = false;  // what is judged elsewhere is no part of animating
+    if (drawn_) options.levels = Levels{};
     Walk walk(device_, ground_, scene, settings_.dt, options);
     std::optional<Renderer> renderer;
     if (drawn_)
-      renderer.emplace(device_, walk.crowd(), settings_.width, settings_.height,
-                       RendererOptions{.scale = renderScale_});
+      renderer.emplace(device_, walk.crowd(), frame_.width, frame_.height,
+                       RendererOptions{.scale = frame_.scale});
     const auto frame = [&] {
       return base::timed([&] {
         gpu::CommandRing& ring = walk.ring();
         const VkCommandBuffer cmd = ring.begin();
+        const double seconds = static_cast<double>(walk.crowd().tick() + 1) * settings_.dt;
+        const View view = viewOf(scene, walk.crowd(), seconds);
+        walk.crowd().lookFrom(view.eye);
         walk.crowd().record(cmd, walk.dt());
-        const double seconds = static_cast<double>(walk.crowd().tick()) * settings_.dt;
-        if (renderer) renderer->record(cmd, viewOf(scene, walk.crowd(), seconds));
+        if (renderer) renderer->record(cmd, view);
         ring.wait(ring.submit());
       });
     };
@@ -78,7 +81,7 @@ class Timer {
   const Settings& settings_;
   const Subject& subject_;
   bool drawn_;
-  float renderScale_;
+  FrameSize frame_;
   std::vector<TickCost>& costs_;
 };
 
@@ -147,7 +150,7 @@ AgentLimit search(Timer& timer, const Settings& settings, uint32_t from, double 
 Budget measureBudget(Device& device, const Heightfield& ground, const Settings& settings, bool drawn,
                      Course& course) {
   Budget made;
-  if (drawn && bench::isCpu(device.report())) made.renderScale = settings.softwareScale;
+  made.frame = bench::isCpu(device.report()) ? settings.softwareFrame : settings.frame;
   const double searches = static_cast<double>(subjects.size() * settings.budgets.size());
   double done = 0;
   for (const Subject& subject : subjects) {

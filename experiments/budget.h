@@ -38,7 +38,7 @@ struct AgentLimit {
 };
 
 struct Budget {
-  float renderScale = 1;  // RendererOptions::scale, where frames are drawn
+  FrameSize frame;  // where frames are drawn
   std::vector<TickCost> costs;
   std::vector<AgentLimit> limits;
 

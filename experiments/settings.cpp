@@ -46,8 +46,8 @@ Settings Settings::trial(uint32_t ticks) {
   s.budgetTicks = std::min(s.budgetTicks, ticks);
   s.drawnSettle = 1;
   s.drawnFrames = 1;
-  s.width = 64;
-  s.height = 36;
+  s.frame = {64, 36};
+  s.softwareFrame = {64, 36, 0.5f};
   s.collectionLegs = {1, 4, 16};
   s.collectionRepetitions = 3;
   s.settleTicks = std::min(s.settleTicks, ticks);

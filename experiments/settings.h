@@ -8,6 +8,12 @@
 
 namespace skitter::experiments {
 
+// A frame that is timed.
+struct FrameSize {
+  uint32_t width = 0, height = 0;  // pixels
+  float scale = 1;                 // RendererOptions::scale
+};
+
 // How much is measured. Everything is drawn from `seed`; ticks are of `dt` seconds.
 struct Settings {
   std::string extent = "full";  // for people
@@ -24,9 +30,8 @@ struct Settings {
   double budgetPrecision = 0.03;   // width of the last bracket, share of the number
   uint32_t drawnFrom = 8;          // the same, where each frame is drawn
   uint32_t drawnSettle = 20, drawnFrames = 21;
-  uint32_t width = 1280, height = 720;         // of the frames that are timed
-  float softwareScale = 0.5f;                  // RendererOptions::scale of these, on software devices
-  std::vector<double> budgets = {16.7, 33.3};  // milliseconds
+  FrameSize frame{1280, 720}, softwareFrame{640, 360, 0.5f};  // the second one on software devices
+  std::vector<double> budgets = {16.7, 33.3};                 // milliseconds
 
   std::vector<uint32_t> collectionLegs = {1, 4, 8, 64, 1000, 8000, 80000};
   int collectionRepetitions = 101;

@@ -75,11 +75,11 @@ Table ownCounts(const Budget& simulated, const Budget& drawn) {
   return table;
 }
 
-std::string pictureOf(const Budget& drawn, const Settings& settings) {
-  std::string picture = fmt::format("{}x{}", settings.width, settings.height);
-  if (drawn.renderScale < 1)
+std::string pictureOf(const FrameSize& frame) {
+  std::string picture = fmt::format("{}x{}", frame.width, frame.height);
+  if (frame.scale < 1)
     picture += fmt::format(", of which {:.0f} % of the pixels are shaded and the others interpolated",
-                           100 * drawn.renderScale * drawn.renderScale);
+                           100 * frame.scale * frame.scale);
   return picture;
 }
 
@@ -102,6 +102,7 @@ void showBudget(const Budget& simulated, const Budget& drawn, const Settings& se
       "from {} ({}) until it passes the budget, then the bracket is halved until it is within {:.0f} % of "
       "the "
       "number. "
+      "With drawing, who is far from the camera ticks less often (the default levels of rate). "
       "Spread: the number by the upper and by the lower quartiles of the ends of the bracket, in proportion. "
       "By CPU "
       "time, of a software device: the number whose CPU time fits the budget if all threads of the machine "
@@ -109,7 +110,7 @@ void showBudget(const Budget& simulated, const Budget& drawn, const Settings& se
       "and shared the work evenly, which tells what others on the machine took.",
       settings.budgetSettle, settings.drawnSettle, settings.budgetTicks, settings.drawnFrames,
       settings.budgetFrom, settings.drawnFrom, 100 * settings.budgetPrecision));
-  const std::string drawing = "simulation and drawing " + pictureOf(drawn, settings);
+  const std::string drawing = "simulation and drawing " + pictureOf(drawn.frame);
   page.drawings(
       {costPlot(simulated, settings, "simulation alone", "a tick, milliseconds (median)"),
        costPlot(drawn, settings, drawing.c_str(), "a frame, milliseconds (median)")},
@@ -117,7 +118,7 @@ void showBudget(const Budget& simulated, const Budget& drawn, const Settings& se
       "with planted feet and the key poses.");
   page.heading("Simulation alone");
   page.table(limitTable(simulated, settings));
-  page.heading("With drawing " + pictureOf(drawn, settings));
+  page.heading("With drawing " + pictureOf(drawn.frame));
   page.table(limitTable(drawn, settings));
   double empty = 1e9;
   for (const TickCost& cost : drawn.costs)
