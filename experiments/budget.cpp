@@ -70,6 +70,7 @@ class Timer {
     return {subject_.controller,
             drawn_,
             agents,
+            renderer ? renderer->counts().agents : uint64_t{0},
             bench::quantile(wall, 0.5),
             bench::quantile(wall, 0.25),
             bench::quantile(wall, 0.75),
@@ -128,6 +129,7 @@ AgentLimit search(Timer& timer, const Settings& settings, uint32_t from, double 
     few = many;
     if (many >= settings.budgetMost) {
       found.agents = few;
+      found.inView = timer.cost(few).inView;
       found.lower = found.upper = few;
       return found;
     }
@@ -137,9 +139,10 @@ AgentLimit search(Timer& timer, const Settings& settings, uint32_t from, double 
     const uint32_t middle = few + (many - few) / 2;
     (within(middle) ? few : many) = middle;
   }
-  found.agents = few;
-  found.next = many;
   const TickCost high = timer.cost(many), low = few > 0 ? timer.cost(few) : TickCost{};
+  found.agents = few;
+  found.inView = low.inView;
+  found.next = many;
   found.lower = budgetCrossing(budget, few, low.upper, many, high.upper);
   found.upper = budgetCrossing(budget, few, low.lower, many, high.lower);
   return found;
@@ -185,23 +188,25 @@ const AgentLimit* Budget::limit(Controller controller, bool drawn, double budget
 }
 
 Table Budget::costTable() const {
-  Table table{{"controller", "drawn", "agents", "median_ms", "lower_quartile_ms", "upper_quartile_ms",
-               "median_cpu_ms"}};
+  Table table{{"controller", "drawn", "agents", "in_view", "median_ms", "lower_quartile_ms",
+               "upper_quartile_ms", "median_cpu_ms"}};
   for (const TickCost& cost : costs)
     table.rows.push_back({nameOf(cost.controller), cost.drawn ? "1" : "0", fmt::format("{}", cost.agents),
-                          fmt::format("{:.4f}", cost.milliseconds), fmt::format("{:.4f}", cost.lower),
-                          fmt::format("{:.4f}", cost.upper), fmt::format("{:.4f}", cost.cpuMilliseconds)});
+                          fmt::format("{}", cost.inView), fmt::format("{:.4f}", cost.milliseconds),
+                          fmt::format("{:.4f}", cost.lower), fmt::format("{:.4f}", cost.upper),
+                          fmt::format("{:.4f}", cost.cpuMilliseconds)});
   return table;
 }
 
 Table Budget::limitTable() const {
-  Table table{{"controller", "drawn", "budget_ms", "agents", "next", "by_upper_quartiles",
+  Table table{{"controller", "drawn", "budget_ms", "agents", "in_view", "next", "by_upper_quartiles",
                "by_lower_quartiles", "by_cpu"}};
   for (const AgentLimit& limit : limits)
     table.rows.push_back({nameOf(limit.controller), limit.drawn ? "1" : "0",
                           fmt::format("{:g}", limit.budget), fmt::format("{}", limit.agents),
-                          fmt::format("{}", limit.next), fmt::format("{:.0f}", limit.lower),
-                          fmt::format("{:.0f}", limit.upper), fmt::format("{:.0f}", limit.byCpu)});
+                          fmt::format("{}", limit.inView), fmt::format("{}", limit.next),
+                          fmt::format("{:.0f}", limit.lower), fmt::format("{:.0f}", limit.upper),
+                          fmt::format("{:.0f}", limit.byCpu)});
   return table;
 }
 

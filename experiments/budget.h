@@ -20,6 +20,7 @@ struct TickCost {
   Controller controller;
   bool drawn = false;  // a picture of it too, in the time
   uint32_t agents = 0;
+  uint64_t inView = 0;                            // agents, in the last frame that was drawn
   double milliseconds = 0, lower = 0, upper = 0;  // median and quartiles, wall clock
   double cpuMilliseconds = 0;                     // median, all threads of the process
 };
@@ -30,6 +31,7 @@ struct AgentLimit {
   bool drawn = false;
   double budget = 0;            // milliseconds
   uint32_t agents = 0;          // were within; 0: not even one was
+  uint64_t inView = 0;          // of these, where frames are drawn
   uint32_t next = 0;            // agents, the fewest that were not; 0: as many as were tried were within
   double lower = 0, upper = 0;  // agents: where the quartiles of `agents` and `next` cross the budget
   // Agents whose CPU time fits the budget if every thread of the machine were free: what a software device

@@ -25,6 +25,7 @@ std::string costPlot(const Budget& budget, const Settings& settings, const char*
 std::string agentsWithin(const AgentLimit* limit) {
   if (!limit) return "-";
   if (limit->next == 0) return fmt::format("{} and more", limit->agents);
+  if (limit->drawn) return fmt::format("{} ({} in view)", limit->agents, limit->inView);
   return fmt::format("{}", limit->agents);
 }
 
