@@ -129,6 +129,10 @@ void RunOptions::adopt(const State& state, const RunNote& note, bool inWindow) {
   decide("--watch-every", watchEvery, state.options.watchEvery,
          fmt::format("with --watch-every {}", state.options.watchEvery));
   decide("--sleep", sleep, state.options.sleep, "without it");
+  if (isGiven("--levels") && loadLevels(levels) != state.options.levels)
+    throw inputError(
+        fmt::format("--levels: {} was saved with{} levels", resume, state.options.levels ? " other" : "out"));
+  savedLevels_ = state.options.levels;
   decide("--no-measure", unmeasured, !state.options.measure, "without it");
   decide("--obstacle", obstacle, !note.obstacle.is_null(), "without it");
   if (inWindow && !frames) return;
@@ -177,7 +181,7 @@ CrowdOptions RunOptions::crowdOptions(const OutTarget& target, bool inWindow) co
   crowd.watchEvery = watchEvery;
   crowd.sleep = sleep;
   crowd.crowding = crowding;
-  if (!levels.empty()) crowd.levels = loadLevels(levels);
+  crowd.levels = levels.empty() ? savedLevels_ : loadLevels(levels);
   crowd.pageAgents = pageAgents;
   crowd.feet = !trace.empty() || inWindow || crowding;
   if (!footfalls.empty()) crowd.footfalls = UINT32_MAX;  // all that can be

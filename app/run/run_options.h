@@ -68,6 +68,7 @@ struct RunOptions {
   bool isGiven(const char* option) const;
 
   const CLI::App* command_ = nullptr;  // outlives the run
+  std::optional<Levels> savedLevels_;  // of the state that the run goes on from
 };
 
 }  // namespace skitter::app

@@ -1,6 +1,7 @@
 #include "app/run/state_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -25,6 +26,9 @@ void printState(const std::string& file) {
     fmt::print("  herd    {} {}, {}\n", herds[h].agents, herds[h].rig, nameOf(herds[h].controller));
   if (herds.size() > mostHerds) fmt::print("          and {} more herds\n", herds.size() - mostHerds);
   fmt::print("  terrain {}\n", describe(state.terrain));
+  if (const std::optional<Levels>& levels = state.options.levels)
+    fmt::print("  levels  of rate to {} m, of at most {} agents\n", fmt::join(levels->distances, ", "),
+               fmt::join(levels->most, ", "));
   if (!note.manifest.is_null())
     fmt::print("  saved   by version {}: {}\n", note.manifest.value("version", "?"),
                note.manifest.value("command", "?"));
@@ -34,12 +38,16 @@ void printState(const std::string& file) {
 nlohmann::ordered_json describeState(const std::string& file) {
   const State state = loadState(file);
   const RunNote note = RunNote::of(state, file);
+  nlohmann::ordered_json levels;
+  if (state.options.levels)
+    levels = {{"distances", state.options.levels->distances}, {"most", state.options.levels->most}};
   return {{"file", file},
           {"tick", state.tick},
           {"dt", note.dt},
           {"agents", state.scene.agentCount()},
           {"sleep", state.options.sleep},
           {"measure", state.options.measure},
+          {"levels", levels},
           {"obstacle", !note.obstacle.is_null()},
           {"scene", nlohmann::ordered_json::parse(sceneJson(state.scene))},
           {"terrain", describe(state.terrain)},

@@ -82,7 +82,7 @@ skitter_result skitter_crowd_resume(skitter_device* device, const skitter_state*
       from.options.pose = asked.pose;
       from.options.footfalls = asked.footfalls;
       from.options.sleep = asked.sleep;
-      from.options.levels = asked.levels;
+      if (asked.levels) from.options.levels = asked.levels;
     }
     *crowd = handleOf(on, Crowd(*on, from));
   });

@@ -141,8 +141,8 @@ typedef struct skitter_state skitter_state;
 SKITTER_C skitter_result skitter_crowd_create(skitter_device* device, const skitter_scene* scene,
                                               const skitter_crowd_options* options, skitter_crowd** crowd);
 /* The crowd of a state, which goes on as if it had never stopped. The state may be destroyed afterwards.
- * `options`: NULL: those of the crowd that was saved; else poses, footfalls and sleep are as they say, and
- * figures stay as they were. */
+ * `options`: NULL: those of the crowd that was saved; else poses, footfalls and sleep are as they say, levels
+ * are those of the crowd that was saved where they say none, and figures stay as they were. */
 SKITTER_C skitter_result skitter_crowd_resume(skitter_device* device, const skitter_state* state,
                                               const skitter_crowd_options* options, skitter_crowd** crowd);
 

@@ -680,6 +680,7 @@ class Crowd:
         fuse: Optional[bool] = None,
         timestamps: bool = False,
         page_agents: int = 0,
+        levels: Optional[Levels] = None,
     ) -> Crowd: ...
     def render(
         self,

@@ -38,7 +38,8 @@ py::array_t<uint8_t> saveToMemory(PythonCrowd& self, const py::object& note) {
 std::shared_ptr<PythonCrowd> resume(const std::shared_ptr<SharedDevice>& device, State state,
                                     std::optional<bool> pose, std::optional<bool> feet,
                                     std::optional<uint32_t> footfalls, std::optional<bool> sleep,
-                                    std::optional<bool> fuse, bool timestamps, uint32_t pageAgents) {
+                                    std::optional<bool> fuse, bool timestamps, uint32_t pageAgents,
+                                    const std::optional<Levels>& levels) {
   CrowdOptions& options = state.options;
   options.pose = pose.value_or(options.pose);
   options.feet = feet.value_or(options.feet);
@@ -47,6 +48,7 @@ std::shared_ptr<PythonCrowd> resume(const std::shared_ptr<SharedDevice>& device,
   options.fuse = fuse.value_or(options.fuse);
   options.timestamps = timestamps;
   options.pageAgents = pageAgents;
+  if (levels) options.levels = levels;
   const Turn turn(*device);
   return std::make_shared<PythonCrowd>(device, state);
 }
@@ -81,7 +83,7 @@ void bindStates(py::module_& module, CrowdClass& bound) {
            "The same as bytes: uint8 of shape (bytes,), for State.parse() or numpy.save().")
       .def_static("resume", &resume, "device"_a, "state"_a, py::kw_only(), "pose"_a = py::none(),
                   "feet"_a = py::none(), "footfalls"_a = py::none(), "sleep"_a = py::none(),
-                  "fuse"_a = py::none(), "timestamps"_a = false, "page_agents"_a = 0,
+                  "fuse"_a = py::none(), "timestamps"_a = false, "page_agents"_a = 0, "levels"_a = py::none(),
                   "The crowd of a state, which goes on as if it had never stopped. Options are those of "
                   "Crowd; None: as in the crowd that was saved.");
 }

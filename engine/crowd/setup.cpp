@@ -451,9 +451,6 @@ Rig rigFor(const skitter::Herd& from) {
 std::unique_ptr<Crowd::Impl> remakeCrowd(Device& device, const State& state) {
   if (!state.source)
     throw inputError("a state that no file or bytes were read for, expected one of loadState()");
-  if (state.options.levels)
-    throw inputError(
-        "levels of rate for a crowd that is made of a state, expected none: rates are not saved");
   auto made = beginCrowd(device, state.terrain, state.scene, state.options, state.scene.capacity());
   Impl& crowd = *made;
   restoreHerds(crowd, state);

@@ -46,6 +46,7 @@ StateHead headNow(const Impl& crowd, const std::vector<std::vector<RawFootfall>>
   head.watchUntil = crowd.watchUntil;
   head.threats = threatsOf(crowd);
   head.series = seriesOf(crowd);
+  if (crowd.rates) head.rates = ratesOf(crowd);
   head.rigsAreCallers = crowd.rigsAreCallers;
   for (size_t k = 0; k < crowd.kinds.size(); ++k) {
     const Kind& kind = crowd.kinds[k];
@@ -113,6 +114,7 @@ const std::vector<Derived>& allDerived() {
       {{Record::pose}, {clip, pose}},  // clip lists who fades from one clip to another
       {{Record::flight}, {footfall}},
       {{Record::carried}, {}},  // in states from before there were loads nobody has one
+      {{Record::rate}, {}},     // without levels everybody has full rate
   };
   return all;
 }
@@ -138,10 +140,10 @@ void clearCounters(const Impl& crowd) {
   });
 }
 
-// Lists who is awake, as the last tick has. The counters are clear.
-void listAwake(const Impl& crowd) {
+// Lists who is awake, as the tick has. The counters are clear.
+void listAwake(const Impl& crowd, uint64_t tick) {
   gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
-    Frame(crowd, crowd.kinds, crowd.tick, cmd).record(StageId::wake);
+    Frame(crowd, crowd.kinds, tick, cmd).record(StageId::wake);
     gpu::allToAll(cmd);
   });
 }
@@ -151,11 +153,14 @@ void derive(Impl& crowd, const std::vector<StageSet>& stages) {
   for (Kind& kind : crowd.kinds) {
     if (kind.stages.empty()) continue;
     setParameters(crowd, 0, kind);
-    for (const Page& page : kind.pages)  // nobody sleeps
+    for (const Page& page : kind.pages) {  // nobody sleeps, and everybody has full rate
       gpu::clear(*crowd.context, kind.avoids ? page.avoid : page.steer);
+      if (crowd.rates) gpu::clear(*crowd.context, page.rate);
+    }
   }
   clearCounters(crowd);
-  listAwake(crowd);
+  // With levels, tick 0 is everybody's turn and is not counted.
+  listAwake(crowd, crowd.rates ? 0 : crowd.tick);
   gpu::submitAndWait(*crowd.context, [&](vk::CommandBuffer cmd) {
     const Frame frame(crowd, crowd.kinds, crowd.tick, cmd);
     for (const StageSet stage : stages) {
@@ -316,21 +321,14 @@ void restore(Impl& crowd, const State& state) {
     giveDamages(crowd, source.head.kinds[k].changes, crowd.kinds[k]);
   for (Kind& kind : crowd.kinds)
     if (!kind.stages.empty()) setParameters(crowd, crowd.dt > 0 ? crowd.dt : usualDt, kind);
-  listAwake(crowd);
+  // With levels a tick begins with them.
+  if (!crowd.rates) listAwake(crowd, crowd.tick);
+  if (crowd.rates && source.head.rates) giveRates(*source.head.rates, crowd);
 }
 
 }  // namespace crowd
 
-namespace {
-
-void expectUnlevelled(const Crowd::Impl& crowd) {
-  if (crowd.rates) throw inputError("a crowd with levels of rate cannot be saved");
-}
-
-}  // namespace
-
 void Crowd::save(const std::filesystem::path& file, const std::string& note) const {
-  expectUnlevelled(*impl_);
   PartialFile out(file);
   crowd::save(*impl_, note, [&](std::span<const std::byte> bytes) { out.write(bytes); });
   out.sync();
@@ -338,7 +336,6 @@ void Crowd::save(const std::filesystem::path& file, const std::string& note) con
 }
 
 std::vector<std::byte> Crowd::saveToMemory(const std::string& note) const {
-  expectUnlevelled(*impl_);
   std::vector<std::byte> state;
   state.reserve(stateBytes());
   crowd::save(*impl_, note, [&](std::span<const std::byte> bytes) {

@@ -8,6 +8,7 @@
 #include "assets/heights/heightfield_limits.h"
 #include "crowd/record.h"
 #include "crowd/state_file.h"
+#include "shared/levels.h"
 #include "skitter/error.h"
 
 namespace skitter::crowd {
@@ -103,6 +104,14 @@ void eachKey(StateSeries& series, const Visit& visit) {
   visit("agent", agent);
 }
 template <class Visit>
+void eachKey(StateRates& rates, const Visit& visit) {
+  auto& [distances, most, camera, words] = rates;
+  visit("distances", distances);
+  visit("most", most);
+  visit("camera", camera);
+  visit("words", words);
+}
+template <class Visit>
 void eachKey(CrowdOptions& options, const Visit& visit) {
   auto& [pose, measure, watchEvery, feet, footfalls, sleep, crowding, fuse, timestamps, pageAgents, shaders,
          rigs, levels] = options;
@@ -114,7 +123,7 @@ void eachKey(CrowdOptions& options, const Visit& visit) {
   visit("sleep", sleep);
   visit("fuse", fuse);
   // The counts of crowding are not saved. timestamps and pageAgents are the device's matter, and shaders
-  // are experiments. A program that made rigs has them. A crowd with levels cannot be saved.
+  // are experiments. A program that made rigs has them. Levels are in StateHead::rates.
 }
 template <class Visit>
 void eachKey(Heightfield& terrain, const Visit& visit) {
@@ -217,6 +226,14 @@ void checkHerds(const StateHead& head, const std::string& name) {
     throw inputError(fmt::format("{}: its herds are others than those of its scene", name));
 }
 
+void checkRates(const StateRates& rates, const std::string& name) {
+  constexpr size_t words = shared::LEVELS_WORDS - shared::LEVELS_TICKS;
+  if (rates.words.size() != words || (!rates.camera.empty() && rates.camera.size() != 3))
+    throw inputError(
+        fmt::format("{}: its rates have {} words and {} coordinates of a camera, expected {} and 0 or 3",
+                    name, rates.words.size(), rates.camera.size(), words));
+}
+
 void checkSides(const Heightfield& terrain, const std::string& name) {
   for (const uint32_t side : {terrain.columns, terrain.rows})
     if (side < minSamples || side > maxSamples)
@@ -241,6 +258,7 @@ Json jsonOf(const StateHead& head) {
   if (head.begun > 0) json["begun"] = head.begun;
   if (!head.threats.empty()) json["threats"] = written(copy.threats);
   if (!head.series.empty()) json["series"] = written(copy.series);
+  if (head.rates) json["rates"] = written(*copy.rates);
   json["terrain"]["hash"] = fmt::format("{:08x}", checksum(std::as_bytes(std::span(head.terrain.heights))));
   return json;
 }
@@ -253,6 +271,11 @@ StateHead headOf(const Json& json, const std::string& name) try {
   head.begun = json.value("begun", uint64_t{0});
   if (json.contains("threats")) read(json.at("threats"), head.threats);
   if (json.contains("series")) read(json.at("series"), head.series);
+  if (json.contains("rates")) {
+    read(json.at("rates"), head.rates.emplace());
+    checkRates(*head.rates, name);
+    head.options.levels = Levels{.distances = head.rates->distances, .most = head.rates->most};
+  }
   checkSides(head.terrain, name);
   checkHerds(head, name);
   for (const StateKind& kind : head.kinds)

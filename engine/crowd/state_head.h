@@ -80,6 +80,14 @@ struct StateSeries {
   int64_t agent = -1;  // -1: the middle of the herd
 };
 
+// Levels of rate.
+struct StateRates {
+  std::array<float, Levels::count - 1> distances{};
+  std::array<uint32_t, Levels::count - 1> most{};
+  std::vector<int32_t> camera;  // x, y, z, quarter metres; empty: none yet
+  std::vector<uint32_t> words;  // of shaders/shared/levels.h, from LEVELS_TICKS on
+};
+
 // The members of State, and what only its crowd needs.
 struct StateHead : State {
   uint64_t watchUntil = 0;  // the last tick in which gait looks at the ground
@@ -91,6 +99,7 @@ struct StateHead : State {
   std::vector<StateComing> coming;
   std::vector<StateThreat> threats;
   std::vector<StateSeries> series;
+  std::optional<StateRates> rates;
 };
 
 // Throws Error(input) where the scene or the note cannot be written. The terrain's heights are hashed only.

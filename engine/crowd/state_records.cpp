@@ -4,11 +4,13 @@
 #include <cstring>
 #include <utility>
 
+#include "crowd/levels.h"
 #include "crowd/page.h"
 #include "crowd/record.h"
 #include "crowd/watch.h"
 #include "gpu/context.h"
 #include "gpu/transfer.h"
+#include "shared/levels.h"
 
 namespace skitter::crowd {
 namespace {
@@ -155,6 +157,24 @@ void giveFootfalls(const Crowd::Impl& crowd, const Kind& kind, const std::vector
     gpu::uploadBytes(*crowd.context, page.counters, std::as_bytes(std::span(count)),
                      bytesOfCounters(shared::COUNTER_FOOTFALLS));
   }
+}
+
+StateRates ratesOf(const Crowd::Impl& crowd) {
+  const RateLevels& levels = *crowd.rates;
+  StateRates rates;
+  rates.distances = levels.levels.distances;
+  rates.most = levels.levels.most;
+  if (levels.camera) rates.camera.assign(levels.camera->begin(), levels.camera->end());
+  rates.words = gpu::download<uint32_t>(*crowd.context, levels.words);
+  rates.words.erase(rates.words.begin(), rates.words.begin() + shared::LEVELS_TICKS);
+  return rates;
+}
+
+void giveRates(const StateRates& rates, Crowd::Impl& crowd) {
+  RateLevels& levels = *crowd.rates;
+  if (!rates.camera.empty()) std::ranges::copy(rates.camera, levels.camera.emplace().begin());
+  gpu::uploadBytes(*crowd.context, levels.words, std::as_bytes(std::span(rates.words)),
+                   shared::LEVELS_TICKS * sizeof(uint32_t));
 }
 
 void addCounts(const Crowd::Impl& crowd, uint32_t herd, StateHerd& sums) {

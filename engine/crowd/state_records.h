@@ -27,6 +27,11 @@ struct RawFootfall {
 std::vector<RawFootfall> footfallsOf(const Crowd::Impl& crowd, const Kind& kind);
 void giveFootfalls(const Crowd::Impl& crowd, const Kind& kind, const std::vector<RawFootfall>& all);
 
+// Of a crowd with levels of rate. What a state says of them is given to such a crowd, whose own levels may be
+// others.
+StateRates ratesOf(const Crowd::Impl& crowd);
+void giveRates(const StateRates& rates, Crowd::Impl& crowd);
+
 // This adds what the device has counted for a herd since the start, on all of its pages.
 void addCounts(const Crowd::Impl& crowd, uint32_t herd, StateHerd& sums);
 // One of its pages gets them all, since only the sum is ever asked for.

@@ -63,7 +63,7 @@ struct CrowdOptions {
   std::vector<Rig> rigs = {};
   // Who is far from the camera (Crowd::lookFrom) ticks less often (docs/levels.md). Only for herds that have
   // no reserve, do not avoid, find no ways, do not forage, cannot be hurt and have no reactions; without sleep
-  // and footfalls, and not for a crowd that is made of a state.
+  // and footfalls.
   std::optional<Levels> levels = {};
 };
 
@@ -328,7 +328,7 @@ class SKITTER_API Crowd {
   // Writes a state, with which a run can go on later (skitter/state.h). Waits for the device. The file takes
   // its name once it is whole and on the disk; until then an older one stays. `note` is JSON of the
   // caller's own, which comes back with the state. Throws Error(input) that names the file, or the value of
-  // the scene or the note that cannot be written, or where there are levels of rate.
+  // the scene or the note that cannot be written.
   void save(const std::filesystem::path& file, const std::string& note = {}) const;
   std::vector<std::byte> saveToMemory(const std::string& note = {}) const;
   uint64_t stateBytes() const;  // about what a state takes, without the note

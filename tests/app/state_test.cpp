@@ -69,6 +69,25 @@ TEST_F(States, GoOnWithEveryOptionOfTheRun) {
   expectSameWhole({"--agents", "20", "--page-agents", "7"});
 }
 
+TEST_F(States, GoOnWithLevelsOfRate) {
+  std::ofstream(file("near.json")) << R"({"distances": [6, 10, 14], "most": [8, 8, 8]})";
+  for (const Arguments& later :
+       {Arguments{}, Arguments{"--levels", file("near.json"), "--page-agents", "16"}})
+    expectSameWhole({"--agents", "60", "--levels", file("near.json")}, later);
+  const auto levels = json("run.json").at("levels");
+  uint64_t ticks = 0;
+  for (const auto& level : levels) ticks += level.at("agentTicks").get<uint64_t>();
+  EXPECT_EQ(levels.size(), 4u);
+  EXPECT_LT(ticks, 60u * 60);
+  for (const auto& [saved, said] : {std::pair{file("near.json"), " other"}, {std::string(), "out"}}) {
+    save(saved.empty() ? Arguments{} : Arguments{"--levels", saved});
+    const Result refused = run({"--resume", file("walk.state"), "--frames", "20", "--levels", "default"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find(std::string("was saved with") + said + " levels"), std::string::npos)
+        << refused.err;
+  }
+}
+
 TEST_F(States, GoOnWithAnotherRigAndSeveralHerds) {
   expectSameWhole({"--agents", "9", "--rig", SKITTER_ROOT "/assets/quadruped.glb"});
   expectSameWhole({SKITTER_ROOT "/assets/scenes/three_herds.json", "--agents", "9", "--obstacle"});

@@ -275,10 +275,9 @@ TEST_F(LevelsRefusalTest, NamesWhatTheyAreNotMadeFor) {
     expectRefused(sceneOf(9), levelled({.distances = distances, .most = {1, 1, 1}}), fault);
 }
 
-TEST_F(LevelsRefusalTest, OfLongTicksStatesAndCameras) {
+TEST_F(LevelsRefusalTest, OfLongTicksAndCameras) {
   Crowd crowd(device(), smallRollingGround(), sceneOf(9), levelled());
   EXPECT_THROW(simulate(device(), crowd, 1, 1.0f / 30), Error);
-  EXPECT_THROW(crowd.saveToMemory(), Error);
   EXPECT_THROW(crowd.lookFrom({0, NAN, 0}), Error);
   Herd avoiding = sceneOf(9).herds[0];
   avoiding.avoid = true;

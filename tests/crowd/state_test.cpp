@@ -1,7 +1,10 @@
 // A crowd that was saved goes on as if it had never stopped; what is damaged is refused.
 #include "skitter/state.h"
 
+#include <gmock/gmock.h>
+
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -100,6 +103,80 @@ TEST_P(StateTest, GoesOnAsleep) {
   simulate(device(), crowd, kAfter);
   simulate(device(), again, kAfter);
   expectSame(crowd, again);
+}
+
+// Near and far in turn, so that rates change.
+void walkSeen(Device& device, Crowd& crowd, int ticks) {
+  for (int i = 0; i < ticks; ++i) {
+    const auto t = static_cast<float>(crowd.tick() + 1);
+    crowd.lookFrom({9 * std::sin(0.05f * t), 1 + 14 * std::abs(std::sin(0.031f * t)), 4});
+    simulate(device, crowd, 1);
+  }
+}
+
+CrowdOptions levelled() {
+  return {
+      .watchEvery = 4, .feet = true, .levels = Levels{.distances = {6, 10, 14}, .most = {16, 1000, 1000}}};
+}
+
+TEST_P(StateTest, GoesOnAtRatesOfItsOwn) {
+  Crowd crowd(device(), smallRollingGround(), manyHerds(GetParam()), levelled());
+  walkSeen(device(), crowd, kBefore);
+  State state = parseState(crowd.saveToMemory(), "a state");
+  EXPECT_EQ(state.options.levels, levelled().levels);
+  state.options.pageAgents = 16;
+  Crowd again(device(), state);
+  // The camera stays where it was.
+  for (Crowd* each : {&crowd, &again}) simulate(device(), *each, 20);
+  expectSame(crowd, again);
+  for (Crowd* each : {&crowd, &again}) walkSeen(device(), *each, kAfter);
+  expectSame(crowd, again);
+  const std::vector<LevelFigures> a = crowd.levels(), b = again.levels();
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].agents, b[k].agents) << a[k].rate;
+    EXPECT_EQ(a[k].agentTicks, b[k].agentTicks) << a[k].rate;
+    EXPECT_GT(a[k].agentTicks, 0u) << a[k].rate;
+  }
+}
+
+// Poses and feet that the saved run did not keep. A slow agent's pose is that of its last tick.
+TEST_P(StateTest, WhatItLacksFollowsAtRatesOfItsOwn) {
+  CrowdOptions few = levelled(), all = levelled();
+  few.pose = few.feet = few.measure = all.measure = false;
+  Crowd saved(device(), smallRollingGround(), sceneOf(40, 1, 1, GetParam()), few);
+  Crowd crowd(device(), smallRollingGround(), sceneOf(40, 1, 1, GetParam()), all);
+  for (Crowd* each : {&saved, &crowd}) walkSeen(device(), *each, kBefore);
+  State state = parseState(saved.saveToMemory(), "a state");
+  state.options = all;
+  Crowd again(device(), state);
+  EXPECT_EQ(again.stateHash(), crowd.stateHash());
+  const HerdState a = crowd.download(0), b = again.download(0);
+  ASSERT_EQ(a.pose.size(), b.pose.size());
+  for (size_t i = 0; i < a.pose.size(); ++i) ASSERT_NEAR(a.pose[i], b.pose[i], 1e-5) << i;
+  for (Crowd* each : {&crowd, &again}) walkSeen(device(), *each, kAfter);
+  expectSame(crowd, again);
+}
+
+// A program may give a state levels, or take them away.
+TEST_P(StateTest, LevelsMayComeAndGo) {
+  Crowd crowd(device(), smallRollingGround(), sceneOf(40, 1, 1, GetParam()));
+  simulate(device(), crowd, kBefore);
+  State state = parseState(crowd.saveToMemory(), "a state");
+  EXPECT_FALSE(state.options.levels);
+  state.options.levels = levelled().levels;
+  Crowd slower(device(), state);
+  EXPECT_THAT(slower.download(0).rate, ::testing::Each(0));
+  walkSeen(device(), slower, kAfter);
+  EXPECT_GT(slower.levels().back().agentTicks, 0u);
+  state = parseState(slower.saveToMemory(), "a state");
+  state.options.levels.reset();
+  Crowd full(device(), state);
+  const HerdState before = full.download(0);
+  simulate(device(), full, 1);
+  const HerdState after = full.download(0);
+  for (size_t agent = 0; agent < 40; ++agent)
+    EXPECT_NE(positionOf(before, agent), positionOf(after, agent)) << agent;
 }
 
 TEST_P(StateTest, GoesOnAfterAnEdit) {
