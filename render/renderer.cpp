@@ -14,6 +14,7 @@
 #include "gpu/transfer.h"
 #include "render/composition.h"
 #include "render/crowd_drawing.h"
+#include "render/footprints.h"
 #include "render/image_pass.h"
 #include "render/obstacle_drawing.h"
 #include "render/sky.h"
@@ -105,6 +106,7 @@ struct Renderer::Impl {
   render::ObstacleDrawing obstacles;
   render::TextureStore textures;
   render::CrowdDrawing crowd;
+  render::Footprints footprints;  // none without the option
   render::Sky sky;
   render::ImagePass antialias;    // where there are no samples to resolve
   render::ImagePass enlargement;  // where fewer pixels are shaded
@@ -170,6 +172,10 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
         render::ImagePass(c, "enlarge", embedded::enlarge_frag(), small.codes(), colour.codes().format());
   }
   if (filtered()) antialias = render::ImagePass(c, "antialias", embedded::antialias_frag(), drawn, kColour);
+  if (options.footprints) {
+    footprints = render::Footprints(setting);
+    footprints.follow(setting, live);
+  }
   lookForCasters();
 }
 
@@ -180,6 +186,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   if (revision != live.revision) {
     context.waitIdle();
     crowd = render::CrowdDrawing(setting, live, textures);
+    if (footprints) footprints.follow(setting, live);
     revision = live.revision;
     lookForCasters();
   }
@@ -197,10 +204,12 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   cmd.updateBuffer(picture.handle(), 0, sizeof(shared::Picture), &composition.block);
   terrain.prepare(cmd, composition, casts);
   crowd.prepare(cmd);
+  if (footprints) footprints.prepare(cmd);
   gpu::transferToCompute(cmd);
   gpu::transferToGraphics(cmd);
 
   crowd.cull(cmd, live.tick);
+  if (footprints) footprints.record(cmd, live.tick, live.dt);
   gpu::computeToGraphics(cmd);
   crowd.countParts(cmd);
   timer.next(cmd, "shadow");
@@ -269,6 +278,7 @@ void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
   pass("ground", false, false);
   obstacles.draw(cmd);
   terrain.draw(cmd);
+  if (footprints) footprints.draw(cmd);
   crowd.drawContacts(cmd);
   pass("sky", false, true);
   sky.draw(cmd);

@@ -757,6 +757,7 @@ typedef struct skitter_renderer_options {
   float detail; /* agents are drawn as finely as if they were so many times larger, 0.25 to 100000; 0: 1. Less
                    is cheaper. */
   float scale;  /* pixels that are shaded along each side, of those that the picture has, 0.25 to 1; 0: 1 */
+  int footprints; /* not 0: feet of adaptive herds leave prints on the ground */
 } skitter_renderer_options;
 /* `options`: NULL: the defaults. */
 SKITTER_C skitter_result skitter_renderer_create(skitter_crowd* crowd, uint32_t width, uint32_t height,

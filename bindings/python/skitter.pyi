@@ -689,6 +689,7 @@ class Crowd:
         view: Optional[View] = None,
         detail: float = 1.0,
         scale: float = 1.0,
+        footprints: bool = False,
     ) -> npt.NDArray[np.uint8]: ...
 
 class ik:

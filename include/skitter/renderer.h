@@ -47,6 +47,11 @@ struct RendererOptions {
   // With less than 1 the picture is enlarged from fewer pixels, whose number then also decides on detail.
   float scale = 1;
   static constexpr float leastScale = 0.25f;
+  // Feet of adaptive herds leave prints on the ground, which fade within 20 seconds. A renderer knows the
+  // steps that began between its pictures.
+  bool footprints = false;
+
+  bool operator==(const RendererOptions&) const = default;
 };
 
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.

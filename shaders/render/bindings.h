@@ -33,6 +33,13 @@ BINDING DRAW_SHOWN_BODY_OUT = 21;
 BINDING DRAW_SHOWN_POSE = 22;
 BINDING DRAW_SHOWN_POSE_OUT = 23;
 
+BINDING DRAW_STEP = 24;    // LOAD4
+BINDING DRAW_PRINTS = 25;  // LOAD4 (FootprintConstants)
+BINDING DRAW_PRINTS_OUT = 26;
+BINDING DRAW_PRINT_STEPS = 27;   // float a leg
+BINDING DRAW_PRINT_COUNTS = 28;  // uint, from PRINT_TOTAL on
+BINDING DRAW_PRINT_LIST = 29;    // uint a print that is seen: its place in the ring
+
 BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter

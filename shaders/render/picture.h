@@ -97,6 +97,27 @@ struct InterpolationConstants {
   float before;  // in the last one; -1 before the first
 };
 
+// Footprints (docs/stages/pictures.md): a ring of the latest, of PRINT_STRIDE vec4 each:
+//   [0] place: local x, y (world), local z, tile
+//   [1] tick of the picture that left it, radius (metres), unused x 2
+SKITTER_PICTURE_CONST PRINTS = 131072;
+SKITTER_PICTURE_CONST PRINT_STRIDE = 2;
+// uint32: how many have been left in all; the indirect dispatch over those of the ring; the indirect draw of
+// those that are seen.
+SKITTER_PICTURE_CONST PRINT_TOTAL = 0;
+SKITTER_PICTURE_CONST PRINT_GROUPS = 1;
+SKITTER_PICTURE_CONST PRINT_DRAW = 4;
+// In place of the first tick of a step that no picture has found yet.
+SKITTER_PICTURE_CONST PRINT_UNSEEN = -16777216;
+struct FootprintConstants {
+  uint agents;   // of the page; these four serve leave_prints alone
+  uint records;  // of its legs
+  uint legs;     // of an agent
+  float radius;  // of a print, metres
+  float tick;    // of the crowd, in this picture
+  float life;    // ticks
+};
+
 // Push constants of splats and of what draws them.
 struct SplatConstants {
   uint palette;     // pose entries an agent

@@ -1938,7 +1938,7 @@ static void testPictures(void) {
   skitter_crowd_options bare = {0};
   skitter_scene* scene = NULL;
   skitter_renderer *renderer = NULL, *fine = NULL;
-  skitter_renderer_options options = {0.1f, 0};
+  skitter_renderer_options options = {0.1f, 0, 1};
   skitter_view view = {{0}, {0}, 0}, up;
   VkImage image = VK_NULL_HANDLE;
   const char* note = "";
