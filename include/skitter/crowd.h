@@ -62,8 +62,8 @@ struct CrowdOptions {
   // files'.
   std::vector<Rig> rigs = {};
   // Who is far from the camera (Crowd::lookFrom) ticks less often (docs/levels.md). Only for herds that have
-  // no reserve, do not avoid, find no ways, do not forage, cannot be hurt and have no reactions; without sleep
-  // and footfalls.
+  // no reserve, do not avoid, find no ways, do not forage, cannot be hurt and have no reactions; without
+  // sleep and footfalls.
   std::optional<Levels> levels = {};
 };
 

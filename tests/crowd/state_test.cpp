@@ -105,6 +105,14 @@ TEST_P(StateTest, GoesOnAsleep) {
   expectSame(crowd, again);
 }
 
+// `made` has poses that follow from a state without them.
+void expectPosesOf(const Crowd& crowd, const Crowd& made) {
+  EXPECT_EQ(made.stateHash(), crowd.stateHash());
+  const HerdState a = crowd.download(0), b = made.download(0);
+  ASSERT_EQ(a.pose.size(), b.pose.size());
+  for (size_t i = 0; i < a.pose.size(); ++i) ASSERT_NEAR(a.pose[i], b.pose[i], 1e-5) << i;
+}
+
 // Near and far in turn, so that rates change.
 void walkSeen(Device& device, Crowd& crowd, int ticks) {
   for (int i = 0; i < ticks; ++i) {
@@ -150,10 +158,7 @@ TEST_P(StateTest, WhatItLacksFollowsAtRatesOfItsOwn) {
   State state = parseState(saved.saveToMemory(), "a state");
   state.options = all;
   Crowd again(device(), state);
-  EXPECT_EQ(again.stateHash(), crowd.stateHash());
-  const HerdState a = crowd.download(0), b = again.download(0);
-  ASSERT_EQ(a.pose.size(), b.pose.size());
-  for (size_t i = 0; i < a.pose.size(); ++i) ASSERT_NEAR(a.pose[i], b.pose[i], 1e-5) << i;
+  expectPosesOf(crowd, again);
   for (Crowd* each : {&crowd, &again}) walkSeen(device(), *each, kAfter);
   expectSame(crowd, again);
 }
@@ -249,10 +254,8 @@ TEST_P(StateTest, WhatItLacksFollows) {
   State state = parseState(saved.saveToMemory(), "a state");
   state.options = all;
   Crowd again(device(), state);
-  EXPECT_EQ(again.stateHash(), crowd.stateHash());
+  expectPosesOf(crowd, again);
   const HerdState a = crowd.download(0), b = again.download(0);
-  ASSERT_EQ(a.pose.size(), b.pose.size());
-  for (size_t i = 0; i < a.pose.size(); ++i) ASSERT_NEAR(a.pose[i], b.pose[i], 1e-5) << i;
   EXPECT_EQ(a.tip.size(), b.tip.size());
   for (size_t i = 0; i < a.flight.size(); i += 4) ASSERT_EQ(a.flight[i + 3], b.flight[i + 3]) << i;
   size_t footfalls = 0;
