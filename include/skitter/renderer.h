@@ -47,8 +47,8 @@ struct RendererOptions {
   // With less than 1 the picture is enlarged from fewer pixels, whose number then also decides on detail.
   float scale = 1;
   static constexpr float leastScale = 0.25f;
-  // Feet of adaptive herds leave prints on the ground, which fade within 20 seconds. A renderer knows the
-  // steps that began between its pictures.
+  // Feet of adaptive herds leave prints on the ground, which fade within 20 seconds: those that lift between
+  // two of the renderer's pictures.
   bool footprints = false;
 
   bool operator==(const RendererOptions&) const = default;
