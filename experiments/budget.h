@@ -31,12 +31,12 @@ struct AgentLimit {
   bool drawn = false;
   double budget = 0;            // milliseconds
   uint32_t agents = 0;          // were within; 0: not even one was
-  uint64_t inView = 0;          // of these, where frames are drawn
   uint32_t next = 0;            // agents, the fewest that were not; 0: as many as were tried were within
   double lower = 0, upper = 0;  // agents: where the quartiles of `agents` and `next` cross the budget
   // Agents whose CPU time fits the budget if every thread of the machine were free: what a software device
   // would do on a machine of its own. Not of other devices: 0.
   double byCpu = 0;
+  uint64_t inView = 0;  // of `agents`, where frames are drawn
 };
 
 struct Budget {
