@@ -38,15 +38,13 @@ Interpolation::Interpolation(const gpu::Context& context)
                                      {shared::DRAW_RATE, BindingKind::load4},
                                      {shared::DRAW_SHOWN_BODY, BindingKind::load4},
                                      {shared::DRAW_SHOWN_BODY_OUT, BindingKind::store}},
-                        .pushBytes = sizeof(shared::InterpolationConstants)}),
-      poses_(posesKernel(context, false)),
-      matrices_(posesKernel(context, true)) {}
+                        .pushBytes = sizeof(shared::InterpolationConstants)}) {}
 
 Interpolation::Page Interpolation::makePage(const gpu::Context& context, const Source& source) const {
   Page page;
   page.body = gpu::Buffer(context, source.body.size(), "shown bodies");
   page.pose = gpu::Buffer(context, source.pose.size(), "shown poses");
-  page.matrices = source.matrices;
+  page.kernel = posesKernel(context, source.matrices);
   page.bodies = bodies_.bind(context, {{shared::DRAW_BODY, &source.body},
                                        {shared::DRAW_RATE, &source.rate},
                                        {shared::DRAW_SHOWN_BODY, &page.body},
@@ -56,13 +54,13 @@ Interpolation::Page Interpolation::makePage(const gpu::Context& context, const S
 
 void Interpolation::bindLists(const gpu::Context& context, const Source& source, const CulledPage& culled,
                               Page& page) const {
-  page.poses = kernelOf(page).bind(context, {{shared::DRAW_POSE, &source.pose},
-                                             {shared::DRAW_SHOWN_BODY, &page.body},
-                                             {shared::DRAW_SHOWN_BODY_OUT, &page.body},
-                                             {shared::DRAW_SHOWN_POSE, &page.pose},
-                                             {shared::DRAW_SHOWN_POSE_OUT, &page.pose},
-                                             {shared::DRAW_INSTANCES, &culled.instances},
-                                             {shared::DRAW_COMMANDS, &culled.commands}});
+  page.poses = page.kernel.bind(context, {{shared::DRAW_POSE, &source.pose},
+                                          {shared::DRAW_SHOWN_BODY, &page.body},
+                                          {shared::DRAW_SHOWN_BODY_OUT, &page.body},
+                                          {shared::DRAW_SHOWN_POSE, &page.pose},
+                                          {shared::DRAW_SHOWN_POSE_OUT, &page.pose},
+                                          {shared::DRAW_INSTANCES, &culled.instances},
+                                          {shared::DRAW_COMMANDS, &culled.commands}});
 }
 
 void Interpolation::recordBodies(vk::CommandBuffer cmd, const Page& page,
@@ -73,8 +71,8 @@ void Interpolation::recordBodies(vk::CommandBuffer cmd, const Page& page,
 
 void Interpolation::recordPoses(vk::CommandBuffer cmd, const Page& page, const CulledPage& culled,
                                 const shared::InterpolationConstants& constants) const {
-  kernelOf(page).dispatchIndirect(cmd, page.poses, gpu::bytesOf(constants), culled.commands,
-                                  groupsOffset(shared::SHOWN));
+  page.kernel.dispatchIndirect(cmd, page.poses, gpu::bytesOf(constants), culled.commands,
+                               groupsOffset(shared::SHOWN));
 }
 
 }  // namespace skitter::render

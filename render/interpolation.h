@@ -17,7 +17,7 @@ class Interpolation {
   // The records of a page as pictures show them.
   struct Page {
     gpu::Buffer body, pose;  // InterpolationConstants says what is in them
-    bool matrices = false;
+    gpu::Kernel kernel;      // of its poses
     gpu::Bindings bodies, poses;
   };
   // The crowd's own records of a page, and whether its poses are matrices, as those of clips.
@@ -36,9 +36,7 @@ class Interpolation {
                    const shared::InterpolationConstants&) const;
 
  private:
-  const gpu::Kernel& kernelOf(const Page& page) const { return page.matrices ? matrices_ : poses_; }
-
-  gpu::Kernel bodies_, poses_, matrices_;
+  gpu::Kernel bodies_;
 };
 
 }  // namespace skitter::render

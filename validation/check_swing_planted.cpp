@@ -31,7 +31,7 @@ Bounds boundsOf(const Setting& setting, const Moment& moment, double clipFoot, c
   };
   Bounds bounds;
   const double place = clipFoot + tolerance::rotated(reach);
-  // What is left of an offset is a power of the share that a tick leaves.
+  // The device multiplies an offset by a power of the share that one tick leaves.
   const double kept =
       (static_cast<double>(moment.span) - 1) * tolerance::roundoff * glm::length(expected.plant.offset);
   bounds.horizontal = place + tolerance::relative + kept;

@@ -395,8 +395,7 @@ void bindCrowd(py::module_& module) {
             "of shape (height, width, 4), top row first. Agents are drawn as finely as if they were `detail` "
             "times larger, 0.25 to 100000; less is cheaper. `scale`, 0.25 to 1, is the share of each side's "
             "pixels that are shaded, from which the picture is enlarged. `footprints`: feet of adaptive "
-            "herds leave "
-            "prints, as long as size and options stay.");
+            "herds leave prints, as long as size and options stay.");
 }
 
 }  // namespace skitter::python

@@ -27,8 +27,7 @@ struct RawFootfall {
 std::vector<RawFootfall> footfallsOf(const Crowd::Impl& crowd, const Kind& kind);
 void giveFootfalls(const Crowd::Impl& crowd, const Kind& kind, const std::vector<RawFootfall>& all);
 
-// Of a crowd with levels of rate. What a state says of them is given to such a crowd, whose own levels may be
-// others.
+// Both are for crowds with levels of rate. A crowd may take the rates of a state that had other levels.
 StateRates ratesOf(const Crowd::Impl& crowd);
 void giveRates(const StateRates& rates, Crowd::Impl& crowd);
 

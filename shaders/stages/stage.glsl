@@ -43,7 +43,7 @@ Parameters allParameters() {
 }
 Parameters parameters = allParameters();
 
-// What is left after so many ticks (a power of two), of which each leaves `keep`.
+// The share that so many ticks (a power of two) leave, where each leaves `keep`.
 float keptOver(float keep, float ticks) {
   float two = keep * keep, four = two * two;
   return ticks >= 8.0 ? four * four : ticks >= 4.0 ? four : ticks >= 2.0 ? two : keep;

@@ -55,7 +55,7 @@ struct Agent {
   }
 };
 
-// What a palette of matrices has of it in place of rotations and starts: rows that are sums of its numbers.
+// A row of the matrix that the entry has in a palette of matrices. It is linear in the state, as places are.
 glm::dvec4 rowOf(const State& state, size_t entry, int row) {
   return double(row + 1) * glm::dvec4(state.starts[entry], state.angles[entry]);
 }
