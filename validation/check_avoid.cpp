@@ -29,7 +29,9 @@ struct Avoiding {
   glm::dvec2 desired;
   bool mayRest;
 
-  reference::AvoidTick tick() const { return {static_cast<int64_t>(moment.n), setting.tuning.dt}; }
+  reference::AvoidTick tick() const {
+    return {static_cast<int64_t>(moment.n), setting.tuning.dt, static_cast<int>(moment.span)};
+  }
 
   reference::AvoidResult run(const reference::AvoidChoices& choices) const {
     return reference::avoid(setting.avoid, tick(), body, self, moment.around, desired, mayRest, choices);

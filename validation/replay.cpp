@@ -48,6 +48,13 @@ void expectSizes(const Setting& setting, const HerdState& state) {
                      " is not among them");
 }
 
+// What stages write of everybody but of those whose turn it is not.
+std::vector<Record> writtenOfSleepers(crowd::StageId stage) {
+  if (stage == crowd::StageId::navigate) return {Record::goal, Record::steer};
+  if (stage == crowd::StageId::avoid) return {Record::avoid};
+  return {};
+}
+
 // Whether the device had the agent tick in tick n, and how many ticks that one was. Lockstep holds against
 // the reference whose turn it is.
 bool isTurnOf(uint64_t n, const HerdState& after, size_t agent) {
@@ -181,9 +188,9 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
       const Moment moment{n, before, after, agent, around, span};
       const bool hasTurn = !isOver || isTurnOf(n, after, agent);
       const bool asleep = asleepOf(after, agent) || !hasTurn;
-      if (!hasTurn && check.stage == crowd::StageId::navigate) {
-        for (const Record record : {Record::goal, Record::steer})
-          checkKept(setting_, moment, record, judges_[c]);
+      const std::vector<Record> early = writtenOfSleepers(check.stage);
+      if (!hasTurn && !early.empty()) {
+        for (const Record record : early) checkKept(setting_, moment, record, judges_[c]);
         continue;
       }
       // Nobody is there: measure adds nothing.

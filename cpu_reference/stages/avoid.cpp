@@ -247,7 +247,7 @@ CellSide sideOf(const AvoidTuning& tuning, const AvoidTick& tick, const Walker& 
   const double smaller = static_cast<double>(std::min(self.radius, other.radius)) / tuning.quanta;
   const glm::dvec2 n = seen.distance2 > 0 ? rounded(p / d, 4) : glm::dvec2(0);
   const double inFront = glm::dot(n, desired) / std::max(glm::length(desired), 1e-6);
-  const bool givesWay = !other.yields || isBefore(other.number, self.number, tick.number, tick.dt);
+  const bool givesWay = !other.yields || isBefore(other.number, self.number, tick.number, tick.dt / tick.span);
   const double front = givesWay ? frontRoom * std::clamp(2 * rounded(inFront, 8), 0.0, 1.0) : 0;
   const double leaves = std::max(0.0, rounded(glm::dot(n, other.velocity), 4 * glm::length(other.velocity)));
   // Half of the gap is the neighbour's, if it holds itself to it. Who overlaps much is not held.

@@ -30,10 +30,10 @@ struct AvoidTuning {
   std::vector<AvoidObstacle> obstacles = {};
 };
 
-// The tick of the crowd, which decides whose turn it is.
 struct AvoidTick {
-  int64_t number = 1;
-  double dt = 1.0 / 60;  // seconds
+  int64_t number = 1;    // of the crowd, by which agents go first
+  double dt = 1.0 / 60;  // seconds, the agent's own
+  int span = 1;          // ticks of the crowd in one of the agent's
 };
 
 // One neighbour asks for n . v >= bound.

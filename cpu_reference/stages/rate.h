@@ -29,7 +29,7 @@ struct RateTuning {
 struct RatedBlock {
   uint64_t number = 0;
   int level = 0;
-  std::vector<glm::dvec3> places = {};  // of its agents, world metres
+  std::vector<glm::dvec3> places = {};  // of its agents that are there, world metres
 };
 
 // A tick counts a block so.
@@ -37,6 +37,7 @@ struct SeenBlock {
   double square = 0;  // of its distance, quarter metres
   size_t agents = 0;
 };
+// Infinite where nobody is there.
 double rateSquare(const RatedBlock& block, const glm::dvec3& camera);
 // The square to which each level has room, by what the tick before the last one counted.
 RateBounds<double> rateEdges(const RateTuning& tuning, std::span<const SeenBlock> seen);

@@ -203,6 +203,14 @@ void forgetSearch(const Page& page, uint32_t agent, Writes& writes) {
   writes.add(page.search, uint64_t{agent} * sizeof none, none);
 }
 
+// The agent was put there, or taken away: pictures do not lead it there from where it was.
+void writePut(const Page& page, uint32_t agent, uint64_t tick, Writes& writes) {
+  constexpr uint64_t put = 3;  // the float of a rate record
+  const auto before = static_cast<float>(tick);
+  writes.add(page.rate, (uint64_t{agent} * 4 * shared::RATE_STRIDE + put) * sizeof(float),
+             std::span(&before, 1));
+}
+
 // Who does not begin anew stirs: a sleeper would not see what happens to it.
 void stir(const Page& page, uint32_t agent, Writes& writes) {
   constexpr uint64_t still = 13;  // the float of a body record
@@ -261,6 +269,7 @@ void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
       else if (change.speed)
         writes.add(page->goal, goal + 4 * sizeof(float), std::span(change.record).subspan(4, 1));
       if (change.leaves) writes.add(page->body, uint64_t{agent} * sizeof(BodyRecord), absentBody());
+      if ((change.leaves || change.stands) && page->rate) writePut(*page, agent, crowd.tick, writes);
       if (change.hurt) writeLegs(change, *page, agent, kind, writes);
       if (change.hurt && change.stands && page->search) forgetSearch(*page, agent, writes);
       if (change.push) writePush(*change.push, *page, agent, crowd.tick, writes);

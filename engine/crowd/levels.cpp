@@ -103,9 +103,6 @@ void expectLevelled(const skitter::Herd& herd, const std::string& name) {
   const auto refuse = [&](const char* what, const char* expected) {
     throw inputError(fmt::format("levels of rate: {}{}, expected {}", name, what, expected));
   };
-  if (herd.reserve > 0) refuse(".reserve is above 0", "0");
-  if (herd.avoid) refuse(".avoid is true", "false");
-  if (herd.ways) refuse(" has ways", "none");
   if (herd.forage) refuse(" forages", "none");
   if (herd.hurt) refuse(".hurt is true", "false");
   if (herd.reactions) refuse(".reactions is true", "false");

@@ -160,7 +160,8 @@ crowd::Kind makeKind(const Impl& crowd, const Herd& from, const Rig& loaded, flo
                                             .amongWalls = amongWalls,
                                             .hurts = kind.hurts,
                                             .reacts = kind.reacts,
-                                            .adapts = from.adapts}))
+                                            .adapts = from.adapts,
+                                            .reserves = kind.reserves}))
     kind.stages.push_back({stage});
   return kind;
 }

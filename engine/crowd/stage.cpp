@@ -60,11 +60,13 @@ void takeHurtForm(Stage& stage, bool reacts) {
   stage.bindings.insert(stage.bindings.end(), stage.reactBindings.begin(), stage.reactBindings.end());
 }
 
-// Whose turn it is, is known before the first stage, which only they have.
+// Whose turn it is, is known before the first stage.
 void takeLevelForms(std::vector<Stage>& stages) {
-  std::erase_if(stages, [](const Stage& stage) { return stage.makes == StageId::wake; });
-  std::ranges::replace_if(
-      stages, [](const Stage& stage) { return stage.makes == StageId::navigate; }, levelNavigateStage());
+  for (Stage& stage : stages)
+    if (stage.levelCode) {
+      stage.code = *stage.levelCode;
+      stage.over = Stage::Over::agents;
+    }
   stages.insert(stages.begin(), levelWakeStage());
 }
 
@@ -87,16 +89,17 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
     return std::ranges::any_of(
         allStages, [&](StageId id) { return stage.makes.has(id) && !isAskedFor(id, options, forms); });
   });
-  if (options.levels) takeLevelForms(stages);
+  const auto isOf = [](StageId id) { return [id](const Stage& stage) { return stage.makes == id; }; };
+  if (options.levels) std::erase_if(stages, isOf(StageId::wake));
+  const bool navigatesAlone = forms.findsWays || forms.forages || forms.reserves;
   if (options.fuse && of.fused != nullptr)
     for (const Stage& fused : of.fused())
-      if ((!forms.findsWays && !forms.forages) || !fused.makes.has(StageId::navigate))
-        fuse(options, fused, stages);
-  const auto isOf = [](StageId id) { return [id](const Stage& stage) { return stage.makes == id; }; };
+      if (!navigatesAlone || !fused.makes.has(StageId::navigate)) fuse(options, fused, stages);
   if (forms.findsWays) std::ranges::replace_if(stages, isOf(StageId::navigate), wayNavigateStage());
   if (forms.forages) std::ranges::replace_if(stages, isOf(StageId::navigate), forageNavigateStage());
   if (forms.amongWalls) std::ranges::replace_if(stages, isOf(StageId::avoid), wallAvoidStage());
   if (forms.avoids) std::ranges::replace_if(stages, isOf(StageId::foothold), amongFootholdStage());
+  if (options.levels) takeLevelForms(stages);
   for (Stage& stage : stages)
     if (forms.hurts && stage.hurtCode) takeHurtForm(stage, forms.reacts);
   for (Stage& stage : stages)

@@ -48,6 +48,8 @@ struct Stage {
   // one, BINDING_REACTION and BINDING_CARRIED.
   std::optional<gpu::ShaderCode> reactCode = {};
   std::vector<gpu::BindingDecl> reactBindings = {};
+  // Where there are levels of rate: its form over those whose turn it is, in place of one over everyone.
+  std::optional<gpu::ShaderCode> levelCode = {};
 
   // Whether it passes over those who sleep.
   bool isOfTheAwake() const { return over == Over::agents || over == Over::legs || over == Over::joints; }
@@ -71,6 +73,7 @@ struct StageForms {
   bool hurts = false;       // can be hurt
   bool reacts = false;      // has reactions, and can be hurt
   bool adapts = false;      // tries gaits when it is hurt
+  bool reserves = false;    // places may be empty
 };
 // A controller's stages, in order, less those that make what nobody asked for.
 std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, const StageForms& forms = {});
@@ -101,7 +104,6 @@ Stage amongFootholdStage();
 Stage blindBodyStage();
 Stage bodyAndGaitStage();
 Stage navigateBodyAndGaitStage();
-Stage levelNavigateStage();
 Stage levelWakeStage();
 Stage loopGaitStage();
 Stage keyPoseGaitStage();

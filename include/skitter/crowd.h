@@ -61,9 +61,8 @@ struct CrowdOptions {
   // Of a state: one for each herd, by number, that the crowd began with; herds that came later have their
   // files'.
   std::vector<Rig> rigs = {};
-  // Agents that are far from the camera (Crowd::lookFrom) tick less often (docs/levels.md). Herds must have
-  // no reserve and no reactions, must not avoid, find ways, forage or be hurt, and there must be neither
-  // sleep nor footfalls.
+  // Agents that are far from the camera (Crowd::lookFrom) tick less often (docs/levels.md). Herds must
+  // have no reactions, must not forage or be hurt, and there must be neither sleep nor footfalls.
   std::optional<Levels> levels = {};
 };
 

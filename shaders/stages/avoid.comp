@@ -1,7 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#ifdef LISTED
+#include "stages/awake.glsl"
+#else
 #include "stages/stage.glsl"
+#endif
 #include "lib/avoid.glsl"
 #include "lib/sum64.glsl"
 #include "stages/neighbours.glsl"
@@ -38,8 +42,13 @@ Walls wallsAround(vec2 place, float radius, float sight) {
 #endif
 
 void main() {
+#ifdef LISTED
+  int agent = agentAt(int(gl_GlobalInvocationID.x));
+  if (agent < 0) return;
+#else
   int agent = int(gl_GlobalInvocationID.x);
   if (agent >= int(constants.count)) return;
+#endif
   if (absent(agent)) {
     STORE4(avoidsOut, agent, vec4(0.0, 0.0, 1.0, 0.0));
     return;

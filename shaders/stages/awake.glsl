@@ -1,5 +1,5 @@
 // Whom the stages from body to pose run over: everybody, or where agents may sleep, or blocks have rates of their own,
-// the blocks that `wake` listed.
+// the blocks that `wake` listed. Stages that say who sleeps (LISTED) run over whole blocks.
 #ifndef AWAKE_GLSL
 #define AWAKE_GLSL
 #include "stages/stage.glsl"
@@ -13,7 +13,12 @@ int agentAt(int place) {
   vec4 block = LOAD4(awake, place / BLOCK);
   int lane = place % BLOCK;
   tickOver(LEVELS ? max(block.z, 1.0) : 1.0);
-  return (uint(block.y) >> lane & 1u) != 0u ? int(block.x) * BLOCK + lane : -1;
+#ifdef LISTED
+  uint lanes = uint(block.w);
+#else
+  uint lanes = uint(block.y);
+#endif
+  return (lanes >> lane & 1u) != 0u ? int(block.x) * BLOCK + lane : -1;
 }
 
 // The record of the leg in a place among theirs, block by block as the records are, or -1.

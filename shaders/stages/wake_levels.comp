@@ -16,10 +16,21 @@ STORE4_BUFFER(BINDING_AWAKE_OUT, awakeOut);
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
 layout(set = 0, binding = BINDING_LEVELS, std430) buffer LevelsBlock { uint levels[]; };
 
+#include "stages/absent.glsl"
+
 uint groupsOf(uint invocations) { return (invocations + uint(WORK_GROUP) - 1u) / uint(WORK_GROUP); }
 
-// From the camera to the block's nearest agent: whole numbers, which no device rounds.
-uint nearestOf(int first, int last) {
+// The lanes in which somebody is.
+uint presentOf(int first, int members) {
+  uint present = (1u << members) - 1u;
+  if (RESERVE)
+    [[unroll]] for (int lane = 0; lane < BLOCK; ++lane)
+      present &= ~(lane < members && absent(first + lane) ? 1u << lane : 0u);
+  return present;
+}
+
+// From the camera to the nearest of those: whole numbers, which no device rounds.
+uint nearestOf(int first, int last, uint present) {
   ivec3 camera = ivec3(uvec3(constants.every, constants.watched, constants.room));
   uint nearest = ~0u;
   [[unroll]] for (int lane = 0; lane < BLOCK; ++lane) {
@@ -27,7 +38,8 @@ uint nearestOf(int first, int last) {
     vec2 tile = tileOf(body.w) * (4.0 * TILE_SIZE);
     ivec3 place = ivec3(floor(4.0 * body.xyz) + vec3(tile.x, 0.0, tile.y));
     uvec3 apart = min(uvec3(abs(place - camera)), uvec3(LEVELS_FARTHEST));
-    nearest = min(nearest, apart.x * apart.x + apart.y * apart.y + apart.z * apart.z);
+    uint square = apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
+    nearest = RESERVE && (present >> lane & 1u) == 0u ? nearest : min(nearest, square);
   }
   return max(nearest, uint(LEVELS_NEAREST));
 }
@@ -58,7 +70,8 @@ void main() {
   int flags = int(constants.sleepTime), members = clamp(count - first, 0, BLOCK), last = max(count - 1, 0);
   uint tick = uint(constants.tick), turn = tick + constants.first / uint(BLOCK) + uint(block);
   int edges = LEVELS_EDGE + LEVELS_EDGES * int(tick & 1u);
-  uint nearest = nearestOf(first, last);
+  uint present = presentOf(first, members), agents = uint(bitCount(present));
+  uint nearest = nearestOf(first, last, present);
   int level = int(LOAD4(rates, min(first, last)).x);
   // A level reaches to a distance; who is slower comes back within a fifth less of its square.
   int least = 0, most = 0;
@@ -73,21 +86,22 @@ void main() {
 
   // Before its first tick nobody has a rate.
   RARELY(members > 0 && tick > 0u) {
-    atomicAdd(levels[LEVELS_HISTOGRAM + LEVELS_HISTOGRAM_STRIDE * int(tick & 1u) + bucketOf(nearest)], uint(members));
-    atomicAdd(levels[LEVELS_AGENTS + next], uint(members));
+    atomicAdd(levels[LEVELS_HISTOGRAM + LEVELS_HISTOGRAM_STRIDE * int(tick & 1u) + bucketOf(nearest)], agents);
+    atomicAdd(levels[LEVELS_AGENTS + next], agents);
   }
   RARELY(members > 0 && hasTurn && tick > 0u) {
-    ADD64(levels, LEVELS_TICKS + 2 * level, uint(members));
+    ADD64(levels, LEVELS_TICKS + 2 * level, agents);
     for (int lane = 0; lane < members; ++lane)
-      STORE4(ratesOut, first + lane, vec4(float(next), float(level), constants.tick, 0.0));
+      STORE4(ratesOut, first + lane,
+             vec4(float(next), float(level), constants.tick, LOAD4(rates, first + lane).w));
   }
   RARELY(members > 0 && hasTurn) {
-    uint place = atomicAdd(counters[COUNTER_AWAKE_BLOCKS], 1u), agents = (place + 1u) * uint(BLOCK);
-    atomicAdd(counters[COUNTER_AWAKE], uint(members));
-    STORE4(awakeOut, place, vec4(float(block), float((1u << members) - 1u), float(1u << level), 0.0));
-    atomicMax(counters[COUNTER_AWAKE_AGENTS_X], groupsOf(agents));
-    atomicMax(counters[COUNTER_AWAKE_LEGS_X], groupsOf(agents * uint(LEGS)));
-    atomicMax(counters[COUNTER_AWAKE_JOINTS_X], groupsOf(agents * uint(JOINTS)));
+    uint place = atomicAdd(counters[COUNTER_AWAKE_BLOCKS], 1u), lanes = (place + 1u) * uint(BLOCK);
+    atomicAdd(counters[COUNTER_AWAKE], agents);
+    STORE4(awakeOut, place, vec4(float(block), float(present), float(1u << level), float((1u << members) - 1u)));
+    atomicMax(counters[COUNTER_AWAKE_AGENTS_X], groupsOf(lanes));
+    atomicMax(counters[COUNTER_AWAKE_LEGS_X], groupsOf(lanes * uint(LEGS)));
+    atomicMax(counters[COUNTER_AWAKE_JOINTS_X], groupsOf(lanes * uint(JOINTS)));
   }
   RARELY((flags & LEVELS_IS_FIRST) != 0 && block == 0 && tick > 0u) findEdges(tick);
 }

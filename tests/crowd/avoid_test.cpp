@@ -250,6 +250,20 @@ TEST_F(AvoidTest, BodiesHardlyOverlap) {
   }
 }
 
+// At half, a quarter and an eighth of the rate, far from a camera.
+TEST_F(AvoidTest, BodiesHardlyOverlapAtSlowRates) {
+  for (const std::array<float, 3> distances : {std::array{0.0f, 8e3f, 8e3f}, {0, 0, 8e3f}, {0, 0, 0}})
+    for (const Scene& scene : {meetingScene(60), pressedScene(60)}) {
+      CrowdOptions options{.crowding = true};
+      options.levels = Levels{.distances = distances, .most = {0, 60, 60}};
+      Crowd crowd(device(), flatGround(), scene, options);
+      crowd.lookFrom({0, 500, 0});
+      simulate(device(), crowd, 600);
+      EXPECT_LE(crowd.crowding().overlapMost.value(), 0.02);
+      EXPECT_LE(crowd.crowding().pairs.value(), 0.01);
+    }
+}
+
 TEST_F(AvoidTest, WhatIsBesideDoesNotShow) {
   const Heightfield ground = smallRollingGround();
   const auto hashWith = [&](const CrowdOptions& options) {

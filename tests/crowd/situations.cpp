@@ -577,10 +577,11 @@ Results pushedOnHighBellies(Device& device, Controller controller, const CrowdOp
   return replay.results();
 }
 
-// A camera that comes and goes, so that every rate is had, and changed from to every other.
-Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOptions& options) {
-  Scene scene = sceneOf(60, 1, 1, controller);
-  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
+// A camera that comes and goes, so that every rate is had, and changed from to every other. `tell` is called
+// before each tick.
+Results replayAtRates(
+    Device& device, const Scene& scene, const CrowdOptions& options,
+    const std::function<void(Crowd&)>& tell = [](Crowd&) {}) {
   CrowdOptions own = options;
   own.footfalls = 0;
   own.feet = true;
@@ -588,6 +589,7 @@ Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOpti
   Crowd crowd(device, smallRollingGround(), scene, own);
   validation::Lockstep lockstep(crowd, scene, kTick);
   for (int i = 0; i < 160 && !lockstep.hasRefused(); ++i) {
+    tell(crowd);
     lockstep.begin();
     // Low through the crowd, so that levels are full, then over it and away.
     const float t = static_cast<float>(crowd.tick()), wide = t < 100 ? 7 : 20;
@@ -597,6 +599,42 @@ Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOpti
     lockstep.end();
   }
   return lockstep.results();
+}
+
+Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOptions& options) {
+  Scene scene = sceneOf(60, 1, 1, controller);
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
+  return replayAtRates(device, scene, options);
+}
+
+// One comes or goes in each tick; blocks are empty at first.
+Results comingAndGoingAtRates(Device& device, Controller controller, const CrowdOptions& options) {
+  Scene scene = sceneOf(37, 1, 1, controller);
+  scene.herds[0].reserve = 27;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
+  std::vector<AgentId> came;
+  return replayAtRates(device, scene, options, [&](Crowd& crowd) {
+    const auto t = static_cast<float>(crowd.tick());
+    if (crowd.tick() % 2 == 1) {
+      came.push_back(crowd.add(0, {.position = {8 * std::sin(t), 8 * std::cos(1.3f * t)}, .heading = t}));
+    } else if (came.size() > 18) {
+      const auto goes = came.begin() + static_cast<ptrdiff_t>(crowd.tick() * 7 % came.size());
+      crowd.remove(*goes);
+      came.erase(goes);
+    }
+  });
+}
+
+// They keep clear of each other and of a wall, round which fields lead them.
+Results crowdingAtRates(Device& device, Controller controller, const CrowdOptions& options) {
+  Scene scene = sceneOf(60, 2, 1, controller);
+  scene.obstacles = {{Capsule{.from = {-16, 0}, .to = {3, 0}, .radius = 0.3f}}};
+  Herd& herd = scene.herds[0];
+  herd.avoid = true;
+  herd.ways = Ways{};
+  herd.spawn = {.kind = Spawn::Kind::grid, .spacing = 0.8f, .centre = {0, -4}};
+  herd.goal = {.kind = Goal::Kind::point, .target = {0, 5}, .speed = 2};
+  return replayAtRates(device, scene, options);
 }
 
 }  // namespace
@@ -633,6 +671,8 @@ const std::vector<Situation>& situations() {
        {Controller::adaptive, Controller::loop, Controller::clip, Controller::planted, Controller::keyPoses},
        atRatesOfTheirOwn,
        true},
+      {"comingAndGoingAtRates", {Controller::adaptive, Controller::clip}, comingAndGoingAtRates},
+      {"crowdingAtRates", {Controller::adaptive, Controller::clip}, crowdingAtRates, true},
       {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs, true},
       {"tryingGaits", {Controller::adaptive}, tryingGaits, true},
       {"tryingManyGaits", {Controller::adaptive}, tryingManyGaits},

@@ -43,11 +43,13 @@ struct Agent {
   State now{};
   int level = 0;
   uint64_t tick = 0;  // its last one
+  uint64_t put = 0;   // before that tick it was put where it is
   // The way that it is on in pictures.
   State from{};
   uint64_t left = 0, arrives = 0;
   std::optional<uint64_t> shown;  // the last picture's tick that it was in
 
+  bool isHidden() const { return put > tick; }
   State at(uint64_t picture) const {
     if (picture >= arrives) return now;
     const double share = double(picture - left) / double(arrives - left);
@@ -111,7 +113,7 @@ class InterpolationTest : public test::GpuLoadTest {
       }
       std::vector<uint32_t> list;
       for (uint32_t a = 0; a < count; ++a)
-        if (random(0, 1) < 0.8) list.push_back(a);
+        if (random(0, 1) < 0.8 && !agents[a].isHidden()) list.push_back(a);
       const std::vector<glm::vec4> records = upload(agents, body, pose, rate, matrices);
       std::vector<uint32_t> instances(size_t(count) * shared::INSTANCE_LISTS);
       std::ranges::copy(list, instances.begin() + long(count) * shared::SHOWN);
@@ -138,6 +140,10 @@ class InterpolationTest : public test::GpuLoadTest {
         // An agent that was not in the last picture is where its tick left it.
         if (!before || agent.shown != before) agent.left = agent.arrives = 0;
         const size_t at = size_t(a) * shared::BODY_STRIDE;
+        if (agent.isHidden()) {
+          EXPECT_EQ(bodies[at].y, shared::ABSENT_HEIGHT) << named(seed, picture, a);
+          continue;
+        }
         if (tick >= agent.arrives) {
           EXPECT_EQ(bodies[at], records[at]) << named(seed, picture, a);
         }
@@ -160,6 +166,12 @@ class InterpolationTest : public test::GpuLoadTest {
  private:
   // A tick of the crowd, in which the agent has a turn or not, as wake says.
   static void tickOf(Agent& agent, uint32_t number, uint64_t tick, Random& random) {
+    if (random(0, 1) < 0.02) {
+      agent.now.place += glm::dvec3(random(-9, 9), 0, random(-9, 9));
+      agent.put = tick;
+      agent.shown.reset();
+      agent.left = agent.arrives = 0;
+    }
     const uint64_t turn = tick + number / shared::BLOCK;
     if (turn % (uint64_t{1} << agent.level) != 0) return;
     int level = int(random(0, 3.99));
@@ -188,7 +200,7 @@ class InterpolationTest : public test::GpuLoadTest {
       bodies[a * shared::BODY_STRIDE] = {
           glm::vec3(agent.now.place - glm::dvec3(tile.x, 0, tile.z) * double(shared::TILE_SIZE)),
           shared::packedTile(float(tile.x), float(tile.z))};
-      rates[a] = {float(agent.level), 0, float(agent.tick), 0};
+      rates[a] = {float(agent.level), 0, float(agent.tick), float(agent.put)};
       for (size_t i = 0; i < kPalette; ++i) {
         if (matrices) {
           for (int r = 0; r < shared::MATRIX_STRIDE; ++r) poses.emplace_back(rowOf(agent.now, i, r));

@@ -40,11 +40,11 @@ std::vector<std::vector<RateCheck::Rated>> RateCheck::download() const {
       const reference::AgentBody body = bodyOf(state, agent);
       const float* rate = state.rate.data() + size_t{agent} * 4 * shared::RATE_STRIDE;
       const glm::dvec2 at = body.world();
-      kinds[run.kind][run.firstAgent + agent - run.firstOfHerd] = {
-          .place = {at.x, body.y, at.y},
-          .level = static_cast<int>(rate[0]),
-          .lastLevel = static_cast<int>(rate[1]),
-          .lastTick = static_cast<uint64_t>(rate[2])};
+      kinds[run.kind][run.firstAgent + agent - run.firstOfHerd] = {.place = {at.x, body.y, at.y},
+                                                                   .level = static_cast<int>(rate[0]),
+                                                                   .lastLevel = static_cast<int>(rate[1]),
+                                                                   .lastTick = static_cast<uint64_t>(rate[2]),
+                                                                   .absent = body.absent};
     }
   }
   return kinds;
@@ -66,14 +66,16 @@ void RateCheck::end() {
     for (size_t first = 0; first < before_[k].size(); first += shared::BLOCK) {
       const size_t end = std::min(first + shared::BLOCK, before_[k].size());
       reference::RatedBlock block{.number = first / shared::BLOCK, .level = before_[k][first].level};
-      for (size_t i = first; i < end; ++i) block.places.push_back(before_[k][i].place);
+      for (size_t i = first; i < end; ++i)
+        if (!before_[k][i].absent) block.places.push_back(before_[k][i].place);
+      const size_t present = block.places.size();
       // Without a camera the device counts as from the origin.
       const double square = reference::rateSquare(block, camera.value_or(glm::dvec3(0)));
-      seen.push_back({square, end - first});
+      seen.push_back({square, present});
       const reference::RateResult expected =
           reference::rate(tuning_, block, n, camera ? std::optional(square) : std::nullopt, edges);
-      agents[static_cast<size_t>(expected.level)] += end - first;
-      if (expected.hasTurn) agentTicks_[static_cast<size_t>(block.level)] += end - first;
+      agents[static_cast<size_t>(expected.level)] += present;
+      if (expected.hasTurn) agentTicks_[static_cast<size_t>(block.level)] += present;
       for (size_t i = first; i < end; ++i) {
         const Rated &was = before_[k][i], &got = after[k][i];
         Sample sample;

@@ -1,8 +1,12 @@
 #include "crowd/stage.h"
 #include "embedded/avoid_comp_storage.h"
 #include "embedded/avoid_comp_texel.h"
+#include "embedded/avoid_listed_comp_storage.h"
+#include "embedded/avoid_listed_comp_texel.h"
 #include "embedded/avoid_walls_comp_storage.h"
 #include "embedded/avoid_walls_comp_texel.h"
+#include "embedded/avoid_walls_listed_comp_storage.h"
+#include "embedded/avoid_walls_listed_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -22,12 +26,14 @@ Stage avoidStage() {
                {BINDING_CROWDING, store}},
               Stage::Over::everyone};
   stage.seesCrowd = true;
+  stage.levelCode = {embedded::avoid_listed_comp_texel(), embedded::avoid_listed_comp_storage()};
   return stage;
 }
 
 Stage wallAvoidStage() {
   Stage stage = avoidStage();
   stage.code = {embedded::avoid_walls_comp_texel(), embedded::avoid_walls_comp_storage()};
+  stage.levelCode = {embedded::avoid_walls_listed_comp_texel(), embedded::avoid_walls_listed_comp_storage()};
   stage.bindings.push_back({shared::BINDING_WALL, gpu::BindingKind::load4});
   return stage;
 }
