@@ -85,7 +85,8 @@ void checkTrail(const Setting& setting, uint64_t n, const HerdState& before, con
   const ForageFacts& facts = *setting.forage;
   if (before.agents != facts.agents) return;
   reference::ForageTrail expected = trailOf(before, facts.map);
-  for (size_t agent = 0; agent < after.agents; ++agent) reference::layTrail(deedOf(after, agent), expected);
+  for (size_t agent = 0; agent < after.agents; ++agent)
+    if (hasTurn(n, after, agent)) reference::layTrail(deedOf(after, agent), expected);
   reference::evaporate(facts.tuning, n, expected);
   const reference::ForageTrail got = trailOf(after, facts.map);
   const auto same = [](const char* what, const auto& want, const auto& found, Sample& sample) {

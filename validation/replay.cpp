@@ -50,16 +50,12 @@ void expectSizes(const Setting& setting, const HerdState& state) {
 
 // What stages write of everybody but of those whose turn it is not.
 std::vector<Record> writtenOfSleepers(crowd::StageId stage) {
-  if (stage == crowd::StageId::navigate) return {Record::goal, Record::steer};
+  if (stage == crowd::StageId::navigate) return {Record::goal, Record::steer, Record::forager};
   if (stage == crowd::StageId::avoid) return {Record::avoid};
   return {};
 }
 
-// Whether the device had the agent tick in tick n, and how many ticks that one was. Lockstep holds against
-// the reference whose turn it is.
-bool isTurnOf(uint64_t n, const HerdState& after, size_t agent) {
-  return after.rate.empty() || after.rate[4 * shared::RATE_STRIDE * agent + 2] == static_cast<float>(n);
-}
+// How many ticks the agent's last one was.
 uint64_t spanOf(const HerdState& after, size_t agent) {
   if (after.rate.empty()) return 1;
   return uint64_t{1} << static_cast<int>(after.rate[4 * shared::RATE_STRIDE * agent + 1]);
@@ -71,6 +67,10 @@ AgentSample sampleAt(uint64_t seed, uint64_t n, uint32_t agents, uint32_t most) 
   using base::SplitMix64;
   const uint32_t stride = agents / most + 1;
   return {static_cast<uint32_t>(SplitMix64::draw(seed ^ SplitMix64::draw(n)) % stride), stride};
+}
+
+bool hasTurn(uint64_t n, const HerdState& after, size_t agent) {
+  return after.rate.empty() || after.rate[4 * shared::RATE_STRIDE * agent + 2] == static_cast<float>(n);
 }
 
 HerdState sampled(const HerdState& whole, const AgentSample& sample) {
@@ -138,21 +138,22 @@ reference::Step Moment::stepOf(const HerdState& state, size_t leg) const {
 }
 
 const Setting& Replay::settingFor(const HerdState& after, size_t agent, crowd::StageId stage, uint64_t span) {
-  if (span > 1) {
-    const auto [found, isNew] = over_.try_emplace(span, setting_);
-    if (isNew) {
-      found->second.tuning = reference::overTicks(setting_.tuning, static_cast<int>(span));
-      found->second.ik = reference::overTicks(setting_.ik, static_cast<int>(span));
-    }
-    return found->second;
+  const bool isHurt = !after.hurt.empty();
+  if (span == 1 && !isHurt) return setting_;
+  const auto [found, isNew] = made_.try_emplace(span, setting_);
+  Setting& made = found->second;
+  if (isNew && span > 1) {
+    const auto ticks = static_cast<int>(span);
+    made.tuning = reference::overTicks(setting_.tuning, ticks);
+    made.ik = reference::overTicks(setting_.ik, ticks);
+    if (made.forage) made.forage->tuning = reference::overTicks(setting_.forage->tuning, ticks);
   }
-  if (after.hurt.empty()) return setting_;
-  if (!ofAgent_) ofAgent_ = setting_;
-  ofAgent_->creature = hurtCreatureOf(setting_, after, agent);
+  if (!isHurt) return made;
+  made.creature = hurtCreatureOf(setting_, after, agent);
   if (stage != crowd::StageId::react && !after.reaction.empty())
-    ofAgent_->creature = reference::reactingCreature(
-        setting_.tuning, ofAgent_->creature, reactionOf(after, agent), bodyOf(after, agent).orientation);
-  return *ofAgent_;
+    made.creature = reference::reactingCreature(setting_.tuning, made.creature, reactionOf(after, agent),
+                                                bodyOf(after, agent).orientation);
+  return made;
 }
 
 Replay::Replay(const HerdFacts& herd, std::vector<crowd::StageId> only)
@@ -186,10 +187,10 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
       const bool isOver = check.stage != crowd::StageId::measure;  // the agents' own ticks; measure has all
       const uint64_t span = isOver ? spanOf(after, agent) : 1;
       const Moment moment{n, before, after, agent, around, span};
-      const bool hasTurn = !isOver || isTurnOf(n, after, agent);
-      const bool asleep = asleepOf(after, agent) || !hasTurn;
+      const bool ticks = !isOver || hasTurn(n, after, agent);
+      const bool asleep = asleepOf(after, agent) || !ticks;
       const std::vector<Record> early = writtenOfSleepers(check.stage);
-      if (!hasTurn && !early.empty()) {
+      if (!ticks && !early.empty()) {
         for (const Record record : early) checkKept(setting_, moment, record, judges_[c]);
         continue;
       }

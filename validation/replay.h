@@ -80,6 +80,10 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain);
 // seed anew in each tick.
 AgentSample sampleAt(uint64_t seed, uint64_t n, uint32_t agents, uint32_t most);
 
+// Whether the device had the agent tick in tick `n`, where there are levels of rate. Lockstep holds against
+// the reference whose turn it is.
+bool hasTurn(uint64_t n, const HerdState& after, size_t agent);
+
 // The records of those agents, from a whole herd's state without metrics.
 HerdState sampled(const HerdState& whole, const AgentSample& sample);
 
@@ -111,14 +115,14 @@ class Replay {
   void setWays(std::vector<reference::WayField> ways, std::vector<reference::WayPlace> places) {
     setting_.ways = std::move(ways);
     setting_.wayPlaces = std::move(places);
-    ofAgent_.reset();
+    made_.clear();
     waysAreNew_ = true;
   }
 
   // Likewise the ground of those who forage.
   void setForage(std::optional<ForageFacts> forage) {
     setting_.forage = std::move(forage);
-    ofAgent_.reset();
+    made_.clear();
   }
 
   // The stages that are compared, in order, less those that every tick left out.
@@ -128,13 +132,13 @@ class Replay {
   bool hasRefused() const;
 
  private:
-  // With the creature that the agent is, where its legs can be hurt.
+  // For an agent whose tick takes so many of the crowd's, with the creature that it is where its legs can be
+  // hurt.
   const Setting& settingFor(const HerdState& after, size_t agent, crowd::StageId stage, uint64_t span);
 
   Heightfield terrain_;
   Setting setting_;
-  std::optional<Setting> ofAgent_;    // made of setting_ where there is none
-  std::map<uint64_t, Setting> over_;  // of agents that tick in every so many-th tick
+  std::map<uint64_t, Setting> made_;  // of setting_, by how many ticks an agent's own one takes
   std::vector<crowd::StageId> only_;
   std::vector<Judge> judges_;
   bool waysAreNew_ = true;     // no tick has compared them

@@ -166,6 +166,12 @@ void arrive(const ForageTuning& tuning, const ForageMap& map, const ForageTrail&
 
 }  // namespace
 
+ForageTuning overTicks(const ForageTuning& tuning, int ticks) {
+  ForageTuning over = tuning;
+  over.leave = std::min<uint64_t>(tuning.leave * static_cast<uint64_t>(ticks), 0xffffffff);
+  return over;
+}
+
 uint32_t forageMoves(const ForageMap& map, int64_t cell) {
   uint32_t moves = 0;
   for (int64_t d = 0; d < 8; ++d) {

@@ -72,6 +72,9 @@ struct ForageResult {
   double distance = 0;  // metres to what it goes to
 };
 
+// Of an agent that ticks in every so many-th tick.
+ForageTuning overTicks(const ForageTuning& tuning, int ticks);
+
 // Moves from a cell: bit d for direction d.
 uint32_t forageMoves(const ForageMap& map, int64_t cell);
 

@@ -53,7 +53,7 @@ shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, co
   }
   if (over == Stage::Over::blocks && crowd.rates) return crowd.rates->constantsOf(crowd, page, tick);
   if (stage.seesCrowd) return crowd.grid->constantsOf(crowd, kind, page, stage, tick);
-  const bool isForaging = over == Stage::Over::everyone && kind.trails != nullptr;
+  const bool isForaging = stage.makes == StageId::navigate && kind.trails != nullptr;
   return {page.agents,
           static_cast<float>(tick),
           page.firstAgent,

@@ -103,15 +103,12 @@ void expectLevelled(const skitter::Herd& herd, const std::string& name) {
   const auto refuse = [&](const char* what, const char* expected) {
     throw inputError(fmt::format("levels of rate: {}{}, expected {}", name, what, expected));
   };
-  if (herd.forage) refuse(" forages", "none");
-  if (herd.hurt) refuse(".hurt is true", "false");
   if (herd.reactions) refuse(".reactions is true", "false");
 }
 
 void expectLevelled(const CrowdOptions& options, const Scene& scene) {
   expectLevels(*options.levels);
   if (options.sleep) throw inputError("levels of rate with sleep, expected only one of them");
-  if (options.footfalls > 0) throw inputError("levels of rate with footfalls, expected only one of them");
   for (size_t h = 0; h < scene.herds.size(); ++h)
     expectLevelled(scene.herds[h], fmt::format("{}: herds[{}]", scene.name, h));
   for (size_t e = 0; e < scene.events.size(); ++e)

@@ -65,7 +65,7 @@ void takeLevelForms(std::vector<Stage>& stages) {
   for (Stage& stage : stages)
     if (stage.levelCode) {
       stage.code = *stage.levelCode;
-      stage.over = Stage::Over::agents;
+      stage.over = stage.over == Stage::Over::everyLeg ? Stage::Over::legs : Stage::Over::agents;
     }
   stages.insert(stages.begin(), levelWakeStage());
 }

@@ -62,7 +62,7 @@ struct CrowdOptions {
   // files'.
   std::vector<Rig> rigs = {};
   // Agents that are far from the camera (Crowd::lookFrom) tick less often (docs/levels.md). Herds must
-  // have no reactions, must not forage or be hurt, and there must be neither sleep nor footfalls.
+  // have no reactions, and there must be no sleep.
   std::optional<Levels> levels = {};
 };
 

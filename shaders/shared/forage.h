@@ -64,12 +64,14 @@ FORAGE FORAGE_QUANTA = 1024;  // in a metre
 // Bindings of shaders/ways/forage_lay.comp and forage_fade.comp.
 FORAGE BINDING_LAY_FORAGER = 0;  // BINDING_FORAGER
 FORAGE BINDING_LAY_TRAIL = 1;
+FORAGE BINDING_LAY_RATE = 2;  // BINDING_RATE, where there are levels of rate
 struct TrailConstants {
 #ifdef __cplusplus
   using uint = uint32_t;
 #endif
   uint count;        // agents of the page; cells
   uint evaporation;  // 2^32 times the share of the pheromone that goes
+  float tick;
 };
 
 #undef FORAGE

@@ -1,6 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef OF_TURNS
+#include "stages/awake.glsl"
+#else
 #include "stages/stage.glsl"
+#endif
 #include "lib/rarely.glsl"
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
@@ -12,9 +16,16 @@ STORE4_BUFFER(BINDING_FOOTFALL_OUT, footfalls);
 #include "stages/counters.glsl"
 
 void main() {
+#ifdef OF_TURNS
+  int record = legAt(int(gl_GlobalInvocationID.x));
+  if (record < 0) return;
+#else
   int record = int(gl_GlobalInvocationID.x);
+#endif
   int agent = agentOfRecord(record, LEGS), leg = legOfRecord(record, LEGS);
+#ifndef OF_TURNS
   if (agent >= int(constants.count)) return;
+#endif
   vec4 body = LOAD4(bodies, agent * BODY_STRIDE);
   vec3 tip = LOAD4(tips, record).xyz + body.xyz;
   bool planted = LOAD4(feet, record).w >= 1.0;

@@ -82,12 +82,14 @@ int chosenMove(Forager ant, int cell, uint moves, uint random) {
 
 // The agent rests, is lost or has come to where it went.
 void decide(int agent, int here, inout Forager ant, inout Deed deed) {
-  uvec2 random = splitMixDraw(splitMixDraw(forageSeed, constants.first + uint(agent) + 1u), uint(thisTick));
+  uvec2 random = splitMixDraw(splitMixDraw(forageSeed, constants.first + uint(agent) + 1u), uint(crowdTick));
   uint ground = grounds[FORAGE_CELLS + here];
   if (ant.heading == ivec2(0)) ant.heading = 1024 * forageStep(int(random.x & 7u));
   if (ant.state == FORAGE_REST) {
     ant.cell = here;
-    if (random.x >= constants.watched) return;
+    // As likely as in so many ticks of the crowd; 2^32 or more is one less.
+    uint ticks = uint(tickSpan), leave = constants.watched > ~0u / ticks ? ~0u : constants.watched * ticks;
+    if (random.x >= leave) return;
     ant.state = FORAGE_SEARCH;
     ant.steps = 0;
     ant.place = PLACE_NONE;

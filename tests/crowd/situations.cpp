@@ -161,9 +161,7 @@ Results roaming(Device& device, Controller controller, const CrowdOptions& optio
   return replay(device, crowd, ground, 240);
 }
 
-// To food at both ends of a wall and home again, until a source is empty and searches are given up.
-Results foraging(Device& device, Controller controller, const CrowdOptions& options) {
-  const Heightfield ground = smallRollingGround();
+Scene foragingScene(Controller controller) {
   Scene scene = sceneOf(48, 3, 1, controller);
   scene.obstacles = {{Capsule{.from = {-4, 1}, .to = {3, 1}, .radius = 0.3f}}};
   scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f, .centre = {0, -3}};
@@ -176,7 +174,13 @@ Results foraging(Device& device, Controller controller, const CrowdOptions& opti
              .life = 20,
              .patience = 14,
              .rest = 0.5f};
-  Crowd crowd(device, ground, scene, options);
+  return scene;
+}
+
+// To food at both ends of a wall and home again, until a source is empty and searches are given up.
+Results foraging(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Crowd crowd(device, ground, foragingScene(controller), options);
   simulate(device, crowd, 30);
   return replay(device, crowd, ground, 600);
 }
@@ -583,7 +587,6 @@ Results replayAtRates(
     Device& device, const Scene& scene, const CrowdOptions& options,
     const std::function<void(Crowd&)>& tell = [](Crowd&) {}) {
   CrowdOptions own = options;
-  own.footfalls = 0;
   own.feet = true;
   own.levels = Levels{.distances = {6, 10, 14}, .most = {16, 16, 1000}};
   Crowd crowd(device, smallRollingGround(), scene, own);
@@ -622,6 +625,33 @@ Results comingAndGoingAtRates(Device& device, Controller controller, const Crowd
       crowd.remove(*goes);
       came.erase(goes);
     }
+  });
+}
+
+Results foragingAtRates(Device& device, Controller controller, const CrowdOptions& options) {
+  return replayAtRates(device, foragingScene(controller), options);
+}
+
+// Half of them are told what they lost and half are not; they heal, and some carry loads.
+Results hurtAtRates(Device& device, Controller controller, const CrowdOptions& options) {
+  Scene scene = sceneOf(64, controller == Controller::adaptive ? 2 : 1, 1, controller);
+  for (Herd& herd : scene.herds) {
+    herd.hurt = true;
+    herd.adapts = &herd != &scene.herds[0];
+    herd.spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
+  }
+  return replayAtRates(device, scene, options, [&](Crowd& crowd) {
+    const auto each = [&](uint32_t every, const auto& tell) {
+      for (uint32_t herd = 0; herd < scene.herds.size(); ++herd)
+        for (uint32_t agent = 0; agent < scene.herds[herd].agents; agent += every)
+          tell(crowd.agentId(herd, agent), agent);
+    };
+    if (crowd.tick() == 10) each(1, [&](AgentId id, uint32_t agent) { crowd.hurt(id, agent % 8); });
+    if (crowd.tick() == 50)
+      each(3, [&](AgentId id, uint32_t agent) {
+        crowd.carry(id, {.mass = 0.5f + 0.05f * static_cast<float>(agent), .offset = {0.2f, 0.1f, 0}});
+      });
+    if (crowd.tick() == 90) each(2, [&](AgentId id, uint32_t) { crowd.heal(id); });
   });
 }
 
@@ -671,6 +701,8 @@ const std::vector<Situation>& situations() {
        {Controller::adaptive, Controller::loop, Controller::clip, Controller::planted, Controller::keyPoses},
        atRatesOfTheirOwn,
        true},
+      {"foragingAtRates", {Controller::adaptive}, foragingAtRates},
+      {"hurtAtRates", {Controller::adaptive, Controller::loop, Controller::planted}, hurtAtRates},
       {"comingAndGoingAtRates", {Controller::adaptive, Controller::clip}, comingAndGoingAtRates},
       {"crowdingAtRates", {Controller::adaptive, Controller::clip}, crowdingAtRates, true},
       {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs, true},

@@ -128,7 +128,11 @@ CrowdOptions levelled() {
 }
 
 TEST_P(StateTest, GoesOnAtRatesOfItsOwn) {
-  Crowd crowd(device(), smallRollingGround(), manyHerds(GetParam()), levelled());
+  Scene scene = manyHerds(GetParam());
+  scene.herds[0].reserve = 3;
+  scene.herds[0].avoid = true;
+  Crowd crowd(device(), smallRollingGround(), scene, levelled());
+  crowd.remove(crowd.agentId(0, 1));
   walkSeen(device(), crowd, kBefore);
   State state = parseState(crowd.saveToMemory(), "a state");
   EXPECT_EQ(state.options.levels, levelled().levels);

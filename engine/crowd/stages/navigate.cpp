@@ -3,6 +3,8 @@
 #include "embedded/navigate_comp_texel.h"
 #include "embedded/navigate_forage_comp_storage.h"
 #include "embedded/navigate_forage_comp_texel.h"
+#include "embedded/navigate_forage_listed_comp_storage.h"
+#include "embedded/navigate_forage_listed_comp_texel.h"
 #include "embedded/navigate_listed_comp_storage.h"
 #include "embedded/navigate_listed_comp_texel.h"
 #include "embedded/navigate_ways_comp_storage.h"
@@ -43,6 +45,8 @@ Stage forageNavigateStage() {
   using enum gpu::BindingKind;
   Stage stage = navigateStage();
   stage.code = {embedded::navigate_forage_comp_texel(), embedded::navigate_forage_comp_storage()};
+  stage.levelCode = {embedded::navigate_forage_listed_comp_texel(),
+                     embedded::navigate_forage_listed_comp_storage()};
   for (const gpu::BindingDecl& more : {gpu::BindingDecl{BINDING_FORAGER, load4},
                                        {BINDING_FORAGER_OUT, store},
                                        {BINDING_FORAGE_GROUND, store},

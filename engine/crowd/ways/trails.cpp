@@ -14,6 +14,8 @@
 #include "embedded/forage_fade_comp.h"
 #include "embedded/forage_lay_comp_storage.h"
 #include "embedded/forage_lay_comp_texel.h"
+#include "embedded/forage_lay_levels_comp_storage.h"
+#include "embedded/forage_lay_levels_comp_texel.h"
 #include "gpu/barrier.h"
 #include "gpu/context.h"
 #include "gpu/submit.h"
@@ -100,14 +102,20 @@ float Trails::cellOf(const Forage& forage, float longestSide) {
   return static_cast<float>(std::ceil(least * shared::FORAGE_QUANTA) / shared::FORAGE_QUANTA);
 }
 
-Trails::Trails(const gpu::Context& context, const Forage& forage, uint64_t seed, const CostGrid& grid)
+Trails::Trails(const gpu::Context& context, const Forage& forage, uint64_t seed, const CostGrid& grid,
+               bool levels)
     : context_(&context), forage_(forage), seed_(seed) {
   using namespace shared;
   using enum gpu::BindingKind;
-  lay_ = gpu::Kernel(context, {"forage_lay",
-                               {embedded::forage_lay_comp_texel(), embedded::forage_lay_comp_storage()},
-                               {{BINDING_LAY_FORAGER, load4}, {BINDING_LAY_TRAIL, store}},
-                               sizeof(TrailConstants)});
+  gpu::KernelInfo lay{"forage_lay",
+                      {embedded::forage_lay_comp_texel(), embedded::forage_lay_comp_storage()},
+                      {{BINDING_LAY_FORAGER, load4}, {BINDING_LAY_TRAIL, store}},
+                      sizeof(TrailConstants)};
+  if (levels) {
+    lay.code = {embedded::forage_lay_levels_comp_texel(), embedded::forage_lay_levels_comp_storage()};
+    lay.bindings.push_back({BINDING_LAY_RATE, load4});
+  }
+  lay_ = gpu::Kernel(context, lay);
   fade_ = gpu::Kernel(
       context,
       {"forage_fade", embedded::forage_fade_comp(), {{BINDING_LAY_TRAIL, store}}, sizeof(TrailConstants)});
@@ -149,7 +157,9 @@ void Trails::setGrid(const CostGrid& grid) {
 
 void Trails::bind(Page& page) const {
   using namespace shared;
-  page.laid = lay_.bind(*context_, {{BINDING_LAY_FORAGER, &page.forager}, {BINDING_LAY_TRAIL, &trail_}});
+  std::vector<gpu::Binding> buffers = {{BINDING_LAY_FORAGER, &page.forager}, {BINDING_LAY_TRAIL, &trail_}};
+  if (page.rate) buffers.push_back({BINDING_LAY_RATE, &page.rate});
+  page.laid = lay_.bind(*context_, buffers);
   const TrailConstants nothing{};
   gpu::submitAndWait(*context_, [&](vk::CommandBuffer cmd) {
     lay_.dispatch(cmd, page.laid, gpu::bytesOf(nothing), 1);
@@ -162,14 +172,15 @@ void Trails::bind(Page& page) const {
 void Trails::record(vk::CommandBuffer cmd, std::span<const Page> pages, uint64_t tick, float dt) const {
   using shared::TrailConstants;
   for (const Page& page : pages) {
-    const TrailConstants constants{.count = page.agents, .evaporation = 0};
+    const TrailConstants constants{.count = page.agents, .evaporation = 0, .tick = static_cast<float>(tick)};
     lay_.dispatch(cmd, page.laid, gpu::bytesOf(constants), gpu::groupsFor(page.agents, shared::WORK_GROUP));
   }
   gpu::computeToCompute(cmd);
   if (tick % ForageNumbers::everyOf(double{dt}) != 0) return;
   const auto cells = static_cast<uint32_t>(grid_.cost.size());
   const TrailConstants constants{.count = cells,
-                                 .evaporation = ForageNumbers::evaporationOf(forage_, double{dt})};
+                                 .evaporation = ForageNumbers::evaporationOf(forage_, double{dt}),
+                                 .tick = static_cast<float>(tick)};
   fade_.dispatch(cmd, faded_, gpu::bytesOf(constants), gpu::groupsFor(cells, shared::WORK_GROUP));
   gpu::computeToCompute(cmd);
 }
@@ -183,7 +194,7 @@ void beginTrails(Crowd::Impl& crowd, uint32_t k) {
   if (!kind.forages()) return;
   kind.trails = std::make_unique<Trails>(*crowd.context, *kind.wayfaring->forage,
                                          base::SplitMix64::draw(crowd.seed, uint64_t{k} + 1),
-                                         trailGridFor(crowd, kind));
+                                         trailGridFor(crowd, kind), crowd.rates.has_value());
 }
 
 void bindTrails(const Crowd::Impl&, Kind& kind) {

@@ -32,7 +32,8 @@ ForageNumbers numbersOf(const Forage& forage);
 class Trails {
  public:
   // Without pheromone. The grid's cells are whole quanta, as cellOf makes them.
-  Trails(const gpu::Context& context, const Forage& forage, uint64_t seed, const CostGrid& grid);
+  // `levels`: agents have rates of their own.
+  Trails(const gpu::Context& context, const Forage& forage, uint64_t seed, const CostGrid& grid, bool levels);
 
   // Metres a side of the cells over a terrain of that longer side.
   static float cellOf(const Forage& forage, float longestSide);
