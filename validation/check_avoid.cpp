@@ -29,8 +29,12 @@ struct Avoiding {
   glm::dvec2 desired;
   bool mayRest;
 
+  // It looks again after a round, or in its own next tick.
   reference::AvoidTick tick() const {
-    return {static_cast<int64_t>(moment.n), setting.tuning.dt, static_cast<int>(moment.span)};
+    const auto span = static_cast<int>(moment.span);
+    const double dt = setting.tuning.dt / span;
+    const int until = std::max(span, reference::roundTicks(dt));
+    return {static_cast<int64_t>(moment.n), until * dt, until};
   }
 
   reference::AvoidResult run(const reference::AvoidChoices& choices) const {
@@ -97,7 +101,7 @@ Allowed bound(const Avoiding& agent, const reference::AvoidResult& result, bool 
   const auto spread = [](double sum) { return tolerance::deviations * std::sqrt(sum / erringSolves); };
   // A speed follows from a gap, which errs by roundings of the lengths that it is the difference of, in a
   // tick.
-  const double inATick = sizeOf(agent) / agent.setting.tuning.dt;
+  const double inATick = sizeOf(agent) / agent.tick().dt;
   return {spread(squares) + 16 * tolerance::roundoff * sizeOf(agent),
           spread(speedSquares) + 16 * tolerance::roundoff * (inATick + result.mostSpeed)};
 }

@@ -66,13 +66,10 @@ void checkForage(const Setting& setting, const Moment& moment, Judge& judge) {
   going.kind = reference::GoalKind::velocity;
   going.target = result.velocity;
   going.speed = glm::length(result.velocity) + 1;
-  const reference::Rest rest{.gait = gaitOf(moment.before, moment.agent),
-                             .allowed = moment.after.sleep,
-                             .edited = moment.after.watched,
-                             .breathes = setting.controller == Controller::adaptive};
+  const reference::Rest rest = restOf(setting, moment);
   const reference::NavigateResult sleep = reference::navigate(setting.tuning, body, going, rest);
   const Sample sample = compareForaging(setting, moment, body, result, sleep.asleep);
-  const double breath = reference::tolerance::breathedOut(setting.tuning, rest.gait);
+  const double breath = reference::tolerance::breathedOut(setting.tuning, rest.round, rest.gait);
   if (sample.passes() || !(sleep.breathMargin < breath))
     return judge.add(moment.n, moment.number(), -1, sample);
   const Sample other = compareForaging(setting, moment, body, result, !sleep.asleep);

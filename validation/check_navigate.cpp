@@ -1,3 +1,4 @@
+#include "cpu_reference/stages/avoid.h"
 #include "cpu_reference/stages/navigate.h"
 #include "cpu_reference/stages/tolerances.h"
 #include "skitter/records.h"
@@ -57,15 +58,20 @@ Sample compare(const Setting& setting, const Moment& moment, const reference::Ag
 
 }  // namespace
 
+reference::Rest restOf(const Setting& setting, const Moment& moment) {
+  return {.gait = gaitOf(moment.before, moment.agent),
+          .allowed = moment.after.sleep,
+          .edited = moment.after.watched,
+          .breathes = setting.controller == Controller::adaptive,
+          .round = moment.after.avoid.empty() ? 1 : reference::roundTicks(setting.tuning.dt)};
+}
+
 void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
   if (setting.forage) return checkForage(setting, moment, judge);
   const reference::Tuning& tuning = setting.tuning;
   const reference::AgentBody body = bodyOf(moment.before, moment.agent);
   const reference::Goal goal = goalOf(moment.before, moment.agent);
-  const reference::Rest rest{.gait = gaitOf(moment.before, moment.agent),
-                             .allowed = moment.after.sleep,
-                             .edited = moment.after.watched,
-                             .breathes = setting.controller == Controller::adaptive};
+  const reference::Rest rest = restOf(setting, moment);
   const auto run = [&](const reference::NavigateChoices& choices) {
     return reference::navigate(tuning, body, goal, rest, choices, setting.ways, setting.wayPlaces);
   };
@@ -74,7 +80,7 @@ void checkNavigate(const Setting& setting, const Moment& moment, Judge& judge) {
   if (sample.passes()) return judge.add(moment.n, moment.number(), -1, sample);
 
   const double near = tolerance::goalDistance(setting.extent);
-  const double breath = tolerance::breathedOut(tuning, rest.gait);
+  const double breath = tolerance::breathedOut(tuning, rest.round, rest.gait);
   // A sleeper decides again and again what it fell asleep by: that is one tie.
   const bool slept = mayRest(moment.before, moment.agent) && mayRest(moment.after, moment.agent);
   for (int choice = 0; choice < (result.way ? 1024 : 32); ++choice) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cpu_reference/stages/navigate.h"
 #include "validation/replay.h"
 
 // What the check of each stage, in check_X.cpp, is given, and the table of them all (checks.cpp).
@@ -22,6 +23,9 @@ struct Moment {
 
 // The agent as others see it, where its herd avoids. Throws Error(input) where the surroundings lack it.
 const reference::Walker& selfAround(const Setting& setting, const Moment& moment);
+
+// What decides whether the agent sleeps.
+reference::Rest restOf(const Setting& setting, const Moment& moment);
 
 // A sleeper's records must be those of before the tick, bit for bit; adds what is not.
 void checkKept(const Setting& setting, const Moment& moment, Record record, Judge& judge);

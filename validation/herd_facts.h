@@ -96,6 +96,7 @@ inline HerdFacts herdFacts(const Crowd::Impl& crowd, const crowd::HerdRun& of, c
                  .legLength = kind.parameters.legLength,
                  .obstacles = obstaclesOf(crowd.scene)};
   facts.firstNumber = crowd::numberOf(crowd, kind) + of.run->firstAgent;
+  facts.firstInKind = of.run->firstAgent;
   return facts;
 }
 

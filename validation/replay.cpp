@@ -55,6 +55,12 @@ std::vector<Record> writtenOfSleepers(crowd::StageId stage) {
   return {};
 }
 
+// Whether the agent, of a herd that avoids, does so in that tick.
+bool looksAround(const Setting& setting, const Moment& moment) {
+  return reference::looksAround(setting.firstInKind + static_cast<int64_t>(moment.number()), moment.n,
+                                reference::roundTicks(setting.tuning.dt));
+}
+
 // How many ticks the agent's last one was.
 uint64_t spanOf(const HerdState& after, size_t agent) {
   if (after.rate.empty()) return 1;
@@ -112,6 +118,7 @@ Setting settingOf(const HerdFacts& herd, const Heightfield& terrain) {
                 herd.ik.polish};
   setting.avoid = herd.avoid;
   setting.firstNumber = herd.firstNumber;
+  setting.firstInKind = herd.firstInKind;
   setting.ways = herd.ways;
   setting.wayPlaces = herd.wayPlaces;
   setting.forage = herd.forage;
@@ -187,7 +194,8 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
       const bool isOver = check.stage != crowd::StageId::measure;  // the agents' own ticks; measure has all
       const uint64_t span = isOver ? spanOf(after, agent) : 1;
       const Moment moment{n, before, after, agent, around, span};
-      const bool ticks = !isOver || hasTurn(n, after, agent);
+      const bool ticks = (!isOver || hasTurn(n, after, agent)) &&
+                         (check.stage != crowd::StageId::avoid || looksAround(setting_, moment));
       const bool asleep = asleepOf(after, agent) || !ticks;
       const std::vector<Record> early = writtenOfSleepers(check.stage);
       if (!ticks && !early.empty()) {

@@ -40,7 +40,7 @@ struct HerdFacts {
   uint32_t firstAgent = 0;        // the number in the herd of agent 0 of the states, for messages
   // Where the herd avoids: how, and the number in the crowd of that agent.
   reference::AvoidTuning avoid = {};
-  int64_t firstNumber = 0;
+  int64_t firstNumber = 0, firstInKind = 0;
   std::vector<reference::WayField> ways = {};       // the fields of its kind, as they are on the device
   std::vector<reference::WayPlace> wayPlaces = {};  // those of its goals in series
   std::optional<ForageFacts> forage = {};           // where the herd forages
@@ -62,7 +62,7 @@ struct Setting {
   reference::ClipTable clips;
   reference::KeyPoses keyPoses;
   reference::AvoidTuning avoid;
-  int64_t firstNumber = 0;
+  int64_t firstNumber = 0, firstInKind = 0;
   std::vector<reference::WayField> ways;
   std::vector<reference::WayPlace> wayPlaces;
   std::optional<ForageFacts> forage;

@@ -51,26 +51,45 @@ constexpr double mostOtherSides = 1e-3;  // of the agents
 // Who computes velocities that keep clear, again and again of the same agents.
 class AvoidRunner : public Runner {
  public:
-  // As the avoid record has them, of all agents.
-  virtual std::vector<float> records() const = 0;
+  // A part of the agents looks around in each tick, everybody in a round of so many.
+  explicit AvoidRunner(int round) : parts_(static_cast<size_t>(round)) {}
+  void tick() final { look(ticks_++ % parts_); }
+  // Of a round that goes on from the last tick.
+  std::vector<float> recordsOfARound() {
+    for (size_t i = 1; i < parts_; ++i) tick();
+    finish();
+    return records();
+  }
   // So that a tick that computes nothing is found out.
   virtual void forget() = 0;
+
+ protected:
+  size_t parts() const { return parts_; }
+  virtual void look(size_t part) = 0;
+  // As the avoid record has them, of all agents.
+  virtual std::vector<float> records() const = 0;
+
+ private:
+  size_t parts_, ticks_ = 0;
 };
 
 class DeviceAvoid final : public AvoidRunner {
  public:
-  DeviceAvoid(Device& device, const Crowd& crowd)
-      : crowd_(implOf(crowd)), ring_(device.context()), timer_(device.context(), mostStages) {}
+  DeviceAvoid(Device& device, const Crowd& crowd, int round)
+      : AvoidRunner(round),
+        crowd_(implOf(crowd)),
+        ring_(device.context()),
+        timer_(device.context(), mostStages) {}
 
   std::string name() const override { return "device"; }
   int threads() const override { return 0; }
-  void tick() override {
+  void look(size_t part) override {
     const vk::CommandBuffer cmd = ring_.begin();
     timer_.reset(cmd);
     timer_.next(cmd, "grid");
     crowd_.grid->record(crowd_, cmd);
     timer_.next(cmd, "avoid");
-    crowd::Frame(crowd_, crowd_.kinds, crowd_.tick, cmd).record(crowd::StageId::avoid);
+    crowd::Frame(crowd_, crowd_.kinds, crowd_.tick + part, cmd).record(crowd::StageId::avoid);
     timer_.end(cmd, "avoid");
     gpu::computeToCompute(cmd);
     ring_.submit();
@@ -111,14 +130,15 @@ class DeviceAvoid final : public AvoidRunner {
 
 class CpuAvoid final : public AvoidRunner {
  public:
-  CpuAvoid(const char* method, int threads, std::unique_ptr<Avoider> avoider)
-      : name_(fmt::format("{}, {} thread{}", method, threads, threads == 1 ? "" : "s")),
+  CpuAvoid(const char* method, int threads, int round, std::unique_ptr<Avoider> avoider)
+      : AvoidRunner(round),
+        name_(fmt::format("{}, {} thread{}", method, threads, threads == 1 ? "" : "s")),
         threads_(threads),
         avoider_(std::move(avoider)) {}
 
   std::string name() const override { return name_; }
   int threads() const override { return threads_; }
-  void tick() override { avoider_->tick(); }
+  void look(size_t part) override { avoider_->tick(part, parts()); }
   void timeStages(bool on) override { avoider_->timeStages(on); }
   std::vector<StageTime> stageTimes() const override {
     std::vector<StageTime> times;
@@ -154,6 +174,7 @@ Walkers walkersOf(const Crowd& crowd) {
   walkers.legLength = kind.parameters.legLength;
   walkers.dt = kind.parameters.dt;
   walkers.tick = static_cast<int64_t>(impl.tick);
+  walkers.round = static_cast<int>(crowd::roundTicksOf(impl.dt));
   for (size_t agent = 0; agent < state.agents; ++agent) {
     const reference::AgentBody body = validation::bodyOf(state, agent);
     const glm::dvec2 desired = validation::desiredOf(state, agent);
@@ -178,9 +199,10 @@ std::vector<Entrant> entrantsOf(Device& device, const Crowd& crowd, const Walker
   using cpu_crowd::Width;
   const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<Entrant> entrants;
-  entrants.push_back({std::make_unique<DeviceAvoid>(device, crowd), true});
+  entrants.push_back({std::make_unique<DeviceAvoid>(device, crowd, walkers.round), true});
   const auto enter = [&](const char* method, int threads, bool isTheStage, std::unique_ptr<Avoider> avoider) {
-    entrants.push_back({std::make_unique<CpuAvoid>(method, threads, std::move(avoider)), isTheStage});
+    entrants.push_back(
+        {std::make_unique<CpuAvoid>(method, threads, walkers.round, std::move(avoider)), isTheStage});
   };
   const auto soft = [&](Width width, int threads) {
     enter(width == Width::simd ? "CPU SIMD" : "CPU scalar", threads, true,
@@ -203,16 +225,19 @@ validation::StageResult againstReference(const Crowd& crowd, const std::vector<f
   const Crowd::Impl& impl = implOf(crowd);
   const crowd::HerdRun of = crowd::allRuns(impl).front();
   const AgentSample sample = validation::sampleAt(seed, crowd.tick(), of.run->agents, agentsJudged);
-  const HerdState before = crowd::download(impl, *of.run, sample);
-  HerdState after = before;
+  HerdState before = crowd::download(impl, *of.run, sample), after = before;
   after.avoid.clear();
   for (uint32_t i = 0; i < after.agents; ++i) {
     const size_t agent = size_t{sample.first} + size_t{i} * sample.stride;
     const auto record = std::span(records).subspan(4 * agent, 4);
     after.avoid.insert(after.avoid.end(), record.begin(), record.end());
   }
+  before.avoid = after.avoid;
   validation::Replay replay(validation::herdFacts(impl, of), {crowd::StageId::avoid});
-  replay.tick(crowd.tick(), before, after, validation::surroundingsOf(impl));
+  // In each tick of a round, which is within a turn, others have looked around.
+  const uint64_t round = crowd::roundTicksOf(impl.dt), first = crowd.tick() - crowd.tick() % round;
+  for (uint64_t part = 0; part < round; ++part)
+    replay.tick(first + part, before, after, validation::surroundingsOf(impl));
   return replay.results().front();
 }
 
@@ -355,7 +380,7 @@ AvoidMatch avoidContest(Device& device, const AvoidCrowd& made, const ContestOpt
     corners.push_back({*entrant.runner, ticksATurn(*entrant.runner, options.turnSeconds)});
   if (!takeTurns(
           corners, {options.rounds, options.seed}, [&](size_t i) { entrants[i].runner->forget(); },
-          [&](size_t i) { entrants[i].records = entrants[i].runner->records(); },
+          [&](size_t i) { entrants[i].records = entrants[i].runner->recordsOfARound(); },
           [&](double share) { step(0.3 + 0.6 * share); }, stopped))
     return {};
   for (size_t i = 0; i < corners.size(); ++i) {

@@ -21,6 +21,7 @@ constexpr double frontRoom = 0.1, nearRoom = 0.02, deepRoom = 0.01, looseBelow =
 constexpr double easeTime = 0.4, slackSpeed = 1e-4, freeSpeed = 100;
 constexpr int cellSweeps = 2;
 constexpr double turnTime = 2;
+constexpr double longestRound = 1.0 / 15;
 
 // Rounding errors of the size that a float32 computation makes; none by default.
 class Rounding {
@@ -247,7 +248,8 @@ CellSide sideOf(const AvoidTuning& tuning, const AvoidTick& tick, const Walker& 
   const double smaller = static_cast<double>(std::min(self.radius, other.radius)) / tuning.quanta;
   const glm::dvec2 n = seen.distance2 > 0 ? rounded(p / d, 4) : glm::dvec2(0);
   const double inFront = glm::dot(n, desired) / std::max(glm::length(desired), 1e-6);
-  const bool givesWay = !other.yields || isBefore(other.number, self.number, tick.number, tick.dt / tick.span);
+  const bool givesWay =
+      !other.yields || isBefore(other.number, self.number, tick.number, tick.dt / tick.span);
   const double front = givesWay ? frontRoom * std::clamp(2 * rounded(inFront, 8), 0.0, 1.0) : 0;
   const double leaves = std::max(0.0, rounded(glm::dot(n, other.velocity), 4 * glm::length(other.velocity)));
   // Half of the gap is the neighbour's, if it holds itself to it. Who overlaps much is not held.
@@ -294,6 +296,18 @@ glm::dvec2 withinCell(const AvoidTuning& tuning, const std::vector<CellSide>& si
 }
 
 }  // namespace
+
+int roundTicks(double dt) {
+  // 1/60 may have been a float.
+  for (const int ticks : {4, 2})
+    if (ticks * dt <= longestRound + 5e-7) return ticks;
+  return 1;
+}
+
+bool looksAround(int64_t numberInKind, uint64_t tick, int roundTicks) {
+  constexpr int64_t block = 8;
+  return (numberInKind / block + static_cast<int64_t>(tick)) % roundTicks == 0;
+}
 
 Walker walkerOf(const AgentBody& body, int64_t number, int64_t radius, bool yields, double quanta) {
   const auto inQuanta = [&](double tile, double local) {

@@ -30,11 +30,16 @@ struct AvoidTuning {
   std::vector<AvoidObstacle> obstacles = {};
 };
 
+// An agent looks around in one tick, and what it decides holds until it looks again.
 struct AvoidTick {
   int64_t number = 1;    // of the crowd, by which agents go first
-  double dt = 1.0 / 60;  // seconds, the agent's own
-  int span = 1;          // ticks of the crowd in one of the agent's
+  double dt = 1.0 / 60;  // seconds until it looks again
+  int span = 1;          // so many ticks of the crowd
 };
+// Ticks of the crowd in a round, in which everybody looks around once.
+int roundTicks(double dt);
+// Whether an agent of its kind does so in that tick of the crowd.
+bool looksAround(int64_t numberInKind, uint64_t tick, int roundTicks);
 
 // One neighbour asks for n . v >= bound.
 struct HalfPlane {

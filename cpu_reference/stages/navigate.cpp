@@ -98,9 +98,9 @@ void sleep(const Tuning& tuning, const AgentBody& body, const Rest& rest, const 
   const Gait& gait = rest.gait;
   bool breathedOut = true;
   if (rest.breathes) {
-    const double firstTick = tuning.dt / gait.cycle;
-    result.breathMargin = std::abs(gait.phase - firstTick);
-    breathedOut = decided(gait.phase < firstTick, choices.breathedOut);
+    const double begun = rest.round * tuning.dt / gait.cycle;
+    result.breathMargin = std::abs(gait.phase - begun);
+    breathedOut = decided(gait.phase < begun, choices.breathedOut);
   }
   const bool feetStand = (gait.lift | gait.reaim | gait.air) == 0;
   result.asleep = stands && body.still >= tuning.sleepTime && feetStand && breathedOut;

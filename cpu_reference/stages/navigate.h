@@ -14,6 +14,7 @@ struct Rest {
   bool allowed = false;   // CrowdOptions::sleep
   bool edited = false;    // the heights, in the last two seconds
   bool breathes = false;  // the bodies of the agent's controller do
+  int round = 1;          // ticks in which a herd that avoids looks around once, else 1
 };
 
 struct NavigateResult {
@@ -23,7 +24,7 @@ struct NavigateResult {
   // Distances to the decisions, metres; infinite where a decision was not asked for.
   double arrivalMargin = 0;
   glm::dvec2 edgeMargin{0};
-  // Likewise of sleep: of |v| from what counts as standing (m/s), and of the phase from the first tick of a
+  // Likewise of sleep: of |v| from what counts as standing (m/s), and of the phase from the first ticks of a
   // breath. The other conditions compare records as they are, and no rounding can turn them.
   double standMargin = 0, breathMargin = 0;
   std::optional<WayResult> way = {};  // of an agent who has a field to go by

@@ -66,8 +66,10 @@ inline double wayVelocity(double extent, double cell, const WayResult& way, doub
 inline double stands(double extent, double speed, double slowRadius, double standing) {
   return speed * (goalDistance(extent) / slowRadius + 12 * roundoff) + 2 * roundoff * standing;
 }
-// dt / C, a quotient of records, or phi C in its place.
-inline double breathedOut(const Tuning& t, const Gait& gait) { return 6 * roundoff * t.dt / gait.cycle; }
+// So many dt / C, a quotient of records, or phi C in its place.
+inline double breathedOut(const Tuning& t, int ticks, const Gait& gait) {
+  return 6 * roundoff * ticks * t.dt / gait.cycle;
+}
 
 // A rotation by a unit quaternion: 12 operations on lengths up to |v|, and the quaternion's own norm.
 inline double rotated(double length) { return 16 * roundoff * length; }

@@ -211,11 +211,21 @@ void writePut(const Page& page, uint32_t agent, uint64_t tick, Writes& writes) {
              std::span(&before, 1));
 }
 
+// An empty place sleeps, which avoid would say later.
+void writeAsleep(const Page& page, uint32_t agent, Writes& writes) {
+  constexpr std::array record = {0.0f, 0.0f, 1.0f, 0.0f};
+  writes.add(page.avoid, uint64_t{agent} * sizeof record, record);
+}
+
 // Who does not begin anew stirs: a sleeper would not see what happens to it.
 void stir(const Page& page, uint32_t agent, Writes& writes) {
   constexpr uint64_t still = 13;  // the float of a body record
   constexpr float stirs = 0;
   writes.add(page.body, uint64_t{agent} * sizeof(BodyRecord) + still * sizeof(float), std::span(&stirs, 1));
+  constexpr uint64_t asleep = 2;  // the float of an avoid record
+  if (page.avoid)
+    writes.add(page.avoid, (uint64_t{agent} * 4 * shared::AVOID_STRIDE + asleep) * sizeof(float),
+               std::span(&stirs, 1));
 }
 
 // For that tick.
@@ -269,6 +279,7 @@ void recordChanges(Crowd::Impl& crowd, vk::CommandBuffer cmd) {
       else if (change.speed)
         writes.add(page->goal, goal + 4 * sizeof(float), std::span(change.record).subspan(4, 1));
       if (change.leaves) writes.add(page->body, uint64_t{agent} * sizeof(BodyRecord), absentBody());
+      if (change.leaves && page->avoid) writeAsleep(*page, agent, writes);
       if ((change.leaves || change.stands) && page->rate) writePut(*page, agent, crowd.tick, writes);
       if (change.hurt) writeLegs(change, *page, agent, kind, writes);
       if (change.hurt && change.stands && page->search) forgetSearch(*page, agent, writes);

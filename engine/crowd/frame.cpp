@@ -57,7 +57,7 @@ shared::TickConstants constantsOf(const Crowd::Impl& crowd, const Kind& kind, co
   return {page.agents,
           static_cast<float>(tick),
           page.firstAgent,
-          1,
+          kind.avoids ? roundTicksOf(crowd.dt) : 1,
           isForaging ? ForageNumbers::leaveOf(*kind.wayfaring->forage, double{crowd.dt}) : 0,
           page.footfallRoom,
           !crowd.options.sleep || watchesGround(crowd) ? std::numeric_limits<float>::infinity()
@@ -157,7 +157,9 @@ void Frame::dispatch(const Kind& kind, const Page& page, size_t index) const {
     kernel.dispatchIndirect(cmd_, page.bindings[index], push, page.counters, awakeArguments(stage.over));
   else
     kernel.dispatch(cmd_, page.bindings[index], push,
-                    gpu::groupsFor(invocations(kind, page, stage.over), shared::WORK_GROUP));
+                    gpu::groupsFor(stage.makes == StageId::avoid ? lookersOf(page, crowd_.dt)
+                                                                 : invocations(kind, page, stage.over),
+                                   shared::WORK_GROUP));
 }
 
 void Frame::solveListed(const Kind& kind, const Page& page) const {

@@ -37,6 +37,8 @@ constexpr float finestQuanta = 1024;  // in a metre
 constexpr float cellMargin = 1.01f;
 constexpr uint32_t leastCell = 128;  // quanta
 constexpr double secondsATurn = 2;
+constexpr double longestRound = 1.0 / 15 + 1e-6;  // seconds; a tick of 1/60 is a float
+constexpr uint32_t mostRoundTicks = 4;
 constexpr uint32_t leastBuckets = 256, leastRun = 64, mostRuns = 4096;
 
 uint64_t agentsOf(const Crowd::Impl& crowd) {
@@ -118,6 +120,28 @@ Quanta quantaOf(const Crowd::Impl& crowd) {
 uint32_t turnOf(const Crowd::Impl& crowd) {
   const auto ticksATurn = std::max<int64_t>(1, std::llround(secondsATurn / double{crowd.dt}));
   return static_cast<uint32_t>(crowd.tick / static_cast<uint64_t>(ticksATurn));
+}
+
+uint32_t roundTicksOf(float dt) {
+  uint32_t ticks = mostRoundTicks;
+  while (ticks > 1 && ticks * double{dt} > longestRound) ticks /= 2;
+  return ticks;
+}
+
+namespace {
+
+// How avoid finds who looks around, in the bits above those that neighbours drop.
+uint32_t roundBits(float dt, const Page& page, uint64_t tick) {
+  const uint32_t ticks = roundTicksOf(dt);
+  const auto block = static_cast<uint32_t>((ticks - tick % ticks) % ticks);
+  return ticks << 8 | block << 12 | page.firstAgent % (ticks * shared::BLOCK) << 16;
+}
+
+}  // namespace
+
+uint32_t lookersOf(const Page& page, float dt) {
+  const uint32_t round = roundTicksOf(dt) * shared::BLOCK;
+  return (page.firstAgent % round + page.agents + round - 1) / round * shared::BLOCK;
 }
 
 uint32_t numberOf(const Crowd::Impl& crowd, const Kind& kind) {
@@ -214,7 +238,7 @@ shared::TickConstants Grid::constantsOf(const Crowd::Impl& crowd, const Kind& ki
           .tick = static_cast<float>(stage.makes.has(StageId::avoid) ? turnOf(crowd) : tick),
           .first = numberOf(crowd, kind) + page.firstAgent,
           .every = buckets,
-          .watched = quanta.droppedBits(),
+          .watched = quanta.droppedBits() | roundBits(crowd.dt, page, tick),
           .room = quanta.lookOf(kind),
           .sleepTime = 1 / quanta.inMetre};
 }

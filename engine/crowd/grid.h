@@ -28,6 +28,12 @@ Quanta quantaOf(const Crowd::Impl& crowd);
 // Whose turn it is to go first changes with this number, which the tick has.
 uint32_t turnOf(const Crowd::Impl& crowd);
 
+// Agents that avoid look around once in a round of so many ticks of `dt` seconds (docs/stages/avoid.md), a
+// power of two up to 4.
+uint32_t roundTicksOf(float dt);
+// Invocations in which all of a page look around whose turn it is.
+uint32_t lookersOf(const Page& page, float dt);
+
 // The number in the crowd of a kind's first agent.
 uint32_t numberOf(const Crowd::Impl& crowd, const Kind& kind);
 

@@ -227,6 +227,7 @@ void Spawner::writeRun(uint32_t first, uint32_t count, uint32_t at, const SpawnR
     if (spotOf(first + i) < herd_.agents) continue;
     const BodyRecord absent = absentBody();
     std::ranges::copy(absent, records.body.begin() + static_cast<ptrdiff_t>(absent.size()) * (at + i));
+    if (!records.avoid.empty()) records.avoid[4 * shared::AVOID_STRIDE * (at + i) + 2] = 1;
   }
 }
 
@@ -237,6 +238,9 @@ void Spawner::stand(uint32_t agent, const Place& place, uint32_t at, const Spawn
       foot(records.foot, FOOT_STRIDE), chain(records.chain, chainStride(rig_.maxBones())),
       tip(records.tip, TIP_STRIDE), play(records.play, PLAY_STRIDE);
   for (Writer* each : {&body, &gait, &play}) each->seek(record);
+  // It stands, awake, until it looks around.
+  if (!records.avoid.empty())
+    std::ranges::fill(records.avoid.subspan(4 * AVOID_STRIDE * at, 4 * AVOID_STRIDE), 0.0f);
   if (!records.hurt.empty())
     std::ranges::copy(whole_, records.hurt.begin() + static_cast<ptrdiff_t>(whole_.size()) * record);
   const float phase =

@@ -419,7 +419,7 @@ SKITTER_CONST int HISTOGRAM_BUCKETS = 80;
 #define SKITTER_RECORDS(RECORD) \
   RECORD(GOAL,   goal,   10, agent,   GOAL_STRIDE,                     always,     true,  true) \
   RECORD(STEER,  steer,  12, agent,   STEER_STRIDE,                    always,     false, false) \
-  RECORD(AVOID,  avoid,  46, agent,   AVOID_STRIDE,                    bound,      false, false) \
+  RECORD(AVOID,  avoid,  46, agent,   AVOID_STRIDE,                    bound,      true,  false) \
   RECORD(FORAGER, forager, 48, agent, FORAGER_STRIDE,                  bound,      false, true) \
   RECORD(BODY,   body,   14, agent,   BODY_STRIDE,                     always,     true,  true) \
   RECORD(GAIT,   gait,   16, agent,   GAIT_STRIDE,                     always,     true,  true) \

@@ -41,24 +41,33 @@ Walls wallsAround(vec2 place, float radius, float sight) {
 }
 #endif
 
+// In each tick of a round some blocks look around: their numbers in the kind are so much more than a multiple of its
+// ticks.
+int roundTicks = int(constants.watched >> 8 & 15u), roundBlock = int(constants.watched >> 12 & 15u);
+// Agents of the kind in front of the page, from where a round of blocks begins.
+int roundSkip = int(constants.watched >> 16);
+
 void main() {
+  int place = int(gl_GlobalInvocationID.x);
 #ifdef LISTED
-  int agent = agentAt(int(gl_GlobalInvocationID.x));
-  if (agent < 0) return;
+  int agent = agentAt(place);
+  if (agent < 0 || (agent + roundSkip) / BLOCK % roundTicks != roundBlock) return;
 #else
-  int agent = int(gl_GlobalInvocationID.x);
-  if (agent >= int(constants.count)) return;
+  int agent = (place / BLOCK * roundTicks + roundBlock) * BLOCK + place % BLOCK - roundSkip;
+  if (agent < 0 || agent >= int(constants.count)) return;
 #endif
+  // What it decides holds until it looks again.
+  parameters.dt *= max(1.0, float(roundTicks) / tickSpan);
   if (absent(agent)) {
     STORE4(avoidsOut, agent, vec4(0.0, 0.0, 1.0, 0.0));
     return;
   }
   int number = numberOf(agent);
   vec4 steer = LOAD4(steers, agent), moving = LOAD4(bodies, agent * BODY_STRIDE + 1);
-  vec4 place = LOAD4(places, number);
-  int own = int(place.x);
-  vec4 self = LOAD4(walkers, own), going = LOAD4(walkers, own + int(place.z));
-  int seen = findNearest(own, self, int(place.y));
+  vec4 stand = LOAD4(places, number);
+  int own = int(stand.x);
+  vec4 self = LOAD4(walkers, own), going = LOAD4(walkers, own + int(stand.z));
+  int seen = findNearest(own, self, int(stand.y));
   RARELY(seen > NEIGHBOURS) ADD64(crowding, CROWDING_DROPPED, uint(seen - NEIGHBOURS));
 
   vec2 wanted = steer.xy;
@@ -69,7 +78,7 @@ void main() {
   [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k) {
     bool there = nearest[k] >= 0;
     int at = max(nearest[k], 0);
-    vec4 other = LOAD4(walkers, at), moves = LOAD4(walkers, at + int(place.z));
+    vec4 other = LOAD4(walkers, at), moves = LOAD4(walkers, at + int(stand.z));
     int x = there ? int(other.x - self.x) : 1, z = there ? int(other.y - self.y) : 0;
     vec2 p = (other.xy - self.xy) * metres;
     // It is the root of a whole number, which is exact.

@@ -30,7 +30,7 @@ layout(set = 0, binding = BINDING_TRAIL, std430) readonly buffer TrailBlock { ui
 bool asleep(int agent, vec2 velocity) {
   vec4 gait = LOAD4(gaits, agent * GAIT_STRIDE), cycle = LOAD4(gaits, agent * GAIT_STRIDE + 1);
   float still = LOAD4(bodies, agent * BODY_STRIDE + 3).y;
-  bool breathedOut = SLEEP != SLEEP_BREATHED_OUT || gait.x < parameters.dt / cycle.y;
+  bool breathedOut = SLEEP != SLEEP_BREATHED_OUT || gait.x < float(constants.every) * parameters.dt / cycle.y;
   bool stands = gait.y == 0.0 && cycle.z == 0.0;
   return length(velocity) < 1e-2 * parameters.legLength && still >= constants.sleepTime && stands && breathedOut;
 }

@@ -10,7 +10,7 @@ LOAD4_BUFFER(BINDING_WALKER, walkers);
 
 int buckets = int(constants.every), row = GRID_ROW(findMSB(buckets)), look = int(constants.room);
 // The lowest bits of a power that a key leaves out.
-int dropped = int(constants.watched);
+int dropped = int(constants.watched & 255u);
 float metres = constants.sleepTime;
 
 int numberOf(int agent) { return int(constants.first) + agent; }

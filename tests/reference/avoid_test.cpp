@@ -36,6 +36,29 @@ class Avoid : public testing::Test {
   }
 };
 
+TEST(AvoidRound, isAFifteenthOfASecondAtMost) {
+  EXPECT_EQ(reference::roundTicks(1.0 / 240), 4);
+  EXPECT_EQ(reference::roundTicks(static_cast<double>(1.0f / 60)), 4);
+  EXPECT_EQ(reference::roundTicks(static_cast<double>(1.0f / 30)), 2);
+  EXPECT_EQ(reference::roundTicks(0.025), 2);
+  EXPECT_EQ(reference::roundTicks(static_cast<double>(1.0f / 15)), 1);
+  EXPECT_EQ(reference::roundTicks(2.0 / 15), 1);
+}
+
+// Blocks of eight take turns.
+TEST(AvoidRound, everybodyLooksAroundOnce) {
+  for (const int64_t agent : {0, 7, 8, 31, 32})
+    for (const int ticks : {1, 2, 4}) {
+      int looks = 0;
+      for (uint64_t n = 9; n < 9 + static_cast<uint64_t>(ticks); ++n)
+        looks += reference::looksAround(agent, n, ticks) ? 1 : 0;
+      EXPECT_EQ(looks, 1) << agent << ", " << ticks;
+    }
+  EXPECT_TRUE(reference::looksAround(7, 8, 4));
+  EXPECT_TRUE(reference::looksAround(8, 7, 4));
+  EXPECT_FALSE(reference::looksAround(8, 8, 4));
+}
+
 TEST_F(Avoid, aLoneAgentGoesAsItWants) {
   const AvoidResult result = first({at(0, 1, 2, {0, 1})}, {0.3, 0.7});
   EXPECT_EQ(result.velocity, glm::dvec2(0.3, 0.7));

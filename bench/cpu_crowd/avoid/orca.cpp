@@ -28,13 +28,15 @@ class OrcaAvoider final : public Avoider {
     for (const int32_t radius : walkers.radius) widest_ = std::max(widest_, radius);
   }
 
-  void tick() override {
-    overAgents(stageTree, [this](size_t i) { move(tree_.points()[i]); });
+  void tick(size_t part, size_t parts) override {
+    const size_t all = walkers_.size();
+    overAgents(stageTree, 0, all, [this](size_t i) { move(tree_.points()[i]); });
     const auto begin = [this](size_t) { tree_.begin(); };
     over(stageTree, 1, begin);
     over(stageTree, tree_.pieces(), [this](size_t piece) { tree_.finish(piece); });
-    overAgents(stageTree, [this](size_t i) { moving_[i] = movingOf(tree_.points()[i].number); });
-    overAgents(stageAvoid, [this](size_t i) { avoid(static_cast<uint32_t>(i)); });
+    overAgents(stageTree, 0, all, [this](size_t i) { moving_[i] = movingOf(tree_.points()[i].number); });
+    overAgents(stageAvoid, all * part / parts, all * (part + 1) / parts,
+               [this](size_t i) { avoid(static_cast<uint32_t>(i)); });
   }
 
   std::vector<cpu_crowd::StageSeconds> stageSeconds() const override {
@@ -60,10 +62,10 @@ class OrcaAvoider final : public Avoider {
     });
   }
   template <class Work>
-  void overAgents(size_t stage, const Work& work) {
-    over(stage, (walkers_.size() + partAgents - 1) / partAgents, [&](size_t part) {
-      const size_t last = std::min((part + 1) * partAgents, walkers_.size());
-      for (size_t i = part * partAgents; i < last; ++i) work(i);
+  void overAgents(size_t stage, size_t begin, size_t end, const Work& work) {
+    over(stage, (end - begin + partAgents - 1) / partAgents, [&](size_t piece) {
+      const size_t first = begin + piece * partAgents, last = std::min(first + partAgents, end);
+      for (size_t i = first; i < last; ++i) work(i);
     });
   }
 

@@ -33,7 +33,7 @@ class SoftAvoider final : public Avoider {
         scratch_(chunks_),
         pool_(threads) {}
 
-  void tick() override {
+  void tick(size_t part, size_t parts) override {
     const int64_t turn =
         walkers_.tick / std::max<int64_t>(1, std::llround(secondsATurn / double{walkers_.dt}));
     order_ = static_cast<int32_t>(static_cast<uint32_t>(turn) * 0x9E3779B1u);
@@ -42,11 +42,13 @@ class SoftAvoider final : public Avoider {
     grid_.begin();
     overChunks([this](size_t chunk) { grid_.place(chunk); });
     overChunks([this](size_t chunk) { grid_.scatter(chunk); });
-    pool_.run(Parts<F>::count(blocks_), [this](size_t part, int thread) {
+    const size_t from = blocks_ * part / parts, blocks = blocks_ * (part + 1) / parts - from;
+    pool_.run(Parts<F>::count(blocks), [&](size_t piece, int thread) {
       Scratch& scratch = scratch_[static_cast<size_t>(thread)];
       cpu_crowd::Laps laps(timed_ ? &scratch.seconds : nullptr);
-      Parts<F>::eachGroup(part, blocks_, [&](size_t first, size_t last) {
-        laps.stage(stageAvoid, first, last, [&](size_t block) { avoid(block, scratch.nearest); });
+      Parts<F>::eachGroup(piece, blocks, [&](size_t first, size_t last) {
+        laps.stage(stageAvoid, from + first, from + last,
+                   [&](size_t block) { avoid(block, scratch.nearest); });
       });
     });
   }
@@ -118,13 +120,14 @@ class SoftAvoider final : public Avoider {
     const Vec2<F> velocity{load<F>(&grid_.velocityX[first]), load<F>(&grid_.velocityZ[first])};
     Wish<F> wish({own(walkers_.wantedX), own(walkers_.wantedZ)});
     const F speed = own(walkers_.speed), room = roomOf(speed, wish.speed);
+    const float hold = static_cast<float>(walkers_.round) * walkers_.dt;
     HalfPlane<F> planes[mostNeighbours];
     CellSide<F> sides[mostNeighbours];
     for (int k = 0; k < nearest.most; ++k) {
       const Neighbour<F> other = neighbourOf(nearest, k, first, velocity);
       wish.see(other);
       planes[k] = halfPlaneOf(other, velocity, room);
-      sides[k] = cellSideOf(other, velocity, wish, walkers_.dt, walkers_.legLength);
+      sides[k] = cellSideOf(other, velocity, wish, hold, walkers_.legLength);
     }
     Vec2<F> v = wish.wanted(speed);
     if (isForbidden(planes, nearest.most, v)) v = solved(planes, nearest.most, v);

@@ -20,6 +20,7 @@ struct Walkers {
   float legLength = 1;   // metres
   float dt = 1.0f / 60;  // of a tick, seconds
   int64_t tick = 1;      // of the crowd, which decides whose turn it is
+  int round = 1;         // ticks for which a velocity holds
 
   std::vector<float> tileX, tileZ, localX, localZ;  // of the body
   std::vector<float> headingX, headingZ, speed;     // of the body, m/s
@@ -38,8 +39,10 @@ class Avoider {
   Avoider(const Avoider&) = delete;
   Avoider& operator=(const Avoider&) = delete;
 
-  // Allocates nothing. The number of threads does not change a bit of the result.
-  virtual void tick() = 0;
+  // One of so many parts looks around, which together are everybody. Allocates nothing. The number of threads
+  // does not change a bit of the result.
+  virtual void tick(size_t part, size_t parts) = 0;
+  void tick() { tick(0, 1); }
   // Whether ticks from now on are timed stage by stage, at first not.
   void timeStages(bool on) { timed_ = on; }
   // Of all ticks so timed.
