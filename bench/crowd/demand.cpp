@@ -39,6 +39,7 @@ double invocationsOf(const crowd::Kind& kind, const crowd::Page& page, crowd::St
       return agents * kind.clips.joints;
     case crowd::Stage::Over::blocks:
     case crowd::Stage::Over::everyone:
+    case crowd::Stage::Over::lookers:
     case crowd::Stage::Over::agents:
     case crowd::Stage::Over::watched:
       break;

@@ -13,7 +13,7 @@
 namespace skitter::crowd {
 namespace {
 
-uint32_t invocations(const Kind& kind, const Page& page, Stage::Over over) {
+uint32_t invocations(const Kind& kind, const Page& page, Stage::Over over, float dt) {
   const uint32_t agents = wholeBlocks(page.agents);
   switch (over) {
     case Stage::Over::joints:
@@ -23,6 +23,8 @@ uint32_t invocations(const Kind& kind, const Page& page, Stage::Over over) {
       return agents * static_cast<uint32_t>(kind.legs);
     case Stage::Over::blocks:
       return agents / shared::BLOCK;
+    case Stage::Over::lookers:
+      return lookersOf(page, dt);
     case Stage::Over::everyone:
     case Stage::Over::agents:
     case Stage::Over::listed:
@@ -157,9 +159,7 @@ void Frame::dispatch(const Kind& kind, const Page& page, size_t index) const {
     kernel.dispatchIndirect(cmd_, page.bindings[index], push, page.counters, awakeArguments(stage.over));
   else
     kernel.dispatch(cmd_, page.bindings[index], push,
-                    gpu::groupsFor(stage.makes == StageId::avoid ? lookersOf(page, crowd_.dt)
-                                                                 : invocations(kind, page, stage.over),
-                                   shared::WORK_GROUP));
+                    gpu::groupsFor(invocations(kind, page, stage.over, crowd_.dt), shared::WORK_GROUP));
 }
 
 void Frame::solveListed(const Kind& kind, const Page& page) const {

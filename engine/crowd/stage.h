@@ -26,9 +26,10 @@ struct StageNeeds {
 
 // One compute shader: the stages that it makes, the records that it binds, and what it runs over.
 struct Stage {
-  // agents, legs, joints (of the clips' palette): of those that are awake, or whose turn it is; listed: the
-  // legs that begin a step, counted on the device; watched: agents whom measure looks at.
-  enum class Over { everyone, everyLeg, blocks, agents, legs, joints, listed, watched };
+  // lookers: those who look around in the tick, where a herd avoids; agents, legs, joints (of the clips'
+  // palette): of those that are awake, or whose turn it is; listed: the legs that begin a step, counted on
+  // the device; watched: agents whom measure looks at.
+  enum class Over { everyone, everyLeg, blocks, lookers, agents, legs, joints, listed, watched };
 
   StageSet makes;
   gpu::ShaderCode code;

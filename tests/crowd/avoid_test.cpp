@@ -261,7 +261,7 @@ TEST_F(AvoidTest, BodiesHardlyOverlapAtSlowRates) {
       options.levels = Levels{.distances = distances, .most = {0, 60, 60}};
       Crowd crowd(device(), flatGround(), scene, options);
       crowd.lookFrom({0, 500, 0});
-      simulate(device(), crowd, 600);
+      simulate(device(), crowd, 300);
       EXPECT_LE(crowd.crowding().overlapMost.value(), 0.02);
       EXPECT_LE(crowd.crowding().pairs.value(), 0.01);
     }

@@ -704,7 +704,7 @@ const std::vector<Situation>& situations() {
       {"foragingAtRates", {Controller::adaptive}, foragingAtRates},
       {"hurtAtRates", {Controller::adaptive, Controller::loop, Controller::planted}, hurtAtRates},
       {"comingAndGoingAtRates", {Controller::adaptive, Controller::clip}, comingAndGoingAtRates},
-      {"crowdingAtRates", {Controller::adaptive, Controller::clip}, crowdingAtRates, true},
+      {"crowdingAtRates", {Controller::adaptive, Controller::clip}, crowdingAtRates},
       {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs, true},
       {"tryingGaits", {Controller::adaptive}, tryingGaits, true},
       {"tryingManyGaits", {Controller::adaptive}, tryingManyGaits},

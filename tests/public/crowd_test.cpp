@@ -505,8 +505,8 @@ TEST_F(PublicCrowd, CountsNeighboursThatAgentsCannotKeepClearOf) {
   EXPECT_EQ(crowd.crowding().droppedNeighbours, 0u);
   EXPECT_FALSE(crowd.crowding().overlapMost);
   for (uint32_t i = 0; i < 12; ++i) crowd.teleport(crowd.agentId(0, i), {.position = {2, 2}});
-  walk(device(), crowd, 1);
-  // Each has 11 in reach, and keeps clear of 8.
+  // Everybody looks around once in four ticks. Each has 11 in reach, and keeps clear of 8.
+  walk(device(), crowd, 4);
   EXPECT_EQ(crowd.crowding().droppedNeighbours, 12u * 3);
 }
 
@@ -591,8 +591,8 @@ TEST_F(PublicCrowd, WhoIsFarFromTheCameraTicksLess) {
   EXPECT_EQ(levels[2].rate, 4u);
   EXPECT_EQ(levels[2].agents, 8u);
   EXPECT_GT(levels[2].agentTicks, 0u);
-  scene.herds[0].avoid = true;
-  expectRefused("avoid", [&] { Crowd(device(), flatGround(), scene, {.levels = Levels{}}); });
+  scene.herds[0].reactions = true;
+  expectRefused("reactions", [&] { Crowd(device(), flatGround(), scene, {.levels = Levels{}}); });
 }
 
 TEST_F(PublicCrowd, RefusesGroundAndRigsThatCannotBe) {

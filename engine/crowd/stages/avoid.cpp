@@ -24,7 +24,7 @@ Stage avoidStage() {
                {BINDING_PLACE, load4},
                {BINDING_WALKER, load4},
                {BINDING_CROWDING, store}},
-              Stage::Over::everyone};
+              Stage::Over::lookers};
   stage.seesCrowd = true;
   stage.levelCode = {embedded::avoid_listed_comp_texel(), embedded::avoid_listed_comp_storage()};
   return stage;
