@@ -24,7 +24,7 @@ struct Moment {
 // The agent as others see it, where its herd avoids. Throws Error(input) where the surroundings lack it.
 const reference::Walker& selfAround(const Setting& setting, const Moment& moment);
 
-// What decides whether the agent sleeps.
+// The facts by which navigate decides whether the agent sleeps.
 reference::Rest restOf(const Setting& setting, const Moment& moment);
 
 // A sleeper's records must be those of before the tick, bit for bit; adds what is not.

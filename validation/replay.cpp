@@ -48,7 +48,7 @@ void expectSizes(const Setting& setting, const HerdState& state) {
                      " is not among them");
 }
 
-// What stages write of everybody but of those whose turn it is not.
+// The records that the stage writes of sleepers, too, but not of those whose turn it is not.
 std::vector<Record> writtenOfSleepers(crowd::StageId stage) {
   if (stage == crowd::StageId::navigate) return {Record::goal, Record::steer, Record::forager};
   if (stage == crowd::StageId::avoid) return {Record::avoid};
@@ -190,6 +190,7 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
         judges_[c].add(n, before.sample.first, -1, compareWay(field));
     if (check.stage == crowd::StageId::navigate && setting_.forage)
       checkTrail(setting_, n, before, after, judges_[c]);
+    const std::vector<Record> early = writtenOfSleepers(check.stage);
     for (size_t agent = 0; agent < before.agents; ++agent) {
       const bool isOver = check.stage != crowd::StageId::measure;  // the agents' own ticks; measure has all
       const uint64_t span = isOver ? spanOf(after, agent) : 1;
@@ -197,7 +198,6 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
       const bool ticks = (!isOver || hasTurn(n, after, agent)) &&
                          (check.stage != crowd::StageId::avoid || looksAround(setting_, moment));
       const bool asleep = asleepOf(after, agent) || !ticks;
-      const std::vector<Record> early = writtenOfSleepers(check.stage);
       if (!ticks && !early.empty()) {
         for (const Record record : early) checkKept(setting_, moment, record, judges_[c]);
         continue;

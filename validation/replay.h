@@ -38,7 +38,7 @@ struct HerdFacts {
   crowd::ClipRecords clips = {};  // where clips are played
   crowd::KeyPoses keyPoses = {};  // of controller key-poses
   uint32_t firstAgent = 0;        // the number in the herd of agent 0 of the states, for messages
-  // Where the herd avoids: how, and the number in the crowd of that agent.
+  // Where the herd avoids: how, and the numbers in the crowd and in the kind of that agent.
   reference::AvoidTuning avoid = {};
   int64_t firstNumber = 0, firstInKind = 0;
   std::vector<reference::WayField> ways = {};       // the fields of its kind, as they are on the device

@@ -54,7 +54,7 @@ class AvoidRunner : public Runner {
   // A part of the agents looks around in each tick, everybody in a round of so many.
   explicit AvoidRunner(int round) : parts_(static_cast<size_t>(round)) {}
   void tick() final { look(ticks_++ % parts_); }
-  // Of a round that goes on from the last tick.
+  // The last tick goes on to a whole round, so that everybody has looked around.
   std::vector<float> recordsOfARound() {
     for (size_t i = 1; i < parts_; ++i) tick();
     finish();
@@ -66,7 +66,7 @@ class AvoidRunner : public Runner {
  protected:
   size_t parts() const { return parts_; }
   virtual void look(size_t part) = 0;
-  // As the avoid record has them, of all agents.
+  // All agents have four numbers each, as in the avoid record.
   virtual std::vector<float> records() const = 0;
 
  private:

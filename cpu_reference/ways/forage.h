@@ -72,7 +72,7 @@ struct ForageResult {
   double distance = 0;  // metres to what it goes to
 };
 
-// Of an agent that ticks in every so many-th tick.
+// The tuning of an agent that ticks in every so many-th tick.
 ForageTuning overTicks(const ForageTuning& tuning, int ticks);
 
 // Moves from a cell: bit d for direction d.

@@ -37,7 +37,7 @@ constexpr float finestQuanta = 1024;  // in a metre
 constexpr float cellMargin = 1.01f;
 constexpr uint32_t leastCell = 128;  // quanta
 constexpr double secondsATurn = 2;
-constexpr double longestRound = 1.0 / 15 + 1e-6;  // seconds; a tick of 1/60 is a float
+constexpr double longestRound = 1.0 / 15 + 5e-7;  // seconds; a tick of 1/60 is a float
 constexpr uint32_t mostRoundTicks = 4;
 constexpr uint32_t leastBuckets = 256, leastRun = 64, mostRuns = 4096;
 

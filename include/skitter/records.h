@@ -328,8 +328,8 @@ SKITTER_CONST int SEARCH_STRIDE = SEARCH_TRIALS + SEARCH_MOST_TRIALS / 2;
 
 // rate, per agent where there are levels of rate, written by wake (docs/levels.md). All agents of a block
 // have the same, but for the last number.
-//   [0] level at which it goes on from its last tick, level of that tick, that tick, and the tick before which
-//       the host put the agent somewhere else, 0 if it never did
+//   [0] level at which it goes on from its last tick, level of that tick, that tick, and the tick in which
+//       the host put the agent somewhere, else 0
 SKITTER_CONST int RATE_STRIDE = 1;
 // An agent of level k ticks in every 2^k-th tick.
 SKITTER_CONST int RATE_LEVELS = 4;

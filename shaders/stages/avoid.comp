@@ -56,7 +56,7 @@ void main() {
   int agent = (place / BLOCK * roundTicks + roundBlock) * BLOCK + place % BLOCK - roundSkip;
   if (agent < 0 || agent >= int(constants.count)) return;
 #endif
-  // What it decides holds until it looks again.
+  // The decision holds until the agent looks around again.
   parameters.dt *= max(1.0, float(roundTicks) / tickSpan);
   if (absent(agent)) {
     STORE4(avoidsOut, agent, vec4(0.0, 0.0, 1.0, 0.0));

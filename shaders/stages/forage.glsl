@@ -87,7 +87,7 @@ void decide(int agent, int here, inout Forager ant, inout Deed deed) {
   if (ant.heading == ivec2(0)) ant.heading = 1024 * forageStep(int(random.x & 7u));
   if (ant.state == FORAGE_REST) {
     ant.cell = here;
-    // As likely as in so many ticks of the crowd; 2^32 or more is one less.
+    // The chance grows with the ticks of the crowd in the agent's own; a share of 1 is cut to 2^32 - 1.
     uint ticks = uint(tickSpan), leave = constants.watched > ~0u / ticks ? ~0u : constants.watched * ticks;
     if (random.x >= leave) return;
     ant.state = FORAGE_SEARCH;
