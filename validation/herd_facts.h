@@ -110,8 +110,9 @@ inline Surroundings surroundingsOf(const Crowd::Impl& crowd) {
   if (!crowd::avoids(crowd)) return all;
   const crowd::Quanta quanta = crowd::quantaOf(crowd);
   constexpr std::array records = {Record::body};
-  for (uint32_t h = 0; h < crowd.herds.size(); ++h) {
-    const HerdState state = crowd::downloadRecords(crowd, h, records);
+  const std::vector<HerdState> states = crowd::downloadRecords(crowd, records);
+  for (uint32_t h = 0; h < states.size(); ++h) {
+    const HerdState& state = states[h];
     for (uint32_t agent = 0; agent < state.agents; ++agent) {
       const crowd::SizeRun& run = crowd.herds[h].runOf(agent);
       const crowd::Kind& kind = crowd.kinds[run.kind];

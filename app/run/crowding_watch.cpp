@@ -66,8 +66,7 @@ CrowdingWatch::CrowdingWatch(const Crowd& crowd, double dt)
 CrowdingWatch::Moment CrowdingWatch::momentOf(const Crowd& crowd) const {
   constexpr std::array records = {Record::body, Record::goal, Record::steer};
   Moment moment;
-  for (uint32_t h = 0; h < crowd.herdCount(); ++h) {
-    const HerdState state = crowd::downloadRecords(implOf(crowd), h, records);
+  for (const HerdState& state : crowd::downloadRecords(implOf(crowd), records)) {
     for (size_t agent = 0; agent < state.agents; ++agent) {
       const std::span<const float> bodies(state.body);
       const BodyState body = bodyOf(bodies.subspan(4 * agent * shared::BODY_STRIDE, 4 * shared::BODY_STRIDE));

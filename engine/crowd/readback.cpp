@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 #include <span>
+#include <utility>
+#include <vector>
 
+#include "crowd/gathering.h"
 #include "crowd/page.h"
 #include "crowd/record.h"
 #include "crowd/watch.h"
@@ -19,53 +21,17 @@
 namespace skitter {
 namespace {
 
+using crowd::Gathering;
 using crowd::Page;
 using crowd::Part;
 
 constexpr AgentSample kAll{};
 
-// Appends the sample's records of the part, agent after agent and, of an agent, leg after leg. legs = 0:
-// there is one per agent.
-void appendRecords(const gpu::Context& context, const Part& part, const gpu::Buffer& buffer, int legs,
-                   const AgentSample& sample, std::vector<float>& records) {
-  if (!buffer) return;
-  const crowd::RunSample here = crowd::sampleOf(part.firstAgent, part.agents, sample);
-  if (here.count == 0) return;
-  const uint32_t first = part.first + here.first, last = first + (here.count - 1) * sample.stride;
-  const auto anAgent = static_cast<uint64_t>(std::max(1, legs));
-  const uint64_t held = legs > 0 ? crowd::wholeBlocks(part.page->agents) * anAgent : part.page->agents;
-  const uint64_t each = buffer.size() / held;
-  const size_t end = records.size();
-  records.resize(end + here.count * anAgent * each / sizeof(float));
-  const auto bytes = std::as_writable_bytes(std::span(records).subspan(end));
-  if (legs == 0 && sample.stride == 1) {
-    gpu::downloadBytes(context, buffer, bytes, first * each);
-    return;
-  }
-  std::vector<uint64_t> places;
-  places.reserve(here.count * anAgent);
-  for (uint32_t i = 0; i < here.count; ++i) {
-    const auto agent = static_cast<int>(first + i * sample.stride);
-    for (int leg = 0; leg < static_cast<int>(anAgent); ++leg)
-      places.push_back(each * static_cast<uint64_t>(legs > 0 ? shared::legRecord(agent, leg, legs) : agent));
-  }
-  if (sample.stride > 1) {
-    gpu::downloadPieces(context, buffer, bytes, places, each);
-    return;
-  }
-  // The blocks that hold the agents.
-  const uint64_t begin = first / shared::BLOCK * shared::BLOCK * anAgent * each;
-  std::vector<std::byte> blocks(crowd::wholeBlocks(last + 1) * anAgent * each - begin);
-  gpu::downloadBytes(context, buffer, blocks, begin);
-  for (size_t i = 0; i < places.size(); ++i)
-    std::memcpy(bytes.data() + i * each, blocks.data() + places[i] - begin, each);
-}
-
 // A page's watched agents come from its start; in the herd each has the place of its number.
-void appendWatch(const Crowd::Impl& crowd, const Part& part, uint32_t offset, std::vector<float>& watch) {
+void appendWatch(const Crowd::Impl& crowd, const Part& part, uint32_t offset, std::span<const float> slots,
+                 std::vector<float>& watch) {
   const crowd::Watch now = crowd::watchAt(crowd.tick, crowd.watchEvery, *part.page);
   const auto floats = static_cast<size_t>(4 * shared::watchStride(part.kind->legs));
-  const std::vector<float> slots = gpu::download<float>(*crowd.context, part.page->watch);
   const auto placeOf = [&](uint32_t agent) {
     return (size_t{offset} + part.firstAgent + agent - part.first) / crowd.watchEvery * floats;
   };
@@ -78,67 +44,134 @@ void appendWatch(const Crowd::Impl& crowd, const Part& part, uint32_t offset, st
   }
 }
 
-HerdState recordsOf(const Crowd::Impl& crowd, std::span<const Part> parts, std::span<const Record> records,
+// A herd's, or a run's, agents as they are read.
+class Reading {
+ public:
+  Reading(const Crowd::Impl& crowd, std::vector<Part> parts, const AgentSample& sample)
+      : crowd_(crowd), parts_(std::move(parts)) {
+    if (sample.stride == 0) throw inputError("a sample of agents with stride 0, expected at least 1");
+    state_.tick = crowd.tick;
+    state_.sample = sample;
+    for (const Part& part : parts_)
+      state_.agents += crowd::sampleOf(part.firstAgent, part.agents, sample).count;
+  }
+
+  void addRecords(std::span<const Record> records, Gathering& gathering) {
+    for (const Record record : records)
+      if (crowd::infoOf(record).per != crowd::Per::watched)
+        gathering.add(crowd_, parts_, record, state_.sample, state_.of(record));
+  }
+  void addWatch(Gathering& gathering) { addBuffers(&Page::watch, watch_, gathering); }
+  void addCounters(Gathering& gathering) { addBuffers(&Page::counters, counters_, gathering); }
+  // Once the counters are here.
+  void addFootfalls(Gathering& gathering) {
+    events_.resize(parts_.size());
+    for (size_t p = 0; p < parts_.size(); ++p) {
+      const uint32_t count = std::min(counters_[p][shared::COUNTER_FOOTFALLS], parts_[p].page->footfallRoom);
+      events_[p].resize(size_t{count} * 4 * shared::FOOTFALL_STRIDE);
+      gathering.add(parts_[p].page->footfall, std::span(events_[p]));
+    }
+  }
+
+  // Once the counters are here.
+  uint64_t droppedFootfalls() const {
+    uint64_t dropped = 0;
+    for (size_t p = 0; p < parts_.size(); ++p) {
+      const int row = shared::counterRow(static_cast<int>(parts_[p].row));
+      dropped += counters_[p][static_cast<size_t>(row + shared::ROW_FOOTFALLS_DROPPED)];
+    }
+    return dropped;
+  }
+  std::vector<Footfall> footfalls() const {
+    std::vector<Footfall> all;
+    for (size_t p = 0; p < events_.size(); ++p) {
+      const Part& part = parts_[p];
+      for (std::span<const float> rest(events_[p]); !rest.empty();
+           rest = rest.subspan(4 * shared::FOOTFALL_STRIDE)) {
+        Footfall footfall = footfallOf(rest, part.page->firstAgent + part.first, crowd_.dt);
+        if (footfall.agent >= part.agents) continue;
+        footfall.agent += part.firstAgent;
+        all.push_back(footfall);
+      }
+    }
+    // The device appends them in any order.
+    std::sort(all.begin(), all.end(), [](const Footfall& a, const Footfall& b) {
+      return a.agent != b.agent ? a.agent < b.agent : a.leg < b.leg;
+    });
+    return all;
+  }
+
+  // What else Crowd::download gives is here.
+  HerdState whole() && {
+    state_.watchEvery = crowd_.watchEvery;
+    state_.sleep = crowd_.options.sleep;
+    state_.watched = crowd_.tick > 0 && crowd_.tick <= crowd_.watchUntil;
+    state_.footfallsKept = keepsAllFootfalls();
+    if (state_.footfallsKept) state_.footfalls = footfalls();
+    if (!parts_.empty() && parts_.front().kind->trails)
+      state_.trail = parts_.front().kind->trails->trailWords();
+    return std::move(state_);
+  }
+  // Of a run, whose agents' numbers in their kind say who is watched.
+  HerdState whole(const crowd::SizeRun& run) && {
+    state_.watchOffset = run.firstAgent % crowd_.watchEvery;
+    for (size_t p = 0; p < parts_.size(); ++p)
+      if (parts_[p].page->watch) appendWatch(crowd_, parts_[p], state_.watchOffset, watch_[p], state_.watch);
+    return std::move(*this).whole();
+  }
+  HerdState recordsAlone() && { return std::move(state_); }
+  bool keepsAllFootfalls() const { return crowd_.options.footfalls > 0 && droppedFootfalls() == 0; }
+
+ private:
+  template <class T>
+  void addBuffers(gpu::Buffer Page::*buffer, std::vector<std::vector<T>>& into, Gathering& gathering) {
+    into.resize(parts_.size());
+    for (size_t p = 0; p < parts_.size(); ++p) {
+      into[p].resize((parts_[p].page->*buffer).size() / sizeof(T));
+      gathering.add(parts_[p].page->*buffer, std::span(into[p]));
+    }
+  }
+
+  const Crowd::Impl& crowd_;
+  std::vector<Part> parts_;
+  HerdState state_;
+  // Part by part.
+  std::vector<std::vector<float>> watch_, events_;
+  std::vector<std::vector<uint32_t>> counters_;
+};
+
+// Reads what Crowd::download gives; what measure keeps of those whom it watches only where that is wanted.
+void readAll(const Crowd::Impl& crowd, std::span<Reading> readings, bool wantsWatch) {
+  crowd.context->waitIdle();
+  Gathering gathering(*crowd.context);
+  for (Reading& reading : readings) {
+    reading.addRecords(allRecords, gathering);
+    if (wantsWatch) reading.addWatch(gathering);
+    if (crowd.options.footfalls > 0) reading.addCounters(gathering);
+  }
+  gathering.finish();
+  for (Reading& reading : readings)
+    if (reading.keepsAllFootfalls()) reading.addFootfalls(gathering);
+  gathering.finish();
+}
+
+HerdState recordsOf(const Crowd::Impl& crowd, std::vector<Part> parts, std::span<const Record> records,
                     const AgentSample& sample) {
-  if (sample.stride == 0) throw inputError("a sample of agents with stride 0, expected at least 1");
   crowd.context->waitIdle();
-  HerdState state;
-  state.tick = crowd.tick;
-  state.sample = sample;
-  for (const Part& part : parts) {
-    state.agents += crowd::sampleOf(part.firstAgent, part.agents, sample).count;
-    for (const Record record : records) {
-      const crowd::Per per = crowd::infoOf(record).per;
-      if (per == crowd::Per::watched || !crowd::keeps(*part.kind, crowd.options, record)) continue;
-      appendRecords(*crowd.context, part, part.page->of(record), per == crowd::Per::leg ? part.kind->legs : 0,
-                    sample, state.of(record));
-    }
-  }
-  return state;
+  Gathering gathering(*crowd.context);
+  Reading reading(crowd, std::move(parts), sample);
+  reading.addRecords(records, gathering);
+  gathering.finish();
+  return std::move(reading).recordsAlone();
 }
 
-uint64_t droppedFootfallsOf(const Crowd::Impl& crowd, std::span<const Part> parts) {
+Reading countersOf(const Crowd::Impl& crowd, uint32_t herd) {
   crowd.context->waitIdle();
-  uint64_t dropped = 0;
-  for (const Part& part : parts) dropped += crowd::rowOf(*crowd.context, part)[shared::ROW_FOOTFALLS_DROPPED];
-  return dropped;
-}
-
-std::vector<Footfall> footfallsOf(const Crowd::Impl& crowd, std::span<const Part> parts) {
-  const gpu::Context& context = *crowd.context;
-  context.waitIdle();
-  std::vector<Footfall> all;
-  if (crowd.options.footfalls == 0) return all;
-  for (const Part& part : parts) {
-    const Page& page = *part.page;
-    const uint32_t count = gpu::download<uint32_t>(context, page.counters)[shared::COUNTER_FOOTFALLS];
-    std::vector<float> events(size_t{std::min(count, page.footfallRoom)} * 4 * shared::FOOTFALL_STRIDE);
-    gpu::downloadBytes(context, page.footfall, std::as_writable_bytes(std::span(events)));
-    for (size_t i = 0; i < std::min(count, page.footfallRoom); ++i) {
-      Footfall footfall = footfallOf(std::span(events).subspan(i * 4 * shared::FOOTFALL_STRIDE),
-                                     page.firstAgent + part.first, crowd.dt);
-      if (footfall.agent >= part.agents) continue;
-      footfall.agent += part.firstAgent;
-      all.push_back(footfall);
-    }
-  }
-  // The device appends them in any order.
-  std::sort(all.begin(), all.end(), [](const Footfall& a, const Footfall& b) {
-    return a.agent != b.agent ? a.agent < b.agent : a.leg < b.leg;
-  });
-  return all;
-}
-
-// All but what measure keeps of those whom it watches.
-HerdState stateOf(const Crowd::Impl& crowd, std::span<const Part> parts, const AgentSample& sample) {
-  HerdState state = recordsOf(crowd, parts, allRecords, sample);
-  state.watchEvery = crowd.watchEvery;
-  state.sleep = crowd.options.sleep;
-  state.watched = crowd.tick > 0 && crowd.tick <= crowd.watchUntil;
-  state.footfallsKept = crowd.options.footfalls > 0 && droppedFootfallsOf(crowd, parts) == 0;
-  if (state.footfallsKept) state.footfalls = footfallsOf(crowd, parts);
-  if (!parts.empty() && parts.front().kind->trails) state.trail = parts.front().kind->trails->trailWords();
-  return state;
+  Gathering gathering(*crowd.context);
+  Reading reading(crowd, crowd::partsOf(crowd, herd), kAll);
+  reading.addCounters(gathering);
+  gathering.finish();
+  return reading;
 }
 
 }  // namespace
@@ -150,6 +183,19 @@ HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<con
   return recordsOf(crowd, partsOf(crowd, herd), records, sample);
 }
 
+std::vector<HerdState> downloadRecords(const Crowd::Impl& crowd, std::span<const Record> records) {
+  crowd.context->waitIdle();
+  Gathering gathering(*crowd.context);
+  std::vector<Reading> readings;
+  for (uint32_t herd = 0; herd < crowd.herds.size(); ++herd)
+    readings.emplace_back(crowd, partsOf(crowd, herd), kAll);
+  for (Reading& reading : readings) reading.addRecords(records, gathering);
+  gathering.finish();
+  std::vector<HerdState> states;
+  for (Reading& reading : readings) states.push_back(std::move(reading).recordsAlone());
+  return states;
+}
+
 uint32_t presentIn(const Crowd::Impl& crowd, const SizeRun& run) {
   constexpr std::array body{Record::body};
   const HerdState state = recordsOf(crowd, partsOf(crowd, run), body, kAll);
@@ -159,13 +205,21 @@ uint32_t presentIn(const Crowd::Impl& crowd, const SizeRun& run) {
   return count;
 }
 
+std::vector<HerdState> download(const Crowd::Impl& crowd, std::span<const HerdRun> runs,
+                                std::span<const AgentSample> samples) {
+  std::vector<Reading> readings;
+  for (size_t r = 0; r < runs.size(); ++r)
+    readings.emplace_back(crowd, partsOf(crowd, *runs[r].run), samples.empty() ? kAll : samples[r]);
+  readAll(crowd, readings, true);
+  std::vector<HerdState> states;
+  for (size_t r = 0; r < runs.size(); ++r) states.push_back(std::move(readings[r]).whole(*runs[r].run));
+  return states;
+}
+
 HerdState download(const Crowd::Impl& crowd, const SizeRun& run, const AgentSample& sample) {
-  const std::vector<Part> parts = partsOf(crowd, run);
-  HerdState state = stateOf(crowd, parts, sample);
-  state.watchOffset = run.firstAgent % crowd.watchEvery;
-  for (const Part& part : parts)
-    if (part.page->watch) appendWatch(crowd, part, state.watchOffset, state.watch);
-  return state;
+  Reading reading(crowd, partsOf(crowd, run), sample);
+  readAll(crowd, {&reading, 1}, true);
+  return std::move(reading).whole(run);
 }
 
 }  // namespace crowd
@@ -173,7 +227,9 @@ HerdState download(const Crowd::Impl& crowd, const SizeRun& run, const AgentSamp
 HerdState Crowd::download(uint32_t herd, const AgentSample& sample) const {
   const std::vector<crowd::SizeRun>& runs = impl_->herdAt(herd).runs;
   if (runs.size() == 1) return crowd::download(*impl_, runs.front(), sample);
-  return stateOf(*impl_, crowd::partsOf(*impl_, herd), sample);
+  Reading reading(*impl_, crowd::partsOf(*impl_, herd), sample);
+  readAll(*impl_, {&reading, 1}, false);
+  return std::move(reading).whole();
 }
 
 std::vector<Reaction> Crowd::reactions(uint32_t herd) const {
@@ -205,12 +261,15 @@ std::vector<Search> Crowd::searches(uint32_t herd) const {
 }
 
 std::vector<Footfall> Crowd::footfalls(uint32_t herd) const {
-  return footfallsOf(*impl_, crowd::partsOf(*impl_, herd));
+  Reading reading = countersOf(*impl_, herd);
+  if (impl_->options.footfalls == 0) return {};
+  Gathering gathering(*impl_->context);
+  reading.addFootfalls(gathering);
+  gathering.finish();
+  return reading.footfalls();
 }
 
-uint64_t Crowd::droppedFootfalls(uint32_t herd) const {
-  return droppedFootfallsOf(*impl_, crowd::partsOf(*impl_, herd));
-}
+uint64_t Crowd::droppedFootfalls(uint32_t herd) const { return countersOf(*impl_, herd).droppedFootfalls(); }
 
 std::vector<FootfallBuffer> Crowd::footfallBuffers(uint32_t herd) const {
   std::vector<FootfallBuffer> buffers;
@@ -241,8 +300,8 @@ uint64_t Crowd::sleeping() const {
 }
 
 uint64_t Crowd::stateHash() const {
-  const gpu::Context& context = *impl_->context;
-  context.waitIdle();
+  impl_->context->waitIdle();
+  Gathering gathering(*impl_->context);
   std::vector<float> records;
   uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, a word at a time
   const auto add = [&](uint32_t word) {
@@ -251,16 +310,15 @@ uint64_t Crowd::stateHash() const {
   };
   for (uint32_t herd = 0; herd < herdCount(); ++herd) {
     const std::vector<Part> parts = crowd::partsOf(*impl_, herd);
+    if (parts.empty()) continue;
     // Record by record over the herd, not page by page: how agents are paged must not show.
-    for (const Record record : allRecords)
-      for (const Part& part : parts) {
-        if (!crowd::isHashed(record, part.kind->controller)) continue;
-        records.clear();
-        appendRecords(context, part, part.page->of(record),
-                      crowd::infoOf(record).per == crowd::Per::leg ? part.kind->legs : 0, kAll, records);
-        for (const float value : records) add(std::bit_cast<uint32_t>(value));
-      }
-    if (!parts.empty() && parts.front().kind->trails)
+    for (const Record record : allRecords) {
+      if (!crowd::isHashed(record, parts.front().kind->controller)) continue;
+      gathering.add(*impl_, parts, record, kAll, records);
+      gathering.finish();
+      for (const float value : records) add(std::bit_cast<uint32_t>(value));
+    }
+    if (parts.front().kind->trails)
       for (const uint32_t word : parts.front().kind->trails->trailWords()) add(word);
   }
   return hash;

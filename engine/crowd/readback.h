@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "crowd/herd.h"
 
@@ -13,10 +14,16 @@ namespace skitter::crowd {
 HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<const Record> records,
                           const AgentSample& sample = {});
 
+// The same of every herd, all agents, with one submission.
+std::vector<HerdState> downloadRecords(const Crowd::Impl& crowd, std::span<const Record> records);
+
 // How many of the run's places somebody was in, in the last tick.
 uint32_t presentIn(const Crowd::Impl& crowd, const SizeRun& run);
 
 // As Crowd::download, of a herd's agents that have one size; they are counted from 0.
 HerdState download(const Crowd::Impl& crowd, const SizeRun& run, const AgentSample& sample = {});
+// The same of several runs at once, a sample for each or none: all agents.
+std::vector<HerdState> download(const Crowd::Impl& crowd, std::span<const HerdRun> runs,
+                                std::span<const AgentSample> samples = {});
 
 }  // namespace skitter::crowd

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace skitter::gpu {
 namespace {
@@ -77,39 +78,62 @@ void uploadBytes(const Context& context, const Buffer& buffer, std::span<const s
 
 void downloadBytes(const Context& context, const Buffer& buffer, std::span<std::byte> data, uint64_t offset,
                    uint64_t chunk) {
-  assert(offset <= buffer.size() && data.size() <= buffer.size() - offset);
-  if (data.empty()) return;
-  Staging staging(context, std::min<uint64_t>(chunk, data.size()), HostUse::readback);
-  inChunks(data.size(), chunk, [&](uint64_t done, uint64_t bytes) {
-    submitAndWait(context, [&](vk::CommandBuffer cmd) {
-      allToAll(cmd);
-      cmd.copyBuffer(buffer.handle(), staging.handle(),
-                     vk::BufferCopy{.srcOffset = offset + done, .dstOffset = 0, .size = bytes});
-      transferToHost(cmd);
-    });
-    std::memcpy(data.data() + done, staging.data(), bytes);
-  });
-  staging.giveBack();
+  Downloads downloads(context, chunk);
+  downloads.add(buffer, data, offset);
+  downloads.run();
 }
 
-void downloadPieces(const Context& context, const Buffer& buffer, std::span<std::byte> data,
-                    std::span<const uint64_t> offsets, uint64_t bytes, uint64_t chunk) {
+void Downloads::add(const Buffer& buffer, std::span<std::byte> data, uint64_t offset) {
+  assert(offset <= buffer.size() && data.size() <= buffer.size() - offset);
+  if (!data.empty()) pieces_.push_back({buffer.handle(), offset, data});
+}
+
+void Downloads::addPieces(const Buffer& buffer, std::span<std::byte> data, std::span<const uint64_t> offsets,
+                          uint64_t bytes) {
   assert(bytes > 0 && data.size() == offsets.size() * bytes);
-  const uint64_t pieces = offsets.size();
-  if (pieces == 0) return;
-  const uint64_t perChunk = std::clamp<uint64_t>(chunk / bytes, 1, pieces);
-  Staging staging(context, perChunk * bytes, HostUse::readback);
-  inChunks(pieces, perChunk, [&](uint64_t done, uint64_t count) {
-    std::vector<vk::BufferCopy> copies(count);
-    for (uint64_t i = 0; i < count; ++i)
-      copies[i] = vk::BufferCopy{.srcOffset = offsets[done + i], .dstOffset = i * bytes, .size = bytes};
-    submitAndWait(context, [&](vk::CommandBuffer cmd) {
+  pieces_.reserve(pieces_.size() + offsets.size());
+  for (size_t i = 0; i < offsets.size(); ++i) add(buffer, data.subspan(i * bytes, bytes), offsets[i]);
+}
+
+void Downloads::run() {
+  uint64_t total = 0;
+  for (const Piece& piece : pieces_) total += piece.data.size();
+  if (total == 0) return;
+  assert(chunk_ > 0);
+  const uint64_t room = std::min(chunk_, total);
+  Staging staging(context_, room, HostUse::readback);
+  std::vector<Piece> rest = std::exchange(pieces_, {});
+  for (size_t first = 0; first < rest.size();) {
+    // What this submission takes: whole pieces, and of the last one perhaps its beginning.
+    std::vector<Piece> taken;
+    for (uint64_t used = 0; first < rest.size() && used < room;) {
+      Piece& next = rest[first];
+      const uint64_t bytes = std::min<uint64_t>(next.data.size(), room - used);
+      taken.push_back({next.from, next.offset, next.data.first(bytes)});
+      used += bytes;
+      next = {next.from, next.offset + bytes, next.data.subspan(bytes)};
+      if (next.data.empty()) ++first;
+    }
+    submitAndWait(context_, [&](vk::CommandBuffer cmd) {
       allToAll(cmd);
-      cmd.copyBuffer(buffer.handle(), staging.handle(), copies);
+      uint64_t used = 0;
+      std::vector<vk::BufferCopy> copies;
+      for (size_t i = 0; i < taken.size(); ++i) {
+        const Piece& piece = taken[i];
+        copies.push_back({.srcOffset = piece.offset, .dstOffset = used, .size = piece.data.size()});
+        used += piece.data.size();
+        if (i + 1 < taken.size() && taken[i + 1].from == piece.from) continue;
+        cmd.copyBuffer(piece.from, staging.handle(), copies);
+        copies.clear();
+      }
       transferToHost(cmd);
     });
-    std::memcpy(data.data() + done * bytes, staging.data(), count * bytes);
-  });
+    const std::byte* from = staging.data();
+    for (const Piece& piece : taken) {
+      std::memcpy(piece.data.data(), from, piece.data.size());
+      from += piece.data.size();
+    }
+  }
   staging.giveBack();
 }
 

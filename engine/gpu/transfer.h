@@ -19,9 +19,29 @@ void uploadBytes(const Context&, const Buffer&, std::span<const std::byte>, uint
                  uint64_t chunk = kStagingChunk);
 void downloadBytes(const Context&, const Buffer&, std::span<std::byte>, uint64_t offset = 0,
                    uint64_t chunk = kStagingChunk);
-// Pieces of `bytes` that begin at `offsets`, one close after another, which is as long as `data`.
-void downloadPieces(const Context&, const Buffer&, std::span<std::byte> data,
-                    std::span<const uint64_t> offsets, uint64_t bytes, uint64_t chunk = kStagingChunk);
+// Several downloads, with one submission for each chunk of what they give together.
+class Downloads {
+ public:
+  explicit Downloads(const Context& context, uint64_t chunk = kStagingChunk)
+      : context_(context), chunk_(chunk) {}
+  // The buffer and the memory of `data` must stay until run().
+  void add(const Buffer&, std::span<std::byte> data, uint64_t offset = 0);
+  // Pieces of `bytes` that begin at `offsets`, one close after another, which is as long as `data`.
+  void addPieces(const Buffer&, std::span<std::byte> data, std::span<const uint64_t> offsets, uint64_t bytes);
+  // Afterwards there are none.
+  void run();
+
+ private:
+  struct Piece {
+    vk::Buffer from;
+    uint64_t offset;
+    std::span<std::byte> data;
+  };
+  const Context& context_;
+  uint64_t chunk_;
+  std::vector<Piece> pieces_;
+};
+
 // Fills it with zero bytes.
 void clear(const Context&, const Buffer&);
 

@@ -99,22 +99,18 @@ std::vector<std::vector<validation::StageResult>> replayAll(Device& device, Crow
   // The first tick fixes dt, and with it the tuning that the reference is given.
   if (crowd.tick() == 0) simulate(device, crowd, 1, dt);
   std::vector<std::unique_ptr<validation::Replay>> replays;
-  std::vector<HerdState> before;
   const Crowd::Impl& impl = implOf(crowd);
   const std::vector<crowd::HerdRun> runs = crowd::allRuns(impl);
-  for (const crowd::HerdRun& of : runs) {
-    before.push_back(crowd::download(impl, *of.run));
+  std::vector<HerdState> before = crowd::download(impl, runs);
+  for (const crowd::HerdRun& of : runs)
     replays.push_back(std::make_unique<validation::Replay>(validation::herdFacts(impl, of, terrain)));
-  }
   const auto hasRefused = [](const auto& replay) { return replay->hasRefused(); };
   for (int i = 0; i < ticks && std::ranges::none_of(replays, hasRefused); ++i) {
     const validation::Surroundings around = validation::surroundingsOf(impl);
     simulate(device, crowd, 1, dt);
-    for (size_t r = 0; r < runs.size(); ++r) {
-      HerdState after = crowd::download(impl, *runs[r].run);
-      replays[r]->tick(crowd.tick(), before[r], after, around);
-      before[r] = std::move(after);
-    }
+    std::vector<HerdState> after = crowd::download(impl, runs);
+    for (size_t r = 0; r < runs.size(); ++r) replays[r]->tick(crowd.tick(), before[r], after[r], around);
+    before = std::move(after);
   }
   std::vector<std::vector<validation::StageResult>> results;
   for (const auto& replay : replays) results.push_back(replay->results());

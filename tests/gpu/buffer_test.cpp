@@ -37,6 +37,35 @@ TEST_F(BufferTest, RoundTripsInChunks) {
   }
 }
 
+TEST_F(BufferTest, DownloadsTogetherWhatIsAskedFor) {
+  const auto data = pattern(1000);
+  std::vector<uint8_t> reversed(data.rbegin(), data.rend());
+  const Buffer one(context(), data.size(), "one"), other(context(), data.size(), "other");
+  upload(context(), one, data);
+  upload(context(), other, reversed);
+  const std::vector<uint64_t> offsets = {990, 0, 500, 493};
+  std::vector<uint8_t> pieces;  // of seven bytes
+  for (const uint64_t offset : offsets) pieces.insert(pieces.end(), &data[offset], &data[offset + 7]);
+  for (const uint64_t chunk : {uint64_t(1), uint64_t(7), uint64_t(64), uint64_t(1000), kStagingChunk}) {
+    Downloads downloads(context(), chunk);
+    downloads.run();
+    std::vector<uint8_t> whole(1000), none, part(17), seen(4 * 7);
+    downloads.add(one, std::as_writable_bytes(std::span(whole)));
+    downloads.add(one, std::as_writable_bytes(std::span(none)), 1000);
+    downloads.add(other, std::as_writable_bytes(std::span(part)), 983);
+    downloads.addPieces(one, std::as_writable_bytes(std::span(seen)), offsets, 7);
+    downloads.run();
+    EXPECT_EQ(whole, data) << "chunks of " << chunk;
+    EXPECT_EQ(part, std::vector<uint8_t>(reversed.end() - 17, reversed.end())) << "chunks of " << chunk;
+    EXPECT_EQ(seen, pieces) << "chunks of " << chunk;
+    std::fill(whole.begin(), whole.end(), uint8_t{0});
+    downloads.add(other, std::as_writable_bytes(std::span(part)), 0);
+    downloads.run();
+    EXPECT_EQ(whole, std::vector<uint8_t>(1000)) << "what was downloaded before was downloaded again";
+    EXPECT_EQ(part, std::vector<uint8_t>(reversed.begin(), reversed.begin() + 17)) << "chunks of " << chunk;
+  }
+}
+
 TEST_F(BufferTest, RoundTripsOneByteMoreThanTheDefaultChunk) {
   const auto data = pattern(kStagingChunk + 1);
   const Buffer buffer(context(), data.size(), "64 MiB and 1");

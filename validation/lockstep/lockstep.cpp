@@ -140,10 +140,7 @@ std::vector<StageResult> Lockstep::results() const {
 }
 
 std::vector<HerdState> Lockstep::download() const {
-  std::vector<HerdState> states;
-  for (const crowd::HerdRun& of : crowd::allRuns(implOf(crowd_)))
-    states.push_back(crowd::download(implOf(crowd_), *of.run, samples_[states.size()]));
-  return states;
+  return crowd::download(implOf(crowd_), crowd::allRuns(implOf(crowd_)), samples_);
 }
 
 // The reference begins with it as the tick does.

@@ -33,8 +33,9 @@ std::vector<std::vector<RateCheck::Rated>> RateCheck::download() const {
   std::vector<std::vector<Rated>> kinds;
   for (const crowd::Kind& kind : crowd_.kinds) kinds.emplace_back(kind.agents);
   constexpr std::array records = {Record::body, Record::rate};
-  for (uint32_t h = 0; h < crowd_.herds.size(); ++h) {
-    const HerdState state = crowd::downloadRecords(crowd_, h, records);
+  const std::vector<HerdState> states = crowd::downloadRecords(crowd_, records);
+  for (uint32_t h = 0; h < states.size(); ++h) {
+    const HerdState& state = states[h];
     for (uint32_t agent = 0; agent < state.agents; ++agent) {
       const crowd::SizeRun& run = crowd_.herds[h].runOf(agent);
       const reference::AgentBody body = bodyOf(state, agent);
