@@ -270,7 +270,7 @@ class FieldReport {
   nlohmann::ordered_json add(const KindView& view, MapGround ground, const glm::vec2& target, size_t number) {
     const crowd::WayFields& ways = *view.kind.ways;
     const crowd::Stops& stops = ways.stopsAt(target);
-    const std::vector<float> times = ways.times(target);
+    const std::vector<glm::vec4> times = ways.timesAround(target);
     const bool isWayOut = target == glm::vec2(shared::WAY_OUT);
     const uint32_t region = ways.regions().of[crowd::cellAt(ways.grid(), stops.stop)];
     MapGoal goal{.goal = target,

@@ -36,13 +36,12 @@ struct TimeHere {
   float time;
   glm::vec2 gradient;  // seconds a metre
 };
-TimeHere timeAt(const CostGrid& grid, std::span<const float> times, const glm::vec2& place) {
+TimeHere timeAt(const CostGrid& grid, std::span<const glm::vec4> times, const glm::vec2& place) {
   const glm::vec2 last(static_cast<float>(grid.columns - 1), static_cast<float>(grid.rows - 1));
   const glm::vec2 u = glm::clamp((place - grid.origin) / grid.cell - 0.5f, glm::vec2(0), last);
   const glm::vec2 i = glm::min(glm::floor(u), last - 1.0f), f = u - i;
   const size_t at = static_cast<size_t>(i.y) * grid.columns + static_cast<size_t>(i.x);
-  const float a = times[at], b = times[at + 1], c = times[at + grid.columns],
-              d = times[at + grid.columns + 1];
+  const float a = times[at].x, b = times[at].y, c = times[at].z, d = times[at].w;
   const glm::vec2 slope(glm::mix(b - a, d - c, f.y), glm::mix(c - a, d - b, f.x));
   return {glm::mix(glm::mix(a, b, f.x), glm::mix(c, d, f.x), f.y), slope / grid.cell};
 }
@@ -332,8 +331,8 @@ TimeFigures figuresOf(const MapGround& ground, const MapGoal& goal) {
     passable += isPassable(ground.grid, cell);
     if (!goal.reached[cell]) continue;
     ++reached;
-    sum += double{goal.times[cell]};
-    figures.most = std::max(figures.most, double{goal.times[cell]});
+    sum += double{goal.times[cell].x};
+    figures.most = std::max(figures.most, double{goal.times[cell].x});
   }
   if (reached == 0) return figures;
   figures.reached = static_cast<double>(reached) / static_cast<double>(passable);

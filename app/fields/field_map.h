@@ -23,7 +23,7 @@ struct MapGround {
 // A goal of some agents, and the times from everywhere to it.
 struct MapGoal {
   glm::vec2 goal, stop;
-  std::span<const float> times;  // at the middles of cells
+  std::span<const glm::vec4> times;  // for each cell at the four middles from it on, as agents go by them
   // For each cell, whether a way leads to the goal.
   std::vector<bool> reached;
   std::vector<glm::vec2> starts;  // where those agents are

@@ -48,7 +48,8 @@ struct WayResult {
   glm::dvec2 lowerMargin{0}, upperMargin{0};
   double away = 0;  // metres to the stop
   // Errors follow from these: how much the direction changes with the place, for each cell; the largest
-  // difference of the times around, as a share of the gradient's length and in itself.
+  // difference of the times around, beside an obstacle more by the latest of these, as a share of the
+  // gradient's length; that difference in itself.
   double turning = 0, magnified = 0, rise = 0;
 };
 WayResult followWay(const Tuning& tuning, const WayField& way, const glm::dvec2& position, double speed,

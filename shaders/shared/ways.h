@@ -18,7 +18,8 @@ namespace skitter::shared {
 //   [WAY_PLACES + k] place k of goals in series: x, z, the first of those that may come next,
 //     how many (0: none)
 //   [WAY_TIMES + k * cells + cell] time at the middles of cells (i, j), (i + 1, j), (i, j + 1),
-//     (i + 1, j + 1); beyond the grid's end those of its last column or row
+//     (i + 1, j + 1); beyond the grid's end those of its last column or row, of impassable cells beside
+//     passable ones as these lead along them
 WAY WAY_HEADS = 2;
 WAY MOST_WAYS = 16;
 WAY WAY_PLACES = WAY_HEADS + MOST_WAYS;
@@ -41,6 +42,9 @@ WAY WAY_ROUNDS = 4;
 inline constexpr float WAY_FAR = 1e30f;
 // The cost of impassable cells, for those who are in one.
 inline constexpr float WAY_INSIDE_COST = 10;
+// How much later, in cells, an impassable cell seems than the passable ones beside it, for those between
+// them.
+inline constexpr float WAY_BESIDE = 0.3f;
 // x and z of the goal of those who flee: its times are 0 at every passable cell.
 inline constexpr float WAY_OUT = 1e6f;
 #else
@@ -53,11 +57,13 @@ struct WayConstants {
   uint32_t first;   // field that the first work group solves, or that is gathered
   uint32_t inside;  // 1: impassable cells, once passable ones are solved; 0: these
   uint32_t from;    // the first cell that is gathered
+  float beside;     // metres: WAY_BESIDE cells; 0: times lead out of impassable cells, not along them
 #else
   uint columns, rows;
   uint first;
   uint inside;
   uint from;
+  float beside;
 #endif
 };
 

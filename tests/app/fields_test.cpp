@@ -216,6 +216,16 @@ TEST(FieldMap, ShapesAreConfined) {
   EXPECT_EQ(drawing.rgba().size(), 40u * 30 * 4);
 }
 
+// Of 20 x 20 passable cells.
+std::vector<glm::vec4> aroundOf(std::span<const float> times) {
+  std::vector<glm::vec4> around;
+  for (size_t at = 0; at < times.size(); ++at) {
+    const size_t right = at % 20 < 19 ? 1 : 0, above = at < 380 ? 20 : 0;
+    around.emplace_back(times[at], times[at + right], times[at + above], times[at + above + right]);
+  }
+  return around;
+}
+
 // Times that fall toward +x lead straight there.
 TEST(FieldMap, AWayGoesDownTheTimes) {
   const Heightfield flat{
@@ -225,7 +235,8 @@ TEST(FieldMap, AWayGoesDownTheTimes) {
   std::vector<float> times(400);
   for (size_t i = 0; i < times.size(); ++i) times[i] = 30 - static_cast<float>(i % 20);
   const app::MapGround ground{flat, {}, grid, "", ""};
-  const app::MapGoal goal{{8, 2}, {8, 2}, times, std::vector<bool>(400, true), {}};
+  const std::vector<glm::vec4> around = aroundOf(times);
+  const app::MapGoal goal{{8, 2}, {8, 2}, around, std::vector<bool>(400, true), {}};
   const std::vector<glm::vec2> way = app::wayFrom(ground, goal, {-5, 2});
   EXPECT_EQ(way.back(), goal.stop);
   for (const glm::vec2& place : way) EXPECT_NEAR(place.y, 2, 1e-4);
@@ -244,7 +255,8 @@ TEST(FieldMap, TimesAreOfTheMiddlesOfCells) {
   for (int cell = 0; cell < 400; ++cell)
     times.push_back(glm::distance(grid.origin + glm::vec2(cell % 20, cell / 20) + 0.5f, corner));
   const app::MapGround ground{flat, {}, grid, "", ""};
-  const app::MapGoal goal{corner, corner, times, std::vector<bool>(400, true), {}};
+  const std::vector<glm::vec4> around = aroundOf(times);
+  const app::MapGoal goal{corner, corner, around, std::vector<bool>(400, true), {}};
   const std::vector<glm::vec2> way = app::wayFrom(ground, goal, {-7.5f, 0});
   EXPECT_EQ(way.back(), corner);
   for (const glm::vec2& place : way) EXPECT_NEAR(place.y, 0, 1e-3);
@@ -290,7 +302,8 @@ TEST(FieldMap, ArrowsPointDownTheTimes) {
     std::vector<float> times(400);
     for (size_t i = 0; i < times.size(); ++i) times[i] = 30 - fall * static_cast<float>(i % 20);
     const app::MapGround ground{flat, {}, grid, "", ""};
-    const app::MapGoal goal{{9 * fall, 9}, {9 * fall, 9}, times, std::vector<bool>(400, true), {}};
+    const std::vector<glm::vec4> around = aroundOf(times);
+    const app::MapGoal goal{{9 * fall, 9}, {9 * fall, 9}, around, std::vector<bool>(400, true), {}};
     const Drawing drawing = app::drawTimes(ground, goal);
     const auto brightBeside = [&](uint32_t x, uint32_t y) {
       int count = 0;

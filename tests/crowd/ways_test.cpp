@@ -445,6 +445,21 @@ TEST_F(WaysTest, AgentsGoRoundAWallToTheirGoal) {
   EXPECT_LT(farthestFrom(crowd, {0, 7}), 1);
 }
 
+// Who is pressed against a wall goes along it, 17 degrees off it at most, and not back into the crowd.
+TEST_F(WaysTest, AgentsAtAWallGoAlongIt) {
+  Crowd crowd(device(), flatGround(), walledScene(3));
+  const float away[] = {0.65f, 0.7f, 0.74f};
+  for (uint32_t i = 0; i < 3; ++i)
+    crowd.teleport(crowd.agentId(0, i), {{4.1f * static_cast<float>(i) - 6, -away[i]}, 0});
+  simulate(device(), crowd, 1);
+  const HerdState state = crowd.download(0);
+  for (size_t i = 0; i < 3; ++i) {
+    const float *steer = &state.steer[4 * i * shared::STEER_STRIDE], along = steer[0] / 2, off = steer[1] / 2;
+    EXPECT_GT(along, 0.95f) << away[i] << " m from its middle";
+    EXPECT_LT(std::abs(off), 0.3f) << away[i] << " m from its middle";
+  }
+}
+
 TEST_F(WaysTest, AgentsStopAtTheNearestPlaceThatTheyReach) {
   Scene scene = walledScene(9);
   scene.obstacles = {{Capsule{.from = {-40, 0}, .to = {40, 0}, .radius = 0.3f}}};

@@ -218,6 +218,7 @@ class FollowWay : public testing::Test {
                           .rows = 3,
                           .cell = 1,
                           .origin = {0, 0},
+                          .cost = std::vector<double>(12, 1),
                           .times = {9, 11, 13, 15, 10, 12, 14, 16, 11, 13, 15, 17}};
 };
 
@@ -228,6 +229,40 @@ TEST_F(FollowWay, GoesDownTheTimes) {
   EXPECT_NEAR(result.desired.y, -3 * 1 / std::sqrt(5.0), 1e-12);
   EXPECT_NEAR(result.lowerMargin.x, 0.75, 1e-12);
   EXPECT_NEAR(result.upperMargin.y, 0.75, 1e-12);
+}
+
+// Between cells 5, 6, 9 and 10, of which some are walls. A wall's own time, which leads out of it, is 50.
+TEST_F(FollowWay, LeadsAlongWallsBesideThem) {
+  const auto gradientWith = [&](std::vector<size_t> walls) {
+    reference::WayField walled = way;
+    for (const size_t wall : walls) {
+      walled.cost[wall] = kWall;
+      walled.times[wall] = 50;
+    }
+    // In the middle of the four, so that the gradient is the mean of the differences.
+    const glm::dvec2 desired = reference::followWay(tuning, walled, {2, 2}, 1, 0.5).desired;
+    return desired / -glm::length(desired);
+  };
+  const auto expectAlong = [&](std::vector<size_t> walls, const glm::dvec2& gradient) {
+    const glm::dvec2 found = gradientWith(walls), unit = glm::normalize(gradient);
+    EXPECT_NEAR(found.x, unit.x, 1e-12) << walls.size() << " walls";
+    EXPECT_NEAR(found.y, unit.y, 1e-12) << walls.size() << " walls";
+  };
+  expectAlong({}, {2, 1});
+  // Above: 12 and 14 go on as 12.3 and 14.3. On the left: 14 and 15 as 14.3 and 15.3.
+  expectAlong({9, 10}, {2, 0.3});
+  expectAlong({5, 9}, {-0.3, 1});
+  // One: 14 + 13 - 12 and more where the way comes from there; not less than beside it where it goes there.
+  expectAlong({10}, {2 + 0.15, 1 + 0.15});
+  expectAlong({5}, {((14 - 14.3) + 2) / 2, ((13 - 14.3) + 1) / 2});
+  // Across from each other, 12 and 15: 15.3 both. Three, about 15: 15.3, 15.3 and 15.6.
+  expectAlong({6, 9}, {((15.3 - 12) + (15 - 15.3)) / 2, ((15.3 - 12) + (15 - 15.3)) / 2});
+  expectAlong({5, 6, 9}, {-0.3, -0.3});
+  // Inside, a wall's own times lead.
+  reference::WayField inside = way;
+  inside.cost.assign(12, kWall);
+  EXPECT_EQ(reference::followWay(tuning, inside, {2, 2}, 1, 0.5).desired,
+            reference::followWay(tuning, way, {2, 2}, 1, 0.5).desired);
 }
 
 TEST_F(FollowWay, SlowsAndStopsByTheTime) {

@@ -32,10 +32,11 @@ WayFields::WayFields(const gpu::Context& context, CostGrid grid) : context_(&con
                         embedded::way_solve_comp(),
                         {{BINDING_WAY_COST, store}, {BINDING_WAY_TIME, store}, {BINDING_WAY_STATE, store}},
                         sizeof(WayConstants)});
-  gather_ = gpu::Kernel(context, {"way_gather",
-                                  embedded::way_gather_comp(),
-                                  {{BINDING_WAY_TIME, store}, {BINDING_WAY_OUT, store}},
-                                  sizeof(WayConstants)});
+  gather_ =
+      gpu::Kernel(context, {"way_gather",
+                            embedded::way_gather_comp(),
+                            {{BINDING_WAY_COST, store}, {BINDING_WAY_TIME, store}, {BINDING_WAY_OUT, store}},
+                            sizeof(WayConstants)});
   setGrid(std::move(grid));
 }
 
@@ -142,6 +143,13 @@ std::vector<float> WayFields::times(const glm::vec2& target) const {
   return of;
 }
 
+std::vector<glm::vec4> WayFields::timesAround(const glm::vec2& target) const {
+  std::vector<glm::vec4> of(cells());
+  gpu::downloadBytes(*context_, records_, std::as_writable_bytes(std::span(of)),
+                     (shared::WAY_TIMES + indexOf(target) * cells()) * vec4Bytes);
+  return of;
+}
+
 size_t WayFields::indexOf(const glm::vec2& target) const {
   return static_cast<size_t>(std::ranges::find(fields_, target, &Field::target) - fields_.begin());
 }
@@ -158,7 +166,8 @@ void WayFields::makeRoom(uint32_t fields) {
   gpu::clear(context, records_);
   solveBindings_ = solve_.bind(
       context, {{BINDING_WAY_COST, &costs_}, {BINDING_WAY_TIME, &times_}, {BINDING_WAY_STATE, &states_}});
-  gatherBindings_ = gather_.bind(context, {{BINDING_WAY_TIME, &times_}, {BINDING_WAY_OUT, &records_}});
+  gatherBindings_ = gather_.bind(
+      context, {{BINDING_WAY_COST, &costs_}, {BINDING_WAY_TIME, &times_}, {BINDING_WAY_OUT, &records_}});
 }
 
 void WayFields::uploadHeads() const {
@@ -183,7 +192,7 @@ void WayFields::solve(std::span<const size_t> fields) {
   }
   for (const uint32_t inside : {0u, 1u}) {
     const shared::WayConstants constants{
-        .columns = grid_.columns, .rows = grid_.rows, .first = 0, .inside = inside, .from = 0};
+        .columns = grid_.columns, .rows = grid_.rows, .first = 0, .inside = inside, .from = 0, .beside = 0};
     std::vector<uint32_t> states(shared::MOST_WAYS, 0);
     for (const size_t field : fields) states[field] = 1;
     gpu::upload(context, states_, states);
@@ -202,11 +211,13 @@ void WayFields::solve(std::span<const size_t> fields) {
 void WayFields::gather(std::span<const size_t> fields, uint32_t firstRow, uint32_t rows) const {
   gpu::submitAndWait(*context_, [&](vk::CommandBuffer cmd) {
     for (const size_t field : fields) {
+      const bool leadsOut = fields_[field].target == glm::vec2(shared::WAY_OUT);
       const shared::WayConstants constants{.columns = grid_.columns,
                                            .rows = grid_.rows,
                                            .first = static_cast<uint32_t>(field),
                                            .inside = 0,
-                                           .from = firstRow * grid_.columns};
+                                           .from = firstRow * grid_.columns,
+                                           .beside = leadsOut ? 0 : shared::WAY_BESIDE * grid_.cell};
       gather_.dispatch(cmd, gatherBindings_, gpu::bytesOf(constants),
                        gpu::groupsFor(rows * grid_.columns, shared::WAY_GROUP));
     }

@@ -49,6 +49,8 @@ class WayFields {
   uint32_t solved() const { return solved_; }
   // Times at the middles of the cells, of a goal that has a field.
   std::vector<float> times(const glm::vec2& target) const;
+  // For each cell those of the four middles from it on, as agents between them go by (WAY_TIMES).
+  std::vector<glm::vec4> timesAround(const glm::vec2& target) const;
 
  private:
   struct Field {
