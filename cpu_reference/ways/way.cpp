@@ -34,7 +34,7 @@ Around timesAround(const WayField& way, const glm::dvec2& first) {
     if (!std::isfinite(way.cost[cellAt(x, z)])) return {};
     return way.times[cellAt(x, z)];
   };
-  // Who flees goes straight out.
+  // The field of those who flee leads straight out.
   const bool leadsAlong = way.goal != glm::dvec2(wayOut);
   Around around;
   for (const int z : {0, 1})

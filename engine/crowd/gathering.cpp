@@ -10,20 +10,12 @@
 namespace skitter::crowd {
 namespace {
 
-// Bytes of one of the part's records.
-uint64_t sizeOf(const Part& part, Record record) {
-  const bool isOfLeg = infoOf(record).per == Per::leg;
-  const uint64_t held =
-      isOfLeg ? wholeBlocks(part.page->agents) * static_cast<uint64_t>(part.kind->legs) : part.page->agents;
-  return part.page->of(record).size() / held;
-}
-
 // Bytes of those that the sample has.
 uint64_t bytesOf(const Crowd::Impl& crowd, const Part& part, Record record, const AgentSample& sample) {
   if (!part.page->of(record) || !keeps(*part.kind, crowd.options, record)) return 0;
   const int perAgent = infoOf(record).per == Per::leg ? part.kind->legs : 1;
   return sampleOf(part.firstAgent, part.agents, sample).count * static_cast<uint64_t>(perAgent) *
-         sizeOf(part, record);
+         bytesOfRecord(*part.kind, record);
 }
 
 }  // namespace
@@ -36,15 +28,16 @@ void Gathering::add(const Crowd::Impl& crowd, std::span<const Part> parts, Recor
   std::span<std::byte> rest = std::as_writable_bytes(std::span(records));
   for (size_t p = 0; p < parts.size(); ++p) {
     if (bytes[p] == 0) continue;
-    const int legs = infoOf(record).per == Per::leg ? parts[p].kind->legs : 0;
-    add(parts[p], parts[p].page->of(record), sizeOf(parts[p], record), legs, sample, rest.first(bytes[p]));
+    add(parts[p], record, sample, rest.first(bytes[p]));
     rest = rest.subspan(bytes[p]);
   }
 }
 
-// legs = 0: there is one record per agent.
-void Gathering::add(const Part& part, const gpu::Buffer& buffer, uint64_t each, int legs,
-                    const AgentSample& sample, std::span<std::byte> records) {
+void Gathering::add(const Part& part, Record record, const AgentSample& sample,
+                    std::span<std::byte> records) {
+  const gpu::Buffer& buffer = part.page->of(record);
+  const uint64_t each = bytesOfRecord(*part.kind, record);
+  const int legs = infoOf(record).per == Per::leg ? part.kind->legs : 0;  // 0: there is one record per agent
   const RunSample here = sampleOf(part.firstAgent, part.agents, sample);
   const uint32_t first = part.first + here.first;
   if (legs == 0 && sample.stride == 1) {

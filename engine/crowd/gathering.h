@@ -19,7 +19,7 @@ class Gathering {
   // whose herd does not keep the record. `records` must stay until finish().
   void add(const Crowd::Impl& crowd, std::span<const Part> parts, Record record, const AgentSample& sample,
            std::vector<float>& records);
-  // As much of the buffer's beginning as there is room in `into`, which must stay until finish().
+  // Fills `into`, which must stay until finish(), from the buffer's beginning on.
   template <class T>
   void add(const gpu::Buffer& buffer, std::span<T> into) {
     downloads_.add(buffer, std::as_writable_bytes(into));
@@ -29,15 +29,14 @@ class Gathering {
   void finish();
 
  private:
-  // Of legs, the blocks that hold the agents: an agent's records lie apart in them.
+  // The whole blocks that hold the agents. Records of an agent's legs lie apart in them.
   struct Blocks {
     std::vector<std::byte> bytes;
     std::vector<uint64_t> places;
     uint64_t each;
     std::span<std::byte> records;
   };
-  void add(const Part& part, const gpu::Buffer& buffer, uint64_t each, int legs, const AgentSample& sample,
-           std::span<std::byte> records);
+  void add(const Part& part, Record record, const AgentSample& sample, std::span<std::byte> records);
 
   gpu::Downloads downloads_;
   std::vector<Blocks> blocks_;

@@ -183,8 +183,7 @@ bool binds(const Kind& kind, Record record) {
 
 PageBuffer recordBuffer(const Crowd::Impl& crowd, const Kind& kind, Record record) {
   const RecordInfo info = infoOf(record);
-  const auto vec4s = static_cast<uint64_t>(strideOf(record, kind.legs, kind.bones, kind.clips.joints));
-  PageBuffer made{.name = info.name, .bytes = 16 * vec4s, .record = record};
+  PageBuffer made{.name = info.name, .bytes = bytesOfRecord(kind, record), .record = record};
   if (info.per == Per::leg) {
     made.bytes *= static_cast<uint64_t>(kind.legs);
     made.inBlocks = true;
@@ -198,6 +197,10 @@ PageBuffer recordBuffer(const Crowd::Impl& crowd, const Kind& kind, Record recor
 }
 
 }  // namespace
+
+uint64_t bytesOfRecord(const Kind& kind, Record record) {
+  return 16 * static_cast<uint64_t>(strideOf(record, kind.legs, kind.bones, kind.clips.joints));
+}
 
 std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Kind& kind) {
   using namespace shared;

@@ -45,6 +45,9 @@ struct PageBuffer {
 // Whether the kind's pages hold those records of every agent; what is only bound has room for one.
 bool keeps(const Kind& kind, const CrowdOptions& options, Record record);
 
+// Bytes of one of the kind's records.
+uint64_t bytesOfRecord(const Kind& kind, Record record);
+
 // Those that the kind's stages bind.
 std::vector<PageBuffer> pageBuffers(const Crowd::Impl& crowd, const Kind& kind);
 

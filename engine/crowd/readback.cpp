@@ -63,7 +63,7 @@ class Reading {
   }
   void addWatch(Gathering& gathering) { addBuffers(&Page::watch, watch_, gathering); }
   void addCounters(Gathering& gathering) { addBuffers(&Page::counters, counters_, gathering); }
-  // Once the counters are here.
+  // The counters have been downloaded.
   void addFootfalls(Gathering& gathering) {
     events_.resize(parts_.size());
     for (size_t p = 0; p < parts_.size(); ++p) {
@@ -73,7 +73,7 @@ class Reading {
     }
   }
 
-  // Once the counters are here.
+  // The counters have been downloaded.
   uint64_t droppedFootfalls() const {
     uint64_t dropped = 0;
     for (size_t p = 0; p < parts_.size(); ++p) {
@@ -101,7 +101,7 @@ class Reading {
     return all;
   }
 
-  // What else Crowd::download gives is here.
+  // Adds the rest of what Crowd::download gives. All of it has been downloaded.
   HerdState whole() && {
     state_.watchEvery = crowd_.watchEvery;
     state_.sleep = crowd_.options.sleep;
@@ -112,7 +112,7 @@ class Reading {
       state_.trail = parts_.front().kind->trails->trailWords();
     return std::move(state_);
   }
-  // Of a run, whose agents' numbers in their kind say who is watched.
+  // Adds whom measure watches, too. The numbers of a run's agents in their kind say who these are.
   HerdState whole(const crowd::SizeRun& run) && {
     state_.watchOffset = run.firstAgent % crowd_.watchEvery;
     for (size_t p = 0; p < parts_.size(); ++p)

@@ -15,10 +15,6 @@
 namespace skitter::crowd {
 namespace {
 
-uint64_t bytesOfRecord(const Kind& kind, Record record) {
-  return 16 * static_cast<uint64_t>(strideOf(record, kind.legs, kind.bones, kind.clips.joints));
-}
-
 // How many of them a run of agents has.
 uint64_t recordsOf(const Crowd::Impl& crowd, const Kind& kind, Record record, uint64_t agents) {
   switch (infoOf(record).per) {

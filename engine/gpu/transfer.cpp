@@ -104,7 +104,7 @@ void Downloads::run() {
   Staging staging(context_, room, HostUse::readback);
   std::vector<Piece> rest = std::exchange(pieces_, {});
   for (size_t first = 0; first < rest.size();) {
-    // What this submission takes: whole pieces, and of the last one perhaps its beginning.
+    // A submission takes whole pieces, and perhaps the beginning of one more.
     std::vector<Piece> taken;
     for (uint64_t used = 0; first < rest.size() && used < room;) {
       Piece& next = rest[first];

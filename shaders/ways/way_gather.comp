@@ -9,7 +9,7 @@ layout(set = 0, binding = BINDING_WAY_COST, std430) readonly buffer CostBlock { 
 layout(set = 0, binding = BINDING_WAY_TIME, std430) readonly buffer TimeBlock { float times[]; };
 layout(set = 0, binding = BINDING_WAY_OUT, std430) writeonly buffer WayOutBlock { vec4 ways[]; };
 
-// Of cell i, which is impassable, beside the passable ones of the four.
+// The time of cell i, which is impassable, as it seems beside the passable ones of the four.
 float timeBeside(vec4 time, bvec4 passable, int i) {
   int x = i ^ 1, z = i ^ 2, across = i ^ 3;
   if (!passable[x] && !passable[z]) return time[across] + 2.0 * way.beside;

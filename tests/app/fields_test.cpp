@@ -216,7 +216,7 @@ TEST(FieldMap, ShapesAreConfined) {
   EXPECT_EQ(drawing.rgba().size(), 40u * 30 * 4);
 }
 
-// Of 20 x 20 passable cells.
+// The grid has 20 x 20 passable cells.
 std::vector<glm::vec4> aroundOf(std::span<const float> times) {
   std::vector<glm::vec4> around;
   for (size_t at = 0; at < times.size(); ++at) {

@@ -445,7 +445,8 @@ TEST_F(WaysTest, AgentsGoRoundAWallToTheirGoal) {
   EXPECT_LT(farthestFrom(crowd, {0, 7}), 1);
 }
 
-// Who is pressed against a wall goes along it, 17 degrees off it at most, and not back into the crowd.
+// An agent that is pressed against a wall goes along it, 17 degrees off it at most, and not back into the
+// crowd.
 TEST_F(WaysTest, AgentsAtAWallGoAlongIt) {
   Crowd crowd(device(), flatGround(), walledScene(3));
   const float away[] = {0.65f, 0.7f, 0.74f};
