@@ -9,6 +9,7 @@
 #include "embedded/contact_vert_texel.h"
 #include "gpu/transfer.h"
 #include "render/bindings.h"
+#include "render/limbs.h"
 
 namespace skitter::render {
 namespace {
@@ -43,16 +44,17 @@ struct Squares {
   }
 };
 
-Squares squaresOf(const Rig& rig) {
+Squares squaresOf(const Rig& rig, const Limbs& limbs) {
   Squares squares;
-  squares.add(0, glm::vec4(0, 0, 0, kBodyHeight * rig.bodyHeight), kBodyRadius * rig.bodyRadius, kBodyShare,
-              kBodyCells);
+  squares.add(limbs.carriers[0].entry, glm::vec4(0, 0, 0, kBodyHeight * rig.bodyHeight),
+              kBodyRadius * rig.bodyRadius, kBodyShare, kBodyCells);
   for (size_t l = 0; l < rig.legs.size(); ++l) {
-    const Leg& leg = rig.legs[l];
-    const size_t last = leg.bones.size() - 1;
-    const auto bone = static_cast<uint32_t>(1 + l * size_t(rig.maxBones()) + last);
-    squares.add(bone, glm::vec4(leg.bones[last].direction * leg.bones[last].length, kFootHeight * leg.reach),
-                kFootRadius * leg.reach, kFootShare, kFootCells);
+    const std::vector<Bone>& bones = limbs.rig.legs[l].bones;
+    const float reach = rig.legs[l].reach;
+    const Limbs::Carrier& last = limbs.carriers[l * size_t(limbs.rig.maxBones()) + bones.size()];
+    squares.add(last.entry,
+                glm::vec4(last.start + bones.back().direction * bones.back().length, kFootHeight * reach),
+                kFootRadius * reach, kFootShare, kFootCells);
   }
   return squares;
 }
@@ -60,8 +62,7 @@ Squares squaresOf(const Rig& rig) {
 }  // namespace
 
 Contact::Contact(const Setting& s, const crowd::Kind& kind) {
-  if (crowd::traitsOf(kind.controller).playsClips) return;
-  const Squares squares = squaresOf(kind.rig);
+  const Squares squares = squaresOf(kind.rig, limbsOf(kind));
   indexCount_ = uint32_t(squares.indices.size());
   vertices_ = gpu::Buffer(s.context, squares.vertices.size() * sizeof(ContactVertex), "contact vertices",
                           gpu::BufferUse::vertex);
@@ -73,24 +74,25 @@ Contact::Contact(const Setting& s, const crowd::Kind& kind) {
   using gpu::BindingKind;
   pipeline_ = gpu::GraphicsPipeline(
       s.context,
-      s.dimming(
-          {.name = "contact",
-           .vertex = {embedded::contact_vert_texel(), embedded::contact_vert_storage()},
-           .fragment = embedded::contact_frag(),
-           .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
-                        {shared::DRAW_BODY, BindingKind::load4},
-                        {shared::DRAW_POSE, BindingKind::load4},
-                        {shared::DRAW_HEIGHTS, BindingKind::heights}},
-           .pushBytes = sizeof(shared::CrowdConstants),
-           .streams = {{.stride = sizeof(ContactVertex),
-                        .rate = vk::VertexInputRate::eVertex,
-                        .attributes = {{1, F::eR32Uint, offsetof(ContactVertex, bone)},
-                                       {2, F::eR32G32B32A32Sfloat, offsetof(ContactVertex, foot)},
-                                       {3, F::eR32G32B32A32Sfloat, offsetof(ContactVertex, where)}}},
-                       {.stride = sizeof(uint32_t),
-                        .rate = vk::VertexInputRate::eInstance,
-                        .attributes = {{0, F::eR32Uint, 0}}}},
-           .constants = {{shared::CONSTANT_ROOTS, s.filtered()}, {shared::CONSTANT_STUMPS, kind.hurts}}}));
+      s.dimming({.name = "contact",
+                 .vertex = {embedded::contact_vert_texel(), embedded::contact_vert_storage()},
+                 .fragment = embedded::contact_frag(),
+                 .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
+                              {shared::DRAW_BODY, BindingKind::load4},
+                              {shared::DRAW_POSE, BindingKind::load4},
+                              {shared::DRAW_HEIGHTS, BindingKind::heights}},
+                 .pushBytes = sizeof(shared::CrowdConstants),
+                 .streams = {{.stride = sizeof(ContactVertex),
+                              .rate = vk::VertexInputRate::eVertex,
+                              .attributes = {{1, F::eR32Uint, offsetof(ContactVertex, bone)},
+                                             {2, F::eR32G32B32A32Sfloat, offsetof(ContactVertex, foot)},
+                                             {3, F::eR32G32B32A32Sfloat, offsetof(ContactVertex, where)}}},
+                             {.stride = sizeof(uint32_t),
+                              .rate = vk::VertexInputRate::eInstance,
+                              .attributes = {{0, F::eR32Uint, 0}}}},
+                 .constants = {{shared::CONSTANT_ROOTS, s.filtered()},
+                               {shared::CONSTANT_STUMPS, kind.hurts},
+                               {shared::CONSTANT_MATRICES, crowd::traitsOf(kind.controller).playsClips}}}));
 }
 
 Contact::Page Contact::makePage(const Setting& s, const gpu::Buffer& body, const gpu::Buffer& pose) const {

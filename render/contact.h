@@ -11,7 +11,6 @@ namespace skitter::render {
 class Contact {
  public:
   Contact() = default;
-  // Draws nothing of a kind that plays clips, whose models have no legs.
   Contact(const Setting&, const crowd::Kind&);
 
   struct Page {

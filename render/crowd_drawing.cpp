@@ -252,10 +252,8 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
     kind.passes[kShadow] = {s.context, shadowInfo(s, influences, formsOf(source))};
     kind.lit = drawPipeline(s, litShading(influences, formsOf(source)));
     kind.contact = Contact(s, source);
-    if (!clips) {
-      if (!splats_) splats_ = Splats(s);
-      kind.splat = splats_.makeKind(s, source, kind.mesh.radius);
-    }
+    if (!splats_) splats_ = Splats(s);
+    kind.splat = splats_.makeKind(s, source, kind.mesh.radius);
     if (kind.splat) {
       kind.passes[kFading] = drawPipeline(s, fadingShading(influences, formsOf(source)));
       kind.passes[kFadingShadow] = {s.context, fadingShadowInfo(s, influences, formsOf(source))};

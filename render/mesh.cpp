@@ -11,9 +11,9 @@
 #include <queue>
 #include <tuple>
 
-#include "assets/materials/worn_colours.h"
 #include "crowd/radius.h"
 #include "gpu/transfer.h"
+#include "render/limbs.h"
 #include "render/ribbons.h"
 
 namespace skitter::render {
@@ -45,7 +45,7 @@ struct Skin {
   const std::vector<uint32_t>& indices;
   std::vector<glm::vec3> starts;
   const Look& look;
-  const Rig* rig = nullptr;  // where legs are known; ribbons have its vertices' colours
+  Limbs limbs;
 };
 
 MeshVertex meshVertex(const Skin& from, const SkinVertex& skin, int& influences) {
@@ -247,7 +247,7 @@ void append(MeshData& data, MeshLod& lod, const Skin& skin, const Surface& surfa
 constexpr uint32_t indexCountOf(const Ribbon& ribbon) { return ribbon.waist ? 12 : 6; }
 
 // A quad, or two that meet at the waist, whose corners the vertex shader moves apart.
-void append(MeshData& data, MeshLod& lod, const Ribbon& ribbon) {
+void append(MeshData& data, MeshLod& lod, const Limbs& limbs, const Ribbon& ribbon) {
   const auto first = uint32_t(data.vertices.size()) - uint32_t(lod.firstVertex);
   data.influences = std::max(data.influences, 2);
   std::vector<Ribbon::End> sections{ribbon.from, ribbon.to};
@@ -257,10 +257,10 @@ void append(MeshData& data, MeshLod& lod, const Ribbon& ribbon) {
     for (const int side : {1, -1}) {
       const Ribbon::End &here = sections[i], &neighbour = sections[i == 0 ? 1 : i - 1];
       MeshVertex vertex{};
-      vertex.bones[0] = here.bone;
-      vertex.influences[0] = glm::vec4(here.along * here.direction, 1);
-      vertex.bones[1] = neighbour.bone;
-      vertex.influences[1] = glm::vec4(neighbour.along * neighbour.direction, 0);
+      vertex.bones[0] = limbs.carriers[here.bone].entry;
+      vertex.influences[0] = glm::vec4(limbs.placeOf(here), 1);
+      vertex.bones[1] = limbs.carriers[neighbour.bone].entry;
+      vertex.influences[1] = glm::vec4(limbs.placeOf(neighbour), 0);
       vertex.colour = here.colour;
       vertex.halfWidth = float(side) * std::max(here.radius, kLeastHalfWidth);
       data.vertices.push_back(vertex);
@@ -301,10 +301,9 @@ void appendLods(MeshData& data, const Skin& skin) {
     const float pixel = data.radius / kLodPixels[i - 1];
     const float error = i + 1 < data.lods.size() ? kLargestError : kLastError;
     const Ribbons thin =
-        skin.rig ? ribbonsOf(*skin.rig, kRibbonPixels * pixel, kBendPixels * pixel, i <= kLastWaists)
-                 : Ribbons{{}, skin.indices};
+        ribbonsOf(skin.limbs.rig, kRibbonPixels * pixel, kBendPixels * pixel, i <= kLastWaists);
     append(data, data.lods[i], skin, simplified(welded, thin.others, i, kShare[i - 1], error));
-    for (const Ribbon& ribbon : thin.ribbons) append(data, data.lods[i], ribbon);
+    for (const Ribbon& ribbon : thin.ribbons) append(data, data.lods[i], skin.limbs, ribbon);
     uint32_t ribbons = 0;
     for (const Ribbon& ribbon : thin.ribbons) ribbons += indexCountOf(ribbon);
     if (skin.look) splitByMaterial(data, i, ribbons);
@@ -324,24 +323,18 @@ std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
   return surfaces;
 }
 
-Rig colouredRig(Rig rig) {
-  const std::vector<glm::vec3> colours = wornColours(rig.vertices, rig.look);
-  for (size_t v = 0; v < colours.size(); ++v) rig.vertices[v].colour = colours[v];
-  return rig;
-}
-
 MeshData makeMesh(const Rig& rig) {
   MeshData data;
   data.radius = crowd::radiusOf(rig);
-  const Rig worn = rig.look ? colouredRig(rig) : Rig();
-  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), rig.look, rig.look ? &worn : &rig});
+  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), rig.look, limbsOf(rig)});
   return data;
 }
 
 MeshData makeMesh(const ClipSet& set) {
   MeshData data;
   data.radius = crowd::radiusOf(set);
-  appendLods(data, {set.vertices, set.indices, std::vector<glm::vec3>(set.joints.size()), set.look});
+  const std::vector<glm::vec3> starts(set.joints.size());  // the origin
+  appendLods(data, {set.vertices, set.indices, starts, set.look, limbsOf(set)});
   return data;
 }
 

@@ -63,9 +63,6 @@ struct Surface {
 std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
                                 const std::vector<uint32_t>& indices);
 
-// The rig, which has a look, with the colours that its textures give it: for what is drawn without textures.
-Rig colouredRig(Rig);
-
 MeshData makeMesh(const Rig&);
 MeshData makeMesh(const ClipSet&);  // its palette holds matrices
 

@@ -8,11 +8,6 @@
 namespace skitter::render {
 namespace {
 
-// The entry of the pose palette that carries most of a vertex.
-uint16_t heaviestBone(const SkinVertex& vertex) {
-  return vertex.bones[std::max_element(vertex.weights, vertex.weights + 4) - vertex.weights];
-}
-
 // Sums over a bone's vertices, of which a line through their radii is made.
 struct BoneSurface {
   const Bone* bone = nullptr;  // none of the body, and where a leg has fewer bones than others
@@ -155,6 +150,10 @@ bool isStraight(const Leg& leg, size_t first, size_t last, float bend) {
 }
 
 }  // namespace
+
+uint16_t heaviestBone(const SkinVertex& vertex) {
+  return vertex.bones[std::max_element(vertex.weights, vertex.weights + 4) - vertex.weights];
+}
 
 Ribbons ribbonsOf(const Rig& rig, float radius, float bend, bool waists) {
   Ribbons found;

@@ -7,6 +7,9 @@
 
 namespace skitter::render {
 
+// The entry of the pose palette that carries most of a vertex.
+uint16_t heaviestBone(const SkinVertex&);
+
 // Thin bones of a leg, one after another, as a strip that turns to whoever looks at it. From afar the bones'
 // surface would fall between pixels; a strip is drawn at least as wide as one (after Persson 2012,
 // "Phone-wire AA").

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "render/ribbons.h"
@@ -17,20 +18,26 @@ constexpr int kRounds = 8;     // of Lloyd's
 struct Piece {
   glm::vec3 middle, colour;
   float area;
+  uint16_t entry;  // of the palette
 };
 
 struct Ball {
   glm::vec3 middle{0}, colour{0};
   float area = 0, radius = 0;
+  std::map<uint16_t, float> areas = {};  // by entry of the palette
 };
 
-std::vector<Piece> piecesOf(const Rig& rig, const std::vector<uint32_t>& triangles) {
+// A triangle goes with its first vertex that hangs on the body.
+std::vector<Piece> piecesOf(const Limbs& limbs, const std::vector<uint32_t>& triangles) {
+  const std::vector<SkinVertex>& vertices = limbs.rig.vertices;
   std::vector<Piece> pieces;
-  for (size_t i = 0; i < triangles.size(); i += 3) {
-    const SkinVertex &a = rig.vertices[triangles[i]], &b = rig.vertices[triangles[i + 1]],
-                     &c = rig.vertices[triangles[i + 2]];
+  for (auto corner = triangles.begin(); corner != triangles.end(); corner += 3) {
+    const SkinVertex &a = vertices[corner[0]], &b = vertices[corner[1]], &c = vertices[corner[2]];
+    const uint32_t first =
+        *std::find_if(corner, corner + 2, [&](uint32_t v) { return heaviestBone(vertices[v]) == 0; });
     pieces.push_back({(a.position + b.position + c.position) / 3.0f, (a.colour + b.colour + c.colour) / 3.0f,
-                      0.5f * glm::length(glm::cross(b.position - a.position, c.position - a.position))});
+                      0.5f * glm::length(glm::cross(b.position - a.position, c.position - a.position)),
+                      limbs.entries[first]});
   }
   return pieces;
 }
@@ -65,6 +72,7 @@ std::vector<Ball> ballsOf(const std::vector<Piece>& pieces) {
       sum.middle += piece.area * piece.middle;
       sum.colour += piece.area * piece.colour;
       sum.area += piece.area;
+      sum.areas[piece.entry] += piece.area;
     }
     std::erase_if(sums, [](const Ball& ball) { return ball.area <= 0; });
     for (Ball& ball : sums) ball.middle /= ball.area, ball.colour /= ball.area;
@@ -74,22 +82,27 @@ std::vector<Ball> ballsOf(const std::vector<Piece>& pieces) {
   return balls;
 }
 
-glm::vec4 endOf(const Ribbon::End& end) { return {end.along * end.direction, end.radius}; }
-glm::vec4 colourOf(const Ribbon::End& end) { return {end.colour, float(end.bone)}; }
+// What carries most of a ball.
+uint16_t entryOf(const Ball& ball) {
+  return std::ranges::max_element(ball.areas, {}, [](const auto& entry) { return entry.second; })->first;
+}
 
 }  // namespace
 
-std::vector<shared::SplatPart> splatPartsOf(const Rig& rig, float bend) {
+std::vector<shared::SplatPart> splatPartsOf(const Limbs& limbs, float bend) {
   std::vector<shared::SplatPart> parts;
-  if (rig.indices.empty()) return parts;
-  const Ribbons legs = ribbonsOf(rig, std::numeric_limits<float>::max(), bend, false);
+  if (limbs.rig.indices.empty()) return parts;
+  const Ribbons legs = ribbonsOf(limbs.rig, std::numeric_limits<float>::max(), bend, false);
+  const auto place = [&](const Ribbon::End& end) { return glm::vec4(limbs.placeOf(end), end.radius); };
+  const auto colour = [&](const Ribbon::End& end) {
+    return glm::vec4(end.colour, float(limbs.carriers[end.bone].entry));
+  };
   for (const Ribbon& leg : legs.ribbons)
-    parts.push_back({endOf(leg.from), endOf(leg.to), colourOf(leg.from), colourOf(leg.to)});
-  // The body is the palette's first entry.
-  const glm::vec3 start = rig.restStarts().front();
-  for (const Ball& ball : ballsOf(piecesOf(rig, legs.others))) {
-    const glm::vec4 end(ball.middle - start, ball.radius), colour(ball.colour, 0);
-    parts.push_back({end, end, colour, colour});
+    parts.push_back({place(leg.from), place(leg.to), colour(leg.from), colour(leg.to)});
+  // A rig's body starts at the origin, as all entries of matrices do.
+  for (const Ball& ball : ballsOf(piecesOf(limbs, legs.others))) {
+    const glm::vec4 middle(ball.middle, ball.radius), own(ball.colour, float(entryOf(ball)));
+    parts.push_back({middle, middle, own, own});
   }
   return parts;
 }

@@ -1,5 +1,6 @@
 #include "render/splats.h"
 
+#include "crowd/controller.h"
 #include "embedded/shade_frag.h"
 #include "embedded/splat_comp_storage.h"
 #include "embedded/splat_comp_texel.h"
@@ -61,9 +62,8 @@ Splats::Splats(const Setting& s)
 Splats::Kind Splats::makeKind(const Setting& s, const crowd::Kind& source, float radius) const {
   Kind kind;
   if (!*this) return kind;
-  const Rig worn = source.rig.look ? colouredRig(source.rig) : Rig();
   const std::vector<shared::SplatPart> parts =
-      splatPartsOf(source.rig.look ? worn : source.rig, kBendPixels * radius / kSplatPixels);
+      splatPartsOf(limbsOf(source), kBendPixels * radius / kSplatPixels);
   if (parts.empty()) return kind;
   kind.radius = radius;
   kind.parts = gpu::Buffer(s.context, parts.size() * sizeof parts[0], "splat parts");
@@ -72,6 +72,7 @@ Splats::Kind Splats::makeKind(const Setting& s, const crowd::Kind& source, float
   constants.emplace_back(shared::CONSTANT_ROOTS, true);
   constants.emplace_back(shared::CONSTANT_TINTED, source.tinted);
   constants.emplace_back(shared::CONSTANT_STUMPS, source.hurts);
+  constants.emplace_back(shared::CONSTANT_MATRICES, crowd::traitsOf(source.controller).playsClips);
   constants.emplace_back(shared::CONSTANT_SPLAT_PARTS, int32_t(parts.size()));
   kind.kernel =
       gpu::Kernel(s.context, {.name = "splat",

@@ -17,8 +17,8 @@ class Splats {
   // Not in pictures of more pixels than a binding of the device reaches, 16 million on lavapipe.
   explicit operator bool() const { return bool(draw_); }
 
-  // A kind's shapes and the shader that draws them. It is empty where there are no splats, and where the rig
-  // has no skin. The kind does not play clips: only a rig's legs are known.
+  // A kind's shapes and the shader that draws them. It is empty where there are no splats, and where the
+  // model has no skin.
   struct Kind {
     gpu::Kernel kernel;
     gpu::Buffer parts;

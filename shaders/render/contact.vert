@@ -4,12 +4,10 @@
 // little towards the eye.
 #include "decal.glsl"
 #include "lib/load4.glsl"
-#include "lib/math.glsl"
+#include "posed.glsl"
 
-layout(constant_id = CONSTANT_STUMPS) const bool STUMPS = false;
 layout(push_constant) uniform ConstantBlock { CrowdConstants constants; };
 LOAD4_BUFFER(DRAW_BODY, bodies)
-LOAD4_BUFFER(DRAW_POSE, poses)
 
 layout(location = 0) in uint agent;
 layout(location = 1) in uint bone;
@@ -21,14 +19,13 @@ layout(location = 1) out float outShare;
 void main() {
   vec4 a = LOAD4(bodies, int(agent) * BODY_STRIDE);
   vec3 body = a.xyz + TILE_SIZE * vec3(tileX(a.w) - picture.tile.x, 0.0, tileZ(a.w) - picture.tile.y);
-  int entry = (int(agent * constants.palette) + int(bone)) * POSE_STRIDE;
-  vec4 start = LOAD4(poses, entry + 1);
-  vec3 middle = body + start.xyz + rotate(LOAD4(poses, entry), foot.xyz);
+  bool lost;
+  vec3 middle = body + posed(int(agent * constants.palette + bone), foot.xyz, lost);
 
   Field field = decalField();
   float above = middle.y - groundAt(field, middle.xz);
   outShare = where.w * (1.0 - smoothstep(0.0, foot.w, above));
-  if (STUMPS && start.w != 0.0) outShare = 0.0;
+  if (lost) outShare = 0.0;
   outFromMiddle = where.xy;
   gl_Position = decalAt(field, middle.xz + where.xy * where.z, outShare);
 }

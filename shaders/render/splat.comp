@@ -9,16 +9,15 @@
 #include "lib/load4.glsl"
 #include "lib/math.glsl"
 #include "light.glsl"
+#include "posed.glsl"
 #include "shadow_map.glsl"
 #include "splat.glsl"
 #include "variation.glsl"
 
 layout(local_size_x = WORK_GROUP) in;
 layout(constant_id = CONSTANT_SPLAT_PARTS) const int PARTS = 1;
-layout(constant_id = CONSTANT_STUMPS) const bool STUMPS = false;
 layout(push_constant) uniform ConstantBlock { SplatConstants constants; };
 LOAD4_BUFFER(DRAW_BODY, bodies)
-LOAD4_BUFFER(DRAW_POSE, poses)
 LOAD4_BUFFER(DRAW_SPLAT_PARTS, parts)
 layout(set = 0, binding = DRAW_HEIGHTS) uniform sampler2D heights;
 layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
@@ -34,13 +33,6 @@ const float THIN = 0.75;  // pixels; what has a smaller radius is one pixel wide
 // A shadow's strength by the radius in pixels, at least and at most; the sun is as steep as that to the ground, at
 // least; and a shadow is at most so many of the agent's radii away.
 const float LEAST_SHADE = 0.2, MOST_SHADE = 0.9, LEAST_SUN = 0.1, MOST_WAY = 1.2;
-
-// Relative to the agent's position; of a lost bone the stump's end, as of its skin (skin.glsl).
-vec3 posed(int entry, vec3 part, out bool lost) {
-  vec4 start = LOAD4(poses, entry + 1);
-  lost = STUMPS && start.w != 0.0;
-  return start.xyz + rotate(LOAD4(poses, entry), lost ? vec3(0.0) : part);
-}
 
 // Pixels from the upper left corner, and the depth.
 vec3 seenAt(vec3 p) {
@@ -116,8 +108,8 @@ void main() {
     vec4 from = LOAD4(parts, 4 * i), to = LOAD4(parts, 4 * i + 1);
     vec4 colourFrom = LOAD4(parts, 4 * i + 2), colourTo = LOAD4(parts, 4 * i + 3);
     bool lostFrom, lostTo;
-    vec3 first = posed((palette + int(colourFrom.w)) * POSE_STRIDE, from.xyz, lostFrom);
-    vec3 second = posed((palette + int(colourTo.w)) * POSE_STRIDE, to.xyz, lostTo);
+    vec3 first = posed(palette + int(colourFrom.w), from.xyz, lostFrom);
+    vec3 second = posed(palette + int(colourTo.w), to.xyz, lostTo);
 
     // Both sides' light, of whatever is round about its middle line.
     vec3 across = cross(second - first, toEye);

@@ -258,51 +258,61 @@ TEST_P(RendererTest, thinLegsAreDrawnInOnePiece) {
   // Without the sun's highlights no band of a leg has the colour of the ground.
   Scene one = smallScene(1), none = smallScene(0);
   one.light.sky = none.light.sky = Sky::overcast;
-  for (const uint32_t size : {900u, 600u, 450u, 330u, 160u}) {  // 22 to 125 mm a pixel
-    Stage stage(device(), one, size, size), empty(device(), none, size, size);
-    stage.tick(30);
-    const glm::vec3 body = bodyOf(stage.crowd.download(0));
-    const View view{
-        .eye = body + 2000.0f * glm::vec3(0.1f, 0.7f, 0.7f), .target = body, .fieldOfView = 0.01f};
-    EXPECT_EQ(partsThatDiffer(stage.draw(view), empty.draw(view)), 1) << size;
+  for (const Controller controller : {Controller::adaptive, Controller::clip, Controller::planted}) {
+    one.herds[0].controller = controller;
+    for (const uint32_t size : {900u, 600u, 450u, 330u, 160u}) {  // 22 to 125 mm a pixel
+      Stage stage(device(), one, size, size), empty(device(), none, size, size);
+      stage.tick(30);
+      const glm::vec3 body = bodyOf(stage.crowd.download(0));
+      const View view{
+          .eye = body + 2000.0f * glm::vec3(0.1f, 0.7f, 0.7f), .target = body, .fieldOfView = 0.01f};
+      EXPECT_EQ(partsThatDiffer(stage.draw(view), empty.draw(view)), 1) << nameOf(controller) << ", " << size;
+    }
   }
 }
 
 // Pixels that an agent covers at levels of detail that follow each other, either side of where they change,
 // and their colour.
 TEST_P(RendererTest, levelsOfDetailLookAlike) {
-  constexpr uint32_t size = 320;
-  Stage stage(device(), smallScene(1), size, size), empty(device(), smallScene(0), size, size);
-  stage.tick(30);
-  const glm::vec3 body = bodyOf(stage.crowd.download(0));
-  const double radius = render::makeMesh(stage.crowd.rig(0)).radius;
-  struct Seen {
-    double pixels;
-    glm::dvec3 colour;  // the mean, codes of sRGB
-  };
-  const auto seen = [&](double pixels) {
-    // From so far away that shadows have faded.
-    const double away = 2000, fieldOfView = 2 * std::atan(0.5 * size * radius / (pixels * away));
-    const View view{.eye = body + float(away) * glm::normalize(glm::vec3(0.1f, 0.5f, 0.7f)),
-                    .target = body,
-                    .fieldOfView = float(fieldOfView)};
-    const Picture with = stage.draw(view), without = empty.draw(view);
-    Seen sum{double(differing(with, without)), glm::dvec3(0)};
-    for (int y = 0; y < int(size); ++y)
-      for (int x = 0; x < int(size); ++x)
-        if (with.at(x, y) != without.at(x, y)) sum.colour += glm::dvec3(with.at(x, y)) / sum.pixels;
-    return sum;
-  };
-  for (size_t level = 0; level < render::kLodPixels.size(); ++level) {
-    const Seen finer = seen(1.01 * render::kLodPixels[level]),
-               coarser = seen(0.99 * render::kLodPixels[level]);
-    // The coarser one is drawn 2 % smaller, so covers 4 % less.
-    EXPECT_NEAR(coarser.pixels / finer.pixels, 0.96, 0.1)
-        << "level " << level << " covers " << finer.pixels << " pixels";
-    // The hash of their numbers makes neighbours differ about six times as much.
-    EXPECT_LT(glm::distance(coarser.colour, finer.colour), 9)
-        << "level " << level << ": " << finer.colour.x << " " << finer.colour.y << " " << finer.colour.z
-        << ", then " << coarser.colour.x << " " << coarser.colour.y << " " << coarser.colour.z;
+  for (const Controller controller : {Controller::adaptive, Controller::clip}) {
+    SCOPED_TRACE(nameOf(controller));
+    constexpr uint32_t size = 320;
+    Scene scene = smallScene(1);
+    scene.herds[0].controller = controller;
+    Stage stage(device(), scene, size, size), empty(device(), smallScene(0), size, size);
+    stage.tick(30);
+    const glm::vec3 body = bodyOf(stage.crowd.download(0));
+    const double radius =
+        (controller == Controller::clip ? render::makeMesh(spiderClips()) : render::makeMesh(spiderRig()))
+            .radius;
+    struct Seen {
+      double pixels;
+      glm::dvec3 colour;  // the mean, codes of sRGB
+    };
+    const auto seen = [&](double pixels) {
+      // From so far away that shadows have faded.
+      const double away = 2000, fieldOfView = 2 * std::atan(0.5 * size * radius / (pixels * away));
+      const View view{.eye = body + float(away) * glm::normalize(glm::vec3(0.1f, 0.5f, 0.7f)),
+                      .target = body,
+                      .fieldOfView = float(fieldOfView)};
+      const Picture with = stage.draw(view), without = empty.draw(view);
+      Seen sum{double(differing(with, without)), glm::dvec3(0)};
+      for (int y = 0; y < int(size); ++y)
+        for (int x = 0; x < int(size); ++x)
+          if (with.at(x, y) != without.at(x, y)) sum.colour += glm::dvec3(with.at(x, y)) / sum.pixels;
+      return sum;
+    };
+    for (size_t level = 0; level < render::kLodPixels.size(); ++level) {
+      const Seen finer = seen(1.01 * render::kLodPixels[level]),
+                 coarser = seen(0.99 * render::kLodPixels[level]);
+      // The coarser one is drawn 2 % smaller, so covers 4 % less.
+      EXPECT_NEAR(coarser.pixels / finer.pixels, 0.96, 0.1)
+          << "level " << level << " covers " << finer.pixels << " pixels";
+      // The hash of their numbers makes neighbours differ about six times as much.
+      EXPECT_LT(glm::distance(coarser.colour, finer.colour), 9)
+          << "level " << level << ": " << finer.colour.x << " " << finer.colour.y << " " << finer.colour.z
+          << ", then " << coarser.colour.x << " " << coarser.colour.y << " " << coarser.colour.z;
+    }
   }
 }
 

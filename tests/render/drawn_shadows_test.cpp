@@ -4,38 +4,46 @@
 namespace skitter::test {
 namespace {
 
-// Beside a foot, on the side of the sun, where its shadow does not fall and away from the leg.
+// Beside a foot, on the side of the sun, where its shadow does not fall and away from the leg. On level
+// ground, where clips have their feet, too.
 TEST_P(RendererTest, feetDarkenTheGroundThatTheyTouchAndNoOther) {
   const uint32_t width = 480, height = 480;
-  Scene scene = smallScene(1);
-  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2, .centre = {3, 5}, .heading = 2.1f};
-  scene.herds[0].goal = {.kind = Goal::Kind::none, .target = {0, 0}, .speed = 0};
-  Stage stage(device(), scene, width, height), empty(device(), smallScene(0), width, height);
-  stage.tick(60);
-  const HerdState state = stage.crowd.download(0);
-  const glm::vec3 body = bodyOf(state);
-  const View view{.eye = body + glm::vec3(0, 3.5f, -0.5f), .target = body};
-  const Picture with = stage.draw(view), without = empty.draw(view);
-  const auto lightnessAt = [&](const Picture& picture, glm::vec2 at) {
-    const float y = stage.terrain.seenAt(at.x, at.y);
-    const glm::vec2 pixel = pixelOf(view, {at.x, y, at.y}, width, height);
-    const glm::ivec3 c = picture.at(int(pixel.x), int(pixel.y));
-    return double(c.r + c.g + c.b);
-  };
-  const glm::vec2 sunward = glm::normalize(glm::vec2(0.62f, 0.40f));
-  int judged = 0;
-  for (int leg = 0; leg < stage.crowd.rig(0).legCount(); ++leg) {
-    const float* tip = &state.tip[size_t(leg) * 4];
-    const glm::vec2 out = glm::normalize(glm::vec2(tip[0], tip[2]));
-    if (glm::dot(out, sunward) < 0.3f) continue;
-    const glm::vec2 foot(body.x + tip[0], body.z + tip[2]);
-    ++judged;
-    EXPECT_LT(lightnessAt(with, foot + 0.04f * out), 0.9 * lightnessAt(without, foot + 0.04f * out))
-        << "leg " << leg;
-    EXPECT_EQ(lightnessAt(with, foot + 0.25f * out), lightnessAt(without, foot + 0.25f * out))
-        << "leg " << leg;
+  const Heightfield level = groundOf(129, 129, [](float, float) { return 0.0f; });
+  for (const Controller controller : {Controller::adaptive, Controller::clip}) {
+    SCOPED_TRACE(nameOf(controller));
+    Scene scene = smallScene(1);
+    scene.herds[0].controller = controller;
+    scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2, .centre = {3, 5}, .heading = 2.1f};
+    scene.herds[0].goal = {.kind = Goal::Kind::none, .target = {0, 0}, .speed = 0};
+    const Heightfield ground = controller == Controller::adaptive ? scene.loadTerrain() : level;
+    Stage stage(device(), scene, ground, width, height),
+        empty(device(), smallScene(0), ground, width, height);
+    stage.tick(60);
+    const HerdState state = stage.crowd.download(0);
+    const glm::vec3 body = bodyOf(state);
+    const View view{.eye = body + glm::vec3(0, 3.5f, -0.5f), .target = body};
+    const Picture with = stage.draw(view), without = empty.draw(view);
+    const auto lightnessAt = [&](const Picture& picture, glm::vec2 at) {
+      const float y = stage.terrain.seenAt(at.x, at.y);
+      const glm::vec2 pixel = pixelOf(view, {at.x, y, at.y}, width, height);
+      const glm::ivec3 c = picture.at(int(pixel.x), int(pixel.y));
+      return double(c.r + c.g + c.b);
+    };
+    const glm::vec2 sunward = glm::normalize(glm::vec2(0.62f, 0.40f));
+    int judged = 0;
+    for (int leg = 0; leg < stage.crowd.rig(0).legCount(); ++leg) {
+      const float* tip = &state.tip[size_t(leg) * 4];
+      const glm::vec2 out = glm::normalize(glm::vec2(tip[0], tip[2]));
+      if (glm::dot(out, sunward) < 0.3f) continue;
+      const glm::vec2 foot(body.x + tip[0], body.z + tip[2]);
+      ++judged;
+      EXPECT_LT(lightnessAt(with, foot + 0.04f * out), 0.9 * lightnessAt(without, foot + 0.04f * out))
+          << "leg " << leg;
+      EXPECT_EQ(lightnessAt(with, foot + 0.25f * out), lightnessAt(without, foot + 0.25f * out))
+          << "leg " << leg;
+    }
+    EXPECT_GE(judged, 2);
   }
-  EXPECT_GE(judged, 2);
 }
 
 // Pixels that are darker than without agents, though no agent is that dark, and how dark their median is.

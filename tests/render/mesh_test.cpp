@@ -247,6 +247,34 @@ TEST(Mesh, ribbonsLieBetweenTheirEnds) {
   }
 }
 
+// Clips move the spider's own joints: from afar its legs are ribbons between the same places.
+TEST(Mesh, legsOfClipsAreRibbonsToo) {
+  const Rig rig = spiderRig();
+  const ClipSet set = spiderClips();
+  const MeshData mesh = makeMesh(rig), ofClips = makeMesh(set);
+  const auto ribbonVertices = [](const MeshData& data, size_t level) {
+    const size_t next =
+        level + 1 < data.lods.size() ? size_t(data.lods[level + 1].firstVertex) : data.vertices.size();
+    std::vector<MeshVertex> found;
+    for (auto v = size_t(data.lods[level].firstVertex); v < next; ++v)
+      if (data.vertices[v].halfWidth != 0) found.push_back(data.vertices[v]);
+    return found;
+  };
+  // The last level, at which all bones are thin, whatever the radius that clips keep within.
+  const std::vector<MeshVertex> expected = ribbonVertices(mesh, 4), found = ribbonVertices(ofClips, 4);
+  ASSERT_EQ(found.size(), expected.size());
+  ASSERT_GE(found.size(), 4 * rig.legs.size());
+  for (size_t i = 0; i < found.size(); ++i) {
+    // Entries of matrices start at the origin.
+    EXPECT_LT(glm::distance(glm::vec3(found[i].influences[0]), positionAtRest(rig, expected[i])), 1e-4f) << i;
+    EXPECT_NEAR(found[i].halfWidth, expected[i].halfWidth, 1e-4f) << i;
+    const ClipJoint& joint = set.joints[found[i].bones[0]];
+    const int bone = expected[i].bones[0] - 1;
+    EXPECT_EQ(joint.leg, bone / rig.maxBones()) << i;
+    EXPECT_EQ(joint.bone, bone % rig.maxBones()) << i;
+  }
+}
+
 // A bone of the spider's first leg with rings of skin about it, in place of the spider's own skin.
 Rig tube(size_t bone, const std::vector<std::pair<float, float>>& rings) {
   Rig rig = spiderRig();

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
+#include <tuple>
 
 #include "crowd/radius.h"
 #include "gpu/submit.h"
@@ -37,22 +39,40 @@ glm::dvec3 placeOf(const glm::vec4& body) {
          double(shared::TILE_SIZE) * glm::dvec3(shared::tileX(body.w), 0, shared::tileZ(body.w));
 }
 
+// A model, and where the entries of its palette start as its skin was bound.
+struct Bound {
+  std::string name;
+  Limbs limbs;
+  double radius;
+  std::vector<glm::vec3> starts;
+};
+
+Bound boundOf(const std::string& name, const Rig& rig) {
+  return {name, limbsOf(rig), double(crowd::radiusOf(rig)), rig.restStarts()};
+}
+
+std::vector<Bound> boundModels() {
+  const ClipSet clips = spiderClips();
+  return {boundOf("spider", spiderRig()),
+          boundOf("quadruped", loadRig(SKITTER_ASSETS "/quadruped.glb")),
+          {"spider with clips", limbsOf(clips), double(crowd::radiusOf(clips)),
+           std::vector<glm::vec3>(clips.joints.size())}};
+}
+
 // At rest the skin lies about the shapes: on the whole within a fiftieth of the agent's radius.
 TEST(SplatParts, FollowTheSkin) {
-  for (const char* file : {"spider", SKITTER_ASSETS "/quadruped.glb"}) {
-    SCOPED_TRACE(file);
-    const Rig rig = std::string(file) == "spider" ? spiderRig() : loadRig(file);
-    const double radius = double(crowd::radiusOf(rig));
-    const std::vector<shared::SplatPart> parts = splatPartsOf(rig, float(radius) / 25);
+  for (const auto& [name, limbs, radius, starts] : boundModels()) {
+    SCOPED_TRACE(name);
+    const Rig& rig = limbs.rig;
+    const std::vector<shared::SplatPart> parts = splatPartsOf(limbs, float(radius) / 25);
     ASSERT_GE(parts.size(), rig.legs.size() + 2);
     EXPECT_LE(parts.size(), rig.legs.size() * size_t(rig.maxBones()) + 12);
-    const std::vector<glm::vec3> starts = rig.restStarts();
     double sum = 0, most = 0;
     for (const SkinVertex& vertex : rig.vertices) {
       double least = 1e9;
       for (const shared::SplatPart& part : parts) {
-        ASSERT_LT(part.colourFrom.w, float(rig.paletteSize()));
-        ASSERT_LT(part.colourTo.w, float(rig.paletteSize()));
+        ASSERT_LT(part.colourFrom.w, float(starts.size()));
+        ASSERT_LT(part.colourTo.w, float(starts.size()));
         double share = 0;
         const double away =
             distanceToSegment(vertex.position, starts[size_t(part.colourFrom.w)] + glm::vec3(part.from),
@@ -69,9 +89,9 @@ TEST(SplatParts, FollowTheSkin) {
 
 // A triangle is the body's where a vertex hangs on it most.
 TEST(SplatParts, BallsHaveTheBodysArea) {
-  for (const char* file : {"spider", SKITTER_ASSETS "/quadruped.glb"}) {
-    SCOPED_TRACE(file);
-    const Rig rig = std::string(file) == "spider" ? spiderRig() : loadRig(file);
+  for (const Bound& model : boundModels()) {
+    SCOPED_TRACE(model.name);
+    const Rig& rig = model.limbs.rig;
     const auto hangsOnBody = [](const SkinVertex& v) {
       return v.bones[std::max_element(v.weights, v.weights + 4) - v.weights] == 0;
     };
@@ -82,17 +102,63 @@ TEST(SplatParts, BallsHaveTheBodysArea) {
       if (hangsOnBody(a) || hangsOnBody(b) || hangsOnBody(c))
         area += 0.5 * double(glm::length(glm::cross(b.position - a.position, c.position - a.position)));
     }
-    for (const shared::SplatPart& part : splatPartsOf(rig, 0.05f))
+    for (const shared::SplatPart& part : splatPartsOf(model.limbs, 0.05f))
       if (part.from == part.to) balls += 4 * std::numbers::pi * double(part.from.w * part.from.w);
     EXPECT_NEAR(balls, area, 1e-4 * area);
   }
+}
+
+// The built-in spider's clips move the joints of its rig, so its parts are the same, each carried by its
+// joint.
+TEST(SplatParts, OfClipsHangOnTheirJoints) {
+  const Rig rig = spiderRig();
+  const ClipSet set = spiderClips();
+  const std::vector<glm::vec3> starts = rig.restStarts();
+  const std::vector<shared::SplatPart> parts = splatPartsOf(limbsOf(rig), 0.05f),
+                                       ofClips = splatPartsOf(limbsOf(set), 0.05f);
+  ASSERT_EQ(ofClips.size(), parts.size());
+  size_t onLegs = 0;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    for (const auto& [end, entry, joint, ofClip] :
+         {std::tuple(parts[i].from, parts[i].colourFrom.w, ofClips[i].colourFrom.w, ofClips[i].from),
+          {parts[i].to, parts[i].colourTo.w, ofClips[i].colourTo.w, ofClips[i].to}}) {
+      EXPECT_LT(glm::distance(glm::vec3(end) + starts[size_t(entry)], glm::vec3(ofClip)), 1e-4f) << i;
+      EXPECT_NEAR(end.w, ofClip.w, 1e-4f) << i;
+      const ClipJoint& carrier = set.joints[size_t(joint)];
+      const int bone = int(entry) - 1;
+      EXPECT_EQ(carrier.leg, entry == 0 ? -1 : bone / rig.maxBones()) << i;
+      EXPECT_EQ(carrier.bone, entry == 0 ? -1 : bone % rig.maxBones()) << i;
+      onLegs += entry != 0;
+    }
+  }
+  EXPECT_GE(onLegs, 2 * rig.legs.size());
+}
+
+// A ball moves with the joint that most of its skin hangs on: here the end of a tail, which is no leg.
+TEST(SplatParts, OfATailMoveWithIt) {
+  ClipSet set = spiderClips();
+  const auto tail = uint16_t(set.joints.size());
+  set.joints.push_back({.name = "tail"});
+  const auto first = uint32_t(set.vertices.size());
+  for (const glm::vec3& at : {glm::vec3(0, 1, -3), {0.2f, 1, -3}, {0, 1.2f, -3}}) {
+    SkinVertex& vertex = set.vertices.emplace_back();
+    vertex.position = at;
+    vertex.bones[0] = tail;
+  }
+  set.indices.insert(set.indices.end(), {first, first + 1, first + 2});
+  size_t found = 0;
+  for (const shared::SplatPart& part : splatPartsOf(limbsOf(set), 0.05f)) {
+    EXPECT_EQ(part.from.z < -2.9f, part.colourFrom.w == float(tail));
+    found += part.colourFrom.w == float(tail);
+  }
+  EXPECT_EQ(found, 1u);
 }
 
 TEST(SplatParts, AreNoneOfASkinless) {
   Rig rig = spiderRig();
   rig.vertices.clear();
   rig.indices.clear();
-  EXPECT_TRUE(splatPartsOf(rig, 0.1f).empty());
+  EXPECT_TRUE(splatPartsOf(limbsOf(rig), 0.1f).empty());
 }
 
 constexpr uint32_t kWidth = 203, kHeight = 131;  // no whole squares
@@ -134,6 +200,10 @@ class SplatTest : public test::GpuLoadTest {
     made.herds[0].agents = agents;
     made.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 3};
     return made;
+  }
+
+  static uint32_t paletteOf(const crowd::Kind& kind) {
+    return uint32_t(kind.clipSet.joints.empty() ? kind.rig.paletteSize() : int(kind.clipSet.joints.size()));
   }
 
   void walk(Crowd& crowd) {
@@ -192,7 +262,7 @@ class SplatTest : public test::GpuLoadTest {
     gpu::upload(context(), picture, std::span(&composition.block, 1));
     const crowd::Kind& kind = impl.kinds.front();
     const crowd::Page& page = kind.pages.front();
-    const float radius = crowd::radiusOf(kind.rig);
+    const float radius = crowd::radiusOf(kind);
     const Cull cull(context(), detail);
     const CulledPage culled = cull.makePage(context(), picture, page.body, page.agents);
     const Splats splats(setting);
@@ -213,7 +283,7 @@ class SplatTest : public test::GpuLoadTest {
       cull.record(cmd, culled, radius, true);
       gpu::computeToIndirectAndCompute(cmd);
       splats.record(cmd, look, bindings, culled,
-                    {.view = 0, .palette = uint32_t(kind.rig.paletteSize()), .firstAgent = 0, .kind = 0});
+                    {.view = 0, .palette = paletteOf(kind), .firstAgent = 0, .kind = 0});
       gpu::allToAll(cmd);
     });
     Drawn drawn;
@@ -244,8 +314,25 @@ struct Strokes {
   std::vector<Stroke> agents, shades;
 };
 
-Strokes strokesOf(const Rig& rig, const View& view, const std::vector<glm::vec4>& bodies,
-                  const std::vector<glm::vec4>& poses, uint32_t agents, const glm::dvec3& sun) {
+// Where a part's end is, relative to its agent, whose poses begin there.
+using EndOf = std::function<glm::dvec3(const glm::vec4* poses, const glm::vec4& end, float entry)>;
+
+glm::dvec3 turnedByRotation(const glm::vec4* poses, const glm::vec4& end, float entry) {
+  const glm::vec4* record = poses + size_t(entry) * size_t(shared::POSE_STRIDE);
+  const glm::dvec4 q = record[0];
+  return glm::dvec3(record[1]) + glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(end);
+}
+
+glm::dvec3 movedByMatrix(const glm::vec4* poses, const glm::vec4& end, float entry) {
+  const glm::vec4* rows = poses + size_t(entry) * size_t(shared::MATRIX_STRIDE);
+  const glm::dvec4 at(glm::dvec3(end), 1);
+  return {glm::dot(glm::dvec4(rows[0]), at), glm::dot(glm::dvec4(rows[1]), at),
+          glm::dot(glm::dvec4(rows[2]), at)};
+}
+
+Strokes strokesOf(const std::vector<shared::SplatPart>& parts, const EndOf& endOf, const View& view,
+                  const std::vector<glm::vec4>& bodies, const std::vector<glm::vec4>& poses, uint32_t agents,
+                  const glm::dvec3& sun) {
   const Sight sight(view, kWidth, kHeight);
   const double pixel = 2 * sight.tanY / kHeight;
   const auto seen = [&](const glm::dvec3& p) {
@@ -259,12 +346,10 @@ Strokes strokesOf(const Rig& rig, const View& view, const std::vector<glm::vec4>
     const glm::dvec3 at = placeOf(bodies[agent * shared::BODY_STRIDE]);
     const double away = glm::distance(at, sight.eye);
     const glm::dvec3 lift = (sight.eye - at) / away * (0.012 + kShadeLift * pixel * away);
-    const auto posed = [&](const glm::vec4& end, float bone) {
-      const size_t entry = (agent * size_t(rig.paletteSize()) + size_t(bone)) * size_t(shared::POSE_STRIDE);
-      const glm::dvec4 q = poses[entry];
-      return at + glm::dvec3(poses[entry + 1]) + glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(end);
+    const auto posed = [&](const glm::vec4& end, float entry) {
+      return at + endOf(&poses[agent * poses.size() / agents], end, entry);
     };
-    for (const shared::SplatPart& part : splatPartsOf(rig, crowd::radiusOf(rig) / kSplatPixels)) {
+    for (const shared::SplatPart& part : parts) {
       const glm::dvec3 from = posed(part.from, part.colourFrom.w), to = posed(part.to, part.colourTo.w);
       const double a = double(part.from.w) / (pixel * away), b = double(part.to.w) / (pixel * away);
       made.agents.push_back({seen(from), seen(to), a, b});
@@ -327,17 +412,26 @@ const View kFar{.eye = {-9, 14, -12}, .target = {0, 0, 1}, .fieldOfView = 0.9f};
 
 TEST_P(SplatTest, AreWhereThePosesAre) {
   constexpr uint32_t agents = 150;  // more than a work group
-  const Scene made = scene(agents);
-  const Drawn drawn = draw(made, kFar);
-  const Strokes strokes = strokesOf(spiderRig(), kFar, drawn.bodies, drawn.poses, agents, drawn.towardsSun);
-  {
-    SCOPED_TRACE("agents");
-    expectDrawn(drawn.splats, strokes.agents);
-    expectMarked(drawn.tiles, drawn.splats);
+  for (const Controller controller : {Controller::adaptive, Controller::clip}) {
+    SCOPED_TRACE(nameOf(controller));
+    const bool clips = controller == Controller::clip;
+    Scene made = scene(agents);
+    made.herds[0].controller = controller;
+    const Drawn drawn = draw(made, kFar);
+    const Limbs limbs = clips ? limbsOf(spiderClips()) : limbsOf(spiderRig());
+    const float radius = clips ? crowd::radiusOf(spiderClips()) : crowd::radiusOf(spiderRig());
+    const Strokes strokes =
+        strokesOf(splatPartsOf(limbs, radius / kSplatPixels), clips ? movedByMatrix : turnedByRotation, kFar,
+                  drawn.bodies, drawn.poses, agents, drawn.towardsSun);
+    {
+      SCOPED_TRACE("agents");
+      expectDrawn(drawn.splats, strokes.agents);
+      expectMarked(drawn.tiles, drawn.splats);
+    }
+    SCOPED_TRACE("shadows");
+    expectDrawn(drawn.shades, strokes.shades);
+    expectMarked(drawn.tiles, drawn.shades);
   }
-  SCOPED_TRACE("shadows");
-  expectDrawn(drawn.shades, strokes.shades);
-  expectMarked(drawn.tiles, drawn.shades);
 }
 
 // And where a device cannot hold them there are none.
