@@ -20,6 +20,7 @@ inline constexpr double tileSize = 16;
 
 // The tuning values of docs/stages.md, under the names that it uses.
 struct Tuning {
+  double ticks = 1;  // of the crowd in one of the agent's own, which has the dt
   double dt = 0, legLength = 0, homeRadius = 0, bodyHeight = 0, bodyRadius = 0;
   double halfExtentX = 0, halfExtentZ = 0;
   double edgeMargin = 0, slowRadius = 0;

@@ -89,13 +89,13 @@ void checkReact(const Setting& setting, const Moment& moment, Judge& judge) {
   std::vector<double> misses;
   const size_t legs = static_cast<size_t>(setting.legs);
   for (size_t l = 0; l < legs; ++l) {
-    steps.push_back(stepOf(moment.before, moment.agent * legs + l));
-    misses.push_back(missOf(moment.before, moment.agent, l, setting.legs, moment.n - 1));
+    steps.push_back(moment.stepOf(moment.before, moment.agent * legs + l));
+    misses.push_back(missOf(moment.before, moment.agent, l, setting.legs, moment.n - moment.span));
   }
   const uint32_t idleBefore = gaitOf(moment.before, moment.agent).idle;
   const auto run = [&](reference::ReactFlips flips) {
     return reference::react(setting.tuning, setting.heights, setting.creature, body, before, steps, misses,
-                            static_cast<double>(moment.n), pushOf(moment.after, moment.agent, moment.n),
+                            moment.now(), pushOf(moment.after, moment.agent, moment.n),
                             moment.after.watched ? &setting.heights : nullptr, idleBefore, flips);
   };
   const auto judged = [&](const reference::ReactResult& result, tolerance::ReactBounds& bound) {
@@ -115,6 +115,16 @@ void checkReact(const Setting& setting, const Moment& moment, Judge& judge) {
     if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
   }
   judge.add(moment.n, moment.number(), -1, sample);
+}
+
+void checkPushed(const Setting& setting, const Moment& moment, const glm::dvec2& push, Judge& judge) {
+  const Reaction before = reactionOf(moment.before, moment.agent);
+  const reference::ReactResult expected{
+      .reaction = reference::pushed(setting.tuning, setting.creature, before, push), .margins = {}};
+  // Nothing but the velocity is computed, and it is by a sum and a quotient.
+  tolerance::ReactBounds bound{};
+  bound.velocity = 4 * tolerance::roundoff * (glm::length(before.velocity) + glm::length(push));
+  judge.add(moment.n, moment.number(), -1, compare(setting, moment, expected, bound));
 }
 
 }  // namespace skitter::validation

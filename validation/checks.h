@@ -30,6 +30,9 @@ reference::Rest restOf(const Setting& setting, const Moment& moment);
 // A sleeper's records must be those of before the tick, bit for bit; adds what is not.
 void checkKept(const Setting& setting, const Moment& moment, Record record, Judge& judge);
 
+// The reaction of an agent that is pushed but has no tick of its own now.
+void checkPushed(const Setting& setting, const Moment& moment, const glm::dvec2& push, Judge& judge);
+
 // A field against fast marching over the same costs.
 Sample compareWay(const reference::WayField& field);
 

@@ -57,9 +57,9 @@ void set(double& to, float from) { to = from; }
 void set(bool& to, float from) { to = from != 0; }
 
 // A parameter that the reference lacks does not compile in tuningOf, and one that the engine lacks does not
-// compile here. A bool between doubles takes the room of a double.
+// compile here. A bool between doubles takes the room of a double. Beside them Tuning has `ticks`.
 #define COUNT(name) +1
-static_assert(sizeof(reference::Tuning) == (0 REFERENCE_PARAMETERS(COUNT)) * sizeof(double));
+static_assert(sizeof(reference::Tuning) == (1 REFERENCE_PARAMETERS(COUNT)) * sizeof(double));
 #undef COUNT
 
 // The packed tile of the body that a leg belongs to.
@@ -231,6 +231,7 @@ void putReaction(HerdState& state, size_t agent, const reference::Reaction& from
 }
 
 std::optional<glm::dvec2> pushOf(const HerdState& state, size_t agent, uint64_t n) {
+  if (state.push.empty()) return {};
   const float* record = recordAt(state.push, agent, shared::PUSH_STRIDE);
   if (record[3] != static_cast<float>(n)) return {};
   return glm::dvec2(record[0], record[1]);

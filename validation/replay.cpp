@@ -209,8 +209,13 @@ void Replay::tick(uint64_t n, const HerdState& before, const HerdState& after, c
       }
       if (!asleep || check.writes.empty())
         check.check(settingFor(after, agent, check.stage, span), moment, judges_[c]);
-      for (const Record record : check.writes)
-        if (asleep) checkKept(setting_, moment, record, judges_[c]);
+      if (!asleep) continue;
+      const auto push = check.stage == crowd::StageId::react ? pushOf(after, agent, n) : std::nullopt;
+      if (push) {
+        checkPushed(settingFor(after, agent, check.stage, span), moment, *push, judges_[c]);
+        continue;
+      }
+      for (const Record record : check.writes) checkKept(setting_, moment, record, judges_[c]);
     }
   }
 }

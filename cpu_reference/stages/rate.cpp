@@ -61,6 +61,7 @@ RateResult rate(const RateTuning& tuning, const RatedBlock& block, uint64_t tick
       if (*square <= reach - std::floor(reach / 5)) wanted = std::min(wanted, k);
     }
   }
+  if (!block.calm) wanted = 0;
   while (!divides(wanted)) --wanted;
   result.level = wanted;
   return result;
@@ -68,6 +69,7 @@ RateResult rate(const RateTuning& tuning, const RatedBlock& block, uint64_t tick
 
 Tuning overTicks(const Tuning& tuning, int ticks) {
   Tuning over = tuning;
+  over.ticks = ticks;
   over.dt = tuning.dt * ticks;
   over.heightBlend = 1 - std::pow(1 - tuning.heightBlend, ticks);
   over.tiltBlend = 1 - std::pow(1 - tuning.tiltBlend, ticks);

@@ -30,6 +30,7 @@ struct RatedBlock {
   uint64_t number = 0;
   int level = 0;
   std::vector<glm::dvec3> places = {};  // of its agents that are there, world metres
+  bool calm = true;                     // no push and nothing else disturbs one of these
 };
 
 // A tick counts a block so.

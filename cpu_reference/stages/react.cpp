@@ -57,7 +57,8 @@ class Reacting {
     const glm::dvec2 velocity = body_.speed * body_.heading + next_.velocity;
     const glm::dvec3 off = rotation_ * creature_.centre;
     const bool held = isCaught(velocity * fade + glm::dvec2(off.x, off.z)) || next_.disturbed <= 0;
-    next_.over = held ? 0 : next_.over + tuning_.dt;
+    const double counted = tuning_.dt / tuning_.ticks;
+    next_.over = held ? 0 : next_.over + counted;
     next_.clock += tuning_.dt;
     next_.fold = 0;
     const bool rises = next_.phase == ReactionPhase::rising;
@@ -69,7 +70,7 @@ class Reacting {
       next_.drop = std::max(0.0, left);
       next_.down += tuning_.dt;
     }
-    if (next_.over > 0 && decide(ReactDecision::falls, next_.over - tuning_.fallTime + tuning_.dt / 2))
+    if (next_.over > 0 && decide(ReactDecision::falls, next_.over - tuning_.fallTime + counted / 2))
       return fall(velocity);
     if (held) next_.velocity /= 1 + tuning_.dt / fade;
     const double rest = glm::length(next_.velocity);
@@ -249,6 +250,14 @@ class Reacting {
 double pendulumTime(const Tuning& tuning, const glm::dvec3& centre) {
   const double height = std::max(tuning.bodyHeight + centre.y, leastPendulum * tuning.bodyHeight);
   return std::sqrt(height / tuning.gravity);
+}
+
+Reaction pushed(const Tuning& tuning, const Creature& creature, const Reaction& before,
+                const glm::dvec2& push) {
+  Reaction after = before;
+  after.velocity += push / (1 + creature.load);
+  after.disturbed = tuning.disturbTime;
+  return after;
 }
 
 ReactResult react(const Tuning& tuning, const Heights& heights, const Creature& creature,

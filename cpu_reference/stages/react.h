@@ -44,6 +44,10 @@ ReactResult react(const Tuning& tuning, const Heights& heights, const Creature& 
                   std::span<const double> misses, double tick, const std::optional<glm::dvec2>& push,
                   WatchedGround watched, uint32_t idleBefore, ReactFlips flips = 0);
 
+// An agent that has no tick of its own now, as a push leaves it.
+Reaction pushed(const Tuning& tuning, const Creature& creature, const Reaction& before,
+                const glm::dvec2& push);
+
 // T_c is the time constant of the pendulum. `centre` is the creature's.
 double pendulumTime(const Tuning& tuning, const glm::dvec3& centre);
 

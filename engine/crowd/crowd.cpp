@@ -102,7 +102,6 @@ void Crowd::record(VkCommandBuffer commandBuffer, float dt) {
 
 HerdId Crowd::addHerd(const Herd& from) {
   Impl& crowd = *impl_;
-  if (crowd.rates) crowd::expectLevelled(from, "a new herd");
   const Rig loaded = crowd::rigFor(from);
   crowd::expectItsHerds([] { return "a new herd"; }, from.goal, from,
                         [&](uint32_t leader) -> const Herd& { return crowd.presentHerdAt(leader).from; });

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <string>
-#include <variant>
 
 #include "crowd/frame.h"
 #include "crowd/page.h"
@@ -99,21 +97,9 @@ shared::TickConstants RateLevels::constantsOf(const Crowd::Impl& crowd, const Pa
           .sleepTime = static_cast<float>(flags)};
 }
 
-void expectLevelled(const skitter::Herd& herd, const std::string& name) {
-  const auto refuse = [&](const char* what, const char* expected) {
-    throw inputError(fmt::format("levels of rate: {}{}, expected {}", name, what, expected));
-  };
-  if (herd.reactions) refuse(".reactions is true", "false");
-}
-
-void expectLevelled(const CrowdOptions& options, const Scene& scene) {
+void expectLevelled(const CrowdOptions& options) {
   expectLevels(*options.levels);
   if (options.sleep) throw inputError("levels of rate with sleep, expected only one of them");
-  for (size_t h = 0; h < scene.herds.size(); ++h)
-    expectLevelled(scene.herds[h], fmt::format("{}: herds[{}]", scene.name, h));
-  for (size_t e = 0; e < scene.events.size(); ++e)
-    if (const auto* addition = std::get_if<HerdAddition>(&scene.events[e].what))
-      expectLevelled(addition->herd, fmt::format("{}: events[{}].addHerd", scene.name, e));
 }
 
 void expectLevelledTick(float dt) {

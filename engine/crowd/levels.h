@@ -4,12 +4,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
-#include <string>
 
 #include "gpu/buffer.h"
 #include "shared/bindings.h"
 #include "skitter/crowd.h"
-#include "skitter/scene.h"
 
 // Levels of rate (docs/levels.md).
 namespace skitter::crowd {
@@ -33,9 +31,7 @@ struct RateLevels {
 };
 
 // Throws Error(input) that names what levels of rate are not made for.
-void expectLevelled(const CrowdOptions& options, const Scene& scene);
-// The same of one herd, whose name begins the message.
-void expectLevelled(const skitter::Herd& herd, const std::string& name);
+void expectLevelled(const CrowdOptions& options);
 // Throws Error(input) where an eighth of the rate would be slower than what is validated.
 void expectLevelledTick(float dt);
 

@@ -230,7 +230,7 @@ std::unique_ptr<Impl> beginCrowd(Device& device, const Heightfield& terrain, con
   crowd.events = scene.events;
   if (!options.levels) crowd.options.levels = scene.levels;
   if (crowd.options.levels) {
-    crowd::expectLevelled(crowd.options, scene);
+    crowd::expectLevelled(crowd.options);
     crowd.rates.emplace(context, *crowd.options.levels);
   }
   if (options.timestamps) crowd.timer = gpu::StageTimer(context, crowd::Frame::mostStages);

@@ -61,13 +61,13 @@ void takeHurtForm(Stage& stage, bool reacts) {
 }
 
 // Whose turn it is, is known before the first stage.
-void takeLevelForms(std::vector<Stage>& stages) {
+void takeLevelForms(bool reacts, std::vector<Stage>& stages) {
   for (Stage& stage : stages)
     if (stage.levelCode) {
       stage.code = *stage.levelCode;
       stage.over = stage.over == Stage::Over::everyLeg ? Stage::Over::legs : Stage::Over::agents;
     }
-  stages.insert(stages.begin(), levelWakeStage());
+  stages.insert(stages.begin(), reacts ? reactLevelWakeStage() : levelWakeStage());
 }
 
 void addParameters(const shared::Parameters& parameters, gpu::KernelInfo& info) {
@@ -99,7 +99,7 @@ std::vector<Stage> stagesOf(Controller controller, const CrowdOptions& options, 
   if (forms.forages) std::ranges::replace_if(stages, isOf(StageId::navigate), forageNavigateStage());
   if (forms.amongWalls) std::ranges::replace_if(stages, isOf(StageId::avoid), wallAvoidStage());
   if (forms.avoids) std::ranges::replace_if(stages, isOf(StageId::foothold), amongFootholdStage());
-  if (options.levels) takeLevelForms(stages);
+  if (options.levels) takeLevelForms(forms.reacts, stages);
   for (Stage& stage : stages)
     if (forms.hurts && stage.hurtCode) takeHurtForm(stage, forms.reacts);
   for (Stage& stage : stages)

@@ -106,6 +106,7 @@ Stage blindBodyStage();
 Stage bodyAndGaitStage();
 Stage navigateBodyAndGaitStage();
 Stage levelWakeStage();
+Stage reactLevelWakeStage();
 Stage loopGaitStage();
 Stage keyPoseGaitStage();
 Stage loopSwingStage();

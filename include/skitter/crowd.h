@@ -61,8 +61,8 @@ struct CrowdOptions {
   // Of a state: one for each herd, by number, that the crowd began with; herds that came later have their
   // files'.
   std::vector<Rig> rigs = {};
-  // Agents that are far from the camera (Crowd::lookFrom) tick less often (docs/levels.md). Herds must
-  // have no reactions, and there must be no sleep.
+  // Agents that are far from the camera (Crowd::lookFrom) tick less often (docs/levels.md). There must be no
+  // sleep.
   std::optional<Levels> levels = {};
 };
 

@@ -298,7 +298,8 @@ SKITTER_CONST int CARRIED_STRIDE = 1;
 //   [0] change of the velocity x, z (m/s) of who carries nothing, unused, the tick in which it counts
 SKITTER_CONST int PUSH_STRIDE = 1;
 
-// reaction, per agent of a herd with reactions, written by react (docs/stages/react.md).
+// reaction, per agent of a herd with reactions, written by react (docs/stages/react.md), and by wake where
+// there are levels of rate.
 //   [0] phase (REACTION_), seconds in it, seconds for which a fall may still begin, seconds for which the
 //       capture point has been out of reach; in a fall instead of these 1 where the hull touches the ground
 //   [1] velocity beside that of the walk x, z, and in a fall all of it; upward velocity in a fall (m/s);

@@ -85,7 +85,9 @@ void stand(inout Reaction r, int agent, Body body, mat3 frame, Legs legs, vec3 s
   vec2 velocity = body.heading * body.speed + r.velocity;
   bool caught = isCaught(agent, legs, frame, shift, velocity * fade + (frame * centreShift(parameters, load)).xz);
   bool held = caught || r.disturbed <= 0.0;
-  r.over = held ? 0.0 : r.over + dt;
+  // Who is slow has fallTime from its first tick on, too: it is fast from the next one on.
+  float counted = dt * tickShare;
+  r.over = held ? 0.0 : r.over + counted;
   r.clock += dt;
   r.fold = 0.0;
   bool rising = r.phase == REACTION_RISING;
@@ -96,7 +98,7 @@ void stand(inout Reaction r, int agent, Body body, mat3 frame, Legs legs, vec3 s
     r.drop = max(0.0, r.drop - share * dt * height / parameters.riseTime);
     r.down += dt;
   }
-  if (r.over > 0.0 && r.over >= parameters.fallTime - 0.5 * dt) {
+  if (r.over > 0.0 && r.over >= parameters.fallTime - 0.5 * counted) {
     beginFall(r, body, frame[1], velocity);
     return;
   }
@@ -178,7 +180,7 @@ void main() {
   Hurt hurt = hurtOf(agent);
   mat3 frame = matrixOf(body.orientation);
   vec4 push = LOAD4(pushes, agent), load = LOAD4(loads, agent * CARRIED_STRIDE);
-  bool pushed = push.w == thisTick;
+  bool pushed = push.w == crowdTick;
   r.velocity += pushed ? push.xy / (1.0 + load.w) : vec2(0.0);
   Legs legs = legsOf(agent, body, hurt.idle);
   bool loses = (hurt.idle & ~uint(LOAD4(gaits, agent * GAIT_STRIDE + 1).w)) != 0u;

@@ -3,7 +3,9 @@
 #extension GL_EXT_control_flow_attributes : require
 // wake where blocks tick at rates of their own (docs/levels.md): lists those whose turn it is, and says at which rate
 // each goes on.
+#ifndef REACTS
 #define WITHOUT_PARAMETERS
+#endif
 #include "stages/stage.glsl"
 #include "lib/rarely.glsl"
 #include "lib/sum64.glsl"
@@ -17,6 +19,40 @@ layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint 
 layout(set = 0, binding = BINDING_LEVELS, std430) buffer LevelsBlock { uint levels[]; };
 
 #include "stages/absent.glsl"
+#ifdef REACTS
+#include "lib/react.glsl"
+LOAD4_BUFFER(BINDING_PUSH, pushes);
+LOAD4_BUFFER(BINDING_CARRIED, loads);
+LOAD4_BUFFER(BINDING_REACTION, reactions);
+STORE4_BUFFER(BINDING_REACTION_OUT, reactionsOut);
+
+bool isPushed(int agent) { return LOAD4(pushes, agent).w == constants.tick; }
+
+// Whether nobody is disturbed.
+bool isCalm(int first, uint present) {
+  bool calm = true;
+  [[unroll]] for (int lane = 0; lane < BLOCK; ++lane) {
+    int agent = (present >> lane & 1u) != 0u ? first + lane : 0;
+    vec4 reaction = LOAD4(reactions, agent * REACTION_STRIDE);
+    bool steady = reaction.x == REACTION_STEADY && reaction.z <= 0.0 && !isPushed(agent);
+    calm = calm && ((present >> lane & 1u) == 0u || steady);
+  }
+  return calm;
+}
+
+// Who has no tick of its own now takes a push all the same.
+void takePushes(int first, uint present) {
+  for (int lane = 0; lane < BLOCK; ++lane) {
+    int agent = first + lane, at = agent * REACTION_STRIDE;
+    if ((present >> lane & 1u) == 0u || !isPushed(agent)) continue;
+    vec4 state = LOAD4(reactions, at), motion = LOAD4(reactions, at + 1);
+    state.z = uniformParameters.disturbTime;
+    motion.xy += LOAD4(pushes, agent).xy / (1.0 + LOAD4(loads, agent * CARRIED_STRIDE).w);
+    STORE4(reactionsOut, at, state);
+    STORE4(reactionsOut, at + 1, motion);
+  }
+}
+#endif
 
 uint groupsOf(uint invocations) { return (invocations + uint(WORK_GROUP) - 1u) / uint(WORK_GROUP); }
 
@@ -82,6 +118,11 @@ void main() {
   }
   bool hasTurn = (turn & ((1u << level) - 1u)) == 0u;
   int wanted = (flags & LEVELS_HAS_CAMERA) != 0 ? clamp(level, least, most) : 0;
+#ifdef REACTS
+  bool calm = isCalm(first, present);
+  wanted = calm ? wanted : 0;
+  RARELY(!calm && !hasTurn) takePushes(first, present);
+#endif
   int next = hasTurn ? (turn == 0u ? wanted : min(wanted, findLSB(turn))) : level;
 
   // Before its first tick nobody has a rate.

@@ -247,16 +247,9 @@ class LevelsRefusalTest : public GpuTest {
       EXPECT_THAT(fault.what(), HasSubstr(expected));
     }
   }
-  void expectHerdRefused(const std::function<void(Herd&)>& change, const std::string& expected) {
-    Scene scene = sceneOf(9);
-    scene.name = "some";
-    change(scene.herds[0]);
-    expectRefused(scene, levelled(), expected);
-  }
 };
 
 TEST_F(LevelsRefusalTest, NamesWhatTheyAreNotMadeFor) {
-  expectHerdRefused([](Herd& herd) { herd.reactions = true; }, "herds[0].reactions is true, expected false");
   CrowdOptions options = levelled();
   options.sleep = true;
   expectRefused(sceneOf(9), options, "levels of rate with sleep");
@@ -272,9 +265,6 @@ TEST_F(LevelsRefusalTest, OfLongTicksAndCameras) {
   Crowd crowd(device(), smallRollingGround(), sceneOf(9), levelled());
   EXPECT_THROW(simulate(device(), crowd, 1, 1.0f / 30), Error);
   EXPECT_THROW(crowd.lookFrom({0, NAN, 0}), Error);
-  Herd reacting = sceneOf(9).herds[0];
-  reacting.reactions = true;
-  EXPECT_THROW(crowd.addHerd(reacting), Error);
 }
 
 TEST(Levels, AreReadFromJson) {

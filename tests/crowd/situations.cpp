@@ -10,7 +10,6 @@
 #include "crowd/herd.h"
 #include "gpu/transfer.h"
 #include "validation/herd_facts.h"
-#include "validation/lockstep/lockstep.h"
 
 namespace skitter::test {
 namespace {
@@ -161,26 +160,10 @@ Results roaming(Device& device, Controller controller, const CrowdOptions& optio
   return replay(device, crowd, ground, 240);
 }
 
-Scene foragingScene(Controller controller) {
-  Scene scene = sceneOf(48, 3, 1, controller);
-  scene.obstacles = {{Capsule{.from = {-4, 1}, .to = {3, 1}, .radius = 0.3f}}};
-  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f, .centre = {0, -3}};
-  scene.herds[0].forage =
-      Forage{.nest = {.centre = {0, -3}, .radius = 1.5f},
-             .food = {{.centre = {4, -2}, .radius = 1.5f, .amount = 2}, {.centre = {-5, 3}, .radius = 2}},
-             .branches = {{.centre = {-3, -2}, .radius = 1.5f}},
-             .cell = 1,
-             .layOut = 1,
-             .life = 20,
-             .patience = 14,
-             .rest = 0.5f};
-  return scene;
-}
-
 // To food at both ends of a wall and home again, until a source is empty and searches are given up.
 Results foraging(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = smallRollingGround();
-  Crowd crowd(device, ground, foragingScene(controller), options);
+  Crowd crowd(device, ground, foragersScene(controller), options);
   simulate(device, crowd, 30);
   return replay(device, crowd, ground, 600);
 }
@@ -495,12 +478,6 @@ Results carryingLoads(Device& device, Controller controller, const CrowdOptions&
   return replay.results();
 }
 
-// Each agent is pushed in a direction of its own.
-void pushAside(Crowd& crowd, uint32_t agent, float speed) {
-  const float angle = 2.4f * static_cast<float>(agent);
-  crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
-}
-
 // Pushes of every strength and to every side, ground that is gone under some, and a leg that others lose;
 // some are pushed again as they lie or rise.
 Results gettingPushed(Device& device, Controller controller, const CrowdOptions& options) {
@@ -581,135 +558,66 @@ Results pushedOnHighBellies(Device& device, Controller controller, const CrowdOp
   return replay.results();
 }
 
-// A camera that comes and goes, so that every rate is had, and changed from to every other. `tell` is called
-// before each tick.
-Results replayAtRates(
-    Device& device, const Scene& scene, const CrowdOptions& options,
-    const std::function<void(Crowd&)>& tell = [](Crowd&) {}) {
-  CrowdOptions own = options;
-  own.feet = true;
-  own.levels = Levels{.distances = {6, 10, 14}, .most = {16, 16, 1000}};
-  Crowd crowd(device, smallRollingGround(), scene, own);
-  validation::Lockstep lockstep(crowd, scene, kTick);
-  for (int i = 0; i < 160 && !lockstep.hasRefused(); ++i) {
-    tell(crowd);
-    lockstep.begin();
-    // Low through the crowd, so that levels are full, then over it and away.
-    const float t = static_cast<float>(crowd.tick()), wide = t < 100 ? 7 : 20;
-    crowd.lookFrom({wide * std::sin(0.02f * t), 1 + (t < 100 ? 0 : 12 * std::abs(std::sin(0.031f * t))),
-                    wide * std::cos(0.017f * t)});
-    simulate(device, crowd, 1);
-    lockstep.end();
-  }
-  return lockstep.results();
-}
-
-Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOptions& options) {
-  Scene scene = sceneOf(60, 1, 1, controller);
-  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
-  return replayAtRates(device, scene, options);
-}
-
-// One comes or goes in each tick; blocks are empty at first.
-Results comingAndGoingAtRates(Device& device, Controller controller, const CrowdOptions& options) {
-  Scene scene = sceneOf(37, 1, 1, controller);
-  scene.herds[0].reserve = 27;
-  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
-  std::vector<AgentId> came;
-  return replayAtRates(device, scene, options, [&](Crowd& crowd) {
-    const auto t = static_cast<float>(crowd.tick());
-    if (crowd.tick() % 2 == 1) {
-      came.push_back(crowd.add(0, {.position = {8 * std::sin(t), 8 * std::cos(1.3f * t)}, .heading = t}));
-    } else if (came.size() > 18) {
-      const auto goes = came.begin() + static_cast<ptrdiff_t>(crowd.tick() * 7 % came.size());
-      crowd.remove(*goes);
-      came.erase(goes);
-    }
-  });
-}
-
-Results foragingAtRates(Device& device, Controller controller, const CrowdOptions& options) {
-  return replayAtRates(device, foragingScene(controller), options);
-}
-
-// Half of them are told what they lost and half are not; they heal, and some carry loads.
-Results hurtAtRates(Device& device, Controller controller, const CrowdOptions& options) {
-  Scene scene = sceneOf(64, controller == Controller::adaptive ? 2 : 1, 1, controller);
-  for (Herd& herd : scene.herds) {
-    herd.hurt = true;
-    herd.adapts = &herd != &scene.herds[0];
-    herd.spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
-  }
-  return replayAtRates(device, scene, options, [&](Crowd& crowd) {
-    const auto each = [&](uint32_t every, const auto& tell) {
-      for (uint32_t herd = 0; herd < scene.herds.size(); ++herd)
-        for (uint32_t agent = 0; agent < scene.herds[herd].agents; agent += every)
-          tell(crowd.agentId(herd, agent), agent);
-    };
-    if (crowd.tick() == 10) each(1, [&](AgentId id, uint32_t agent) { crowd.hurt(id, agent % 8); });
-    if (crowd.tick() == 50)
-      each(3, [&](AgentId id, uint32_t agent) {
-        crowd.carry(id, {.mass = 0.5f + 0.05f * static_cast<float>(agent), .offset = {0.2f, 0.1f, 0}});
-      });
-    if (crowd.tick() == 90) each(2, [&](AgentId id, uint32_t) { crowd.heal(id); });
-  });
-}
-
-// They keep clear of each other and of a wall, round which fields lead them.
-Results crowdingAtRates(Device& device, Controller controller, const CrowdOptions& options) {
-  Scene scene = sceneOf(60, 2, 1, controller);
-  scene.obstacles = {{Capsule{.from = {-16, 0}, .to = {3, 0}, .radius = 0.3f}}};
-  Herd& herd = scene.herds[0];
-  herd.avoid = true;
-  herd.ways = Ways{};
-  herd.spawn = {.kind = Spawn::Kind::grid, .spacing = 0.8f, .centre = {0, -4}};
-  herd.goal = {.kind = Goal::Kind::point, .target = {0, 5}, .speed = 2};
-  return replayAtRates(device, scene, options);
-}
-
 }  // namespace
 
+Scene foragersScene(Controller controller) {
+  Scene scene = sceneOf(48, 3, 1, controller);
+  scene.obstacles = {{Capsule{.from = {-4, 1}, .to = {3, 1}, .radius = 0.3f}}};
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 0.7f, .centre = {0, -3}};
+  scene.herds[0].forage =
+      Forage{.nest = {.centre = {0, -3}, .radius = 1.5f},
+             .food = {{.centre = {4, -2}, .radius = 1.5f, .amount = 2}, {.centre = {-5, 3}, .radius = 2}},
+             .branches = {{.centre = {-3, -2}, .radius = 1.5f}},
+             .cell = 1,
+             .layOut = 1,
+             .life = 20,
+             .patience = 14,
+             .rest = 0.5f};
+  return scene;
+}
+
+void pushAside(Crowd& crowd, uint32_t agent, float speed) {
+  const float angle = 2.4f * static_cast<float>(agent);
+  crowd.push(crowd.agentId(0, agent), speed * glm::vec2(std::cos(angle), std::sin(angle)));
+}
+
 const std::vector<Situation>& situations() {
-  static const std::vector<Situation> all = {
-      {"walking", {Controller::adaptive}, walking, true},
-      {"meeting", {Controller::adaptive, Controller::clip}, meeting},
-      {"crowding", {Controller::adaptive}, crowding},
-      {"parting", {Controller::adaptive}, parting},
-      {"ranking", {Controller::adaptive}, ranking},
-      {"packing", {Controller::adaptive}, packing},
-      {"facing", {Controller::adaptive}, facing},
-      {"amongObstacles", {Controller::adaptive, Controller::clip}, amongObstacles, true},
-      {"findingWays", {Controller::adaptive, Controller::clip}, findingWays, true},
-      {"roaming", {Controller::adaptive, Controller::clip}, roaming},
-      {"foraging", {Controller::adaptive, Controller::clip}, foraging, true},
-      {"fallingAsleep", {Controller::adaptive}, fallingAsleep, true},
-      {"atTheEdge", {Controller::adaptive}, atTheEdge},
-      {"goingByVelocity", {Controller::adaptive, Controller::loop}, goingByVelocity},
-      {"tooFastForTheMap", {Controller::adaptive, Controller::loop}, tooFastForTheMap},
-      {"reachingOverRocks", {Controller::adaptive}, reachingOverRocks},
-      {"liftingAtOnce", {Controller::adaptive}, liftingAtOnce},
-      {"onLastResorts", {Controller::adaptive}, onLastResorts},
-      {"inLongTicks", {Controller::adaptive, Controller::loop}, inLongTicks},
-      {"fading", {Controller::clip, Controller::planted}, fading},
-      {"changingGaits", {Controller::clip, Controller::planted}, changingGaits},
-      {"foldingBack", {Controller::clip}, foldingBack},
-      {"beyondTheLimits", {Controller::planted}, beyondTheLimits},
-      {"gettingPushed", {Controller::adaptive}, gettingPushed, true},
-      {"pushedOnHighBellies", {Controller::adaptive}, pushedOnHighBellies},
-      {"pushedUnderLoads", {Controller::adaptive}, pushedUnderLoads, true},
-      {"atRatesOfTheirOwn",
-       {Controller::adaptive, Controller::loop, Controller::clip, Controller::planted, Controller::keyPoses},
-       atRatesOfTheirOwn,
-       true},
-      {"foragingAtRates", {Controller::adaptive}, foragingAtRates},
-      {"hurtAtRates", {Controller::adaptive, Controller::loop, Controller::planted}, hurtAtRates},
-      {"comingAndGoingAtRates", {Controller::adaptive, Controller::clip}, comingAndGoingAtRates},
-      {"crowdingAtRates", {Controller::adaptive, Controller::clip}, crowdingAtRates},
-      {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs, true},
-      {"tryingGaits", {Controller::adaptive}, tryingGaits, true},
-      {"tryingManyGaits", {Controller::adaptive}, tryingManyGaits},
-      {"carryingLoads", {Controller::adaptive, Controller::loop, Controller::planted}, carryingLoads, true},
-  };
+  static const std::vector<Situation> all = [] {
+    std::vector<Situation> both = {
+        {"walking", {Controller::adaptive}, walking, true},
+        {"meeting", {Controller::adaptive, Controller::clip}, meeting},
+        {"crowding", {Controller::adaptive}, crowding},
+        {"parting", {Controller::adaptive}, parting},
+        {"ranking", {Controller::adaptive}, ranking},
+        {"packing", {Controller::adaptive}, packing},
+        {"facing", {Controller::adaptive}, facing},
+        {"amongObstacles", {Controller::adaptive, Controller::clip}, amongObstacles, true},
+        {"findingWays", {Controller::adaptive, Controller::clip}, findingWays, true},
+        {"roaming", {Controller::adaptive, Controller::clip}, roaming},
+        {"foraging", {Controller::adaptive, Controller::clip}, foraging, true},
+        {"fallingAsleep", {Controller::adaptive}, fallingAsleep, true},
+        {"atTheEdge", {Controller::adaptive}, atTheEdge},
+        {"goingByVelocity", {Controller::adaptive, Controller::loop}, goingByVelocity},
+        {"tooFastForTheMap", {Controller::adaptive, Controller::loop}, tooFastForTheMap},
+        {"reachingOverRocks", {Controller::adaptive}, reachingOverRocks},
+        {"liftingAtOnce", {Controller::adaptive}, liftingAtOnce},
+        {"onLastResorts", {Controller::adaptive}, onLastResorts},
+        {"inLongTicks", {Controller::adaptive, Controller::loop}, inLongTicks},
+        {"fading", {Controller::clip, Controller::planted}, fading},
+        {"changingGaits", {Controller::clip, Controller::planted}, changingGaits},
+        {"foldingBack", {Controller::clip}, foldingBack},
+        {"beyondTheLimits", {Controller::planted}, beyondTheLimits},
+        {"gettingPushed", {Controller::adaptive}, gettingPushed, true},
+        {"pushedOnHighBellies", {Controller::adaptive}, pushedOnHighBellies},
+        {"pushedUnderLoads", {Controller::adaptive}, pushedUnderLoads, true},
+        {"losingLegs", {Controller::adaptive, Controller::loop, Controller::planted}, losingLegs, true},
+        {"tryingGaits", {Controller::adaptive}, tryingGaits, true},
+        {"tryingManyGaits", {Controller::adaptive}, tryingManyGaits},
+        {"carryingLoads", {Controller::adaptive, Controller::loop, Controller::planted}, carryingLoads, true},
+    };
+    both.insert(both.end(), situationsAtRates().begin(), situationsAtRates().end());
+    return both;
+  }();
   return all;
 }
 

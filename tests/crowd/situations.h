@@ -18,6 +18,15 @@ struct Situation {
 };
 
 const std::vector<Situation>& situations();
+// Those of them that are of levels of rate.
+const std::vector<Situation>& situationsAtRates();
 const Situation& situationNamed(const std::string& name);
+
+// What several of them have.
+//
+// Foragers with food on either side of a wall.
+Scene foragersScene(Controller controller);
+// Each agent is pushed in a direction of its own.
+void pushAside(Crowd& crowd, uint32_t agent, float speed);
 
 }  // namespace skitter::test

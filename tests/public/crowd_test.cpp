@@ -591,8 +591,7 @@ TEST_F(PublicCrowd, WhoIsFarFromTheCameraTicksLess) {
   EXPECT_EQ(levels[2].rate, 4u);
   EXPECT_EQ(levels[2].agents, 8u);
   EXPECT_GT(levels[2].agentTicks, 0u);
-  scene.herds[0].reactions = true;
-  expectRefused("reactions", [&] { Crowd(device(), flatGround(), scene, {.levels = Levels{}}); });
+  expectRefused("sleep", [&] { Crowd(device(), flatGround(), scene, {.sleep = true, .levels = Levels{}}); });
 }
 
 TEST_F(PublicCrowd, RefusesGroundAndRigsThatCannotBe) {

@@ -13,6 +13,16 @@
 
 namespace skitter::validation {
 
+namespace {
+
+bool isDisturbed(const HerdState& state, size_t agent) {
+  if (state.reaction.empty()) return false;
+  const reference::Reaction reaction = reactionOf(state, agent);
+  return reaction.phase != reference::ReactionPhase::steady || reaction.disturbed > 0;
+}
+
+}  // namespace
+
 RateCheck::RateCheck(const Crowd::Impl& crowd) : crowd_(crowd) {
   const Levels& levels = crowd.rates->levels;
   for (size_t k = 0; k < tuning_.distances.size(); ++k) {
@@ -32,7 +42,7 @@ std::vector<uint32_t> RateCheck::words() const {
 std::vector<std::vector<RateCheck::Rated>> RateCheck::download() const {
   std::vector<std::vector<Rated>> kinds;
   for (const crowd::Kind& kind : crowd_.kinds) kinds.emplace_back(kind.agents);
-  constexpr std::array records = {Record::body, Record::rate};
+  constexpr std::array records = {Record::body, Record::rate, Record::reaction, Record::push};
   const std::vector<HerdState> states = crowd::downloadRecords(crowd_, records);
   for (uint32_t h = 0; h < states.size(); ++h) {
     const HerdState& state = states[h];
@@ -41,11 +51,14 @@ std::vector<std::vector<RateCheck::Rated>> RateCheck::download() const {
       const reference::AgentBody body = bodyOf(state, agent);
       const float* rate = state.rate.data() + size_t{agent} * 4 * shared::RATE_STRIDE;
       const glm::dvec2 at = body.world();
-      kinds[run.kind][run.firstAgent + agent - run.firstOfHerd] = {.place = {at.x, body.y, at.y},
-                                                                   .level = static_cast<int>(rate[0]),
-                                                                   .lastLevel = static_cast<int>(rate[1]),
-                                                                   .lastTick = static_cast<uint64_t>(rate[2]),
-                                                                   .absent = body.absent};
+      kinds[run.kind][run.firstAgent + agent - run.firstOfHerd] = {
+          .place = {at.x, body.y, at.y},
+          .level = static_cast<int>(rate[0]),
+          .lastLevel = static_cast<int>(rate[1]),
+          .lastTick = static_cast<uint64_t>(rate[2]),
+          .absent = body.absent,
+          .disturbed = isDisturbed(state, agent),
+          .pushed = pushOf(state, agent, crowd_.tick).has_value()};
     }
   }
   return kinds;
@@ -68,7 +81,10 @@ void RateCheck::end() {
       const size_t end = std::min(first + shared::BLOCK, before_[k].size());
       reference::RatedBlock block{.number = first / shared::BLOCK, .level = before_[k][first].level};
       for (size_t i = first; i < end; ++i)
-        if (!before_[k][i].absent) block.places.push_back(before_[k][i].place);
+        if (!before_[k][i].absent) {
+          block.places.push_back(before_[k][i].place);
+          block.calm = block.calm && !before_[k][i].disturbed && !after[k][i].pushed;
+        }
       const size_t present = block.places.size();
       // Without a camera the device counts as from the origin.
       const double square = reference::rateSquare(block, camera.value_or(glm::dvec3(0)));

@@ -28,7 +28,7 @@ class RateCheck {
     glm::dvec3 place{0};
     int level = 0, lastLevel = 0;
     uint64_t lastTick = 0;
-    bool absent = false;
+    bool absent = false, disturbed = false, pushed = false;
   };
   using Counts = std::array<uint64_t, reference::rateLevels>;
 

@@ -3,6 +3,8 @@
 #include "embedded/wake_comp_texel.h"
 #include "embedded/wake_levels_comp_storage.h"
 #include "embedded/wake_levels_comp_texel.h"
+#include "embedded/wake_levels_react_comp_storage.h"
+#include "embedded/wake_levels_react_comp_texel.h"
 #include "shared/bindings.h"
 
 namespace skitter::crowd {
@@ -28,6 +30,20 @@ Stage levelWakeStage() {
            {BINDING_COUNTERS, store},
            {BINDING_LEVELS, store}},
           Stage::Over::blocks};
+}
+
+Stage reactLevelWakeStage() {
+  using namespace shared;
+  using enum gpu::BindingKind;
+  Stage stage = levelWakeStage();
+  stage.code = {embedded::wake_levels_react_comp_texel(), embedded::wake_levels_react_comp_storage()};
+  const std::initializer_list<gpu::BindingDecl> more{{BINDING_PARAMETERS, uniform},
+                                                     {BINDING_PUSH, load4},
+                                                     {BINDING_CARRIED, load4},
+                                                     {BINDING_REACTION, load4},
+                                                     {BINDING_REACTION_OUT, store}};
+  stage.bindings.insert(stage.bindings.end(), more);
+  return stage;
 }
 
 }  // namespace skitter::crowd
