@@ -233,7 +233,6 @@ gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Mat
 
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureStore& store)
     : cull_(s.context, s.detail) {
-  if (!crowd.options.pose) throw inputError("a crowd that is drawn needs CrowdOptions::pose");
   if (crowd.rates) interpolation_ = Interpolation(s.context);
   for (const crowd::Kind& source : crowd.kinds) {
     Kind kind;
@@ -242,6 +241,9 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       continue;
     }
     const bool clips = crowd::traitsOf(source.controller).playsClips;
+    if (!crowd.options.pose && source.controller != Controller::clip)
+      throw inputError(
+          "a crowd that is drawn needs CrowdOptions::pose, unless its herds' controller is clip");
     const Look& look = clips ? source.clipSet.look : source.rig.look;
     const Textures* textures = look ? &store.of(s.context, look.materials) : nullptr;
     kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
@@ -258,6 +260,7 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       kind.passes[kFading] = drawPipeline(s, fadingShading(influences, formsOf(source)));
       kind.passes[kFadingShadow] = {s.context, fadingShadowInfo(s, influences, formsOf(source))};
     }
+    if (!crowd.options.pose) kind.clipPoses = ClipPoses(s.context, source, bool(interpolation_));
     if (textures) makeParts(s, source, *textures, kind);
     for (const crowd::Page& records : source.pages) {
       if (records.agents == 0) continue;
@@ -266,10 +269,16 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
       const Interpolation::Source live{records.body, records.pose, records.rate, clips};
       if (interpolation_) page.shown = interpolation_.makePage(s.context, live);
       const gpu::Buffer& body = interpolation_ ? page.shown.body : records.body;
-      const gpu::Buffer& pose = interpolation_ ? page.shown.pose : records.pose;
+      if (kind.clipPoses) page.clipPoses = kind.clipPoses.makePoses(s.context, records.agents);
+      const gpu::Buffer& pose = kind.clipPoses   ? page.clipPoses
+                                : interpolation_ ? page.shown.pose
+                                                 : records.pose;
       const gpu::Buffer& tint = source.tinted ? records.tint : body;
-      page.culled = cull_.makePage(s.context, s.picture, body, records.agents, bool(interpolation_));
+      const bool listsShown = interpolation_ || kind.clipPoses;
+      page.culled = cull_.makePage(s.context, s.picture, body, records.agents, listsShown);
       if (interpolation_) interpolation_.bindLists(s.context, live, page.culled, page.shown);
+      if (kind.clipPoses)
+        page.posesClips = kind.clipPoses.bind(s.context, source, records, body, page.culled, pose);
       const std::vector<gpu::Binding> shadow{
           {shared::DRAW_PICTURE, &s.picture}, {shared::DRAW_BODY, &body}, {shared::DRAW_POSE, &pose}};
       std::vector<gpu::Binding> draw = shadow;
@@ -359,11 +368,11 @@ void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
   if (hasSplats()) splats_.prepare(cmd);
 }
 
-void CrowdDrawing::cull(vk::CommandBuffer cmd, uint64_t tick) {
+void CrowdDrawing::cull(vk::CommandBuffer cmd, const Crowd::Impl& crowd) {
   const auto interpolated = [&](const Kind& kind, const Page& page) -> shared::InterpolationConstants {
     return {.agents = page.culled.agents,
             .palette = kind.palette,
-            .tick = float(tick),
+            .tick = float(crowd.tick),
             .before = before_ ? float(*before_) : -1};
   };
   if (interpolation_) {
@@ -374,13 +383,17 @@ void CrowdDrawing::cull(vk::CommandBuffer cmd, uint64_t tick) {
   }
   for (const Kind& kind : kinds_)
     for (const Page& page : kind.pages) cull_.record(cmd, page.culled, kind.mesh.radius, bool(kind.splat));
-  if (interpolation_) {
-    gpu::computeToIndirectAndCompute(cmd);
-    for (const Kind& kind : kinds_)
-      for (const Page& page : kind.pages)
-        interpolation_.recordPoses(cmd, page.shown, page.culled, interpolated(kind, page));
-    before_ = tick;
-  }
+  if (!interpolation_ && std::ranges::none_of(kinds_, [](const Kind& kind) { return bool(kind.clipPoses); }))
+    return;
+  gpu::computeToIndirectAndCompute(cmd);
+  for (size_t k = 0; k < kinds_.size(); ++k)
+    for (const Page& page : kinds_[k].pages) {
+      if (kinds_[k].clipPoses)
+        kinds_[k].clipPoses.record(cmd, page.posesClips, crowd.kinds[k], page.culled, crowd.tick);
+      else
+        interpolation_.recordPoses(cmd, page.shown, page.culled, interpolated(kinds_[k], page));
+    }
+  if (interpolation_) before_ = crowd.tick;
 }
 
 void CrowdDrawing::splat(vk::CommandBuffer cmd) const {

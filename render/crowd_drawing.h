@@ -5,6 +5,7 @@
 #include <span>
 
 #include "crowd/herd.h"
+#include "render/clip_poses.h"
 #include "render/contact.h"
 #include "render/cull.h"
 #include "render/interpolation.h"
@@ -37,8 +38,8 @@ class CrowdDrawing {
 
   // Outside rendering, before a transferToCompute(): empties the lists.
   void prepare(vk::CommandBuffer) const;
-  // Fills them, `tick` ticks after the crowd began, and poses who is on them.
-  void cull(vk::CommandBuffer, uint64_t tick);
+  // Fills them, and poses who is on them.
+  void cull(vk::CommandBuffer, const Crowd::Impl&);
   // Draws small agents; after the shadow map, before a computeToGraphics().
   void splat(vk::CommandBuffer) const;
   // Gives each part of a kind with materials, and contacts, their counts of agents; after the cull and a
@@ -62,6 +63,8 @@ class CrowdDrawing {
     uint32_t firstAgent = 0;
     Interpolation::Page shown;  // where agents have rates of their own
     CulledPage culled;
+    gpu::Buffer clipPoses;  // where the crowd has none
+    gpu::Bindings posesClips;
     ByPass<gpu::Bindings> passes;
     gpu::Bindings lit, splat;
     Contact::Page contact;
@@ -87,6 +90,7 @@ class CrowdDrawing {
     gpu::GraphicsPipeline lit;
     Contact contact;
     Splats::Kind splat;
+    ClipPoses clipPoses;      // none where the crowd has poses
     std::vector<Part> parts;  // as the mesh's
     std::vector<Worn> worn;
     std::vector<Page> pages;

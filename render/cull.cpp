@@ -20,11 +20,11 @@ Cull::Cull(const gpu::Context& context, float detail)
       detail_(detail) {}
 
 CulledPage Cull::makePage(const gpu::Context& context, const gpu::Buffer& picture, const gpu::Buffer& bodies,
-                          uint32_t agents, bool interpolates) const {
-  const int lists = interpolates ? shared::INSTANCE_LISTS : shared::SHOWN;
+                          uint32_t agents, bool listsShown) const {
+  const int lists = listsShown ? shared::INSTANCE_LISTS : shared::SHOWN;
   CulledPage page;
   page.agents = agents;
-  page.interpolates = interpolates;
+  page.listsShown = listsShown;
   page.instances = gpu::Buffer(context, uint64_t(agents) * uint64_t(lists) * sizeof(uint32_t),
                                "visible agents", gpu::BufferUse::vertex);
   page.commands = gpu::Buffer(context, shared::INSTANCE_LISTS * sizeof(VkDrawIndexedIndirectCommand),
@@ -43,7 +43,7 @@ void Cull::record(vk::CommandBuffer cmd, const CulledPage& page, float radius, b
                                   .contactPixels = kContactPixels / detail_,
                                   .splatPixels = splats ? kSplatPixels / detail_ : 0,
                                   .shadePixels = splats ? kShadePixels / detail_ : 0,
-                                  .interpolates = page.interpolates};
+                                  .listsShown = page.listsShown};
   std::ranges::transform(kLodPixels, constants.lodPixels, [&](float pixels) { return pixels / detail_; });
   kernel_.dispatch(cmd, page.bindings, gpu::bytesOf(constants),
                    gpu::groupsFor(page.agents, shared::WORK_GROUP));

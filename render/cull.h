@@ -22,9 +22,9 @@ constexpr uint64_t groupsOffset(int list) {
 // A page's instance lists and their indirect draws, chosen on the device.
 struct CulledPage {
   uint32_t agents = 0;
-  bool interpolates = false;  // whether there is the list SHOWN
-  gpu::Buffer instances;      // uint32: list after list of `agents` entries each
-  gpu::Buffer commands;       // a VkDrawIndexedIndirectCommand a list
+  bool listsShown = false;  // whether there is the list SHOWN
+  gpu::Buffer instances;    // uint32: list after list of `agents` entries each
+  gpu::Buffer commands;     // a VkDrawIndexedIndirectCommand a list
   gpu::Bindings bindings;
 };
 
@@ -34,9 +34,9 @@ class Cull {
   // `detail`: RendererOptions::detail.
   Cull(const gpu::Context&, float detail);
 
-  // `interpolates`: whether there is the list SHOWN.
+  // `listsShown`: whether there is the list SHOWN.
   CulledPage makePage(const gpu::Context&, const gpu::Buffer& picture, const gpu::Buffer& bodies,
-                      uint32_t agents, bool interpolates = false) const;
+                      uint32_t agents, bool listsShown = false) const;
   // `splats`: whether small agents may be drawn as such.
   void record(vk::CommandBuffer, const CulledPage&, float radius, bool splats) const;
 

@@ -43,8 +43,10 @@ Interpolation::Interpolation(const gpu::Context& context)
 Interpolation::Page Interpolation::makePage(const gpu::Context& context, const Source& source) const {
   Page page;
   page.body = gpu::Buffer(context, source.body.size(), "shown bodies");
-  page.pose = gpu::Buffer(context, source.pose.size(), "shown poses");
-  page.kernel = posesKernel(context, source.matrices);
+  if (source.pose) {
+    page.pose = gpu::Buffer(context, source.pose.size(), "shown poses");
+    page.kernel = posesKernel(context, source.matrices);
+  }
   page.bodies = bodies_.bind(context, {{shared::DRAW_BODY, &source.body},
                                        {shared::DRAW_RATE, &source.rate},
                                        {shared::DRAW_SHOWN_BODY, &page.body},
@@ -54,6 +56,7 @@ Interpolation::Page Interpolation::makePage(const gpu::Context& context, const S
 
 void Interpolation::bindLists(const gpu::Context& context, const Source& source, const CulledPage& culled,
                               Page& page) const {
+  if (!page.kernel) return;
   page.poses = page.kernel.bind(context, {{shared::DRAW_POSE, &source.pose},
                                           {shared::DRAW_SHOWN_BODY, &page.body},
                                           {shared::DRAW_SHOWN_BODY_OUT, &page.body},
@@ -71,8 +74,9 @@ void Interpolation::recordBodies(vk::CommandBuffer cmd, const Page& page,
 
 void Interpolation::recordPoses(vk::CommandBuffer cmd, const Page& page, const CulledPage& culled,
                                 const shared::InterpolationConstants& constants) const {
-  page.kernel.dispatchIndirect(cmd, page.poses, gpu::bytesOf(constants), culled.commands,
-                               groupsOffset(shared::SHOWN));
+  if (page.kernel)
+    page.kernel.dispatchIndirect(cmd, page.poses, gpu::bytesOf(constants), culled.commands,
+                                 groupsOffset(shared::SHOWN));
 }
 
 }  // namespace skitter::render

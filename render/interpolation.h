@@ -20,7 +20,8 @@ class Interpolation {
     gpu::Kernel kernel;      // of its poses
     gpu::Bindings bodies, poses;
   };
-  // The crowd's own records of a page, and whether its poses are matrices, as those of clips.
+  // The crowd's own records of a page, and whether its poses are matrices, as those of clips. Without poses
+  // bodies alone are moved on.
   struct Source {
     const gpu::Buffer &body, &pose, &rate;
     bool matrices = false;

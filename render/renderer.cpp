@@ -208,7 +208,7 @@ void Renderer::Impl::record(vk::CommandBuffer cmd, const View& view,
   gpu::transferToCompute(cmd);
   gpu::transferToGraphics(cmd);
 
-  crowd.cull(cmd, live.tick);
+  crowd.cull(cmd, live);
   if (footprints) footprints.record(cmd, live.tick, live.dt);
   gpu::computeToGraphics(cmd);
   crowd.countParts(cmd);
@@ -306,6 +306,15 @@ void Renderer::Impl::enlarge(vk::CommandBuffer cmd) {
     enlargement.draw(cmd);
   }
   timer.end(cmd, "enlarge");
+}
+
+bool Renderer::needsPoses(const Scene& scene) {
+  const auto needs = [](const Herd& herd) { return herd.controller != Controller::clip; };
+  return std::ranges::any_of(scene.herds, needs) ||
+         std::ranges::any_of(scene.events, [&](const Event& event) {
+           const auto* addition = std::get_if<HerdAddition>(&event.what);
+           return addition != nullptr && needs(addition->herd);
+         });
 }
 
 Renderer::Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height,

@@ -24,7 +24,7 @@ class Studio {
   Studio(Device& device, const Heightfield& terrain, const Scene& scene, const FrameOptions& options)
       : scene_(scene),
         dt_(options.dt),
-        crowd_(device, terrain, scene, optionsOf(options)),
+        crowd_(device, terrain, scene, optionsOf(scene, options)),
         renderer_(device, crowd_, options.size.width, options.size.height, options.drawing),
         read_(device.context(), options.size.width, options.size.height, framesInFlight),
         ring_(device.context(), framesInFlight) {
@@ -56,8 +56,9 @@ class Studio {
   PictureCounts counts() const { return renderer_.counts(); }
 
  private:
-  static CrowdOptions optionsOf(const FrameOptions& options) {
+  static CrowdOptions optionsOf(const Scene& scene, const FrameOptions& options) {
     CrowdOptions crowd;
+    crowd.pose = Renderer::needsPoses(scene);
     crowd.measure = false;  // to judge is no part of animating
     crowd.levels = options.levels;
     return crowd;

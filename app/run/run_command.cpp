@@ -228,7 +228,7 @@ void Run::watchCrowding() {
 }
 
 CrowdOptions Run::crowdOptions() const {
-  CrowdOptions asked = options_.crowdOptions(target_, windowed_);
+  CrowdOptions asked = options_.crowdOptions(target_, scene_, windowed_);
   if (watchesDamage()) asked.feet = true;
   return asked;
 }

@@ -9,6 +9,7 @@
 #include "app/run/trace.h"
 #include "app/viewer/window.h"
 #include "skitter/error.h"
+#include "skitter/renderer.h"
 
 namespace skitter::app {
 namespace {
@@ -176,7 +177,7 @@ DeviceRequest RunOptions::deviceRequest() const {
   return request;
 }
 
-CrowdOptions RunOptions::crowdOptions(const OutTarget& target, bool inWindow) const {
+CrowdOptions RunOptions::crowdOptions(const OutTarget& target, const Scene& of, bool inWindow) const {
   CrowdOptions crowd;
   crowd.timestamps = timings || inWindow;
   crowd.measure = !unmeasured;
@@ -187,7 +188,8 @@ CrowdOptions RunOptions::crowdOptions(const OutTarget& target, bool inWindow) co
   crowd.pageAgents = pageAgents;
   crowd.feet = !trace.empty() || inWindow || crowding;
   if (!footfalls.empty()) crowd.footfalls = UINT32_MAX;  // all that can be
-  crowd.pose = poses || inWindow || target.kind != OutTarget::Kind::none || !trace.empty() || crowding;
+  crowd.pose = poses || inWindow || !trace.empty() || crowding ||
+               (target.kind != OutTarget::Kind::none && Renderer::needsPoses(of));
   return crowd;
 }
 

@@ -56,7 +56,7 @@ struct RunOptions {
   // What is read and written.
   Files files(const OutTarget& target, const Scene& scene) const;
   DeviceRequest deviceRequest() const;
-  CrowdOptions crowdOptions(const OutTarget& target, bool inWindow) const;
+  CrowdOptions crowdOptions(const OutTarget& target, const Scene& of, bool inWindow) const;
 
   // The flags, and what the command's help says beside them.
   void addTo(CLI::App& command);

@@ -247,7 +247,10 @@ uint32_t agentsPerPage(const Crowd::Impl& crowd, const Kind& kind) {
   if (context.texelLoads()) limit = std::min(limit, context.limits().maxTexelBufferElements * 16);
   uint64_t agents =
       crowd.options.pageAgents > 0 ? std::min(crowd.options.pageAgents, kMostPageAgents) : kMostPageAgents;
-  for (const PageBuffer& buffer : pageBuffers(crowd, kind)) {
+  std::vector<PageBuffer> buffers = pageBuffers(crowd, kind);
+  // Where the crowd has no poses of agents that play clips, a renderer makes as many as a page has agents.
+  if (kind.controller == Controller::clip) buffers.push_back(recordBuffer(crowd, kind, Record::pose));
+  for (const PageBuffer& buffer : buffers) {
     const uint64_t fit = limit / buffer.bytes * buffer.agents;
     agents = std::min(agents, buffer.inBlocks ? fit / BLOCK * BLOCK : fit);
     if (agents == 0)

@@ -282,7 +282,7 @@ void enrol(const Impl& crowd, const Herd& from, crowd::SizeRun& run, crowd::Kind
   run.firstAgent = static_cast<uint32_t>(kind.agents);
   kind.firstAgents.push_back(kind.agents);
   kind.agents += run.agents;
-  kind.tinted = kind.tinted || (crowd.options.pose && crowd::isTinted(from));
+  kind.tinted = kind.tinted || crowd::isTinted(crowd.options, from);
 }
 
 // The kinds of a herd by itself, one a size; without its agents.
@@ -464,8 +464,7 @@ std::unique_ptr<Crowd::Impl> remakeCrowd(Device& device, const State& state) {
     kind.firstAgents = std::move(crowd.kinds[k].firstAgents);
     kind.agents = crowd.kinds[k].agents;
     kind.series = std::move(crowd.kinds[k].series);
-    for (const HerdRun& of : runs)
-      kind.tinted = kind.tinted || (state.options.pose && isTinted(of.herd->from));
+    for (const HerdRun& of : runs) kind.tinted = kind.tinted || isTinted(state.options, of.herd->from);
     crowd.kinds[k] = std::move(kind);
   }
   prepareComing(crowd, state.tick, state.dt);

@@ -10,7 +10,10 @@
 namespace skitter::crowd {
 
 // Whether a herd's agents need tints of their own.
-inline bool isTinted(const skitter::Herd& herd) { return herd.colour || herd.tint; }
+// Whether a herd has tints for pictures: in a crowd without poses only herds that play clips are drawn.
+inline bool isTinted(const CrowdOptions& options, const skitter::Herd& herd) {
+  return (options.pose || herd.controller == Controller::clip) && (herd.colour || herd.tint);
+}
 
 // The mean lightness of a kind's creatures at rest, area by area, in the colours that textures give them.
 float meanLightness(const Kind& kind);

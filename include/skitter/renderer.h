@@ -57,9 +57,13 @@ struct RendererOptions {
 // Draws a crowd and its terrain into an image of its own. Reads the crowd's buffers where they lie.
 class SKITTER_API Renderer {
  public:
-  // Throws Error(input) for a picture without pixels, a crowd without poses or other options, Error(device)
-  // for a device whose queue has no graphics, when width or height exceed the device's limits or memory does
-  // not suffice. The crowd outlives the renderer and stays where it is.
+  // Whether crowds of the scene need CrowdOptions::pose to be drawn. Herds that only play clips, those of
+  // controller `clip`, do not: a renderer poses whom it shows, and the crowd keeps no poses of them.
+  static bool needsPoses(const Scene& scene);
+
+  // Throws Error(input) for a picture without pixels, a crowd without poses that needs them or other options,
+  // Error(device) for a device whose queue has no graphics, when width or height exceed the device's limits
+  // or memory does not suffice. The crowd outlives the renderer and stays where it is.
   Renderer(Device& device, const Crowd& crowd, uint32_t width, uint32_t height,
            const RendererOptions& options = {});
   ~Renderer();

@@ -40,6 +40,11 @@ BINDING DRAW_PRINT_STEPS = 27;   // float a leg
 BINDING DRAW_PRINT_COUNTS = 28;  // uint, from PRINT_TOTAL on
 BINDING DRAW_PRINT_LIST = 29;    // uint a print that is seen: its place in the ring
 
+BINDING DRAW_PLAY = 30;  // LOAD4, and so the others
+BINDING DRAW_CLIPS = 31;
+BINDING DRAW_CLIP_FRAMES = 32;
+BINDING DRAW_CLIP_ROWS = 33;
+
 BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter

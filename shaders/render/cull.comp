@@ -78,5 +78,5 @@ void main() {
   if (castsNear)
     append(uint(shade ? NEAR_FADING : pixels < constants.lodPixels[1] ? NEAR_COARSE : NEAR_FINE), caster);
   if (castsFar) append(uint(shade ? FAR_FADING : FAR_SHADOWS), caster);
-  if (constants.interpolates != 0u && (seen || castsNear || castsFar)) appendForDispatch(SHOWN, agent);
+  if (constants.listsShown != 0u && (seen || castsNear || castsFar)) appendForDispatch(SHOWN, agent);
 }

@@ -30,5 +30,5 @@ void main() {
   vec3 place = share < 1.0 ? now.xyz + (1.0 - share) * off : now.xyz;
   // Its pose is of before it was put there until it ticks.
   place.y = rate.w > rate.z ? ABSENT_HEIGHT : place.y;
-  STORE4_TWO(shownOut, at, vec4(place, now.w), vec4(share, goesOn ? state.y : -1.0, 0.0, 0.0));
+  STORE4_TWO(shownOut, at, vec4(place, now.w), vec4(share, goesOn ? state.y : -1.0, state.z, 0.0));
 }

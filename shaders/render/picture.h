@@ -82,19 +82,29 @@ struct CullConstants {
   float contactPixels;               // the same of contacts
   float splatPixels;                 // the radius in pixels below which an agent is splats
   float shadePixels;                 // the same of its shadow
-  uint interpolates;                 // whether there is the list SHOWN
+  uint listsShown;                   // whether there is the list SHOWN
 };
 
 // Push constants of interpolate_bodies and interpolate_poses (docs/levels.md, Pictures). They write records
 // of an agent as it is shown. Its pose is as `pose` is; its body, of BODY_STRIDE vec4, has
 //   [0] local x, y (world), local z, tile: as in `body`
 //   [1] the share of the way from the last picture to the agent's state that this one goes;
-//       the tick of the last picture that showed the pose, -1 if it was not the last picture; unused x 2
+//       the tick of the last picture that showed the pose, -1 if it was not the last picture; of who plays
+//       clips the tick, between two, of which the pose is; unused
+//   [2] of who plays clips: the orientation
 struct InterpolationConstants {
   uint agents;   // of the page
   uint palette;  // pose entries an agent
   float tick;    // of the crowd, in this picture
   float before;  // in the last one; -1 before the first
+};
+
+// Push constants of pose_clips.
+struct ClipPoseConstants {
+  uint agents;  // of the page
+  float tick;   // of the crowd, in this picture
+  float dt;     // of its ticks, seconds
+  float fade;   // a tick's share of a cross-fade
 };
 
 // Footprints (docs/stages/pictures.md): a ring of the latest, of PRINT_STRIDE vec4 each:

@@ -5,7 +5,6 @@
 #include "lib/clip.glsl"
 
 layout(constant_id = CONSTANT_CLIPS) const int CLIPS = 1;
-layout(constant_id = CONSTANT_SEARCH_STEPS) const int SEARCH_STEPS = 1;
 
 LOAD4_BUFFER(BINDING_BODY, bodies);
 LOAD4_BUFFER(BINDING_PLAY, plays);
@@ -14,18 +13,7 @@ LOAD4_BUFFER(BINDING_CLIP, clips);
 LOAD4_BUFFER(BINDING_CLIP_FRAME, frames);
 layout(set = 0, binding = BINDING_LIST, std430) writeonly buffer ListBlock { uint list[]; };
 layout(set = 0, binding = BINDING_COUNTERS, std430) buffer CountersBlock { uint counters[]; };
-
-// The frame of a clip at a time, and the fraction to the next frame.
-vec2 frameAt(vec4 clip, float time) {
-  int first = int(clip.x), f = 0;
-  for (int k = SEARCH_STEPS - 1; k >= 0; --k) {
-    int next = f + (1 << k);
-    bool later = next < int(clip.y) && LOAD4(frames, first + min(next, int(clip.y) - 1)).x <= time;
-    f = later ? next : f;
-  }
-  vec4 frame = LOAD4(frames, first + f);
-  return vec2(float(first + f), clamp((time - frame.x) * frame.y, 0.0, 1.0));
-}
+#include "lib/clip_frame.glsl"
 
 void main() {
   int agent = agentAt(int(gl_GlobalInvocationID.x));

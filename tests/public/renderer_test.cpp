@@ -73,6 +73,32 @@ TEST_F(PublicRenderer, LooksFromTheScenesCamera) {
   expectRefused("1 points", [&] { viewOf(scene, crowd, 1); });
 }
 
+// Agents that only play clips are posed where they are shown, in the same picture; all others need poses.
+TEST_F(PublicRenderer, PosesThoseWhoOnlyPlayClips) {
+  Scene scene = standingScene(9);
+  EXPECT_TRUE(Renderer::needsPoses(scene));
+  scene.herds[0].controller = Controller::clip;
+  EXPECT_FALSE(Renderer::needsPoses(scene));
+  std::vector<std::vector<uint8_t>> pictures;
+  for (const bool pose : {true, false}) {
+    Crowd crowd(device(), flatGround(), scene, {.pose = pose});
+    Renderer renderer(device(), crowd, 160, 90);
+    walk(device(), crowd, 10);
+    device().run([&](VkCommandBuffer cmd) {
+      renderer.record(cmd, {.eye = {0, 4, -8}, .target = {0, 0, 0}});
+    });
+    EXPECT_EQ(crowd.download(0).pose.empty(), !pose);
+    pictures.push_back(renderer.download());
+  }
+  EXPECT_EQ(pictures[0].size(), pictures[1].size());
+  int apart = 0;
+  for (size_t i = 0; i < pictures[0].size(); ++i)
+    apart += std::abs(int(pictures[0][i]) - int(pictures[1][i])) > 3;
+  EXPECT_LT(apart, 40);
+  scene.events.push_back({.at = 1, .what = HerdAddition{standingScene(1).herds[0]}});
+  EXPECT_TRUE(Renderer::needsPoses(scene));
+}
+
 TEST_F(PublicRenderer, RefusesWhatCannotBe) {
   const Crowd crowd(device(), flatGround(), standingScene(1));
   expectRefused("0 x 48 pixels", [&] { Renderer(device(), crowd, 0, 48); });

@@ -3,14 +3,18 @@
 #include "render/interpolation.h"
 
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "gpu/submit.h"
 #include "gpu/transfer.h"
+#include "render/clip_poses.h"
 #include "render/pictures.h"
 #include "skitter/records.h"
 #include "support/gpu_fixture.h"
+#include "support/rounding.h"
 
 namespace skitter::render {
 namespace {
@@ -68,6 +72,11 @@ glm::dvec3 axisOf(size_t entry) {
 
 class InterpolationTest : public test::GpuLoadTest {
  protected:
+  static std::string named(uint32_t seed, int picture, uint32_t agent) {
+    return "seed " + std::to_string(seed) + ", picture " + std::to_string(picture) + ", agent " +
+           std::to_string(agent);
+  }
+
   struct Random {
     std::mt19937 draw;
     double operator()(double from, double to) {
@@ -96,7 +105,7 @@ class InterpolationTest : public test::GpuLoadTest {
     Interpolation::Page page = interpolation.makePage(context(), live);
     CulledPage culled;
     culled.agents = count;
-    culled.interpolates = true;
+    culled.listsShown = true;
     culled.instances =
         gpu::Buffer(context(), uint64_t(count) * shared::INSTANCE_LISTS * sizeof(uint32_t), "lists");
     culled.commands = gpu::Buffer(context(), shared::INSTANCE_LISTS * sizeof(ListDispatch), "commands",
@@ -218,11 +227,6 @@ class InterpolationTest : public test::GpuLoadTest {
     return bodies;
   }
 
-  static std::string named(uint32_t seed, int picture, uint32_t agent) {
-    return "seed " + std::to_string(seed) + ", picture " + std::to_string(picture) + ", agent " +
-           std::to_string(agent);
-  }
-
   // Numbers below 32 are rounded by at most 2^-20 in each of a few operations; what earlier pictures rounded
   // fades with the way that is left.
   static constexpr double kRounding = 8e-6;
@@ -283,26 +287,174 @@ TEST_P(SlowAgentsTest, moveInEveryPicture) {
   scene.herds[0].controller = GetParam();
   scene.herds[0].spawn = Spawn{.kind = Spawn::Kind::grid, .spacing = 2};
   scene.levels = Levels{.distances = {0, 0, 0}, .most = {0, 0, 0}};
-  test::Stage stage(device(), scene, 160, 90);
   const View view{.eye = {2, 5, -13}, .target = {0, 0, 1}};
-  stage.crowd.lookFrom(view.eye);
-  stage.tick(24);
-  test::Picture last = stage.draw(view);
-  EXPECT_EQ(test::differing(last, stage.draw(view)), 0u);
-  std::vector<double> differences;
-  for (int picture = 0; picture < 40; ++picture) {
-    stage.tick(1);
-    const test::Picture next = stage.draw(view);
-    double sum = 0;
-    for (size_t i = 0; i < next.rgba.size(); ++i) sum += std::abs(int(next.rgba[i]) - int(last.rgba[i]));
-    if (picture >= 8) differences.push_back(sum);
-    last = next;
+  for (const bool pose : {true, false}) {
+    if (!pose && Renderer::needsPoses(scene)) continue;
+    SCOPED_TRACE(pose ? "with poses" : "without");
+    test::Stage stage(device(), scene, scene.loadTerrain(), 160, 90, {}, {.pose = pose});
+    stage.crowd.lookFrom(view.eye);
+    stage.tick(24);
+    test::Picture last = stage.draw(view);
+    EXPECT_EQ(test::differing(last, stage.draw(view)), 0u);
+    std::vector<double> differences;
+    for (int picture = 0; picture < 40; ++picture) {
+      stage.tick(1);
+      const test::Picture next = stage.draw(view);
+      double sum = 0;
+      for (size_t i = 0; i < next.rgba.size(); ++i) sum += std::abs(int(next.rgba[i]) - int(last.rgba[i]));
+      if (picture >= 8) differences.push_back(sum);
+      last = next;
+    }
+    std::ranges::sort(differences);
+    const double median = differences[differences.size() / 2];
+    // Planted feet stand still, and then all of a group go on: the walk itself is less even. So are clips
+    // that are shown at times of their own, as they are at full rate.
+    EXPECT_GT(differences.front(), (!pose ? 0.3 : GetParam() == Controller::planted ? 0.4 : 0.5) * median);
+    EXPECT_LT(differences.back(), 2 * median);
   }
-  std::ranges::sort(differences);
-  const double median = differences[differences.size() / 2];
-  // Planted feet stand still, and then all of a group go on: the walk itself is less even.
-  EXPECT_GT(differences.front(), (GetParam() == Controller::planted ? 0.4 : 0.5) * median);
-  EXPECT_LT(differences.back(), 2 * median);
+}
+
+// Where the crowd keeps poses of agents that play clips, pictures are of these, else they are made for each
+// picture: the same, also while agents fade from a clip to another. What slow agents' poses are on the way
+// differs, for the one is a mean of matrices and the other a time of the clip.
+TEST_P(InterpolationTest, clipsArePosedAsTheCrowdPosesThem) {
+  Scene scene = test::smallScene(40);
+  scene.herds[0].controller = Controller::clip;
+  scene.herds[0].spawn = Spawn{.kind = Spawn::Kind::grid, .spacing = 2};
+  scene.herds[0].colour = glm::vec3(0.1f, 0.3f, 0.6f);
+  const View view{.eye = {2, 5, -9}, .target = {0, 0, 1}};
+  test::Stage with(device(), scene, scene.loadTerrain(), 320, 180);
+  test::Stage without(device(), scene, scene.loadTerrain(), 320, 180, {}, {.pose = false});
+  // Where kernels round differently, an edge may take another pixel.
+  const size_t most = test::kernelsRoundAlike(device()) ? 0 : 320 * 180 / 200;
+  for (int picture = 0; picture < 12; ++picture) {
+    for (test::Stage* stage : {&with, &without}) stage->tick(picture % 3);
+    EXPECT_LE(test::differing(with.draw(view), without.draw(view)), most) << picture;
+  }
+}
+
+// The clips of a kind, as docs/stages/clip.md plays them, in doubles.
+class PlayedClips {
+ public:
+  explicit PlayedClips(const crowd::ClipRecords& clips) : clips_(clips) {}
+
+  // A row of a joint's matrix at a time of a clip.
+  glm::dvec4 row(int clip, double time, int joint, int r) const {
+    const double seconds = clips_.heads[size_t(clip) * 4 + 2];
+    if (seconds > 0) time -= std::floor(time / seconds) * seconds;
+    const auto first = size_t(clips_.heads[size_t(clip) * 4]),
+               frames = size_t(clips_.heads[size_t(clip) * 4 + 1]);
+    const auto timeOf = [&](size_t frame) { return double(clips_.times[(first + frame) * 4]); };
+    size_t f = 0;
+    while (f + 1 < frames && timeOf(f + 1) <= time) ++f;
+    const auto rowAt = [&](size_t frame) {
+      const float* from =
+          &clips_.rows[(((first + frame) * size_t(clips_.joints) + size_t(joint)) * 3 + size_t(r)) * 4];
+      return glm::dvec4(from[0], from[1], from[2], from[3]);
+    };
+    if (f + 1 == frames) return rowAt(f);
+    return glm::mix(rowAt(f), rowAt(f + 1), (time - timeOf(f)) / (timeOf(f + 1) - timeOf(f)));
+  }
+  int joints() const { return clips_.joints; }
+
+ private:
+  const crowd::ClipRecords& clips_;
+};
+
+// Agents of every rate that begin to walk, so that they fade from clip to clip, and turn: each picture shows
+// each at a time between two of its ticks (docs/levels.md, Pictures).
+TEST_P(InterpolationTest, clipsAreShownAtTimesBetweenTicks) {
+  constexpr uint32_t agents = 41;
+  Scene scene = test::smallScene(agents);
+  scene.herds[0].controller = Controller::clip;
+  scene.herds[0].spawn = Spawn{.kind = Spawn::Kind::grid, .spacing = 2};
+  scene.levels = Levels{.distances = {5, 10, 15}, .most = {16, 16, 1000}};
+  Crowd crowd(device(), scene.loadTerrain(), scene, {.pose = false, .measure = false});
+  const crowd::Kind& kind = implOf(crowd).kinds.front();
+  const crowd::Page& page = kind.pages.front();
+  const Interpolation interpolation(context());
+  const Interpolation::Source live{page.body, page.pose, page.rate};
+  const Interpolation::Page shown = interpolation.makePage(context(), live);
+  CulledPage culled;
+  culled.agents = agents;
+  culled.instances = gpu::Buffer(context(), agents * shared::INSTANCE_LISTS * sizeof(uint32_t), "lists");
+  culled.commands = gpu::Buffer(context(), shared::INSTANCE_LISTS * sizeof(ListDispatch), "commands",
+                                gpu::BufferUse::indirect);
+  std::vector<uint32_t> instances(size_t(agents) * shared::INSTANCE_LISTS);
+  std::iota(instances.begin() + long(agents) * shared::SHOWN,
+            instances.begin() + long(agents) * (shared::SHOWN + 1), 0u);
+  std::vector<ListDispatch> commands(shared::INSTANCE_LISTS);
+  commands[shared::SHOWN].agents = agents;
+  commands[shared::SHOWN].groups.x = 1;
+  gpu::upload(context(), culled.instances, instances);
+  gpu::upload(context(), culled.commands, commands);
+  const ClipPoses clipPoses(context(), kind, true);
+  const gpu::Buffer poses = clipPoses.makePoses(context(), agents);
+  const gpu::Bindings bindings = clipPoses.bind(context(), kind, page, shown.body, culled, poses);
+
+  const PlayedClips played(kind.clips);
+  const double dt = 1.0 / 60, fade = dt / scene.herds[0].tuning.fadeTime;
+  std::vector<double> ticks(agents);  // at which each was shown
+  std::vector<glm::dquat> turns(agents, glm::dquat(1, 0, 0, 0));
+  std::optional<uint64_t> before;
+  size_t between = 0, fading = 0;
+  for (int picture = 0; picture < 70; ++picture) {
+    for (int tick = 0; tick < picture % 3; ++tick) {
+      crowd.lookFrom({12 * std::sin(0.02f * float(crowd.tick())), 3, -9});
+      device().run([&](VkCommandBuffer cmd) { crowd.record(cmd, float(dt)); });
+    }
+    const uint64_t now = crowd.tick();
+    const shared::InterpolationConstants constants{
+        .agents = agents, .palette = 0, .tick = float(now), .before = before ? float(*before) : -1.0f};
+    gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
+      interpolation.recordBodies(cmd, shown, constants);
+      gpu::computeToIndirectAndCompute(cmd);
+      clipPoses.record(cmd, bindings, kind, culled, now);
+      gpu::allToAll(cmd);
+    });
+    const auto bodies = gpu::download<glm::vec4>(context(), page.body),
+               rates = gpu::download<glm::vec4>(context(), page.rate),
+               plays = gpu::download<glm::vec4>(context(), page.play),
+               rows = gpu::download<glm::vec4>(context(), poses);
+    for (uint32_t a = 0; a < agents; ++a) {
+      const double last = rates[a].z, arrives = last + std::exp2(double(rates[a].x)) - 1;
+      const bool goes = before && double(now) < arrives;
+      const double share = goes ? double(now - *before) / (arrives - double(*before)) : 1;
+      const glm::vec4& q = bodies[a * shared::BODY_STRIDE + 2];
+      const glm::dquat turn(q.w, q.x, q.y, q.z);
+      ticks[a] = std::lerp(ticks[a], last, share);
+      turns[a] =
+          glm::normalize((1 - share) * (glm::dot(turns[a], turn) < 0 ? -turns[a] : turns[a]) + share * turn);
+      const glm::vec4 *play = &plays[a * shared::PLAY_STRIDE], &rate = play[1];
+      const double back = last - ticks[a], weight = std::max(0.0, double(rate.x) - back * fade);
+      between += back > 0;
+      fading += weight > 0 && weight < 1;
+      const glm::dmat3 axes = glm::mat3_cast(turns[a]);
+      for (int joint = 0; joint < played.joints(); ++joint) {
+        glm::dmat4x3 moved;
+        for (int r = 0; r < 3; ++r) {
+          const glm::dvec4 to = played.row(int(play[0].x), play[0].y - back * dt * double(rate.y), joint, r),
+                           from =
+                               played.row(int(play[0].z), play[0].w - back * dt * double(rate.z), joint, r),
+                           row = glm::mix(from, to, weight);
+          for (int c = 0; c < 4; ++c) moved[c][r] = row[c];
+        }
+        moved = axes * moved;
+        for (int r = 0; r < 3; ++r) {
+          const glm::vec4& got = rows[(size_t(a) * size_t(played.joints()) + size_t(joint)) * 3 + size_t(r)];
+          // Matrices turn by at most some 10 radians a second, and times are rounded to 1e-6 of a second.
+          EXPECT_LT(
+              glm::distance(glm::dvec4(got), glm::dvec4(moved[0][r], moved[1][r], moved[2][r], moved[3][r])),
+              3e-5)
+              << named(0, picture, a) << ", joint " << joint << ", row " << r;
+        }
+      }
+      if (HasFailure()) return;
+    }
+    before = now;
+  }
+  EXPECT_GT(between, 500u);
+  EXPECT_GT(fading, 100u);
 }
 
 }  // namespace

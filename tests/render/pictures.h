@@ -52,10 +52,10 @@ struct Stage {
   Stage(Device& device, const Scene& s, uint32_t width, uint32_t height, const RendererOptions& options = {})
       : Stage(device, s, s.loadTerrain(), width, height, options) {}
   Stage(Device& device, const Scene& s, const Heightfield& ground, uint32_t width, uint32_t height,
-        const RendererOptions& options = {})
+        const RendererOptions& options = {}, const CrowdOptions& crowdOptions = {})
       : scene(s),
         terrain(ground),
-        crowd(device, terrain, scene),
+        crowd(device, terrain, scene, crowdOptions),
         renderer(device, crowd, width, height, options),
         context(device.context()) {}
 
