@@ -27,7 +27,7 @@ class CullTest : public test::GpuLoadTest {
  protected:
   // The lists that each agent is on.
   std::vector<Lists> cull(const shared::Picture& picture, const std::vector<glm::dvec3>& places,
-                          bool splats = false, float detail = 1, bool interpolates = false) {
+                          bool splats = false, float detail = 1, bool listsShown = false) {
     std::vector<float> bodies(places.size() * shared::BODY_STRIDE * 4);
     for (size_t i = 0; i < places.size(); ++i) {
       const glm::dvec3 tile = glm::floor(places[i] / double(shared::TILE_SIZE));
@@ -43,7 +43,7 @@ class CullTest : public test::GpuLoadTest {
     gpu::upload(context(), block, std::span(&picture, 1));
     gpu::upload(context(), records, bodies);
     const Cull cull(context(), detail);
-    const CulledPage page = cull.makePage(context(), block, records, agents, interpolates);
+    const CulledPage page = cull.makePage(context(), block, records, agents, listsShown);
     gpu::clear(context(), page.commands);
     gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) { cull.record(cmd, page, kRadius, splats); });
 
