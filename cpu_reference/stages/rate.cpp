@@ -9,6 +9,7 @@ namespace {
 
 constexpr double farthestAside = 32767;  // quarter metres, on an axis
 constexpr double nearestSquare = 8;
+constexpr double longestTick = 2.0 / 15 + 1e-7;  // seconds
 
 }  // namespace
 
@@ -62,6 +63,7 @@ RateResult rate(const RateTuning& tuning, const RatedBlock& block, uint64_t tick
     }
   }
   if (!block.calm) wanted = 0;
+  while (wanted > 0 && tuning.dt * (1 << wanted) > longestTick) --wanted;
   while (!divides(wanted)) --wanted;
   result.level = wanted;
   return result;

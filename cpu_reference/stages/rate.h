@@ -23,6 +23,7 @@ using RateBounds = std::array<Value, rateLevels - 1>;
 struct RateTuning {
   RateBounds<double> distances{};  // metres
   RateBounds<uint64_t> most{};     // agents
+  double dt = 0;                   // of the crowd, seconds
 };
 
 // A block as a tick finds it.

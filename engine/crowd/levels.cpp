@@ -21,6 +21,12 @@ static_assert(Levels::count == shared::RATE_LEVELS);
 // A whole crowd is validated up to ticks of that length, seconds; rounding of 8 / 60 may be above it.
 constexpr double longestTick = 2.0 / 15 * (1 + 1e-6);
 
+int slowestLevel(float dt) {
+  int level = shared::RATE_LEVELS - 1;
+  while (level > 0 && std::ldexp(double{dt}, level) > longestTick) --level;
+  return level;
+}
+
 // Quarter metres. Beyond 16 km they are all the same: differences are cut far below.
 int32_t quarters(float metres) {
   return static_cast<int32_t>(std::clamp(std::floor(4.0 * double{metres}), -65536.0, 65536.0));
@@ -87,7 +93,9 @@ shared::TickConstants RateLevels::constantsOf(const Crowd::Impl& crowd, const Pa
   for (const Kind& kind : crowd.kinds)
     if (first == nullptr && !kind.pages.empty()) first = &kind.pages.front();
   const std::array<int32_t, 3> at = camera.value_or(std::array<int32_t, 3>{});
-  const int flags = (camera ? shared::LEVELS_HAS_CAMERA : 0) + (&page == first ? shared::LEVELS_IS_FIRST : 0);
+  const int flags = (camera ? shared::LEVELS_HAS_CAMERA : 0) +
+                    (&page == first ? shared::LEVELS_IS_FIRST : 0) +
+                    shared::LEVELS_SLOWEST * slowestLevel(crowd.dt);
   return {.count = page.agents,
           .tick = static_cast<float>(tick),
           .first = page.firstAgent,
@@ -100,15 +108,6 @@ shared::TickConstants RateLevels::constantsOf(const Crowd::Impl& crowd, const Pa
 void expectLevelled(const CrowdOptions& options) {
   expectLevels(*options.levels);
   if (options.sleep) throw inputError("levels of rate with sleep, expected only one of them");
-}
-
-void expectLevelledTick(float dt) {
-  constexpr int slowest = 1 << (Levels::count - 1);
-  if (double{dt} * slowest > longestTick)
-    throw inputError(
-        fmt::format("levels of rate with a dt of {:.4g} s, expected at most 1/60: {} times as long "
-                    "a tick is the longest that is validated",
-                    dt, slowest));
 }
 
 }  // namespace skitter::crowd

@@ -32,7 +32,5 @@ struct RateLevels {
 
 // Throws Error(input) that names what levels of rate are not made for.
 void expectLevelled(const CrowdOptions& options);
-// Throws Error(input) where an eighth of the rate would be slower than what is validated.
-void expectLevelledTick(float dt);
 
 }  // namespace skitter::crowd

@@ -517,7 +517,6 @@ void setTick(Crowd::Impl& crowd, float dt) {
     throw inputError("dt changed from " + std::to_string(crowd.dt) + " to " + std::to_string(dt) +
                      ": steps are timed in ticks, so a crowd keeps its first dt");
   for (const Kind& kind : crowd.kinds) checkTick(kind, dt);
-  if (crowd.rates) expectLevelledTick(dt);
   for (const auto& [event, kinds] : crowd.coming)
     for (const Kind& kind : kinds) checkTick(kind, dt);
   crowd.dt = dt;

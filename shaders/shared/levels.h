@@ -33,9 +33,11 @@ LEVEL LEVELS_HISTOGRAM = 32;
 LEVEL LEVELS_HISTOGRAM_STRIDE = 256;
 LEVEL LEVELS_WORDS = 544;
 
-// Flags of wake's dispatches: there is a camera; the page is the first one of the crowd.
+// Flags of wake's dispatches: there is a camera; the page is the first one of the crowd; and so many times
+// the slowest level that the crowd's dt allows.
 LEVEL LEVELS_HAS_CAMERA = 1;
 LEVEL LEVELS_IS_FIRST = 2;
+LEVEL LEVELS_SLOWEST = 4;
 // The place of a level in an entry of the list of legs that begin a step.
 LEVEL LIST_LEVEL = 1 << 30;
 

@@ -123,6 +123,7 @@ void main() {
   wanted = calm ? wanted : 0;
   RARELY(!calm && !hasTurn) takePushes(first, present);
 #endif
+  wanted = min(wanted, flags / LEVELS_SLOWEST);
   int next = hasTurn ? (turn == 0u ? wanted : min(wanted, findLSB(turn))) : level;
 
   // Before its first tick nobody has a rate.

@@ -13,12 +13,12 @@ using Results = std::vector<validation::StageResult>;
 // before each tick.
 Results replayAtRates(
     Device& device, const Scene& scene, const CrowdOptions& options,
-    const std::function<void(Crowd&)>& tell = [](Crowd&) {}) {
+    const std::function<void(Crowd&)>& tell = [](Crowd&) {}, float dt = kTick) {
   CrowdOptions own = options;
   own.feet = true;
   own.levels = Levels{.distances = {6, 10, 14}, .most = {16, 16, 1000}};
   Crowd crowd(device, smallRollingGround(), scene, own);
-  validation::Lockstep lockstep(crowd, scene, kTick);
+  validation::Lockstep lockstep(crowd, scene, dt);
   for (int i = 0; i < 160 && !lockstep.hasRefused(); ++i) {
     tell(crowd);
     lockstep.begin();
@@ -26,7 +26,7 @@ Results replayAtRates(
     const float t = static_cast<float>(crowd.tick()), wide = t < 100 ? 7 : 20;
     crowd.lookFrom({wide * std::sin(0.02f * t), 1 + (t < 100 ? 0 : 12 * std::abs(std::sin(0.031f * t))),
                     wide * std::cos(0.017f * t)});
-    simulate(device, crowd, 1);
+    simulate(device, crowd, 1, dt);
     lockstep.end();
   }
   return lockstep.results();
@@ -36,6 +36,14 @@ Results atRatesOfTheirOwn(Device& device, Controller controller, const CrowdOpti
   Scene scene = sceneOf(60, 1, 1, controller);
   scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
   return replayAtRates(device, scene, options);
+}
+
+// Half and quarter rates alone: no tick is longer than 2/15 s.
+Results inLongTicksAtRates(Device& device, Controller controller, const CrowdOptions& options) {
+  Scene scene = sceneOf(60, 1, 1, controller);
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 2};
+  return replayAtRates(
+      device, scene, options, [](Crowd&) {}, 1.0f / 30);
 }
 
 // One comes or goes in each tick; blocks are empty at first.
@@ -127,6 +135,7 @@ const std::vector<Situation>& situationsAtRates() {
        {Controller::adaptive, Controller::loop, Controller::clip, Controller::planted, Controller::keyPoses},
        atRatesOfTheirOwn,
        true},
+      {"inLongTicksAtRates", {Controller::adaptive, Controller::loop}, inLongTicksAtRates},
       {"foragingAtRates", {Controller::adaptive}, foragingAtRates},
       {"hurtAtRates", {Controller::adaptive, Controller::loop, Controller::planted}, hurtAtRates},
       {"pushedAtRates", {Controller::adaptive}, pushedAtRates, true},

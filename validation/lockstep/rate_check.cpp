@@ -72,6 +72,7 @@ void RateCheck::end() {
   const auto& at = crowd_.rates->camera;
   std::optional<glm::dvec3> camera;
   if (at) camera = glm::dvec3((*at)[0], (*at)[1], (*at)[2]) / 4.0;
+  tuning_.dt = double{crowd_.dt};
   const reference::RateBounds<double> edges = reference::rateEdges(tuning_, seenBefore_);
   std::vector<reference::SeenBlock> seen;
   Counts agents{};
