@@ -125,8 +125,8 @@ typedef struct skitter_levels {
 SKITTER_C skitter_result skitter_levels_load(const char* file_or_default, skitter_levels* levels);
 
 typedef struct skitter_crowd_options {
-  int no_poses;         /* without bones: neither joints nor pictures */
-  int no_figures;       /* without fidelity figures */
+  int no_poses;   /* without bones: no joints, and pictures of herds alone that play clips as they are */
+  int no_figures; /* without fidelity figures */
   uint32_t watch_every; /* figures of one agent in this many at a time; 0: of all up to 256, of one in 64 of
                            more */
   uint32_t footfalls;   /* keep so many touchdowns per tick and page (docs/architecture.md#words); 0: none */
