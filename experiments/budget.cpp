@@ -41,7 +41,10 @@ class Timer {
     const Scene scene = crossing(subject_.controller, agents, 1, settings_.seed);
     CrowdOptions options;
     options.measure = false;  // what is judged elsewhere is no part of animating
-    if (drawn_) options.levels = Levels{};
+    if (drawn_) {
+      options.levels = Levels{};
+      options.pose = Renderer::needsPoses(scene);
+    }
     Walk walk(device_, ground_, scene, settings_.dt, options);
     std::optional<Renderer> renderer;
     if (drawn_)
