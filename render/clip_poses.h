@@ -12,7 +12,7 @@ namespace skitter::render {
 class ClipPoses {
  public:
   ClipPoses() = default;
-  // Of a kind of controller clip. `atRates`: whether blocks tick at rates of their own.
+  // The kind's controller is clip. `atRates`: whether blocks tick at rates of their own.
   ClipPoses(const gpu::Context&, const crowd::Kind&, bool atRates);
   explicit operator bool() const { return bool(kernel_); }
 

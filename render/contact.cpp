@@ -9,7 +9,6 @@
 #include "embedded/contact_vert_texel.h"
 #include "gpu/transfer.h"
 #include "render/bindings.h"
-#include "render/limbs.h"
 
 namespace skitter::render {
 namespace {
@@ -61,8 +60,8 @@ Squares squaresOf(const Rig& rig, const Limbs& limbs) {
 
 }  // namespace
 
-Contact::Contact(const Setting& s, const crowd::Kind& kind) {
-  const Squares squares = squaresOf(kind.rig, limbsOf(kind));
+Contact::Contact(const Setting& s, const crowd::Kind& kind, const Limbs& limbs) {
+  const Squares squares = squaresOf(kind.rig, limbs);
   indexCount_ = uint32_t(squares.indices.size());
   vertices_ = gpu::Buffer(s.context, squares.vertices.size() * sizeof(ContactVertex), "contact vertices",
                           gpu::BufferUse::vertex);

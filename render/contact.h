@@ -2,6 +2,7 @@
 
 #include "crowd/herd.h"
 #include "render/cull.h"
+#include "render/limbs.h"
 #include "render/setting.h"
 
 namespace skitter::render {
@@ -11,7 +12,7 @@ namespace skitter::render {
 class Contact {
  public:
   Contact() = default;
-  Contact(const Setting&, const crowd::Kind&);
+  Contact(const Setting&, const crowd::Kind&, const Limbs&);
 
   struct Page {
     gpu::Buffer draw;  // indirect

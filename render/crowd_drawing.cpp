@@ -246,16 +246,17 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
           "a crowd that is drawn needs CrowdOptions::pose, unless its herds' controller is clip");
     const Look& look = clips ? source.clipSet.look : source.rig.look;
     const Textures* textures = look ? &store.of(s.context, look.materials) : nullptr;
+    const Limbs limbs = limbsOf(source);
     kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
-    kind.mesh =
-        uploadMesh(s.context, clips ? makeMesh(source.clipSet) : makeMesh(source.rig), source.rig.name);
+    kind.mesh = uploadMesh(s.context, clips ? makeMesh(source.clipSet, limbs) : makeMesh(source.rig, limbs),
+                           source.rig.name);
     const int influences = kind.mesh.influences;
     kind.passes[kDraw] = drawPipeline(s, crowdShading(influences, formsOf(source)));
     kind.passes[kShadow] = {s.context, shadowInfo(s, influences, formsOf(source))};
     kind.lit = drawPipeline(s, litShading(influences, formsOf(source)));
-    kind.contact = Contact(s, source);
+    kind.contact = Contact(s, source, limbs);
     if (!splats_) splats_ = Splats(s);
-    kind.splat = splats_.makeKind(s, source, kind.mesh.radius);
+    kind.splat = splats_.makeKind(s, source, limbs, kind.mesh.radius);
     if (kind.splat) {
       kind.passes[kFading] = drawPipeline(s, fadingShading(influences, formsOf(source)));
       kind.passes[kFadingShadow] = {s.context, fadingShadowInfo(s, influences, formsOf(source))};

@@ -13,7 +13,6 @@
 
 #include "crowd/radius.h"
 #include "gpu/transfer.h"
-#include "render/limbs.h"
 #include "render/ribbons.h"
 
 namespace skitter::render {
@@ -45,7 +44,7 @@ struct Skin {
   const std::vector<uint32_t>& indices;
   std::vector<glm::vec3> starts;
   const Look& look;
-  Limbs limbs;
+  const Limbs& limbs;
 };
 
 MeshVertex meshVertex(const Skin& from, const SkinVertex& skin, int& influences) {
@@ -323,18 +322,18 @@ std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
   return surfaces;
 }
 
-MeshData makeMesh(const Rig& rig) {
+MeshData makeMesh(const Rig& rig, const Limbs& limbs) {
   MeshData data;
   data.radius = crowd::radiusOf(rig);
-  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), rig.look, limbsOf(rig)});
+  appendLods(data, {rig.vertices, rig.indices, rig.restStarts(), rig.look, limbs});
   return data;
 }
 
-MeshData makeMesh(const ClipSet& set) {
+MeshData makeMesh(const ClipSet& set, const Limbs& limbs) {
   MeshData data;
   data.radius = crowd::radiusOf(set);
   const std::vector<glm::vec3> starts(set.joints.size());  // the origin
-  appendLods(data, {set.vertices, set.indices, starts, set.look, limbsOf(set)});
+  appendLods(data, {set.vertices, set.indices, starts, set.look, limbs});
   return data;
 }
 

@@ -4,6 +4,7 @@
 
 #include "gpu/buffer.h"
 #include "gpu/graphics.h"
+#include "render/limbs.h"
 #include "render/picture.h"
 #include "skitter/clip.h"
 #include "skitter/rig.h"
@@ -63,8 +64,9 @@ struct Surface {
 std::vector<Surface> surfacesOf(const std::vector<SkinVertex>& vertices,
                                 const std::vector<uint32_t>& indices);
 
-MeshData makeMesh(const Rig&);
-MeshData makeMesh(const ClipSet&);  // its palette holds matrices
+// The limbs are the model's.
+MeshData makeMesh(const Rig&, const Limbs&);
+MeshData makeMesh(const ClipSet&, const Limbs&);  // its palette holds matrices
 
 struct Mesh {
   gpu::Buffer vertices, indices;

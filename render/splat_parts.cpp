@@ -82,7 +82,7 @@ std::vector<Ball> ballsOf(const std::vector<Piece>& pieces) {
   return balls;
 }
 
-// What carries most of a ball.
+// The entry that carries most of a ball.
 uint16_t entryOf(const Ball& ball) {
   return std::ranges::max_element(ball.areas, {}, [](const auto& entry) { return entry.second; })->first;
 }

@@ -59,11 +59,11 @@ Splats::Splats(const Setting& s)
   shadeBindings_ = shade_.bind(s.context, shades);
 }
 
-Splats::Kind Splats::makeKind(const Setting& s, const crowd::Kind& source, float radius) const {
+Splats::Kind Splats::makeKind(const Setting& s, const crowd::Kind& source, const Limbs& limbs,
+                              float radius) const {
   Kind kind;
   if (!*this) return kind;
-  const std::vector<shared::SplatPart> parts =
-      splatPartsOf(limbsOf(source), kBendPixels * radius / kSplatPixels);
+  const std::vector<shared::SplatPart> parts = splatPartsOf(limbs, kBendPixels * radius / kSplatPixels);
   if (parts.empty()) return kind;
   kind.radius = radius;
   kind.parts = gpu::Buffer(s.context, parts.size() * sizeof parts[0], "splat parts");

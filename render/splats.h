@@ -4,6 +4,7 @@
 #include "gpu/graphics.h"
 #include "gpu/kernel.h"
 #include "render/cull.h"
+#include "render/limbs.h"
 #include "render/setting.h"
 
 namespace skitter::render {
@@ -25,7 +26,7 @@ class Splats {
     float radius = 0;  // about the body's position, metres
     explicit operator bool() const { return bool(kernel); }
   };
-  Kind makeKind(const Setting&, const crowd::Kind&, float radius) const;
+  Kind makeKind(const Setting&, const crowd::Kind&, const Limbs&, float radius) const;
   // `tint` is the record of a kind that is tinted, else any.
   gpu::Bindings bind(const Setting&, const Kind&, const gpu::Buffer& body, const gpu::Buffer& pose,
                      const gpu::Buffer& tint, const CulledPage&) const;

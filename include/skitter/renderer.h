@@ -70,9 +70,10 @@ class SKITTER_API Renderer {
   Renderer(Renderer&&) noexcept;
 
   // Records shadow map, terrain, crowd and sky after the crowd's tick in the same or an earlier submission.
-  // The picture ends in image(), RGBA8 sRGB, ready to be copied from (TRANSFER_SRC).
-  // `over`, if any, draws on top of it: it is called within dynamic rendering into one colour attachment of
-  // colourFormat and the picture's size, without depth, one sample a pixel.
+  // The picture ends in image(), RGBA8 sRGB, ready to be copied from (TRANSFER_SRC). Throws Error(input)
+  // where a herd has come that needs CrowdOptions::pose, which the crowd lacks. `over`, if any, draws on top
+  // of it: it is called within dynamic rendering into one colour attachment of colourFormat and the picture's
+  // size, without depth, one sample a pixel.
   void record(VkCommandBuffer commandBuffer, const View& view,
               const std::function<void(VkCommandBuffer)>& over = {});
   static constexpr VkFormat colourFormat = VK_FORMAT_R8G8B8A8_SRGB;

@@ -85,7 +85,7 @@ void stand(inout Reaction r, int agent, Body body, mat3 frame, Legs legs, vec3 s
   vec2 velocity = body.heading * body.speed + r.velocity;
   bool caught = isCaught(agent, legs, frame, shift, velocity * fade + (frame * centreShift(parameters, load)).xz);
   bool held = caught || r.disturbed <= 0.0;
-  // Who is slow has fallTime from its first tick on, too: it is fast from the next one on.
+  // A slow agent is fast from its next tick on, and so has as long as others before it falls.
   float counted = dt * tickShare;
   r.over = held ? 0.0 : r.over + counted;
   r.clock += dt;

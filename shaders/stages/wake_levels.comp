@@ -40,7 +40,7 @@ bool isCalm(int first, uint present) {
   return calm;
 }
 
-// Who has no tick of its own now takes a push all the same.
+// Agents that have no tick of their own now take a push all the same.
 void takePushes(int first, uint present) {
   for (int lane = 0; lane < BLOCK; ++lane) {
     int agent = first + lane, at = agent * REACTION_STRIDE;

@@ -22,8 +22,6 @@ const std::vector<Situation>& situations();
 const std::vector<Situation>& situationsAtRates();
 const Situation& situationNamed(const std::string& name);
 
-// What several of them have.
-//
 // Foragers with food on either side of a wall.
 Scene foragersScene(Controller controller);
 // Each agent is pushed in a direction of its own.

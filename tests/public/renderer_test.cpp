@@ -95,6 +95,11 @@ TEST_F(PublicRenderer, PosesThoseWhoOnlyPlayClips) {
   for (size_t i = 0; i < pictures[0].size(); ++i)
     apart += std::abs(int(pictures[0][i]) - int(pictures[1][i])) > 3;
   EXPECT_LT(apart, 40);
+  Crowd crowd(device(), flatGround(), scene, {.pose = false});
+  Renderer renderer(device(), crowd, 160, 90);
+  crowd.addHerd(standingScene(1).herds[0]);
+  expectRefused("needs CrowdOptions::pose",
+                [&] { device().run([&](VkCommandBuffer cmd) { renderer.record(cmd, {}); }); });
   scene.events.push_back({.at = 1, .what = HerdAddition{standingScene(1).herds[0]}});
   EXPECT_TRUE(Renderer::needsPoses(scene));
 }

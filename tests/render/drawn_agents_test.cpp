@@ -283,7 +283,8 @@ TEST_P(RendererTest, levelsOfDetailLookAlike) {
     stage.tick(30);
     const glm::vec3 body = bodyOf(stage.crowd.download(0));
     const double radius =
-        (controller == Controller::clip ? render::makeMesh(spiderClips()) : render::makeMesh(spiderRig()))
+        (controller == Controller::clip ? render::makeMesh(spiderClips(), render::limbsOf(spiderClips()))
+                                        : render::makeMesh(spiderRig(), render::limbsOf(spiderRig())))
             .radius;
     struct Seen {
       double pixels;

@@ -30,7 +30,7 @@ glm::vec3 positionAtRest(const Rig& rig, const MeshVertex& vertex) {
 
 TEST(Mesh, everyLevelIsCoarserAndWithinItsRange) {
   const Rig rig = spiderRig();
-  const MeshData mesh = makeMesh(rig);
+  const MeshData mesh = makeMesh(rig, limbsOf(rig));
   EXPECT_EQ(mesh.lods[0].indexCount, rig.indices.size());
   for (size_t i = 0; i < mesh.lods.size(); ++i) {
     const MeshLod& lod = mesh.lods[i];
@@ -46,7 +46,7 @@ TEST(Mesh, everyLevelIsCoarserAndWithinItsRange) {
 
 TEST(Mesh, verticesAtRestAreWhereTheRigHasThem) {
   const Rig rig = spiderRig();
-  const MeshData mesh = makeMesh(rig);
+  const MeshData mesh = makeMesh(rig, limbsOf(rig));
   // Level 0 keeps the rig's triangles, in an order of its own: the sums over all corners agree.
   glm::dvec3 expected(0), found(0);
   for (const uint32_t index : rig.indices) expected += glm::dvec3(glm::abs(rig.vertices[index].position));
@@ -81,7 +81,7 @@ Rig facetted(const Rig& smooth) {
 // normals.
 TEST(Mesh, everyLevelWearsTheRigsNormalsAndColours) {
   const Rig rig = facetted(spiderRig());
-  const MeshData mesh = makeMesh(rig);
+  const MeshData mesh = makeMesh(rig, limbsOf(rig));
   for (size_t level = 0; level < mesh.lods.size(); ++level) {
     for (uint32_t k = 0; k < mesh.lods[level].indexCount; k += 7) {
       const uint32_t index =
@@ -185,7 +185,7 @@ size_t indexCountOf(const Ribbons& found) {
 
 TEST(Mesh, levelsHaveTheirShareOfTheTrianglesAndRibbons) {
   const Rig rig = spiderRig();
-  const MeshData mesh = makeMesh(rig);
+  const MeshData mesh = makeMesh(rig, limbsOf(rig));
   for (size_t i = 0; i < mesh.lods.size(); ++i) {
     const Ribbons thin = ribbonsAt(rig, mesh, i);
     const double share = kShares[i] * double(thin.others.size()), ribbons = double(indexCountOf(thin));
@@ -229,7 +229,7 @@ void expectQuad(const Rig& rig, const MeshData& mesh, const uint32_t* corner,
 
 TEST(Mesh, ribbonsLieBetweenTheirEnds) {
   const Rig rig = spiderRig();
-  const MeshData mesh = makeMesh(rig);
+  const MeshData mesh = makeMesh(rig, limbsOf(rig));
   EXPECT_EQ(mesh.influences, 2);
   for (size_t level = 0; level < mesh.lods.size(); ++level) {
     const Ribbons thin = ribbonsAt(rig, mesh, level);
@@ -251,7 +251,7 @@ TEST(Mesh, ribbonsLieBetweenTheirEnds) {
 TEST(Mesh, legsOfClipsAreRibbonsToo) {
   const Rig rig = spiderRig();
   const ClipSet set = spiderClips();
-  const MeshData mesh = makeMesh(rig), ofClips = makeMesh(set);
+  const MeshData mesh = makeMesh(rig, limbsOf(rig)), ofClips = makeMesh(set, limbsOf(set));
   const auto ribbonVertices = [](const MeshData& data, size_t level) {
     const size_t next =
         level + 1 < data.lods.size() ? size_t(data.lods[level + 1].firstVertex) : data.vertices.size();
@@ -476,16 +476,16 @@ double furthestPosed(const Rig& rig) {
 
 TEST(Mesh, itsSphereHoldsEveryPose) {
   Rig rig = spiderRig();
-  EXPECT_GE(double(makeMesh(rig).radius), furthestPosed(rig) - 1e-5);
-  EXPECT_LE(double(makeMesh(rig).radius), furthestPosed(rig) * 1.01);
+  EXPECT_GE(double(makeMesh(rig, limbsOf(rig)).radius), furthestPosed(rig) - 1e-5);
+  EXPECT_LE(double(makeMesh(rig, limbsOf(rig)).radius), furthestPosed(rig) * 1.01);
   // Toes reach beyond the foot.
   for (SkinVertex& vertex : rig.vertices) {
     if (vertex.bones[0] == 0 || (vertex.bones[0] - 1) % rig.maxBones() + 1 != rig.maxBones()) continue;
     const Leg& leg = rig.legs[size_t((vertex.bones[0] - 1) / rig.maxBones())];
     vertex.position += 0.2f * leg.bones.back().direction;
   }
-  EXPECT_GE(double(makeMesh(rig).radius), furthestPosed(rig) - 1e-5);
-  EXPECT_LE(double(makeMesh(rig).radius), furthestPosed(rig) * 1.01);
+  EXPECT_GE(double(makeMesh(rig, limbsOf(rig)).radius), furthestPosed(rig) - 1e-5);
+  EXPECT_LE(double(makeMesh(rig, limbsOf(rig)).radius), furthestPosed(rig) * 1.01);
 }
 
 // The spider in two materials, one to each side, each cut in two: beyond the cut coordinates are one further.
@@ -520,7 +520,7 @@ Rig wornSpider() {
 
 TEST(Mesh, everyLevelKeepsTextureCoordinatesAndMaterials) {
   const Rig rig = wornSpider();
-  const MeshData mesh = makeMesh(rig);
+  const MeshData mesh = makeMesh(rig, limbsOf(rig));
   ASSERT_EQ(mesh.worn.size(), mesh.vertices.size());
   ASSERT_EQ(mesh.parts.size(), 3u);
   for (size_t level = 0; level < mesh.lods.size(); ++level) {
@@ -564,7 +564,7 @@ TEST(Mesh, everyLevelKeepsTextureCoordinatesAndMaterials) {
 
 // Shading does not show where a texture is cut.
 TEST(Mesh, coarseLevelsHaveOneNormalOnBothSidesOfACut) {
-  const MeshData mesh = makeMesh(wornSpider());
+  const MeshData mesh = makeMesh(wornSpider(), limbsOf(wornSpider()));
   int shared = 0;
   for (size_t level = 1; level < mesh.lods.size(); ++level) {
     std::map<std::tuple<uint32_t, float, float, float>, glm::vec3> normals;
@@ -582,7 +582,7 @@ TEST(Mesh, coarseLevelsHaveOneNormalOnBothSidesOfACut) {
 }
 
 TEST(Mesh, aSkinWithoutMaterialsHasNoParts) {
-  const MeshData mesh = makeMesh(spiderRig());
+  const MeshData mesh = makeMesh(spiderRig(), limbsOf(spiderRig()));
   EXPECT_TRUE(mesh.worn.empty());
   EXPECT_TRUE(mesh.parts.empty());
 }
@@ -591,7 +591,7 @@ TEST(Mesh, aRigWithoutSkinIsLegal) {
   Rig rig = spiderRig();
   rig.vertices.clear();
   rig.indices.clear();
-  EXPECT_EQ(makeMesh(rig).lods[0].indexCount, 0u);
+  EXPECT_EQ(makeMesh(rig, limbsOf(rig)).lods[0].indexCount, 0u);
 }
 
 }  // namespace

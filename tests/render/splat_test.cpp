@@ -266,7 +266,7 @@ class SplatTest : public test::GpuLoadTest {
     const Cull cull(context(), detail);
     const CulledPage culled = cull.makePage(context(), picture, page.body, page.agents);
     const Splats splats(setting);
-    const Splats::Kind look = splats.makeKind(setting, kind, radius);
+    const Splats::Kind look = splats.makeKind(setting, kind, limbsOf(kind), radius);
     const gpu::Bindings bindings =
         splats.bind(setting, look, page.body, page.pose, kind.tinted ? page.tint : page.body, culled);
     std::vector<ListDispatch> commands(shared::INSTANCE_LISTS);
@@ -290,7 +290,7 @@ class SplatTest : public test::GpuLoadTest {
     Setting huge = setting;
     huge.extent = vk::Extent2D{65536, 16384};  // 8 GiB of numbers, beyond any binding
     const Splats none(huge);
-    drawn.inHugePictures = bool(none) || bool(none.makeKind(huge, kind, radius));
+    drawn.inHugePictures = bool(none) || bool(none.makeKind(huge, kind, limbsOf(kind), radius));
     drawn.splats = gpu::download<uint32_t>(context(), splats.splats());
     drawn.shades.assign(drawn.splats.begin() + kWidth * kHeight, drawn.splats.end());
     drawn.splats.resize(kWidth * kHeight);
