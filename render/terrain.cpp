@@ -26,6 +26,10 @@ constexpr float kErrorPixels = 1.0f / 2;
 constexpr float kLeastRange = 4, kCellPixels = 8;
 constexpr float kMorphBegins = 0.87f;  // of the range, in shaders/render/terrain.vert
 
+// Metres between vertices up to which those of a patch show noise of 9.7 m: interpolated, it is off by 0.03
+// of its range at most.
+constexpr float kDenseSpacing = 1;
+
 // Metres across a pixel from which clods, of 0.31 m, are not seen, and from which grains, of 0.062 m, are
 // not, nor pebbles, which have at most 0.048 m (shaders/render/terrain.frag), with a little for rounding.
 constexpr float kNoClods = 0.4f * 0.31f * 1.01f, kNoGrains = 0.4f * 0.062f * 1.01f;
@@ -320,7 +324,8 @@ GroundForm formOf(const Composition& composition, const Heightfield& field, cons
   return {.detail = footprint < kNoGrains  ? 2
                     : footprint < kNoClods ? 1
                                            : 0,
-          .shaded = casts && glm::dot(first - eye, forward) < kNoShadow * b.forward.w};
+          .shaded = casts && glm::dot(first - eye, forward) < kNoShadow * b.forward.w,
+          .dense = patch.z <= 1 && patch.z * std::max(b.ground.z, b.ground.w) <= kDenseSpacing};
 }
 
 Terrain::Terrain(const Setting& s) : field_(s.terrain), relief_(reliefOf(s.terrain)) {
@@ -330,11 +335,13 @@ Terrain::Terrain(const Setting& s) : field_(s.terrain), relief_(reliefOf(s.terra
                                        {shared::DRAW_GROUND, &s.ground, s.groundSampler},
                                        {shared::DRAW_SHADOW, &s.shadow.image(), s.shadow.sampler()}};
   for (int detail = 0; detail <= GroundForm::kFullDetail; ++detail)
-    for (const bool shaded : {true, false}) {
-      Form& form = forms_[size_t(GroundForm{detail, shaded}.index())];
+    for (const auto& [shaded, dense] :
+         {std::pair{true, true}, {true, false}, {false, true}, {false, false}}) {
+      Form& form = forms_[size_t(GroundForm{detail, shaded, dense}.index())];
       std::vector<gpu::SpecConstant> constants = s.lit();
       constants.emplace_back(shared::CONSTANT_DETAIL, detail);
       constants.emplace_back(shared::CONSTANT_SHADED, shaded);
+      constants.emplace_back(shared::CONSTANT_DENSE, dense);
       form.pipeline = gpu::GraphicsPipeline(
           s.context, {.name = "ground",
                       .vertex = embedded::terrain_vert(),

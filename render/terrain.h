@@ -38,10 +38,11 @@ std::vector<Patch> choosePatches(const Composition&, const Heightfield&, const R
 struct GroundForm {
   int detail = kFullDetail;  // CONSTANT_DETAIL: what of its detail may be seen
   bool shaded = true;        // shadows may fall on it
+  bool dense = false;        // CONSTANT_DENSE: its vertices tell enough of what varies slowly
   static constexpr int kFullDetail = 2;
-  int index() const { return 2 * (kFullDetail - detail) + (shaded ? 0 : 1); }
+  int index() const { return 4 * (kFullDetail - detail) + (shaded ? 0 : 2) + (dense ? 0 : 1); }
 };
-constexpr int kGroundForms = 2 * (GroundForm::kFullDetail + 1);
+constexpr int kGroundForms = 4 * (GroundForm::kFullDetail + 1);
 // `field` is the ground that `relief` was made of, as it is now. `casts`: whether anything casts shadows.
 GroundForm formOf(const Composition&, const Heightfield& field, const Relief& relief, const Patch&,
                   bool casts);

@@ -56,6 +56,7 @@ BINDING CONSTANT_DETAIL = 7;    // what of the ground may be seen: 1 clods, 2 gr
 BINDING CONSTANT_SHADED = 8;    // ground on which shadows may fall
 BINDING CONSTANT_STARS = 9;
 BINDING CONSTANT_SPLAT_PARTS = 10;
+BINDING CONSTANT_DENSE = 11;  // ground whose pixels get what varies slowly from its vertices
 // From here on the numbers of the light, in the order of `LightNumbers` in render/light.h. As numbers of the
 // picture's block they would cost a software device a fifth of what ground costs.
 BINDING CONSTANT_LIGHT = 16;

@@ -3,16 +3,15 @@
 #include "picture.glsl"
 #include "light.glsl"
 #include "hash.glsl"
-#include "noise.glsl"
-#include "fold.glsl"
+#include "ground_map.glsl"
 #include "shadow.glsl"
 
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec2 at;
-layout(location = 2) in vec3 nearAt;
-layout(location = 3) in vec3 farAt;
+layout(location = 1) in vec3 nearAt;
+layout(location = 2) in vec3 farAt;
+layout(location = 3) in vec4 groundHere;
+layout(location = 4) in float broadHere;
 layout(location = 0) out vec4 outColour;
-layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
 // The host knows of each patch what it needs of them (render/terrain.cpp): a software device pays for detail
 // that fades to nothing as for any other.
 layout(constant_id = CONSTANT_DETAIL) const int DETAIL = 2;
@@ -48,17 +47,17 @@ void main() {
   toEye /= away;
   vec3 sun = picture.sun.xyz;
 
-  vec2 size = vec2(textureSize(groundMap, 0));
-  Folded folded = foldedAt(at, size - 1.0);
-  vec4 ground = texture(groundMap, (folded.at + 0.5) / size);
-  vec2 gradient = ground.xy * folded.way;
+  vec2 metres = position.xz - picture.ground.xy;
+  vec4 ground = groundHere;
+  if (!DENSE) ground = groundMapAt(metres / picture.ground.zw);
+  vec2 gradient = ground.xy;
   float slope = dot(gradient, gradient);
   vec3 smoothNormal = normalize(vec3(-gradient.x, 1.0, -gradient.y));
   float footprint = away * picture.eye.w * inversesqrt(max(dot(toEye, smoothNormal), 0.02));
 
-  vec2 metres = at * picture.ground.zw;
-  vec3 place = NOISE_AXES * vec3(metres.x, position.y, metres.y);
-  float broad = noise(place * (1.0 / 9.7)).x;
+  vec3 place = noisePlace(position);
+  float broad = broadHere;
+  if (!DENSE) broad = broadNoise(position);
   vec4 clumps = noise(place.yzx * (1.0 / 1.7) + 31.7) * visible(1.7, footprint);
   // Each is bent by the one before, so that no lattice shows.
   vec4 clods = vec4(0.0), grains = vec4(0.0);
@@ -84,8 +83,7 @@ void main() {
   // Who takes the sunlight away takes some of the sky with it, so that feet are tied to ground that faces
   // away from the sun as well.
   float open = SHADED ? sunlightAt(position, nearAt, farAt) : 1.0;
-  // A mirror image's hills cast their shadows the wrong way.
-  float lit = mix(ground.w, 1.0, folded.beyond) * open;
+  float lit = ground.w * open;
   openness *= 0.62 + 0.38 * open;
   vec3 light = albedo * (SUN_LIGHT * (max(dot(normal, sun), 0.0) * lit) + ambientLight(normal) * openness);
   outColour = vec4(developed(hazed(light, -toEye, away, picture.tile.w, sun)), 1.0);

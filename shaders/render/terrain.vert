@@ -5,16 +5,17 @@
 // the coarser patch beside it without a crack and never pops (Strugar 2009, "Continuous Distance-Dependent
 // Level of Detail").
 #include "picture.glsl"
-#include "fold.glsl"
+#include "ground_map.glsl"
 #include "lib/heightfield.glsl"
 
 layout(set = 0, binding = DRAW_HEIGHTS) uniform sampler2D heights;
 layout(location = 0) in vec4 patchAt;  // first sample x, z; samples a cell; metres at which the range ends
 
 layout(location = 0) out vec3 outPosition;
-layout(location = 1) out vec2 outSample;
-layout(location = 2) out vec3 outNearAt;  // in the shadow map's cascades
-layout(location = 3) out vec3 outFarAt;
+layout(location = 1) out vec3 outNearAt;  // in the shadow map's cascades
+layout(location = 2) out vec3 outFarAt;
+layout(location = 3) out vec4 outGround;  // of dense patches, and so the next
+layout(location = 4) out float outBroad;
 
 vec2 pictureAt(vec2 at) { return picture.ground.xy + at * picture.ground.zw; }
 
@@ -27,8 +28,9 @@ void main() {
   vec2 p = pictureAt(at);
   Field field = fieldOf(heights, vec2(0.0), vec2(1.0));
   outPosition = vec3(p.x, heightAt(heights, field, foldedAt(at, field.last).at).x, p.y);
-  outSample = at;
   outNearAt = (picture.clipFromPicture[1] * vec4(outPosition, 1.0)).xyz;
   outFarAt = (picture.clipFromPicture[2] * vec4(outPosition, 1.0)).xyz;
+  outGround = DENSE ? groundMapAt(at) : vec4(0.0);
+  outBroad = DENSE ? broadNoise(outPosition) : 0.0;
   gl_Position = picture.clipFromPicture[VIEW_CAMERA] * vec4(outPosition, 1.0);
 }

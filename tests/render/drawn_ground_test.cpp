@@ -76,6 +76,22 @@ TEST_P(RendererTest, groundIsAsDetailedOnAWallAsAcrossIt) {
   }
 }
 
+// The same slopes with samples eight times as dense, which vertices are not. They bend little: how open
+// ground is to the sky depends on its samples.
+TEST_P(RendererTest, groundLooksTheSameWhoeverLooksItUp) {
+  const auto hills = [](float x, float z) { return 0.2f * (x - 64) + std::sin(0.05f * z); };
+  const Heightfield coarse = groundOf(129, 129, hills);
+  Heightfield dense = groundOf(1025, 1025, [&](float x, float z) { return hills(x / 8, z / 8); });
+  dense.spacingX = dense.spacingZ = coarse.spacingX / 8;
+  Stage byVertex(device(), smallScene(0), coarse, 320, 180),
+      byPixel(device(), smallScene(0), dense, 320, 180);
+  const View view{.eye = {0, 9, -14}, .target = {0, 1, 0}};
+  const Picture a = byVertex.draw(view), b = byPixel.draw(view);
+  double apart = 0;
+  for (size_t i = 0; i < a.rgba.size(); ++i) apart += std::abs(a.rgba[i] - b.rgba[i]);
+  EXPECT_LT(apart / double(a.rgba.size()), 0.25);
+}
+
 // Beyond its edge the terrain goes on as a terrain would that is its own mirror image.
 TEST_P(RendererTest, groundGoesOnMirroredBeyondItsEdge) {
   const auto hills = [](float x, float z) {

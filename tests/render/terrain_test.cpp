@@ -201,13 +201,15 @@ TEST(Patches, haveTheFormsThatTheyNeed) {
       wasted += form.detail > shown(footprint) ? 1 : 0;
       wastedByDistance += shown(across) > shown(footprint) ? 1 : 0;
       EXPECT_TRUE(form.shaded || !fallsWithin) << patch.x << ", " << patch.y;
+      // A vertex for each sample and each metre.
+      EXPECT_EQ(form.dense, patch.z <= 1 && patch.z * g.field.spacingX <= 1) << patch.x << ", " << patch.y;
     }
     if (up < 10) {
-      EXPECT_GT(counts[(GroundForm{2, true}).index()], 20);
-      EXPECT_GT(counts[(GroundForm{1, true}).index()], 20);
-      EXPECT_GT(counts[(GroundForm{0, false}).index()], 5);
+      EXPECT_GT(counts[(GroundForm{2, true, true}).index()], 20);
+      EXPECT_GT(counts[(GroundForm{1, true, true}).index()], 20);
+      EXPECT_GT(counts[(GroundForm{0, false, false}).index()], 5);
     } else {
-      EXPECT_EQ(counts[(GroundForm{2, true}).index()], 0);
+      EXPECT_EQ(counts[(GroundForm{2, true, true}).index()], 0);
     }
     EXPECT_LE(wasted, wastedByDistance);
     if (up < 10) {
