@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "picture.glsl"
 #include "light.glsl"
-#include "shadow.glsl"
+#include "shadow_map.glsl"
 #include "chitin.glsl"
 
 layout(location = 0) in vec3 position;
@@ -15,6 +15,6 @@ void main() {
   vec3 toEye = picture.eye.xyz - position;
   float away = length(toEye);
   vec3 normal = normalize(wornNormal);
-  float lit = hillSun * sunlight(position, normal, 3.0);
+  float lit = hillSun * sunlightOnce(position, normal, 3.0);
   outColour = vec4(chitin(colour, normal, toEye / away, away, lit, 1.0, 0.10), 1.0);
 }

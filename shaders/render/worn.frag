@@ -3,7 +3,7 @@
 // Crowds whose models have materials; crowd.frag shades all others.
 #include "picture.glsl"
 #include "light.glsl"
-#include "shadow.glsl"
+#include "shadow_map.glsl"
 #include "material.glsl"
 #include "tint.h"
 #ifdef FADES
@@ -60,7 +60,7 @@ void main() {
   if (has(EMISSIVE)) glowing *= texture(emissives, placeOf(EMISSIVE, uv)).rgb;
 
   Reflector reflector = reflectorOf(base.rgb, surface.x, surface.y);
-  float lit = light.y * sunlight(position, side * outward, 3.0);
+  float lit = light.y * sunlightOnce(position, side * outward, 3.0);
   float seen = max(dot(normal, toEye), 0.0);
   vec3 ambient = ambientLight(normal) * reflector.diffuse + ambientLight(reflect(-toEye, normal)) * mirrored(reflector, seen);
   vec3 shaded = SUN_LIGHT * lit * reflected(reflector, normal, toEye, sun) + ambient * open + glowing;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The sunlight at points of a line.
+// The sunlight at points of a line, by four comparisons and by one.
 #include "render/picture.glsl"
 #include "render/shadow.glsl"
 
@@ -8,4 +8,7 @@ layout(push_constant) uniform LineBlock { vec4 from, to, normal; };  // normal.w
 layout(location = 0) in float along;
 layout(location = 0) out vec4 outColour;
 
-void main() { outColour = vec4(sunlight(mix(from.xyz, to.xyz, along), normal.xyz, normal.w)); }
+void main() {
+  vec3 p = mix(from.xyz, to.xyz, along);
+  outColour = vec4(sunlight(p, normal.xyz, normal.w), sunlightOnce(p, normal.xyz, normal.w), 0.0, 0.0);
+}

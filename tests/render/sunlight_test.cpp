@@ -32,7 +32,7 @@ class SunlightTest : public test::GpuTest {
   }
 
   // Cascades seen from straight above about the origin, in which every point lies at depth 0.5.
-  std::vector<float> drawn(const Line& line) {
+  std::vector<glm::vec2> drawn(const Line& line) {
     shared::Picture picture{};
     for (int i = 0; i < 2; ++i) {
       glm::mat4& clip = picture.clipFromPicture[shared::VIEW_CAMERA + 1 + i];
@@ -62,14 +62,14 @@ class SunlightTest : public test::GpuTest {
                                           .bindings = {{shared::DRAW_PICTURE, BindingKind::uniform},
                                                        {shared::DRAW_SHADOW, BindingKind::texture}},
                                           .pushBytes = sizeof(Line),
-                                          .colour = vk::Format::eR32Sfloat,
+                                          .colour = vk::Format::eR32G32Sfloat,
                                           .depthUse = gpu::DepthUse::none});
     const std::vector<gpu::Binding> list{{shared::DRAW_PICTURE, &block},
                                          {shared::DRAW_SHADOW, &shadow, *sampler}};
     const gpu::Bindings bindings = pipeline.bind(context(), list);
     const gpu::Image image(
         context(),
-        {.format = vk::Format::eR32Sfloat, .extent = {kPoints, 1}, .usage = Usage::eColorAttachment},
+        {.format = vk::Format::eR32G32Sfloat, .extent = {kPoints, 1}, .usage = Usage::eColorAttachment},
         "sunlight");
     gpu::submitAndWait(context(), [&](vk::CommandBuffer cmd) {
       gpu::transition(cmd, image, gpu::ImageState::discard, gpu::ImageState::colour);
@@ -80,7 +80,7 @@ class SunlightTest : public test::GpuTest {
       }
       gpu::transition(cmd, image, gpu::ImageState::colour, gpu::ImageState::transferSrc);
     });
-    return gpu::downloadImage<float>(context(), image, gpu::ImageState::transferSrc);
+    return gpu::downloadImage<glm::vec2>(context(), image, gpu::ImageState::transferSrc);
   }
 
   double lit(int column, int row) const {
@@ -116,7 +116,7 @@ TEST_F(SunlightTest, looksUpTheNearCascadeElseTheFarOneAndFadesWithDepth) {
                            Line{{-9077.25f, 0, 50, 0}, {9122.75f, 0, -50, 0}, {0, 1, 0, 0}},
                            Line{{-12, 0, 12, 0}, {12, 0, -9, 0}, {0, 1, 0, 3}},
                            Line{{-30, 0, 46, 0}, {28, 0, -46, 0}, {0.6f, 0, 0.8f, 3}}}) {
-    const std::vector<float> found = drawn(line);
+    const std::vector<glm::vec2> found = drawn(line);
     // Metres: a point is a sum of two products of float32, and how far along it is comes interpolated.
     const double rounding = glm::length(glm::dvec3(line.to - line.from)) * 0x1p-22;
     int near = 0;
@@ -135,11 +135,13 @@ TEST_F(SunlightTest, looksUpTheNearCascadeElseTheFarOneAndFadesWithDepth) {
       const glm::dvec3 way = glm::dvec3(line.to - line.from) / double(kPoints);
       const glm::dvec2 texels = glm::dvec2(way.x, way.z) * (0.5 * kTexels / kHalves[cascade]);
       const double expected = glm::mix(smooth(texel, texels), 1.0, share);
+      const double once = glm::mix(square(texel), 1.0, share);
       // The far cascade's texels are those of the near one in another scale: the way is the same in metres.
       // Products of a float32 matrix and vector, and their difference between pixels: 1e-4 of a texel, over
       // which the light of a square changes by as much at most.
       const double tolerance = 2e-4 + rounding * 0.5 * kTexels / kHalves[cascade];
-      EXPECT_NEAR(found[size_t(i)], expected, tolerance) << "point " << i << ", " << p.x << ", " << p.z;
+      EXPECT_NEAR(found[size_t(i)].x, expected, tolerance) << "point " << i << ", " << p.x << ", " << p.z;
+      EXPECT_NEAR(found[size_t(i)].y, once, tolerance) << "point " << i << ", " << p.x << ", " << p.z;
       near += cascade == 0 ? 1 : 0;
     }
     EXPECT_GT(near, 0);
