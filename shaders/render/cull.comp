@@ -12,9 +12,9 @@ LOAD4_BUFFER(DRAW_BODY, bodies)
 layout(set = 0, binding = DRAW_INSTANCES, std430) writeonly buffer Instances { uint instances[]; };
 layout(set = 0, binding = DRAW_COMMANDS, std430) buffer Commands { uint commands[]; };
 
-// Texels of the far cascade from a point within which shadow.glsl looks: half its longest way, across, a square
-// and the way off the surface.
-const float FAR_REACH = 21.0;
+// Texels of the far cascade from a point within which shadow.glsl looks: how far off along the longest way and
+// across, a square, and the way off the surface.
+const float FAR_REACH = 11.0;
 // Splats are projected point by point: all of an agent lies well ahead of the eye, and within what a splat's depth
 // tells apart (splat.glsl).
 const float LEAST_AHEAD = 4.0;  // of the agent's radius

@@ -321,8 +321,8 @@ TEST_P(CullTest, cascadesListWhoTouchesThem) {
           if (touches(i, places.back())) lists.push_back(6 + i);
         expected.push_back(lists);
       }
-  // 21 texels of the far cascade within 0.98 of the near one's half side the far one is not looked up.
-  const double alone = 9.8 - 21 * 90.0 / 1024 - double(kRadius);
+  // 11 texels of the far cascade within 0.98 of the near one's half side the far one is not looked up.
+  const double alone = 9.8 - 11 * 90.0 / 1024 - double(kRadius);
   for (const double past : {-0.05, 0.05}) {
     places.push_back({centres[0].x + alone + past, 1, centres[0].y});
     expected.push_back(past < 0 ? Lists{6} : Lists{6, 7});

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The sunlight at points of a line, by four comparisons and by one.
+// The sunlight at points of a line, by two comparisons and by one.
 #include "render/picture.glsl"
 #include "render/shadow.glsl"
 
