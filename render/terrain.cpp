@@ -26,8 +26,8 @@ constexpr float kErrorPixels = 1.0f / 2;
 constexpr float kLeastRange = 4, kCellPixels = 8;
 constexpr float kMorphBegins = 0.87f;  // of the range, in shaders/render/terrain.vert
 
-// Metres between vertices up to which those of a patch show noise of 9.7 m: interpolated, it is off by 0.03
-// of its range at most.
+// Metres between vertices up to which those of a patch show noise of 9.7 m: interpolated, it is off by some
+// 0.03 at most, of -1 to 1.
 constexpr float kDenseSpacing = 1;
 
 // Metres across a pixel from which clods, of 0.31 m, are not seen, and from which grains, of 0.062 m, are

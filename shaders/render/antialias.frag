@@ -27,7 +27,8 @@ void main() {
   float most = max(m, max(max(beside.x, beside.y), max(beside.z, beside.w)));
   float contrast = most - min(m, min(min(beside.x, beside.y), min(beside.z, beside.w)));
   float standsOut = abs(dot(beside, vec4(0.25)) - m) / max(contrast, 1e-3);
-  float smoothed = contrast < max(LEAST_CONTRAST, LEAST_RELATIVE * most) ? 0.0 : MOST_SMOOTHED * min(2.0 * standsOut, 1.0);
+  bool isEdge = contrast >= max(LEAST_CONTRAST, LEAST_RELATIVE * most);
+  float smoothed = isEdge ? MOST_SMOOTHED * min(2.0 * standsOut, 1.0) : 0.0;
   vec3 root = mix(middle, 0.25 * (left + right + above + below), smoothed);
   outColour = vec4(root * root, 1.0);
 }
