@@ -2,12 +2,11 @@
 #extension GL_GOOGLE_include_directive : require
 // A point of an obstacle, as high above the very surface that the crowd walks on as its vertex says.
 #include "picture.glsl"
-#include "fold.glsl"
+#include "ground_map.glsl"
 #include "lib/heightfield.glsl"
 
 layout(push_constant) uniform ConstantBlock { ObstacleConstants constants; };
 layout(set = 0, binding = DRAW_HEIGHTS) uniform sampler2D heights;
-layout(set = 0, binding = DRAW_GROUND) uniform sampler2D groundMap;
 layout(location = 0) in vec3 place;   // world x, z; metres above the ground
 layout(location = 1) in vec3 normal;  // of a wall on level ground, unit
 
@@ -20,14 +19,12 @@ void main() {
   vec2 p = place.xy - TILE_SIZE * picture.tile.xy;
   vec2 at = (p - picture.ground.xy) / picture.ground.zw;
   Field field = fieldOf(heights, vec2(0.0), vec2(1.0));
-  Folded folded = foldedAt(at, field.last);
-  outPosition = vec3(p.x, heightAt(heights, field, folded.at).x + place.z, p.y);
+  outPosition = vec3(p.x, heightAt(heights, field, foldedAt(at, field.last).at).x + place.z, p.y);
   gl_Position = picture.clipFromPicture[constants.view] * vec4(outPosition, 1.0);
 
-  vec4 ground = textureLod(groundMap, (folded.at + 0.5) * field.inverseSize, 0.0);
-  vec2 gradient = ground.xy * folded.way;
-  vec3 up = normalize(vec3(-gradient.x, 1.0, -gradient.y));
+  vec4 ground = groundMapAt(at);
+  vec3 up = normalize(vec3(-ground.x, 1.0, -ground.y));
   outNormal = normalize(vec3(normal.x, 0.0, normal.z) + normal.y * up);
   outAt = vec3(at, place.z);
-  outOpen = vec2(ground.z, mix(ground.w, 1.0, folded.beyond));
+  outOpen = ground.zw;
 }

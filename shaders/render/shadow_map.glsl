@@ -28,7 +28,7 @@ vec3 offSurface(int cascade, vec3 p, vec3 normal, float texels) {
   return (picture.clipFromPicture[1 + cascade] * vec4(p + normal * (texels * texel), 1.0)).xyz;
 }
 
-// The share of sunlight that nobody takes away, by one comparison: for what is a few pixels wide. `normal` moves the
+// The share of sunlight that nobody takes away, by one comparison: for agents. `normal` moves the
 // point off surfaces that cast shadows themselves by `offTexels` texels.
 float sunlightOnce(vec3 p, vec3 normal, float offTexels) {
   vec3 nearAt = offSurface(0, p, normal, offTexels), farAt = offSurface(1, p, normal, offTexels);

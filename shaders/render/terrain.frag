@@ -3,7 +3,7 @@
 #include "picture.glsl"
 #include "light.glsl"
 #include "hash.glsl"
-#include "ground_map.glsl"
+#include "terrain.glsl"
 #include "shadow.glsl"
 
 layout(location = 0) in vec3 position;
@@ -57,7 +57,7 @@ void main() {
 
   vec3 place = noisePlace(position);
   float broad = broadHere;
-  if (!DENSE) broad = broadNoise(position);
+  if (!DENSE) broad = broadNoise(place);
   vec4 clumps = noise(place.yzx * (1.0 / 1.7) + 31.7) * visible(1.7, footprint);
   // Each is bent by the one before, so that no lattice shows.
   vec4 clods = vec4(0.0), grains = vec4(0.0);

@@ -5,7 +5,7 @@
 // the coarser patch beside it without a crack and never pops (Strugar 2009, "Continuous Distance-Dependent
 // Level of Detail").
 #include "picture.glsl"
-#include "ground_map.glsl"
+#include "terrain.glsl"
 #include "lib/heightfield.glsl"
 
 layout(set = 0, binding = DRAW_HEIGHTS) uniform sampler2D heights;
@@ -31,6 +31,6 @@ void main() {
   outNearAt = (picture.clipFromPicture[1] * vec4(outPosition, 1.0)).xyz;
   outFarAt = (picture.clipFromPicture[2] * vec4(outPosition, 1.0)).xyz;
   outGround = DENSE ? groundMapAt(at) : vec4(0.0);
-  outBroad = DENSE ? broadNoise(outPosition) : 0.0;
+  outBroad = DENSE ? broadNoise(noisePlace(outPosition)) : 0.0;
   gl_Position = picture.clipFromPicture[VIEW_CAMERA] * vec4(outPosition, 1.0);
 }

@@ -17,7 +17,7 @@ constexpr int kColumns = 67, kRows = 43;
 
 class EdgesTest : public test::GpuTest {
  protected:
-  // What the filter makes of the picture's roots, as codes of squares.
+  // The filter's picture, in codes of squares, of one in codes of roots.
   Codes smoothed(const Codes& roots) {
     using Usage = vk::ImageUsageFlagBits;
     constexpr vk::Extent2D extent{kColumns, kRows};
@@ -41,10 +41,9 @@ class EdgesTest : public test::GpuTest {
 
 double lumaOf(const glm::dvec3& c) { return 0.25 * c.r + 0.6 * c.g + 0.15 * c.b; }
 
-// Whether a rounding may decide that a pixel is smoothed.
 struct Expected {
   glm::dvec3 square;
-  bool decided;
+  bool decided;  // no rounding changes whether the pixel is smoothed
 };
 
 Expected expectedAt(const Codes& roots, int x, int y) {

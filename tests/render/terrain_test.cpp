@@ -210,6 +210,7 @@ TEST(Patches, haveTheFormsThatTheyNeed) {
       EXPECT_GT(counts[(GroundForm{0, false, false}).index()], 5);
     } else {
       EXPECT_EQ(counts[(GroundForm{2, true, true}).index()], 0);
+      EXPECT_EQ(counts[(GroundForm{2, true, false}).index()], 0);
     }
     EXPECT_LE(wasted, wastedByDistance);
     if (up < 10) {
