@@ -17,6 +17,10 @@ constexpr int kColumns = 67, kRows = 43;
 
 class EdgesTest : public test::GpuTest {
  protected:
+  // Half a code is rounding to codes, which a GPU may miss by a tenth more (Direct3D 11.3, 3.2.3.6; Vulkan
+  // allows either neighbour); float's own is less than a hundredth of one.
+  double rounding() { return context().isCpu() ? 0.51 : 0.61; }
+
   // The filter's picture, in codes of squares, of one in codes of roots.
   Codes smoothed(const Codes& roots) {
     using Usage = vk::ImageUsageFlagBits;
@@ -68,16 +72,15 @@ Expected expectedAt(const Codes& roots, int x, int y) {
   return {root * root, std::abs(contrast - threshold) > 1e-5};
 }
 
-void expectSmoothed(const Codes& roots, const Codes& found) {
+void expectSmoothed(const Codes& roots, const Codes& found, double rounding) {
   int changed = 0;
   for (int y = 0; y < kRows; ++y)
     for (int x = 0; x < kColumns; ++x) {
       const size_t i = size_t(y * kColumns + x);
       const Expected expected = expectedAt(roots, x, y);
       if (!expected.decided) continue;
-      // Half a code is rounding to codes; float's own is less than a hundredth of one.
       for (int channel = 0; channel < 3; ++channel)
-        ASSERT_NEAR(found[i][channel], 255 * expected.square[channel], 0.51) << x << ", " << y;
+        ASSERT_NEAR(found[i][channel], 255 * expected.square[channel], rounding) << x << ", " << y;
       const glm::dvec3 own = glm::dvec3(roots[i]) / 255.0;
       changed += glm::distance(expected.square, own * own) > 0.02;
     }
@@ -93,7 +96,7 @@ TEST_F(EdgesTest, noiseOfAnyContrastIsSmoothedAsDocumented) {
       const auto channel = [&] { return uint8_t(std::min(255, 4 * y + int(random() % contrast))); };
       roots.push_back({channel(), channel(), channel(), 255});
     }
-  expectSmoothed(roots, smoothed(roots));
+  expectSmoothed(roots, smoothed(roots), rounding());
 }
 
 // A line of one pixel that leans becomes softer, and nothing else.
@@ -103,9 +106,9 @@ TEST_F(EdgesTest, linesAreSoftenedAndPlainGroundIsKept) {
   for (int x = 0; x < kColumns; ++x)
     for (const int y : {x / 5 + 12, kRows - 1 - x / 2}) roots[size_t(y * kColumns + x)] = line;
   const Codes found = smoothed(roots);
-  expectSmoothed(roots, found);
+  expectSmoothed(roots, found, rounding());
   const auto squared = [](int code) { return code * code / 255.0; };
-  EXPECT_NEAR(found[0].r, squared(ground.r), 0.51);
+  EXPECT_NEAR(found[0].r, squared(ground.r), rounding());
   EXPECT_GT(found[size_t(16 * kColumns + 22)].r, squared(line.r) + 15);
 }
 
