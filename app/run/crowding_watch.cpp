@@ -16,7 +16,7 @@ namespace {
 
 constexpr double oftenSeconds = 0.1, rarelySeconds = 1;
 constexpr size_t secondsOfStanding = 10;
-constexpr double jammedShare = 0.5;  // of the speed that is wanted: less is a jam
+constexpr size_t secondsOfJams = 5;
 
 uint64_t ticksOf(double seconds, double dt) {
   return std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(seconds / dt)));
@@ -73,8 +73,7 @@ CrowdingWatch::Moment CrowdingWatch::momentOf(const Crowd& crowd) const {
       moment.places.push_back(body.present ? glm::dvec2(body.position.x, body.position.z) : glm::dvec2(NAN));
       const float* steer = &state.steer[4 * agent * shared::STEER_STRIDE];
       moment.wanted.emplace_back(steer[0], steer[1]);
-      moment.isJammed.push_back(body.present && double{glm::length(body.velocity)} <
-                                                    jammedShare * glm::length(moment.wanted.back()));
+      moment.speeds.push_back(body.present ? double{glm::length(body.velocity)} : NAN);
       moment.hasPoint.push_back(state.goal[4 * agent * shared::GOAL_STRIDE + 6] == shared::GOAL_POINT);
     }
   }
@@ -103,7 +102,7 @@ void CrowdingWatch::follow(const Crowd& crowd) {
 }
 
 void CrowdingWatch::lookClosely(const Crowd& crowd, const Moment& now) {
-  countCrossings(crowd, now);
+  if (seconds_.size() >= secondsOfJams) countCrossings(crowd, now);
   seconds_.push_back(now);
   if (seconds_.size() <= secondsOfStanding) return;
   const Moment& before = seconds_.front();
@@ -139,10 +138,15 @@ void CrowdingWatch::countCrossings(const Crowd& crowd, const Moment& now) {
     }
   }
   const std::vector<bool> crosses = crossingAgents(legs, now.places, reach_);
+  const Moment& before = seconds_[seconds_.size() - secondsOfJams];
+  const double elapsed = static_cast<double>(secondsOfJams * rarely_) * dt_;
   for (size_t i = 0; i < crosses.size(); ++i) {
+    const Headway headway =
+        headwayOf(glm::length(now.wanted[i]), now.speeds[i], before.places[i], now.places[i], elapsed);
     crossed_ += crosses[i];
-    jammed_ += now.isJammed[i];
-    jammedCrossed_ += crosses[i] && now.isJammed[i];
+    heldUp_ += headway == Headway::heldUp;
+    getOn_ += headway == Headway::getsOn;
+    getOnAndCross_ += crosses[i] && headway == Headway::getsOn;
   }
 }
 
@@ -153,8 +157,8 @@ Jams CrowdingWatch::jams() const {
     return static_cast<double>(of) / static_cast<double>(all);
   };
   jams.legCrossings = share(crossed_, looked_);
-  jams.legCrossingsOutsideJams = share(crossed_ - jammedCrossed_, looked_ - jammed_);
-  jams.jammed = share(jammed_, looked_);
+  jams.legCrossingsOutsideJams = share(getOnAndCross_, getOn_);
+  jams.jammed = share(heldUp_, looked_);
   jams.stuck = static_cast<uint64_t>(std::ranges::count(stuck_, true));
   jams.arrived = static_cast<uint64_t>(std::ranges::count(arrived_, true));
   return jams;

@@ -33,7 +33,8 @@ class CrowdingWatch {
   // All agents, herd after herd and place after place.
   struct Moment {
     std::vector<glm::dvec2> places, wanted;  // NaN where nobody is
-    std::vector<bool> hasPoint, isJammed;
+    std::vector<double> speeds;              // likewise
+    std::vector<bool> hasPoint;
   };
   Moment momentOf(const Crowd& crowd) const;
   void follow(const Crowd& crowd);
@@ -48,7 +49,7 @@ class CrowdingWatch {
   std::deque<Moment> seconds_;  // of the last ten, the earliest first
   std::vector<bool> stuck_, arrived_;
   // Agents, each time that they were looked at closely.
-  uint64_t looked_ = 0, crossed_ = 0, jammed_ = 0, jammedCrossed_ = 0;
+  uint64_t looked_ = 0, crossed_ = 0, heldUp_ = 0, getOn_ = 0, getOnAndCross_ = 0;
 };
 
 }  // namespace skitter::app

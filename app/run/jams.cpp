@@ -8,6 +8,7 @@ namespace skitter::app {
 namespace {
 
 constexpr double movedShare = 0.1;    // of a body, in ten seconds: less is standing
+constexpr double jammedShare = 0.5;   // of the speed that is wanted: less is a jam
 constexpr double leastTime = 10;      // seconds in which a square counts
 constexpr double aheadCosine = 0.5;   // within 60 degrees of where an agent wants to go
 constexpr double leastWanted = 1e-3;  // m/s
@@ -113,17 +114,37 @@ std::vector<Standing> standingsOf(std::span<const Advance> agents) {
   return standings;
 }
 
+Headway headwayOf(double wanted, double speed, const glm::dvec2& before, const glm::dvec2& now,
+                  double seconds) {
+  if (std::isnan(speed) || wanted < leastWanted) return Headway::stands;
+  const double least = jammedShare * wanted;
+  return speed < least || glm::distance(before, now) < least * seconds ? Headway::heldUp : Headway::getsOn;
+}
+
 void FlowMap::add(const glm::dvec2& from, const glm::dvec2& to, double seconds) {
   const auto [found, isNew] = squares_.try_emplace(cellAt(0.5 * (from + to), side_));
   Square& square = found->second;
-  if (isNew) square.first = square.came = seconds;
+  if (isNew) {
+    square.first = seconds;
+    square.came.fill(seconds);
+  }
   square.last = seconds;
   square.way += glm::distance(from, to);
-  if (cellAt(from, side_) == cellAt(to, side_)) return;
-  if (const auto entered = squares_.find(cellAt(to, side_)); entered != squares_.end()) {
-    entered->second.pause = std::max(entered->second.pause, seconds - entered->second.came);
-    entered->second.came = seconds;
-  }
+  square.along += glm::abs(to - from);
+  const Cell left = cellAt(from, side_), entered = cellAt(to, side_);
+  if (left == entered) return;
+  for (const size_t row : {0, 1})
+    for (const int64_t step : {-1, 0, 1}) {
+      Cell middle = entered;
+      (row == 0 ? middle.first : middle.second) += step;
+      const int64_t across = row == 0 ? left.first - middle.first : left.second - middle.second;
+      const bool isSameRow = row == 0 ? left.second == middle.second : left.first == middle.first;
+      const auto of = squares_.find(middle);
+      if (of == squares_.end() || (isSameRow && std::abs(across) <= 1)) continue;
+      double &came = of->second.came[row], &pause = of->second.pause[row];
+      pause = std::max(pause, seconds - came);
+      came = seconds;
+    }
 }
 
 std::optional<Flow> FlowMap::most() const {
@@ -131,7 +152,9 @@ std::optional<Flow> FlowMap::most() const {
   for (const auto& [cell, square] : squares_) {
     const double time = square.last - square.first;
     if (time < leastTime) continue;
-    const Flow flow{square.way / (side_ * side_ * time), std::max(square.pause, square.last - square.came)};
+    const size_t row = square.along.y >= square.along.x ? 0 : 1;
+    const Flow flow{square.way / (side_ * side_ * time),
+                    std::max(square.pause[row], square.last - square.came[row])};
     if (!most || flow.flow > most->flow) most = flow;
   }
   return most;

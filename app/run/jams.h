@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
@@ -28,13 +29,25 @@ enum class Standing {
 };
 std::vector<Standing> standingsOf(std::span<const Advance> agents);
 
+enum class Headway {
+  stands,  // and wants to, or is not there
+  getsOn,
+  heldUp,  // in a jam
+};
+// Of an agent that wants to go so fast and goes at `speed`, m/s (NaN where it is not there), and that came
+// from one place to another in the last seconds. Where it was not there then, now alone counts.
+Headway headwayOf(double wanted, double speed, const glm::dvec2& before, const glm::dvec2& now,
+                  double seconds);
+
 // The traffic through a place.
 struct Flow {
-  double flow = 0;   // agents per second and metre
-  double pause = 0;  // the longest time for which nobody came, until nobody is there any more, seconds
+  double flow = 0;  // agents per second and metre
+  // The longest time for which nobody came there or beside it, until nobody is there any more, seconds.
+  double pause = 0;
 };
 
-// How much goes through places: squares, of which each counts the way that agents go in it.
+// How much goes through places: squares, of which each counts the way that agents go in it. Beside a square
+// are the two that lie with it across the way that most go.
 class FlowMap {
  public:
   explicit FlowMap(double side) : side_(side) {}
@@ -47,7 +60,10 @@ class FlowMap {
 
  private:
   struct Square {
-    double way = 0, first = 0, last = 0, came = 0, pause = 0;  // metres, seconds
+    double way = 0, first = 0, last = 0;  // metres, seconds
+    glm::dvec2 along{0};                  // of the way, how much lies along x and z
+    // Of the row of three along x, and of the one along z.
+    std::array<double, 2> came{}, pause{};
   };
   double side_;
   std::map<std::pair<int64_t, int64_t>, Square> squares_;

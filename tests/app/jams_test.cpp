@@ -72,6 +72,40 @@ TEST(Jams, APauseEndsWithWhoComesIn) {
   EXPECT_NEAR(flow.most()->pause, 7, 1e-9) << "the last one turned about, and nobody has come since";
 }
 
+// Most go along z, so squares of 2 m beside the busiest one are those along x.
+TEST(Jams, WhoComesInBesideEndsAPauseToo) {
+  const auto pauseWith = [](const glm::dvec2& from, const glm::dvec2& to) {
+    FlowMap flow(2);
+    for (const double x : {-1.0, -3.0, 3.0}) flow.add({x, 1}, {x, 1.1}, 0);  // somebody was there
+    for (const double second : {0, 1, 2, 12}) {
+      if (second == 12) flow.add(from, to, 9);
+      flow.add({1, -0.5}, {1, 0.5}, second);
+      flow.add({1, 0.5}, {1, 1.5}, second + 0.1);
+    }
+    return flow.most().value().pause;
+  };
+  EXPECT_NEAR(pauseWith({-1, -0.5}, {-1, 0.5}), 7, 1e-9);
+  EXPECT_NEAR(pauseWith({3, 2.5}, {3, 1.5}), 7, 1e-9) << "from either side";
+  EXPECT_NEAR(pauseWith({-2.5, 1}, {-1.5, 1}), 7, 1e-9) << "from farther aside";
+  EXPECT_NEAR(pauseWith({-3, -0.5}, {-3, 0.5}), 10, 1e-9) << "two squares aside";
+  EXPECT_NEAR(pauseWith({3, 1}, {1.5, 1}), 10, 1e-9) << "from beside into the busiest one";
+  EXPECT_NEAR(pauseWith({1, 1}, {1.5, 1}), 10, 1e-9) << "nobody came in";
+  EXPECT_NEAR(pauseWith({1, 2.5}, {1, 1.5}), 7, 1e-9);
+}
+
+TEST(Jams, WhoGetsOnAtLessThanHalfOfItsSpeedIsHeldUp) {
+  const glm::dvec2 before(1, 2), slow(1, 6.9), fast(1, 7.1);
+  using enum app::Headway;
+  EXPECT_EQ(app::headwayOf(2, 1.1, before, fast, 5), getsOn);
+  EXPECT_EQ(app::headwayOf(2, 0.9, before, fast, 5), heldUp) << "it stops now";
+  EXPECT_EQ(app::headwayOf(2, 1.1, before, slow, 5), heldUp) << "it starts now";
+  EXPECT_EQ(app::headwayOf(0, 0, before, before, 5), stands);
+  EXPECT_EQ(app::headwayOf(0, 1, before, fast, 5), stands) << "whatever pushes it";
+  EXPECT_EQ(app::headwayOf(2, 1.1, {NAN, NAN}, fast, 5), getsOn) << "it has come since";
+  EXPECT_EQ(app::headwayOf(2, 0.9, {NAN, NAN}, fast, 5), heldUp);
+  EXPECT_EQ(app::headwayOf(2, NAN, before, {NAN, NAN}, 5), stands) << "it is gone";
+}
+
 TEST(Jams, LegsCrossAsSeenFromAbove) {
   const LegLines along = {{{0, 0}, {1, 0}, {2, 0.5}}}, across = {{{5, 5}, {6, 6}}, {{1.5, -1}, {1.5, 1}}};
   const LegLines beside = {{{1.5, 0.3}, {1.5, 1}}};
