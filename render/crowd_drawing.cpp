@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <numeric>
 
 #include "crowd/controller.h"
 #include "embedded/crowd_frag.h"
@@ -163,22 +164,27 @@ CrowdForms formsOf(const crowd::Kind& kind) {
       .matrices = crowd::traitsOf(kind.controller).playsClips, .tinted = kind.tinted, .stumps = kind.hurts};
 }
 
-// The camera's lists, and all that draw meshes.
-constexpr std::array kCameraLists{0, 1, 2, 3, 4};
-static_assert(kCameraLists.size() == shared::CAMERA_LODS);
-constexpr std::array kMeshLists{0,
-                                1,
-                                2,
-                                3,
-                                4,
-                                shared::NEAR_FINE,
-                                shared::NEAR_COARSE,
-                                shared::FAR_SHADOWS,
-                                shared::FADING,
-                                shared::NEAR_FADING,
-                                shared::FAR_FADING};
+// Those of whom the picture shows, though the last one did not.
+constexpr std::array kLaterLists{shared::LATER,     shared::LATER + 1, shared::LATER + 2,
+                                 shared::LATER + 3, shared::LATER + 4, shared::LATER + 5};
+static_assert(kLaterLists.size() == shared::CAMERA_LISTS);
+// All that draw meshes.
+constexpr auto kMeshLists = [] {
+  std::array<int, shared::INSTANCE_LISTS - 3> lists{};
+  size_t count = 0;
+  for (int list = 0; list < shared::INSTANCE_LISTS; ++list)
+    if (list != shared::CONTACTS && list != shared::SPLATS && list != shared::SHOWN) lists[count++] = list;
+  return lists;
+}();
+// Of these, the ones that there are without occlusion.
+constexpr size_t kPlainMeshLists =
+    size_t(std::ranges::find(kMeshLists, shared::FIRST_LOOK) - kMeshLists.begin());
 // The level that a list draws: of the camera's each its own; what fades goes on as it was.
 int levelOf(int list) {
+  if (list >= shared::FIRST_LOOK) {
+    const int place = (list - shared::FIRST_LOOK) % shared::CAMERA_LISTS;
+    return place < shared::CAMERA_LODS ? place : shared::FIRST_VERTEX_LIT;
+  }
   if (list == shared::FADING) return shared::FIRST_VERTEX_LIT;
   if (list == shared::NEAR_FADING) return levelOf(shared::NEAR_COARSE);
   if (list == shared::FAR_FADING) return levelOf(shared::FAR_SHADOWS);
@@ -232,7 +238,7 @@ gpu::GraphicsInfo wornShading(int influences, const CrowdForms& forms, const Mat
 }
 
 CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureStore& store)
-    : cull_(s.context, s.detail) {
+    : cull_(s.context, s.detail), occlusion_(s) {
   if (crowd.rates) interpolation_ = Interpolation(s.context);
   for (const crowd::Kind& source : crowd.kinds) {
     Kind kind;
@@ -248,8 +254,9 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
     const Textures* textures = look ? &store.of(s.context, look.materials) : nullptr;
     const Limbs limbs = limbsOf(source);
     kind.palette = uint32_t(clips ? source.clips.joints : source.rig.paletteSize());
-    kind.mesh = uploadMesh(s.context, clips ? makeMesh(source.clipSet, limbs) : makeMesh(source.rig, limbs),
-                           source.rig.name);
+    const MeshData mesh = clips ? makeMesh(source.clipSet, limbs) : makeMesh(source.rig, limbs);
+    kind.mesh = uploadMesh(s.context, mesh, source.rig.name);
+    if (occlusion_) kind.occlusion = occlusion_.makeKind(s, source, mesh, kind.palette);
     const int influences = kind.mesh.influences;
     kind.passes[kDraw] = drawPipeline(s, crowdShading(influences, formsOf(source)));
     kind.passes[kShadow] = {s.context, shadowInfo(s, influences, formsOf(source))};
@@ -276,7 +283,8 @@ CrowdDrawing::CrowdDrawing(const Setting& s, const Crowd::Impl& crowd, TextureSt
                                                  : records.pose;
       const gpu::Buffer& tint = source.tinted ? records.tint : body;
       const bool listsShown = interpolation_ || kind.clipPoses;
-      page.culled = cull_.makePage(s.context, s.picture, body, records.agents, listsShown);
+      page.culled = cull_.makePage(s.context, s.picture, body, records.agents, listsShown, bool(occlusion_));
+      if (occlusion_) page.occlusion = occlusion_.makePage(s, kind.occlusion, body, pose, page.culled);
       if (interpolation_) interpolation_.bindLists(s.context, live, page.culled, page.shown);
       if (kind.clipPoses)
         page.posesClips = kind.clipPoses.bind(s.context, source, records, body, page.culled, pose);
@@ -348,8 +356,8 @@ void CrowdDrawing::bindParts(const Setting& s, const Textures& textures,
       bindings[pass] = pipeline->bind(s.context, list);
     }
   }
-  std::vector<VkDrawIndexedIndirectCommand> draws(size_t(kMeshLists.back() + 1) * kind.parts.size());
-  for (const int list : kMeshLists)
+  std::vector<VkDrawIndexedIndirectCommand> draws(size_t(meshLists().back() + 1) * kind.parts.size());
+  for (const int list : meshLists())
     for (size_t p = 0; p < kind.parts.size(); ++p)
       draws[partDraw(kind.parts.size(), list, p)] = commandOf(kind.mesh.parts[p].lods[size_t(levelOf(list))]);
   page.partDraws =
@@ -361,7 +369,7 @@ void CrowdDrawing::prepare(vk::CommandBuffer cmd) const {
   for (const Kind& kind : kinds_)
     for (const Page& page : kind.pages) {
       VkDrawIndexedIndirectCommand draws[shared::INSTANCE_LISTS] = {};
-      for (const int list : kMeshLists) draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
+      for (const int list : meshLists()) draws[list] = commandOf(kind.mesh.lods[size_t(levelOf(list))]);
       for (const int list : {shared::SPLATS, shared::SHOWN})
         draws[list] = std::bit_cast<VkDrawIndexedIndirectCommand>(ListDispatch{});
       cmd.updateBuffer(page.culled.commands.handle(), 0, sizeof draws, draws);
@@ -384,6 +392,11 @@ void CrowdDrawing::cull(vk::CommandBuffer cmd, const Crowd::Impl& crowd) {
   }
   for (const Kind& kind : kinds_)
     for (const Page& page : kind.pages) cull_.record(cmd, page.culled, kind.mesh.radius, bool(kind.splat));
+  if (occlusion_) {
+    gpu::computeToCompute(cmd);
+    for (const Kind& kind : kinds_)
+      for (const Page& page : kind.pages) occlusion_.lookFirst(cmd, page.culled, page.occlusion);
+  }
   if (!interpolation_ && std::ranges::none_of(kinds_, [](const Kind& kind) { return bool(kind.clipPoses); }))
     return;
   gpu::computeToIndirectAndCompute(cmd);
@@ -407,21 +420,24 @@ void CrowdDrawing::splat(vk::CommandBuffer cmd) const {
                        constantsOf(k, page, shared::VIEW_CAMERA));
 }
 
-void CrowdDrawing::countParts(vk::CommandBuffer cmd) const {
-  const auto counts = [](const Kind& kind) { return !kind.parts.empty() || kind.contact; };
+void CrowdDrawing::countParts(vk::CommandBuffer cmd) const { countParts(cmd, meshLists(), true); }
+
+void CrowdDrawing::countParts(vk::CommandBuffer cmd, std::span<const int> lists, bool contacts) const {
+  const auto hasContacts = [&](const Kind& kind) { return contacts && kind.contact; };
+  const auto counts = [&](const Kind& kind) { return !kind.parts.empty() || hasContacts(kind); };
   if (std::none_of(kinds_.begin(), kinds_.end(), counts)) return;
   constexpr vk::DeviceSize stride = sizeof(VkDrawIndexedIndirectCommand);
   constexpr vk::DeviceSize count = offsetof(VkDrawIndexedIndirectCommand, instanceCount);
   gpu::computeToTransfer(cmd);
   for (const Kind& kind : kinds_) {
     std::vector<vk::BufferCopy> copies;
-    for (const int list : kMeshLists)
+    for (const int list : lists)
       for (size_t part = 0; part < kind.parts.size(); ++part)
         copies.push_back({.srcOffset = vk::DeviceSize(list) * stride + count,
                           .dstOffset = partDraw(kind.parts.size(), list, part) * stride + count,
                           .size = sizeof(uint32_t)});
     for (const Page& page : kind.pages) {
-      if (kind.contact) kind.contact.count(cmd, page.contact, page.culled);
+      if (hasContacts(kind)) kind.contact.count(cmd, page.contact, page.culled);
       if (!copies.empty()) cmd.copyBuffer(page.culled.commands.handle(), page.partDraws.handle(), copies);
     }
   }
@@ -445,6 +461,10 @@ shared::CrowdConstants CrowdDrawing::constantsOf(uint32_t kind, const Page& page
       .view = uint32_t(view), .palette = kinds_[kind].palette, .firstAgent = page.firstAgent, .kind = kind};
 }
 
+std::span<const int> CrowdDrawing::meshLists() const {
+  return std::span(kMeshLists).first(occlusion_ ? kMeshLists.size() : kPlainMeshLists);
+}
+
 bool CrowdDrawing::hasSplats() const {
   return std::ranges::any_of(kinds_, [](const Kind& kind) { return kind.splat && !kind.pages.empty(); });
 }
@@ -458,12 +478,16 @@ PictureCounts CrowdDrawing::counts(const gpu::Context& context) const {
   for (const Kind& kind : kinds_)
     for (const Page& page : kind.pages) {
       const auto draws = gpu::download<VkDrawIndexedIndirectCommand>(context, page.culled.commands);
-      for (size_t lod = 0; lod < shared::CAMERA_LODS; ++lod) {
-        counts.agents += draws[lod].instanceCount;
-        counts.triangles += uint64_t(draws[lod].instanceCount) * (draws[lod].indexCount / 3);
+      const auto count = [&](int list) { return draws[size_t(list)].instanceCount; };
+      for (int i = 0; i < shared::CAMERA_LISTS; ++i) {
+        const int list = i < shared::CAMERA_LODS ? i : shared::FADING;
+        const int first = shared::FIRST_LOOK + i, later = shared::LATER + i;
+        const uint32_t drawn = occlusion_ ? count(first) + count(later) : count(list);
+        counts.triangles += uint64_t(drawn) * (draws[size_t(list)].indexCount / 3);
+        if (list == shared::FADING) continue;  // its agents are splats, too
+        counts.agents += count(list);
+        counts.hidden += count(list) - drawn;
       }
-      const VkDrawIndexedIndirectCommand& fading = draws[shared::FADING];  // its agents are splats, too
-      counts.triangles += uint64_t(fading.instanceCount) * (fading.indexCount / 3);
       counts.agents += draws[shared::SPLATS].instanceCount;
       counts.splats += draws[shared::SPLATS].instanceCount;
     }
@@ -472,11 +496,34 @@ PictureCounts CrowdDrawing::counts(const gpu::Context& context) const {
 
 void CrowdDrawing::draw(vk::CommandBuffer cmd) const {
   if (hasSplats()) splats_.draw(cmd);
+  if (occlusion_)
+    drawCamera(cmd, shared::FIRST_LOOK, shared::FIRST_LOOK + shared::CAMERA_LODS);
+  else
+    drawCamera(cmd, 0, shared::FADING);
+}
+
+void CrowdDrawing::lookAgain(vk::CommandBuffer cmd) const {
+  gpu::graphicsToCompute(cmd);  // who has been drawn is on lists of the same buffers
+  occlusion_.makePyramid(cmd);
+  for (const Kind& kind : kinds_)
+    for (const Page& page : kind.pages)
+      occlusion_.lookAgain(cmd, kind.occlusion, page.culled, page.occlusion);
+  gpu::computeToGraphics(cmd);
+  countParts(cmd, kLaterLists, false);
+}
+
+void CrowdDrawing::drawLater(vk::CommandBuffer cmd) const {
+  drawCamera(cmd, kLaterLists.front(), kLaterLists.back());
+}
+
+void CrowdDrawing::drawCamera(vk::CommandBuffer cmd, int firstLevel, int fading) const {
+  std::array<int, shared::CAMERA_LODS> levels;
+  std::iota(levels.begin(), levels.end(), firstLevel);
   for (uint32_t k = 0; k < kinds_.size(); ++k)
     for (const Page& page : kinds_[k].pages) {
       const shared::CrowdConstants constants = constantsOf(k, page, shared::VIEW_CAMERA);
-      drawPass(cmd, kinds_[k], page, kDraw, kCameraLists, constants);
-      if (kinds_[k].splat) drawPass(cmd, kinds_[k], page, kFading, std::array{shared::FADING}, constants);
+      drawPass(cmd, kinds_[k], page, kDraw, levels, constants);
+      if (kinds_[k].splat) drawPass(cmd, kinds_[k], page, kFading, std::array{fading}, constants);
     }
 }
 
@@ -484,7 +531,7 @@ void CrowdDrawing::drawPass(vk::CommandBuffer cmd, const Kind& kind, const Page&
                             std::span<const int> lists, const shared::CrowdConstants& constants) const {
   const auto useOwn = [&](int list) {
     if (list == lists.front()) kind.passes[pass].use(cmd, page.passes[pass], gpu::bytesOf(constants));
-    if (pass == kDraw && list == shared::FIRST_VERTEX_LIT)
+    if (pass == kDraw && levelOf(list) == shared::FIRST_VERTEX_LIT)
       kind.lit.use(cmd, page.lit, gpu::bytesOf(constants));
   };
   if (std::ranges::none_of(kind.worn, [&](const Worn& worn) { return bool(worn.passes[pass]); })) {

@@ -10,6 +10,7 @@
 #include "render/cull.h"
 #include "render/interpolation.h"
 #include "render/mesh.h"
+#include "render/occlusion.h"
 #include "render/setting.h"
 #include "render/splats.h"
 #include "render/textures.h"
@@ -46,7 +47,13 @@ class CrowdDrawing {
   // computeToGraphics().
   void countParts(vk::CommandBuffer) const;
   void drawShadows(vk::CommandBuffer, int cascade) const;
+  // Everybody in sight, or with occlusion whom the last picture showed.
   void draw(vk::CommandBuffer) const;
+  // With occlusion, outside rendering and after the ground: finds whom the picture's depth, in state sampled,
+  // does not hide.
+  void lookAgain(vk::CommandBuffer) const;
+  // And draws who had not been drawn.
+  void drawLater(vk::CommandBuffer) const;
   // With the shadows of splats, after the ground, which they darken.
   void drawContacts(vk::CommandBuffer) const;
   // Whether there is anybody who could be drawn.
@@ -67,6 +74,7 @@ class CrowdDrawing {
     gpu::Bindings posesClips;
     ByPass<gpu::Bindings> passes;
     gpu::Bindings lit, splat;
+    Occlusion::Page occlusion;
     Contact::Page contact;
     // For a kind with materials: the indirect draws of each list, part by part, and the bindings of each
     // part's pipelines.
@@ -90,6 +98,7 @@ class CrowdDrawing {
     gpu::GraphicsPipeline lit;
     Contact contact;
     Splats::Kind splat;
+    Occlusion::Kind occlusion;
     ClipPoses clipPoses;      // none where the crowd has poses
     std::vector<Part> parts;  // as the mesh's
     std::vector<Worn> worn;
@@ -105,13 +114,18 @@ class CrowdDrawing {
   void drawPass(vk::CommandBuffer, const Kind&, const Page&, Pass, std::span<const int> lists,
                 const shared::CrowdConstants&) const;
   void bindBuffers(vk::CommandBuffer, const Kind&, const Page&, int list) const;
+  // Of the lists of the camera's levels, the first of which is given, and of the one of who fades.
+  void drawCamera(vk::CommandBuffer, int firstLevel, int fading) const;
+  void countParts(vk::CommandBuffer, std::span<const int> lists, bool contacts) const;
 
+  std::span<const int> meshLists() const;  // that are drawn
   bool hasSplats() const;
   shared::CrowdConstants constantsOf(uint32_t kind, const Page&, int view) const;
 
   Interpolation interpolation_;     // none where all agents tick in every tick
   std::optional<uint64_t> before_;  // the last picture's tick
   Cull cull_;
+  Occlusion occlusion_;  // none without the option
   Splats splats_;
   std::vector<Kind> kinds_;
 };

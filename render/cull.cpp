@@ -20,8 +20,8 @@ Cull::Cull(const gpu::Context& context, float detail)
       detail_(detail) {}
 
 CulledPage Cull::makePage(const gpu::Context& context, const gpu::Buffer& picture, const gpu::Buffer& bodies,
-                          uint32_t agents, bool listsShown) const {
-  const int lists = listsShown ? shared::INSTANCE_LISTS : shared::SHOWN;
+                          uint32_t agents, bool listsShown, bool looks) const {
+  const int lists = looks ? shared::INSTANCE_LISTS : listsShown ? shared::FIRST_LOOK : shared::SHOWN;
   CulledPage page;
   page.agents = agents;
   page.listsShown = listsShown;

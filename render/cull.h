@@ -22,7 +22,7 @@ constexpr uint64_t groupsOffset(int list) {
 // A page's instance lists and their indirect draws, chosen on the device.
 struct CulledPage {
   uint32_t agents = 0;
-  bool listsShown = false;  // whether there is the list SHOWN
+  bool listsShown = false;  // whether the list SHOWN is filled
   gpu::Buffer instances;    // uint32: list after list of `agents` entries each
   gpu::Buffer commands;     // a VkDrawIndexedIndirectCommand a list
   gpu::Bindings bindings;
@@ -34,9 +34,9 @@ class Cull {
   // `detail`: RendererOptions::detail.
   Cull(const gpu::Context&, float detail);
 
-  // `listsShown`: whether there is the list SHOWN.
+  // `listsShown`: whether the list SHOWN is filled. `looks`: whether there are those of occlusion.
   CulledPage makePage(const gpu::Context&, const gpu::Buffer& picture, const gpu::Buffer& bodies,
-                      uint32_t agents, bool listsShown = false) const;
+                      uint32_t agents, bool listsShown = false, bool looks = false) const;
   // `splats`: whether small agents may be drawn as such.
   void record(vk::CommandBuffer, const CulledPage&, float radius, bool splats) const;
 

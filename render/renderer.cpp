@@ -25,7 +25,8 @@ namespace {
 
 constexpr vk::Format kColour = vk::Format(Renderer::colourFormat);
 constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
-constexpr uint32_t kPasses = 8;  // cull, shadow, splats, crowd, ground, sky, filter, enlarge
+// cull, shadow, splats, crowd, ground, occlusion, revealed, contacts, sky, filter, enlarge
+constexpr uint32_t kPasses = 11;
 
 vk::Extent2D checkedExtent(const gpu::Context& context, uint32_t width, uint32_t height) {
   const uint32_t most = context.limits().maxImageDimension2D;
@@ -68,6 +69,12 @@ vk::SampleCountFlagBits sampleCount(const gpu::Context& context) {
   return context.isCpu() ? vk::SampleCountFlagBits::e1 : vk::SampleCountFlagBits::e4;
 }
 
+bool leavesHiddenOut(const gpu::Context& context, const Crowd::Impl& crowd, const RendererOptions& options) {
+  uint64_t agents = 0;
+  for (const crowd::Kind& kind : crowd.kinds) agents += kind.agents;
+  return options.occlusion.value_or(!context.isCpu() && agents >= RendererOptions::occlusionAgents);
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -91,6 +98,7 @@ struct Renderer::Impl {
   uint32_t revision;   // of the live crowd, as it is drawn
   bool casts = false;  // whether there is anything that casts a shadow
   bool drew = false;   // a picture was recorded
+  bool occlusion;      // agents that are hidden are left out
   gpu::StageTimer timer;
   vk::SampleCountFlagBits samples;
   gpu::Image colour;
@@ -117,6 +125,7 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
     : context(checkedContext(c)),
       live(source),
       revision(source.revision),
+      occlusion(leavesHiddenOut(c, source, options)),
       timer(c, kPasses),
       samples(sampleCount(c)),
       colour(c,
@@ -135,7 +144,8 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
       depth(c,
             {.format = kDepth,
              .extent = drawn.extent(),
-             .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment,
+             .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment |
+                      (occlusion ? vk::ImageUsageFlagBits::eSampled : vk::ImageUsageFlags()),
              .samples = samples},
             "picture depth"),
       light(render::lightModel(source.scene.light)),
@@ -155,7 +165,8 @@ Renderer::Impl::Impl(const gpu::Context& c, const Crowd::Impl& source, uint32_t 
               samples,
               drawn.extent(),
               render::lightConstants(light),
-              options.detail},
+              options.detail,
+              occlusion ? &depth : nullptr},
       terrain(setting),
       obstacles(setting, source),
       crowd(setting, source, textures),
@@ -256,31 +267,43 @@ void Renderer::Impl::drawPicture(vk::CommandBuffer cmd) {
   // Timed, each pass renders by itself: a software device takes all timestamps of one rendering at its end.
   const bool parted = timer.measures();
   std::optional<gpu::Rendering> rendering;
-  const auto pass = [&](const char* name, bool first, bool last) {
+  bool begun = false;
+  const auto pass = [&](const char* name, bool last) {
     if (parted) rendering.reset();
     timer.next(cmd, name);
-    if (parted && !first) {
+    if (rendering) return;
+    if (begun) {
       gpu::transition(cmd, drawn, gpu::ImageState::colour, gpu::ImageState::colour);
       gpu::transition(cmd, depth, gpu::ImageState::depth, gpu::ImageState::depth);
     }
-    if (!rendering)
-      rendering.emplace(cmd,
-                        gpu::RenderTargets{.colour = &drawn,
-                                           .resolve = filtered() || (parted && !last) ? nullptr : &finished(),
-                                           .depth = &depth,
-                                           .keepDepth = parted,
-                                           .drawnOver = !first,
-                                           .covered = true},  // by the sky, wherever nothing else is
-                        true);
+    rendering.emplace(cmd,
+                      gpu::RenderTargets{.colour = &drawn,
+                                         .resolve = filtered() || !last ? nullptr : &finished(),
+                                         .depth = &depth,
+                                         .keepDepth = !last,
+                                         .drawnOver = begun,
+                                         .covered = true},  // by the sky, wherever nothing else is
+                      true);
+    begun = true;
   };
-  pass("crowd", true, false);
+  pass("crowd", !parted && !occlusion);
   crowd.draw(cmd);
-  pass("ground", false, false);
+  pass("ground", !parted && !occlusion);
   obstacles.draw(cmd);
   terrain.draw(cmd);
+  if (occlusion) {
+    rendering.reset();
+    timer.next(cmd, "occlusion");
+    gpu::transition(cmd, depth, gpu::ImageState::depth, gpu::ImageState::sampled);
+    crowd.lookAgain(cmd);
+    gpu::transition(cmd, depth, gpu::ImageState::sampled, gpu::ImageState::depth);
+    pass("revealed", !parted);
+    crowd.drawLater(cmd);
+    pass("contacts", !parted);
+  }
   if (footprints) footprints.draw(cmd);
   crowd.drawContacts(cmd);
-  pass("sky", false, true);
+  pass("sky", true);
   sky.draw(cmd);
   rendering.reset();
   if (!filtered()) timer.end(cmd, "sky");

@@ -22,6 +22,7 @@ struct Setting {
   vk::Extent2D extent;
   const std::vector<gpu::SpecConstant> light;  // lightConstants of the scene's
   float detail = 1;                            // RendererOptions::detail
+  const gpu::Image* occluders = nullptr;  // the picture's depth, where agents that are hidden are left out
 
   // Constants of whatever is lit (shaders/render/light.glsl).
   std::vector<gpu::SpecConstant> lit() const {

@@ -14,10 +14,10 @@
 #include "app/bench/frame_times.h"
 #include "app/bench/match_report.h"
 #include "app/commands.h"
+#include "app/common/drawing_options.h"
 #include "app/common/files.h"
 #include "app/common/manifest.h"
 #include "app/common/progress.h"
-#include "app/common/render_scale.h"
 #include "app/common/scene_options.h"
 #include "app/common/signals.h"
 #include "app/common/values.h"
@@ -108,7 +108,9 @@ void write(const BenchOptions& options, const Record& record) {
              {{"width", options.frames.size.width},
               {"height", options.frames.size.height},
               {"renderScale", std::round(1e6 * double{options.frames.drawing.scale}) / 1e6},
-              {"levels", options.levels.empty() ? ordered_json() : ordered_json(options.levels)}}},
+              {"levels", options.levels.empty() ? ordered_json() : ordered_json(options.levels)},
+              {"occlusion", options.frames.drawing.occlusion ? ordered_json(*options.frames.drawing.occlusion)
+                                                             : ordered_json()}}},
             {"draw", record.draw},
             {"drawsWanted", record.wanted},
             {"interrupted", record.draw.size() < record.wanted}};
@@ -295,7 +297,7 @@ void refuseBesideAvoid(const BenchOptions& options, const CLI::App& command) {
 
 // Each option that means nothing beside the others. Throws Error(input).
 void refuseWhatMeansNothing(const BenchOptions& options, const CLI::App& command) {
-  for (const char* option : {"--size", renderScaleOption, "--levels"})
+  for (const char* option : {"--size", renderScaleOption, occlusionOption, "--levels"})
     if (!options.draw && command.count(option) > 0)
       throw inputError(fmt::format("{} is of pictures, expected --draw beside it", option));
   for (const char* option : {"--avoid", "--controllers", "--rounds", "--poses", "--baseline", "--fail-above"})
@@ -409,6 +411,7 @@ void addBench(CLI::App& app, Command& chosen) {
           "of the pictures that --draw draws, in pixels [1280x720]")
       ->type_name("WxH");
   addRenderScale(*command, options->frames.drawing.scale);
+  addOcclusion(*command, options->frames.drawing);
   command
       ->add_option("--levels", options->levels,
                    "with --draw: who is far from the camera ticks less often, as in skitter run [those of "

@@ -142,10 +142,11 @@ FrameTimes timeFrames(Device& device, const Heightfield& terrain, const Scene& s
 }
 
 void print(const FrameTimes& times) {
-  fmt::print(
-      "\n{} agents, {} in view: {:.2f} frames a second, {:.1f} ms of CPU a frame, {} splats, {} triangles\n",
-      times.agents, times.counts.agents, times.framesPerSecond, times.cpuMilliseconds, times.counts.splats,
-      times.counts.triangles);
+  const PictureCounts& counts = times.counts;
+  fmt::print("\n{} agents, {} in view: {:.2f} frames a second, {:.1f} ms of CPU a frame, {} splats, ",
+             times.agents, counts.agents, times.framesPerSecond, times.cpuMilliseconds, counts.splats);
+  if (counts.hidden > 0) fmt::print("{} hidden, ", counts.hidden);
+  fmt::print("{} triangles\n", counts.triangles);
   for (const StageTime& part : times.parts) fmt::print("{:<12}{:>10.3f} ms\n", part.stage, part.milliseconds);
 }
 
@@ -157,6 +158,7 @@ nlohmann::ordered_json jsonOf(const FrameTimes& times) {
           {"cpuMilliseconds", times.cpuMilliseconds},
           {"inView", times.counts.agents},
           {"splats", times.counts.splats},
+          {"hidden", times.counts.hidden},
           {"triangles", times.counts.triangles},
           {"milliseconds", parts}};
 }

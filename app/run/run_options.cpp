@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
-#include "app/common/render_scale.h"
+#include "app/common/drawing_options.h"
 #include "app/run/trace.h"
 #include "app/viewer/window.h"
 #include "skitter/error.h"
@@ -99,6 +99,7 @@ void addNumbers(CLI::App& command, RunOptions& options) {
           "draw agents as finely as if they were so many times larger; 0.5 is faster, 100000 full detail [1]")
       ->type_name("X");
   addRenderScale(command, options.drawing.scale);
+  addOcclusion(command, options.drawing);
   command.add_flag("--footprints", options.drawing.footprints,
                    "feet of adaptive herds leave prints on the ground, which fade");
 }

@@ -54,6 +54,7 @@ skitter_result skitter_renderer_create(skitter_crowd* crowd, uint32_t width, uin
     if (options != nullptr && options->detail != 0) made.detail = options->detail;
     if (options != nullptr && options->scale != 0) made.scale = options->scale;
     made.footprints = options != nullptr && options->footprints != 0;
+    if (options != nullptr && options->occlusion != 0) made.occlusion = options->occlusion > 0;
     *renderer = new skitter_renderer{live, Renderer(*live->device, live->crowd, width, height, made)};
   });
 }

@@ -758,6 +758,8 @@ typedef struct skitter_renderer_options {
                    is cheaper. */
   float scale;  /* pixels that are shaded along each side, of those that the picture has, 0.25 to 1; 0: 1 */
   int footprints; /* not 0: feet of adaptive herds leave prints on the ground */
+  int occlusion;  /* above 0: agents whom others or the ground hide are left out, which changes no picture;
+                     below 0: they are not; 0: where it pays */
 } skitter_renderer_options;
 /* `options`: NULL: the defaults. */
 SKITTER_C skitter_result skitter_renderer_create(skitter_crowd* crowd, uint32_t width, uint32_t height,

@@ -29,13 +29,15 @@ void step(PythonCrowd& self, uint64_t ticks, std::optional<float> dt) {
 }
 
 py::array_t<uint8_t> render(PythonCrowd& self, uint32_t width, uint32_t height,
-                            const std::optional<View>& view, float detail, float scale, bool footprints) {
+                            const std::optional<View>& view, float detail, float scale, bool footprints,
+                            std::optional<bool> occlusion) {
   std::vector<uint8_t> pixels;
   std::vector<std::string> news;
   {
     const Turn turn(*self.device);
     const bool fits = self.renderer && self.renderer->width() == width && self.renderer->height() == height;
-    const RendererOptions drawing{.detail = detail, .scale = scale, .footprints = footprints};
+    const RendererOptions drawing{
+        .detail = detail, .scale = scale, .footprints = footprints, .occlusion = occlusion};
     if (!fits || self.drawing != drawing) {
       self.renderer.reset();
       self.renderer.emplace(self.device->device, self.crowd, width, height, drawing);
@@ -389,13 +391,15 @@ void bindCrowd(py::module_& module) {
   bindRecords(bound);
   bindStates(module, bound);
   bindRates(bound);
-  bound.def("render", &render, "width"_a = 1280, "height"_a = 720, "view"_a = py::none(), "detail"_a = 1.0f,
-            "scale"_a = 1.0f, "footprints"_a = false,
-            "A picture of the crowd and its ground, by the scene's camera or from a View: RGBA8 sRGB, uint8 "
-            "of shape (height, width, 4), top row first. Agents are drawn as finely as if they were `detail` "
-            "times larger, 0.25 to 100000; less is cheaper. `scale`, 0.25 to 1, is the share of each side's "
-            "pixels that are shaded, from which the picture is enlarged. `footprints`: feet of adaptive "
-            "herds leave prints, as long as size and options stay.");
+  bound.def(
+      "render", &render, "width"_a = 1280, "height"_a = 720, "view"_a = py::none(), "detail"_a = 1.0f,
+      "scale"_a = 1.0f, "footprints"_a = false, "occlusion"_a = py::none(),
+      "A picture of the crowd and its ground, by the scene's camera or from a View: RGBA8 sRGB, uint8 "
+      "of shape (height, width, 4), top row first. Agents are drawn as finely as if they were `detail` "
+      "times larger, 0.25 to 100000; less is cheaper. `scale`, 0.25 to 1, is the share of each side's "
+      "pixels that are shaded, from which the picture is enlarged. `footprints`: feet of adaptive "
+      "herds leave prints, as long as size and options stay. `occlusion`: whether agents whom others or "
+      "the ground hide are left out, which changes no picture; None: where it pays.");
 }
 
 }  // namespace skitter::python

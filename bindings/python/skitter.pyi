@@ -690,6 +690,7 @@ class Crowd:
         detail: float = 1.0,
         scale: float = 1.0,
         footprints: bool = False,
+        occlusion: Optional[bool] = None,
     ) -> npt.NDArray[np.uint8]: ...
 
 class ik:

@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct PictureCounts {
   uint64_t agents = 0;     // in the camera's sight
   uint64_t splats = 0;     // of these, agents that are drawn without triangles
   uint64_t triangles = 0;  // of the others, of the ground and of obstacles, without shadows
+  uint64_t hidden =
+      0;  // of these, agents that are left out because they are hidden (RendererOptions::occlusion)
 };
 
 // How a renderer draws.
@@ -50,6 +53,11 @@ struct RendererOptions {
   // Feet of adaptive herds leave prints on the ground, which fade within 20 seconds: those that lift between
   // two of the renderer's pictures.
   bool footprints = false;
+  // Agents in the camera's sight whom others or the ground hide are left out. It changes no picture. Unless
+  // it is said, it is on where it pays: on GPUs, for crowds of at least occlusionAgents when the renderer is
+  // made.
+  std::optional<bool> occlusion = {};
+  static constexpr uint64_t occlusionAgents = 200000;
 
   bool operator==(const RendererOptions&) const = default;
 };

@@ -45,6 +45,11 @@ BINDING DRAW_CLIPS = 31;
 BINDING DRAW_CLIP_FRAMES = 32;
 BINDING DRAW_CLIP_ROWS = 33;
 
+BINDING DRAW_DEPTH = 34;    // the picture's, as far as it is drawn
+BINDING DRAW_PYRAMID = 35;  // float a square, level by level (depth_pyramid.glsl)
+BINDING DRAW_HULLS = 36;    // LOAD4, HullBox (picture.h)
+BINDING DRAW_SEEN = 37;     // uint an agent (look.glsl)
+
 BINDING CONSTANT_INFLUENCES = 0;
 BINDING CONSTANT_MATRICES = 1;  // poses are matrices
 BINDING CONSTANT_ROOTS = 2;     // colours are written as their square roots, for the edge filter

@@ -9,8 +9,7 @@
 layout(local_size_x = WORK_GROUP) in;
 layout(push_constant) uniform ConstantBlock { CullConstants constants; };
 LOAD4_BUFFER(DRAW_BODY, bodies)
-layout(set = 0, binding = DRAW_INSTANCES, std430) writeonly buffer Instances { uint instances[]; };
-layout(set = 0, binding = DRAW_COMMANDS, std430) buffer Commands { uint commands[]; };
+#include "lists.glsl"
 
 // Texels of the far cascade from a point within which shadow.glsl looks: how far off along the longest way and
 // across, a square, and the way off the surface.
@@ -20,14 +19,7 @@ const float FAR_REACH = 11.0;
 const float LEAST_AHEAD = 4.0;  // of the agent's radius
 const float MOST_AHEAD = 3000.0;  // metres
 
-// The entry's place in the list.
-uint append(uint list, uint entry) {
-  uint place = atomicAdd(commands[list * DRAW_WORDS + 1], 1u);
-  instances[list * constants.agents + place] = entry;
-  return place;
-}
-
-// The same of a list that a shader goes through, and its work groups.
+// Into a list that a shader goes through, and so its work groups.
 void appendForDispatch(int list, uint agent) {
   uint place = append(uint(list), agent);
   if (place % WORK_GROUP == 0u) atomicAdd(commands[list * DRAW_WORDS + 2], 1u);

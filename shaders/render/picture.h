@@ -22,7 +22,9 @@ SKITTER_PICTURE_CONST SHADOW_CASCADES = 2;
 // finer and coarser shadows, the far cascade's, who darkens the ground that it touches, and who is drawn as
 // splats (splat.comp). Last, who goes over to splats, and is on that list, too, and whose shadow does,
 // near and far: an entry holds the agent and how far it has gone (fade.glsl). Where agents have rates of
-// their own there is one more, of all that the others have.
+// their own there is one more, of all that the others have. With occlusion two more of each of the camera's
+// lists, of its levels and FADING, are drawn in its place: of whom the last picture showed, and of the others
+// whom this one shows.
 SKITTER_PICTURE_CONST CAMERA_LODS = 5;
 SKITTER_PICTURE_CONST NEAR_FINE = 5;
 SKITTER_PICTURE_CONST NEAR_COARSE = 6;
@@ -33,7 +35,10 @@ SKITTER_PICTURE_CONST FADING = 10;
 SKITTER_PICTURE_CONST NEAR_FADING = 11;
 SKITTER_PICTURE_CONST FAR_FADING = 12;
 SKITTER_PICTURE_CONST SHOWN = 13;
-SKITTER_PICTURE_CONST INSTANCE_LISTS = 14;
+SKITTER_PICTURE_CONST CAMERA_LISTS = CAMERA_LODS + 1;
+SKITTER_PICTURE_CONST FIRST_LOOK = 14;
+SKITTER_PICTURE_CONST LATER = FIRST_LOOK + CAMERA_LISTS;
+SKITTER_PICTURE_CONST INSTANCE_LISTS = LATER + CAMERA_LISTS;
 // The camera's levels from this one on are lit at their vertices.
 SKITTER_PICTURE_CONST FIRST_VERTEX_LIT = 2;
 // clipFromPicture[VIEW_CAMERA], then one of each cascade.
@@ -83,6 +88,29 @@ struct CullConstants {
   float splatPixels;                 // the radius in pixels below which an agent is splats
   float shadePixels;                 // the same of its shadow
   uint listsShown;                   // whether there is the list SHOWN
+};
+
+// The depth pyramid (depth_pyramid.glsl): pixels along its smallest squares, and its levels.
+SKITTER_PICTURE_CONST PYRAMID_CELL = 4;
+SKITTER_PICTURE_CONST PYRAMID_LEVELS = 7;
+struct PyramidConstants {
+  uint width, height;  // of the picture
+  uint level;
+};
+
+// Push constants of first_look and second_look.
+struct OcclusionConstants {
+  uint agents;         // of the page
+  uint palette;        // pose entries an agent
+  uint width, height;  // of the picture
+  uint boxes;
+};
+
+// What a bone carries of the skin, a box about where the bone starts at rest. Boxes make up hulls: a triangle
+// of the skin lies in the convex hull of the boxes of one of these.
+struct HullBox {
+  vec4 centre;   // metres; twice the bone (entry of the pose palette), and 1 more for a hull's last box
+  vec4 extents;  // half of its sides; the largest half width of ribbons
 };
 
 // Push constants of interpolate_bodies and interpolate_poses (docs/levels.md, Pictures). They write records

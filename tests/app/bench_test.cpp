@@ -111,13 +111,16 @@ TEST_F(Bench, RefusesWhatCannotBeTimed) {
 }
 
 TEST_F(Bench, DrawTellsWhatFramesCost) {
-  const Result result = skitter({"bench", "--draw", "--quick", "--agents", "0,3", "--size", "64x36",
-                                 "--render-scale", "0.5", "--levels", "default", "--json", file("d.json")});
+  const Result result =
+      skitter({"bench", "--draw", "--quick", "--agents", "0,3", "--size", "64x36", "--render-scale", "0.5",
+               "--levels", "default", "--occlusion", "on", "--json", file("d.json")});
   ASSERT_EQ(result.code, 0) << result.out << result.err;
   EXPECT_NE(result.out.find("64 x 36 pixels, render scale 0.5"), std::string::npos) << result.out;
   const nlohmann::json all = json("d.json");
-  EXPECT_EQ(all.at("picture"),
-            (nlohmann::json{{"width", 64}, {"height", 36}, {"renderScale", 0.5}, {"levels", "default"}}));
+  EXPECT_EQ(
+      all.at("picture"),
+      (nlohmann::json{
+          {"width", 64}, {"height", 36}, {"renderScale", 0.5}, {"levels", "default"}, {"occlusion", true}}));
   EXPECT_FALSE(all.at("interrupted"));
   ASSERT_EQ(all.at("draw").size(), 2u);
   const nlohmann::json &none = all.at("draw").at(0), &three = all.at("draw").at(1);
@@ -130,6 +133,7 @@ TEST_F(Bench, DrawTellsWhatFramesCost) {
   }
   EXPECT_EQ(none.at("agents"), 0);
   EXPECT_EQ(none.at("inView"), 0);
+  EXPECT_EQ(none.at("hidden"), 0);
   EXPECT_GT(none.at("triangles"), 100);
   EXPECT_EQ(three.at("agents"), 3);
   EXPECT_GE(three.at("inView"), 1);
@@ -147,6 +151,7 @@ TEST_F(Bench, DrawRefusesWhatIsOfMatches) {
   }
   expectRefusal(skitter({"bench", "--quick", "--size", "64x36"}), 2, {"--size", "--draw"});
   expectRefusal(skitter({"bench", "--quick", "--render-scale", "0.5"}), 2, {"--render-scale", "--draw"});
+  expectRefusal(skitter({"bench", "--quick", "--occlusion", "on"}), 2, {"--occlusion", "--draw"});
 }
 
 // The device's tick took `factor` times as long as in the first match of the file.

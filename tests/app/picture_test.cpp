@@ -80,16 +80,17 @@ TEST_F(Picture, LastFrameOfAnEmptyTerrain) {
 }
 
 TEST_F(Picture, TimingsTellEveryPassOfAFrame) {
-  const std::vector<std::string> command{"run",    "--agents", "5",     "--frames",       "2",
-                                         "--size", "65x33",    "--out", file("last.png"), "--render-scale",
-                                         "0.5"};
+  const std::vector<std::string> command{"run",    "--agents",    "5",     "--frames",       "2",
+                                         "--size", "65x33",       "--out", file("last.png"), "--render-scale",
+                                         "0.5",    "--occlusion", "on"};
   const Result plain = skitter(command);
   std::vector<std::string> timed = command;
   timed.push_back("--timings");
   const Result result = skitter(timed);
   ASSERT_EQ(result.code, 0) << result.err;
-  std::vector<std::string> passes{"simulation", "cull", "splats",  "shadow",   "crowd",
-                                  "ground",     "sky",  "enlarge", "readback", "encode"};
+  std::vector<std::string> passes{"simulation", "cull",     "splats",  "shadow",   "crowd",
+                                  "ground",     "sky",      "enlarge", "readback", "encode",
+                                  "occlusion",  "revealed", "contacts"};
   // Only a software device smooths edges by a pass; a GPU takes four samples.
   for (const char* software : {"llvmpipe", "SwiftShader"})
     if (result.out.find(software) != std::string::npos) passes.push_back("filter");

@@ -1938,7 +1938,7 @@ static void testPictures(void) {
   skitter_crowd_options bare = {0};
   skitter_scene* scene = NULL;
   skitter_renderer *renderer = NULL, *fine = NULL;
-  skitter_renderer_options options = {0.1f, 0, 1};
+  skitter_renderer_options options = {0.1f, 0, 1, 0};
   skitter_view view = {{0}, {0}, 0}, up;
   VkImage image = VK_NULL_HANDLE;
   const char* note = "";
@@ -1959,6 +1959,7 @@ static void testPictures(void) {
   REFUSED(skitter_renderer_create(crowd, 5, 5, &options, &renderer), "scale is 1.5, expected 0.25 to 1");
   options.detail = 100000;
   options.scale = 0.5f;
+  options.occlusion = 1;
   CHECK(skitter_renderer_create(crowd, 1u << 30, 5, NULL, &renderer) == SKITTER_ERROR_DEVICE);
   bare.no_poses = 1;
   {

@@ -209,6 +209,7 @@ def test_a_picture_is_an_array(device, scene):
     with pytest.raises(skitter.InputError, match="detail is 0.1, expected 0.25 to 100000"):
         crowd.render(160, 90, detail=0.1)
     assert np.array_equal(picture, crowd.render(160, 90, footprints=True))  # nobody has left one yet
+    assert np.array_equal(picture, crowd.render(160, 90, occlusion=True))
     enlarged = crowd.render(160, 90, scale=0.5)
     assert enlarged.shape == picture.shape and 0 < np.abs(enlarged - picture.astype(float))[..., :3].mean() < 12
     with pytest.raises(skitter.InputError, match="scale is 1.01, expected 0.25 to 1"):

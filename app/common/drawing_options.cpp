@@ -1,4 +1,4 @@
-#include "app/common/render_scale.h"
+#include "app/common/drawing_options.h"
 
 #include "app/common/values.h"
 #include "skitter/renderer.h"
@@ -15,6 +15,16 @@ void addRenderScale(CLI::App& command, float& scale) {
           },
           "shade so many pixels along each side, as a share, and enlarge the picture; 0.5 is faster [1]")
       ->type_name("X");
+}
+
+void addOcclusion(CLI::App& command, RendererOptions& options) {
+  command
+      .add_option_function<std::string>(
+          occlusionOption, [&options](const std::string& text) { options.occlusion = text == "on"; },
+          "leave agents out whom others or the ground hide, which changes no picture [where it pays: on for "
+          "crowds of 200000 and more on a GPU]")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->type_name("on|off");
 }
 
 }  // namespace skitter::app

@@ -2,10 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "skitter/renderer.h"
+
 namespace skitter::app {
 
-// RendererOptions::scale as an option of commands that draw.
+// RendererOptions as options of commands that draw.
 constexpr const char* renderScaleOption = "--render-scale";
 void addRenderScale(CLI::App& command, float& scale);
+constexpr const char* occlusionOption = "--occlusion";
+void addOcclusion(CLI::App& command, RendererOptions& options);
 
 }  // namespace skitter::app
