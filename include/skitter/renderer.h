@@ -36,8 +36,7 @@ struct PictureCounts {
   uint64_t agents = 0;     // in the camera's sight
   uint64_t splats = 0;     // of these, agents that are drawn without triangles
   uint64_t triangles = 0;  // of the others, of the ground and of obstacles, without shadows
-  uint64_t hidden =
-      0;  // of these, agents that are left out because they are hidden (RendererOptions::occlusion)
+  uint64_t hidden = 0;     // in sight, but left out (RendererOptions::occlusion)
 };
 
 // How a renderer draws.

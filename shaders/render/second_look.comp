@@ -67,7 +67,8 @@ bool addBox(vec3 body, int entry, vec4 centre, vec4 extents, inout Cover cover) 
 bool isVisible(Cover cover) {
   ivec2 pixels = ivec2(constants.width, constants.height);
   // A pixel's samples lie anywhere within it.
-  ivec2 first = ivec2(floor(clamp(cover.least, vec2(-1.0), vec2(pixels)))), last = ivec2(floor(clamp(cover.most, vec2(-1.0), vec2(pixels))));
+  ivec2 first = ivec2(floor(clamp(cover.least, vec2(-1.0), vec2(pixels))));
+  ivec2 last = ivec2(floor(clamp(cover.most, vec2(-1.0), vec2(pixels))));
   if (any(lessThan(last, ivec2(0))) || any(greaterThanEqual(first, pixels))) return false;
   first = max(first, 0);
   last = min(last, pixels - 1);
