@@ -105,17 +105,21 @@ void CrowdingWatch::lookClosely(const Crowd& crowd, const Moment& now) {
   if (seconds_.size() >= secondsOfJams) countCrossings(crowd, now);
   seconds_.push_back(now);
   if (seconds_.size() <= secondsOfStanding) return;
-  const Moment& before = seconds_.front();
   std::vector<Advance> agents(now.places.size());
+  std::vector<glm::dvec2> places;  // of one of them
   size_t i = 0;
   for (uint32_t h = 0; h < crowd.herdCount(); ++h)
-    for (uint32_t agent = 0; agent < crowd.places(h); ++agent, ++i)
-      agents[i] = {.before = before.places[i],
-                   .now = now.places[i],
-                   .wanted = now.wanted[i],
-                   .radius = double{crowd::footprintRadius(crowd.rig(h, agent))},
-                   .isThere = std::isfinite(before.places[i].x) && std::isfinite(now.places[i].x),
-                   .hasPoint = now.hasPoint[i]};
+    for (uint32_t agent = 0; agent < crowd.places(h); ++agent, ++i) {
+      places.clear();
+      for (const Moment& second : seconds_) places.push_back(second.places[i]);
+      agents[i] = {
+          .now = now.places[i],
+          .moved = movedFrom(places, now.places[i]),
+          .wanted = now.wanted[i],
+          .radius = double{crowd::footprintRadius(crowd.rig(h, agent))},
+          .isThere = std::ranges::all_of(places, [](const glm::dvec2& p) { return std::isfinite(p.x); }),
+          .hasPoint = now.hasPoint[i]};
+    }
   const std::vector<Standing> standings = standingsOf(agents);
   stuck_.resize(std::max(stuck_.size(), standings.size()));
   arrived_.resize(stuck_.size());

@@ -85,6 +85,12 @@ std::vector<std::vector<size_t>> behindOf(std::span<const Advance> agents) {
 
 }  // namespace
 
+double movedFrom(std::span<const glm::dvec2> places, const glm::dvec2& now) {
+  double moved = 0;
+  for (const glm::dvec2& place : places) moved = std::max(moved, glm::distance(place, now));
+  return moved;
+}
+
 std::vector<Standing> standingsOf(std::span<const Advance> agents) {
   std::vector<Standing> standings(agents.size(), Standing::stuck);
   std::deque<size_t> moving, arrived;
@@ -94,8 +100,7 @@ std::vector<Standing> standingsOf(std::span<const Advance> agents) {
     if (agent.isThere && !wants && agent.hasPoint) {
       standings[i] = Standing::arrived;
       arrived.push_back(i);
-    } else if (!agent.isThere || !wants ||
-               glm::distance(agent.before, agent.now) >= movedShare * 2 * agent.radius) {
+    } else if (!agent.isThere || !wants || agent.moved >= movedShare * 2 * agent.radius) {
       standings[i] = Standing::moves;
       if (agent.isThere && wants) moving.push_back(i);
     }

@@ -12,12 +12,16 @@
 // How a crowd gets on (docs/json.md). Places are world x, z in metres.
 namespace skitter::app {
 
-// An agent at the ends of ten seconds.
+// How far an agent has been from where it is now, at most: of the places where it was.
+double movedFrom(std::span<const glm::dvec2> places, const glm::dvec2& now);
+
+// An agent over ten seconds.
 struct Advance {
-  glm::dvec2 before{0}, now{0};
+  glm::dvec2 now{0};
+  double moved = 0;       // movedFrom of these, metres
   glm::dvec2 wanted{0};   // desired velocity at the end, m/s
   double radius = 0;      // of its footprint
-  bool isThere = false;   // at both ends
+  bool isThere = false;   // all the time
   bool hasPoint = false;  // its goal is a point
 };
 

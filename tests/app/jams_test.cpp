@@ -15,12 +15,7 @@ using app::Standing;
 
 // An agent of half a metre that wants to go toward +z and went so far in ten seconds.
 Advance agentAt(double x, double z, double moved = 0) {
-  return {.before = {x, z - moved},
-          .now = {x, z},
-          .wanted = {0, 1},
-          .radius = 0.5,
-          .isThere = true,
-          .hasPoint = true};
+  return {.now = {x, z}, .moved = moved, .wanted = {0, 1}, .radius = 0.5, .isThere = true, .hasPoint = true};
 }
 
 TEST(Jams, WhoStandsWithAFreeWayAheadIsStuck) {
@@ -31,11 +26,18 @@ TEST(Jams, WhoStandsWithAFreeWayAheadIsStuck) {
   EXPECT_EQ(app::standingsOf(std::vector{agentAt(0, 0, 0.11)}).front(), Standing::moves);
 }
 
+TEST(Jams, WhoComesBackHasMoved) {
+  const std::vector<glm::dvec2> places = {{1, 2}, {1, 2.5}, {1.3, 2.4}, {1, 2}};
+  EXPECT_DOUBLE_EQ(app::movedFrom(places, places.back()), 0.5);
+  EXPECT_EQ(app::movedFrom(std::vector(3, places[1]), places[1]), 0);
+  EXPECT_EQ(app::movedFrom({}, places[1]), 0);
+}
+
 TEST(Jams, AQueueWaitsAsLongAsItsHeadMoves) {
   std::vector<Advance> queue = {agentAt(0, 0), agentAt(0, 1.3), agentAt(0.3, 2.6), agentAt(0, 4, 1)};
   using enum Standing;
   EXPECT_EQ(app::standingsOf(queue), (std::vector{waits, waits, waits, moves}));
-  queue.back().before = queue.back().now;
+  queue.back().moved = 0;
   EXPECT_EQ(app::standingsOf(queue), (std::vector{stuck, stuck, stuck, stuck}));
   // It stands where it wants to be, and so do those behind it.
   queue.back().wanted = {0, 0};
