@@ -164,7 +164,7 @@ CrowdForms formsOf(const crowd::Kind& kind) {
       .matrices = crowd::traitsOf(kind.controller).playsClips, .tinted = kind.tinted, .stumps = kind.hurts};
 }
 
-// Those of whom the picture shows, though the last one did not.
+// The lists of those whom the picture shows, though the last one did not.
 constexpr std::array kLaterLists{shared::LATER,     shared::LATER + 1, shared::LATER + 2,
                                  shared::LATER + 3, shared::LATER + 4, shared::LATER + 5};
 static_assert(kLaterLists.size() == shared::CAMERA_LISTS);
@@ -176,15 +176,13 @@ constexpr auto kMeshLists = [] {
     if (list != shared::CONTACTS && list != shared::SPLATS && list != shared::SHOWN) lists[count++] = list;
   return lists;
 }();
-// Of these, the ones that there are without occlusion.
+// Without occlusion there are those before its own.
 constexpr size_t kPlainMeshLists =
     size_t(std::ranges::find(kMeshLists, shared::FIRST_LOOK) - kMeshLists.begin());
 // The level that a list draws: of the camera's each its own; what fades goes on as it was.
 int levelOf(int list) {
-  if (list >= shared::FIRST_LOOK) {
-    const int place = (list - shared::FIRST_LOOK) % shared::CAMERA_LISTS;
-    return place < shared::CAMERA_LODS ? place : shared::FIRST_VERTEX_LIT;
-  }
+  if (list >= shared::FIRST_LOOK)
+    return levelOf(shared::cameraList((list - shared::FIRST_LOOK) % shared::CAMERA_LISTS));
   if (list == shared::FADING) return shared::FIRST_VERTEX_LIT;
   if (list == shared::NEAR_FADING) return levelOf(shared::NEAR_COARSE);
   if (list == shared::FAR_FADING) return levelOf(shared::FAR_SHADOWS);
@@ -480,7 +478,7 @@ PictureCounts CrowdDrawing::counts(const gpu::Context& context) const {
       const auto draws = gpu::download<VkDrawIndexedIndirectCommand>(context, page.culled.commands);
       const auto count = [&](int list) { return draws[size_t(list)].instanceCount; };
       for (int i = 0; i < shared::CAMERA_LISTS; ++i) {
-        const int list = i < shared::CAMERA_LODS ? i : shared::FADING;
+        const int list = shared::cameraList(i);
         const int first = shared::FIRST_LOOK + i, later = shared::LATER + i;
         const uint32_t drawn = occlusion_ ? count(first) + count(later) : count(list);
         counts.triangles += uint64_t(drawn) * (draws[size_t(list)].indexCount / 3);

@@ -114,7 +114,7 @@ class CrowdDrawing {
   void drawPass(vk::CommandBuffer, const Kind&, const Page&, Pass, std::span<const int> lists,
                 const shared::CrowdConstants&) const;
   void bindBuffers(vk::CommandBuffer, const Kind&, const Page&, int list) const;
-  // Of the lists of the camera's levels, the first of which is given, and of the one of who fades.
+  // Draws the lists of the camera's levels, the first of which is given, and the one of who fades.
   void drawCamera(vk::CommandBuffer, int firstLevel, int fading) const;
   void countParts(vk::CommandBuffer, std::span<const int> lists, bool contacts) const;
 

@@ -1,7 +1,5 @@
 #include "render/occlusion.h"
 
-#include <array>
-
 #include "crowd/controller.h"
 #include "embedded/depth_pyramid_comp.h"
 #include "embedded/depth_pyramid_of_samples_comp.h"
@@ -18,18 +16,10 @@ namespace {
 
 using gpu::BindingKind;
 
-// Squares of each level of the pyramid.
-std::array<uint32_t, shared::PYRAMID_LEVELS> squaresOf(const vk::Extent2D& extent) {
-  const auto half = [](uint32_t n, uint32_t by) { return (n + by - 1) / by; };
-  uint32_t across = half(extent.width, shared::PYRAMID_CELL),
-           down = half(extent.height, shared::PYRAMID_CELL);
-  std::array<uint32_t, shared::PYRAMID_LEVELS> squares;
-  for (uint32_t& level : squares) {
-    level = across * down;
-    across = half(across, 2);
-    down = half(down, 2);
-  }
-  return squares;
+// Squares of a level of the pyramid.
+uint32_t squaresOf(const vk::Extent2D& extent, int level) {
+  return uint32_t(shared::pyramidSquares(int(extent.width), level) *
+                  shared::pyramidSquares(int(extent.height), level));
 }
 
 }  // namespace
@@ -49,7 +39,7 @@ Occlusion::Occlusion(const Setting& s) : extent_(s.extent) {
        .bindings = {{shared::DRAW_DEPTH, BindingKind::heights}, {shared::DRAW_PYRAMID, BindingKind::store}},
        .pushBytes = sizeof(shared::PyramidConstants)});
   uint64_t all = 0;
-  for (const uint32_t squares : squaresOf(extent_)) all += squares;
+  for (int level = 0; level < shared::PYRAMID_LEVELS; ++level) all += squaresOf(extent_, level);
   squares_ = gpu::Buffer(s.context, all * sizeof(float), "depth pyramid");
   pyramidBindings_ =
       pyramid_.bind(s.context, {{shared::DRAW_DEPTH, s.occluders}, {shared::DRAW_PYRAMID, &squares_}});
@@ -110,12 +100,11 @@ void Occlusion::lookFirst(vk::CommandBuffer cmd, const CulledPage& culled, const
 }
 
 void Occlusion::makePyramid(vk::CommandBuffer cmd) const {
-  uint32_t level = 0;
-  for (const uint32_t squares : squaresOf(extent_)) {
+  for (int level = 0; level < shared::PYRAMID_LEVELS; ++level) {
     const shared::PyramidConstants constants{
-        .width = extent_.width, .height = extent_.height, .level = level++};
+        .width = extent_.width, .height = extent_.height, .level = uint32_t(level)};
     pyramid_.dispatch(cmd, pyramidBindings_, gpu::bytesOf(constants),
-                      gpu::groupsFor(squares, shared::WORK_GROUP));
+                      gpu::groupsFor(squaresOf(extent_, level), shared::WORK_GROUP));
     gpu::computeToCompute(cmd);
   }
 }

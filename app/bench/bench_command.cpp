@@ -410,8 +410,7 @@ void addBench(CLI::App& app, Command& chosen) {
           "--size", [options](const std::string& text) { options->frames.size = parseSize("--size", text); },
           "of the pictures that --draw draws, in pixels [1280x720]")
       ->type_name("WxH");
-  addRenderScale(*command, options->frames.drawing.scale);
-  addOcclusion(*command, options->frames.drawing);
+  addDrawingOptions(*command, options->frames.drawing);
   command
       ->add_option("--levels", options->levels,
                    "with --draw: who is far from the camera ticks less often, as in skitter run [those of "

@@ -6,10 +6,8 @@
 
 namespace skitter::app {
 
-// RendererOptions as options of commands that draw.
-constexpr const char* renderScaleOption = "--render-scale";
-void addRenderScale(CLI::App& command, float& scale);
-constexpr const char* occlusionOption = "--occlusion";
-void addOcclusion(CLI::App& command, RendererOptions& options);
+// Adds the parts of RendererOptions that all commands that draw have.
+constexpr const char *renderScaleOption = "--render-scale", *occlusionOption = "--occlusion";
+void addDrawingOptions(CLI::App& command, RendererOptions& options);
 
 }  // namespace skitter::app

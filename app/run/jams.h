@@ -38,8 +38,8 @@ enum class Headway {
   getsOn,
   heldUp,  // in a jam
 };
-// Of an agent that wants to go so fast and goes at `speed`, m/s (NaN where it is not there), and that came
-// from one place to another in the last seconds. Where it was not there then, now alone counts.
+// How an agent gets on that wants to go at `wanted` and goes at `speed`, m/s (NaN where it is not there), and
+// that came from one place to another in the last seconds. Where it was not there then, now alone counts.
 Headway headwayOf(double wanted, double speed, const glm::dvec2& before, const glm::dvec2& now,
                   double seconds);
 
@@ -66,7 +66,7 @@ class FlowMap {
   struct Square {
     double way = 0, first = 0, last = 0;  // metres, seconds
     glm::dvec2 along{0};                  // of the way, how much lies along x and z
-    // Of the row of three along x, and of the one along z.
+    // When somebody came last to the row of three along x, and to the one along z.
     std::array<double, 2> came{}, pause{};
   };
   double side_;

@@ -98,8 +98,7 @@ void addNumbers(CLI::App& command, RunOptions& options) {
           },
           "draw agents as finely as if they were so many times larger; 0.5 is faster, 100000 full detail [1]")
       ->type_name("X");
-  addRenderScale(command, options.drawing.scale);
-  addOcclusion(command, options.drawing);
+  addDrawingOptions(command, options.drawing);
   command.add_flag("--footprints", options.drawing.footprints,
                    "feet of adaptive herds leave prints on the ground, which fade");
 }

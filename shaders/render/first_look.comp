@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Whom the last picture showed this one begins with: they hide others.
+// Lists whom the last picture showed: this one begins with them, who hide others.
 #include "picture.glsl"
 #include "look.glsl"
 

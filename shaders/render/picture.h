@@ -9,11 +9,13 @@
 #include <glm/glm.hpp>
 namespace skitter::shared {
 #define SKITTER_PICTURE_CONST inline constexpr int
+#define SKITTER_PICTURE_FUNCTION constexpr
 using glm::mat4;
 using glm::vec4;
 using uint = uint32_t;
 #else
 #define SKITTER_PICTURE_CONST const int
+#define SKITTER_PICTURE_FUNCTION
 #endif
 
 // Two squares beside each other in one shadow map: sharp near the camera, coarse further away.
@@ -36,6 +38,7 @@ SKITTER_PICTURE_CONST NEAR_FADING = 11;
 SKITTER_PICTURE_CONST FAR_FADING = 12;
 SKITTER_PICTURE_CONST SHOWN = 13;
 SKITTER_PICTURE_CONST CAMERA_LISTS = CAMERA_LODS + 1;
+SKITTER_PICTURE_FUNCTION int cameraList(int place) { return place < CAMERA_LODS ? place : FADING; }
 SKITTER_PICTURE_CONST FIRST_LOOK = 14;
 SKITTER_PICTURE_CONST LATER = FIRST_LOOK + CAMERA_LISTS;
 SKITTER_PICTURE_CONST INSTANCE_LISTS = LATER + CAMERA_LISTS;
@@ -93,6 +96,10 @@ struct CullConstants {
 // The depth pyramid (depth_pyramid.glsl): pixels along its smallest squares, and its levels.
 SKITTER_PICTURE_CONST PYRAMID_CELL = 4;
 SKITTER_PICTURE_CONST PYRAMID_LEVELS = 7;
+// Squares along so many pixels, at a level.
+SKITTER_PICTURE_FUNCTION int pyramidSquares(int pixels, int level) {
+  return ((pixels + PYRAMID_CELL - 1) / PYRAMID_CELL + (1 << level) - 1) >> level;
+}
 struct PyramidConstants {
   uint width, height;  // of the picture
   uint level;
@@ -106,8 +113,8 @@ struct OcclusionConstants {
   uint boxes;
 };
 
-// What a bone carries of the skin, a box about where the bone starts at rest. Boxes make up hulls: a triangle
-// of the skin lies in the convex hull of the boxes of one of these.
+// A box about what a bone carries of the skin, from where the bone starts at rest. Boxes make up hulls: a
+// triangle of the skin lies in the convex hull of the boxes of one of these.
 struct HullBox {
   vec4 centre;   // metres; twice the bone (entry of the pose palette), and 1 more for a hull's last box
   vec4 extents;  // half of its sides; the largest half width of ribbons

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Whom the depth of ground, splats and of those who have been drawn does not hide. Who has not been drawn is now.
+// Finds whom the depth of the ground, of splats and of those who have been drawn does not hide, and lists those of them
+// who have not been drawn.
 #include "picture.glsl"
 #include "depth_pyramid.glsl"
 #include "lib/load4.glsl"
@@ -14,13 +15,13 @@ LOAD4_BUFFER(DRAW_POSE, poses)
 LOAD4_BUFFER(DRAW_HULLS, boxes)
 layout(set = 0, binding = DRAW_PYRAMID, std430) readonly buffer Pyramid { float pyramid[]; };
 
-// What rounding may do to a depth in a vertex shader and here, as a share of it.
+// Rounding changes a depth by less than this share, in a vertex shader and here.
 const float ROUNDING = 1e-5;
 // A ribbon is at least half a pixel wide to each side, and reaches half a pixel further at its ends.
 const float RIBBON_PIXELS = 0.71;
 const float LEAST_AHEAD = 0.05;  // metres, the near plane
 
-// What a hull covers on the screen: pixels from the upper left corner, and the nearest depth.
+// A hull's rectangle in the picture, pixels from the upper left corner, and its nearest depth.
 struct Cover {
   vec2 least, most;
   float nearest;
@@ -43,16 +44,17 @@ bool addBox(vec3 body, int entry, vec4 centre, vec4 extents, inout Cover cover) 
     if (STUMPS && start.w != 0.0) turned = mat3(0.0);
     middle = start.xyz + turned * centre.xyz;
   }
+  mat3 sides = mat3(turned[0] * extents.x, turned[1] * extents.y, turned[2] * extents.z);  // halves of them
   mat4 view = picture.clipFromPicture[VIEW_CAMERA];
   vec4 at = view * vec4(body + middle, 1.0);
-  vec4 x = view * vec4(turned[0] * extents.x, 0.0), y = view * vec4(turned[1] * extents.y, 0.0),
-       z = view * vec4(turned[2] * extents.z, 0.0);
-  float ahead = at.w - abs(x.w) - abs(y.w) - abs(z.w) - extents.w;
+  vec4 x = view * vec4(sides[0], 0.0), y = view * vec4(sides[1], 0.0), z = view * vec4(sides[2], 0.0);
+  // No place of the box is further away; ribbons reach so many metres beyond it, towards the eye, too.
+  float away = distance(body + middle, picture.eye.xyz) + length(sides[0]) + length(sides[1]) + length(sides[2]);
+  float reach = extents.w + RIBBON_PIXELS * away * picture.eye.w;
+  float ahead = at.w - abs(x.w) - abs(y.w) - abs(z.w) - reach;
   if (ahead < LEAST_AHEAD) return false;
   // Off the picture's middle a length across the way to the eye covers more pixels.
-  vec3 away = body + middle - picture.eye.xyz;
-  float stretch = dot(away, away) / (ahead * ahead);
-  float wide = (extents.w / (ahead * picture.eye.w) + RIBBON_PIXELS) * stretch;
+  float wide = reach / (ahead * picture.eye.w) * (away / ahead);
   vec2 size = vec2(constants.width, constants.height);
   for (int corner = 0; corner < 8; ++corner) {
     vec4 clip = at + ((corner & 1) != 0 ? x : -x) + ((corner & 2) != 0 ? y : -y) + ((corner & 4) != 0 ? z : -z);

@@ -308,9 +308,9 @@ TEST_P(SlowAgentsTest, moveInEveryPicture) {
     std::ranges::sort(differences);
     const double median = differences[differences.size() / 2];
     // Planted feet stand still, and then all of a group go on: the walk itself is less even. So are clips
-    // that are shown at times of their own, as they are at full rate, where planted feet reach 2.2 medians.
+    // that are shown at times of their own, as they are at full rate. A GPU's samples show 2.03 medians.
     EXPECT_GT(differences.front(), (!pose ? 0.3 : GetParam() == Controller::planted ? 0.4 : 0.5) * median);
-    EXPECT_LT(differences.back(), 2.5 * median);
+    EXPECT_LT(differences.back(), (context().isCpu() ? 2 : 2.5) * median);
   }
 }
 
