@@ -16,7 +16,6 @@ namespace {
 
 constexpr double oftenSeconds = 0.1, rarelySeconds = 1;
 constexpr size_t secondsOfStanding = 10;
-constexpr size_t secondsOfJams = 5;
 
 uint64_t ticksOf(double seconds, double dt) {
   return std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(seconds / dt)));
@@ -102,7 +101,7 @@ void CrowdingWatch::follow(const Crowd& crowd) {
 }
 
 void CrowdingWatch::lookClosely(const Crowd& crowd, const Moment& now) {
-  if (seconds_.size() >= secondsOfJams) countCrossings(crowd, now);
+  countCrossings(crowd, now);
   seconds_.push_back(now);
   if (seconds_.size() <= secondsOfStanding) return;
   std::vector<Advance> agents(now.places.size());
@@ -142,15 +141,11 @@ void CrowdingWatch::countCrossings(const Crowd& crowd, const Moment& now) {
     }
   }
   const std::vector<bool> crosses = crossingAgents(legs, now.places, reach_);
-  const Moment& before = seconds_[seconds_.size() - secondsOfJams];
-  const double elapsed = static_cast<double>(secondsOfJams * rarely_) * dt_;
   for (size_t i = 0; i < crosses.size(); ++i) {
-    const Headway headway =
-        headwayOf(glm::length(now.wanted[i]), now.speeds[i], before.places[i], now.places[i], elapsed);
+    const bool isJammed = isInJam(glm::length(now.wanted[i]), now.speeds[i]);
     crossed_ += crosses[i];
-    heldUp_ += headway == Headway::heldUp;
-    getOn_ += headway == Headway::getsOn;
-    getOnAndCross_ += crosses[i] && headway == Headway::getsOn;
+    jammed_ += isJammed;
+    jammedCrossed_ += crosses[i] && isJammed;
   }
 }
 
@@ -161,8 +156,8 @@ Jams CrowdingWatch::jams() const {
     return static_cast<double>(of) / static_cast<double>(all);
   };
   jams.legCrossings = share(crossed_, looked_);
-  jams.legCrossingsOutsideJams = share(getOnAndCross_, getOn_);
-  jams.jammed = share(heldUp_, looked_);
+  jams.legCrossingsOutsideJams = share(crossed_ - jammedCrossed_, looked_ - jammed_);
+  jams.jammed = share(jammed_, looked_);
   jams.stuck = static_cast<uint64_t>(std::ranges::count(stuck_, true));
   jams.arrived = static_cast<uint64_t>(std::ranges::count(arrived_, true));
   return jams;

@@ -49,7 +49,7 @@ class CrowdingWatch {
   std::deque<Moment> seconds_;  // of the last ten, the earliest first
   std::vector<bool> stuck_, arrived_;
   // Agents, each time that they were looked at closely.
-  uint64_t looked_ = 0, crossed_ = 0, heldUp_ = 0, getOn_ = 0, getOnAndCross_ = 0;
+  uint64_t looked_ = 0, crossed_ = 0, jammed_ = 0, jammedCrossed_ = 0;
 };
 
 }  // namespace skitter::app

@@ -119,12 +119,7 @@ std::vector<Standing> standingsOf(std::span<const Advance> agents) {
   return standings;
 }
 
-Headway headwayOf(double wanted, double speed, const glm::dvec2& before, const glm::dvec2& now,
-                  double seconds) {
-  if (std::isnan(speed) || wanted < leastWanted) return Headway::stands;
-  const double least = jammedShare * wanted;
-  return speed < least || glm::distance(before, now) < least * seconds ? Headway::heldUp : Headway::getsOn;
-}
+bool isInJam(double wanted, double speed) { return wanted >= leastWanted && speed < jammedShare * wanted; }
 
 void FlowMap::add(const glm::dvec2& from, const glm::dvec2& to, double seconds) {
   const auto [found, isNew] = squares_.try_emplace(cellAt(0.5 * (from + to), side_));

@@ -33,15 +33,9 @@ enum class Standing {
 };
 std::vector<Standing> standingsOf(std::span<const Advance> agents);
 
-enum class Headway {
-  stands,  // and wants to, or is not there
-  getsOn,
-  heldUp,  // in a jam
-};
-// How an agent gets on that wants to go at `wanted` and goes at `speed`, m/s (NaN where it is not there), and
-// that came from one place to another in the last seconds. Where it was not there then, now alone counts.
-Headway headwayOf(double wanted, double speed, const glm::dvec2& before, const glm::dvec2& now,
-                  double seconds);
+// Whether an agent that wants to go at `wanted` goes at less than half of it, m/s; NaN of one that is not
+// there.
+bool isInJam(double wanted, double speed);
 
 // The traffic through a place.
 struct Flow {

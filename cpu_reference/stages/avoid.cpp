@@ -10,14 +10,16 @@ namespace skitter::reference {
 namespace {
 
 // docs/stages/avoid.md. Seconds, shares and leg lengths a second.
-constexpr double horizon = 2, pushTime = 0.5;
-constexpr double roomHeldUp = 1.5, roomGoing = 2.7;  // times the footprints
+constexpr double horizon = 0.7, pushTime = 0.5;
+constexpr double roomOfLegs = 1.55, roomGoing = 3.55;  // times the footprints
+constexpr double turnSlope = 4;
 constexpr double rightBias = 0.05;
 constexpr double softness = 0.05;
 constexpr int sweeps = 6;
 constexpr double obstacleTime = 0.5, obstacleSoftness = 0.01;
 constexpr double pushSpeed = 0.3, steadySpeed = 0.05;
-constexpr double frontRoom = 0.1, nearRoom = 0.02, deepRoom = 0.01, looseBelow = 0.9;
+constexpr double deepRoom = 0.01, looseBelow = 0.9;
+constexpr double shareOfSecond = 0.4, creepRate = 0.3;
 constexpr double easeTime = 0.4, slackSpeed = 1e-4, freeSpeed = 100;
 constexpr int cellSweeps = 2;
 constexpr double turnTime = 2;
@@ -78,7 +80,7 @@ glm::dvec2 partingLine(int64_t a, int64_t b) {
 
 // How many times the footprints are apart that agents try to keep.
 double roomOf(double speed, double wanted) {
-  return std::lerp(roomHeldUp, roomGoing, std::min(1.0, 2 * speed / std::max(wanted, 1e-6)));
+  return std::lerp(roomOfLegs, roomGoing, std::min(1.0, 2 * speed / std::max(wanted, 1e-6)));
 }
 
 HalfPlane planeOf(const AvoidTuning& tuning, const Walker& self, const Seen& seen, double room, int right,
@@ -88,7 +90,9 @@ HalfPlane planeOf(const AvoidTuning& tuning, const Walker& self, const Seen& see
   const glm::dvec2 p = glm::dvec2(seen.x, seen.z) / tuning.quanta;
   const double d = std::sqrt(static_cast<double>(seen.distance2)) / tuning.quanta;
   const double footprints = static_cast<double>(seen.radii) / tuning.quanta;
-  const double radii = rounded(room, 4 * room) * footprints;
+  // Nobody is kept from who is out of reach.
+  const double reach = footprints + static_cast<double>(tuning.look) / tuning.quanta;
+  const double radii = std::min(rounded(room, 4 * room) * footprints, reach);
   const double power = rounded(d * d - radii * radii, 4 * (d * d + radii * radii));
   const double size = glm::length(self.velocity) + glm::length(other.velocity) + (d + radii) / horizon;
   const glm::dvec2 v = rounded(self.velocity - other.velocity, 2 * size);
@@ -241,29 +245,29 @@ bool isBefore(int64_t number, int64_t other, int64_t tick, double dt) {
 }
 
 CellSide sideOf(const AvoidTuning& tuning, const AvoidTick& tick, const Walker& self, const Seen& seen,
-                const glm::dvec2& desired, Rounding& rounded) {
+                Rounding& rounded) {
   const Walker& other = *seen.walker;
   const glm::dvec2 p = glm::dvec2(seen.x, seen.z) / tuning.quanta;
   const double d = glm::length(p), radii = static_cast<double>(seen.radii) / tuning.quanta;
   const double smaller = static_cast<double>(std::min(self.radius, other.radius)) / tuning.quanta;
   const glm::dvec2 n = seen.distance2 > 0 ? rounded(p / d, 4) : glm::dvec2(0);
-  const double inFront = glm::dot(n, desired) / std::max(glm::length(desired), 1e-6);
   const bool givesWay =
       !other.yields || isBefore(other.number, self.number, tick.number, tick.dt / tick.span);
-  const double front = givesWay ? frontRoom * std::clamp(2 * rounded(inFront, 8), 0.0, 1.0) : 0;
   const double leaves = std::max(0.0, rounded(glm::dot(n, other.velocity), 4 * glm::length(other.velocity)));
-  // Half of the gap is the neighbour's, if it holds itself to it. Who overlaps much is not held.
+  // What is between them is the neighbour's in part, if it holds itself to it. Who overlaps much is not held.
   const double size = 4 * (d + 2 * radii);
-  const auto own = [&](double room) {
-    const double gap = rounded(d - (1 + front) * radii - room * smaller, size);
-    return (other.yields ? 0.5 : 1.0) * std::max(0.0, gap) +
-           std::max(0.0, rounded(looseBelow * radii - d, size));
-  };
+  const double half = other.yields ? 0.5 : 1;
+  const double wishes = !other.yields ? 1 : givesWay ? shareOfSecond : 1 - shareOfSecond;
+  const double loose = std::max(0.0, rounded(looseBelow * radii - d, size));
+  const double betweenLegs = rounded(d - roomOfLegs * radii, size);
+  const double near = wishes * std::max(0.0, betweenLegs) + loose;
+  const double deep = half * std::max(0.0, rounded(d - radii - deepRoom * smaller, size)) + loose;
   const auto eased = [&](double way) { return std::min(way / tick.dt, way / easeTime + leaves); };
-  const double lacking = givesWay ? std::max(0.0, rounded((1 + front) * radii - d, size)) : 0;
-  const double back = std::min(lacking / easeTime, pushSpeed * tuning.legLength);
-  const double near = own(nearRoom), deep = own(deepRoom), slack = slackSpeed * tuning.legLength;
-  return {n, eased(near) - back, deep / tick.dt + slack, eased(deep) + slack};
+  const double back =
+      givesWay ? std::min(std::max(0.0, -betweenLegs) / easeTime, pushSpeed * tuning.legLength) : 0;
+  const double creep = creepRate * half * std::max(0.0, rounded(d - radii, size));
+  const double slack = slackSpeed * tuning.legLength;
+  return {n, eased(near) - back + creep, deep / tick.dt + slack, eased(deep) + slack};
 }
 
 // How fast the body may go on along its heading.
@@ -341,26 +345,32 @@ AvoidResult avoid(const AvoidTuning& tuning, const AvoidTick& tick, const AgentB
 
   const double speed = glm::length(desired);
   const double room = roomOf(body.speed, speed);
-  double close = 0, press = 0;
+  double close = 0, right = 0, left = 0;
   std::vector<CellSide> sides;
   for (const Seen& other : seen) {
     const double d = std::sqrt(static_cast<double>(other.distance2)) / tuning.quanta;
     const double radii = static_cast<double>(other.radii) / tuning.quanta;
-    const double closeness = std::clamp(2 - d / radii, 0.0, 1.0);
+    const double closeness = std::clamp(2 - d / (roomOfLegs * radii), 0.0, 1.0);
     const glm::dvec2 p = glm::dvec2(other.x, other.z) / tuning.quanta;
     close = std::max(close, closeness);
-    press = std::max(press, closeness * std::max(0.0, glm::dot(p, desired)) / std::max(d * speed, 1e-6));
+    // Away from the neighbour: to the right, or to the left of one that is on the right.
+    const double product = std::max(d * speed, 1e-6), sine = crossOf(desired, p) / product;
+    const double turn = closeness * std::max(0.0, glm::dot(desired, p) / product) *
+                        std::clamp(1 - turnSlope * sine, -1.0, 1.0);
+    (turn > 0 ? right : left) = std::max(turn > 0 ? right : left, std::abs(turn));
     const size_t place = result.planes.size();
-    const int right = place < choices.right.size() ? choices.right[place] : -1;
-    result.planes.push_back(planeOf(tuning, self, other, room, right, rounded));
-    sides.push_back(sideOf(tuning, tick, self, other, desired, rounded));
+    const int passes = place < choices.right.size() ? choices.right[place] : -1;
+    result.planes.push_back(planeOf(tuning, self, other, room, passes, rounded));
+    sides.push_back(sideOf(tuning, tick, self, other, rounded));
     result.mostSpeed = std::min(result.mostSpeed, speedAlong(sides.back(), body.heading, rounded));
   }
 
   for (const Beside& beside : obstaclesBeside(tuning, self, choices.otherObstacle, result.obstacleMargin))
     result.obstaclePlanes.push_back(planeOf(tuning, self, beside, rounded));
 
-  const double aside = rounded(press * std::max(0.0, 1 - body.speed / std::max(speed, 1e-6)), 8);
+  // Each turn errs by its closeness, its cosine and four times its sine.
+  const double aside =
+      rounded((right - left) * std::max(0.0, 1 - body.speed / std::max(speed, 1e-6)), 2 * 24 + 8);
   const glm::dvec2 wanted =
       rounded((desired + aside * rightOf(desired)) / std::sqrt(1 + aside * aside), 8 * speed);
   glm::dvec2 v = solved(result.planes, result.obstaclePlanes, wanted, rounded);

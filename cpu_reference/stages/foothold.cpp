@@ -10,7 +10,7 @@
 namespace skitter::reference {
 namespace {
 
-constexpr double othersMargin = 0.15;  // of the footprint
+constexpr double othersMargin = 0.6;  // of the footprint
 
 // When the foot lands, in the middle of its stance, and at its end.
 std::vector<Border> bordersOf(std::span<const Passer> passers, double landing, double stance) {

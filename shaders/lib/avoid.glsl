@@ -3,20 +3,32 @@
 #include "lib/aside.glsl"
 // How an agent keeps clear of its neighbours (docs/stages/avoid.md).
 
-const float AVOID_HORIZON = 2.0, AVOID_PUSH_TIME = 0.5;
-const float AVOID_ROOM = 1.5, AVOID_ROOM_GOING = 1.2;  // times the footprints
-const float AVOID_RIGHT_BIAS = 0.05;
+const float AVOID_HORIZON = 0.7, AVOID_PUSH_TIME = 0.5;
+const float AVOID_ROOM = 1.55, AVOID_ROOM_GOING = 2.0;  // times the footprints
+const float AVOID_TURN = 4.0, AVOID_RIGHT_BIAS = 0.05;
 const float AVOID_SOFTNESS = 0.05;
 const int AVOID_SWEEPS = 6;
 const float AVOID_STEADY_SPEED = 0.05;
 // Shares of footprints; seconds; leg lengths a second.
-const float AVOID_FRONT = 0.1, AVOID_NEAR = 0.02, AVOID_DEEP = 0.01, AVOID_LOOSE = 0.9;
+const float AVOID_DEEP = 0.01, AVOID_LOOSE = 0.9;
 const float AVOID_EASE = 0.4, AVOID_SLACK = 1e-4, AVOID_FREE = 100.0;
+// The share of the room between two agents that who goes second may take; of a gap, each second.
+const float AVOID_SECOND = 0.4, AVOID_CREEP = 0.3;
 const int AVOID_CELL_SWEEPS = 2;
 
 // 1. The order of neighbours.
 bool isBefore(int power, int number, int otherPower, int otherNumber) {
   return power < otherPower || (power == otherPower && number < otherNumber);
+}
+
+// 2. How near a neighbour is: 1 within the room of legs, 0 from twice as far.
+float closenessOf(float d, float footprints) { return clamp(2.0 - d / (AVOID_ROOM * footprints), 0.0, 1.0); }
+
+// How much an agent turns away from a neighbour ahead, to which p leads: to its right, or to its left (less than 0) where
+// the neighbour is on the right.
+float turnFrom(vec2 p, float d, vec2 wanted, float speed, float closeness) {
+  float size = 1.0 / max(d * speed, 1e-6), across = wanted.x * p.y - wanted.y * p.x;
+  return closeness * max(0.0, dot(p, wanted)) * size * clamp(1.0 - AVOID_TURN * across * size, -1.0, 1.0);
 }
 
 // 3. Where two agents part that are in one place.
@@ -32,7 +44,7 @@ struct HalfPlane {
   float bound;
 };
 
-// How many times the footprints agents keep apart. Who gets on as it wants to keeps the room that legs take.
+// How many times the footprints agents keep apart: the room of their legs, and more of it who gets on as it wants to.
 float roomOf(float speed, float wanted) {
   return AVOID_ROOM + AVOID_ROOM_GOING * clamp(2.0 * speed / max(wanted, 1e-6), 0.0, 1.0);
 }
@@ -89,20 +101,18 @@ bool goesFirst(int number, int other, float turn) {
   return (uint(number) ^ order) < (uint(other) ^ order);
 }
 
-// `lesser`: the smaller footprint; `ahead`: unit, where the agent wants to go; `moves`: the neighbour's velocity;
-// `yields`: the agent makes room for the neighbour.
-CellSide cellSideOf(vec2 p, float d, float radii, float lesser, vec2 ahead, vec2 moves, float share, bool yields,
-                    Parameters q) {
+// `lesser`: the smaller footprint; `moves`: the neighbour's velocity; `avoids`: it takes its share of the room, too;
+// `yields`: the agent makes room for it.
+CellSide cellSideOf(vec2 p, float d, float radii, float lesser, vec2 moves, bool avoids, bool yields, Parameters q) {
   vec2 n = p * (1.0 / max(d, 1e-9));
-  float room = yields ? AVOID_FRONT * clamp(2.0 * dot(n, ahead), 0.0, 1.0) : 0.0;
-  float gap = d - radii * (1.0 + room), away = max(0.0, dot(n, moves));
-  float back = yields ? clamp(gap * (1.0 / AVOID_EASE), -AVOID_PUSH_SPEED * q.legLength, 0.0) : 0.0;
+  float share = avoids ? 0.5 : 1.0, wish = avoids ? (yields ? AVOID_SECOND : 1.0 - AVOID_SECOND) : 1.0;
+  float gap = d - radii, room = d - AVOID_ROOM * radii, away = max(0.0, dot(n, moves));
+  float back = yields ? clamp(room * (1.0 / AVOID_EASE), -AVOID_PUSH_SPEED * q.legLength, 0.0) : 0.0;
   float loose = max(0.0, AVOID_LOOSE * radii - d);
-  float near = max(0.0, gap - AVOID_NEAR * lesser) * share + loose;
-  float deep = max(0.0, gap - AVOID_DEEP * lesser) * share + loose;
+  float near = max(0.0, room) * wish + loose, deep = max(0.0, gap - AVOID_DEEP * lesser) * share + loose;
   float slack = AVOID_SLACK * q.legLength, atOnce = deep / q.dt;
-  return CellSide(n, min(near / q.dt, near * (1.0 / AVOID_EASE) + away) + back, atOnce + slack,
-                  min(atOnce, deep * (1.0 / AVOID_EASE) + away) + slack);
+  float most = min(near / q.dt, near * (1.0 / AVOID_EASE) + away) + back + AVOID_CREEP * share * max(0.0, gap);
+  return CellSide(n, most, atOnce + slack, min(atOnce, deep * (1.0 / AVOID_EASE) + away) + slack);
 }
 
 // The speed along a unit vector at which the body stays on that side. It reaches what is free before the divisor is 0.

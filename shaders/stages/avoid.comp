@@ -71,7 +71,7 @@ void main() {
   RARELY(seen > NEIGHBOURS) ADD64(crowding, CROWDING_DROPPED, uint(seen - NEIGHBOURS));
 
   vec2 wanted = steer.xy;
-  float speed = length(wanted), near = 0.0, press = 0.0, most = AVOID_FREE * parameters.legLength;
+  float speed = length(wanted), near = 0.0, right = 0.0, left = 0.0, most = AVOID_FREE * parameters.legLength;
   float room = roomOf(moving.z, speed);
   HalfPlane planes[NEIGHBOURS];
   CellSide sides[NEIGHBOURS];
@@ -83,16 +83,16 @@ void main() {
     vec2 p = (other.xy - self.xy) * metres;
     // It is the root of a whole number, which is exact.
     float d = sqrt(float(x * x + z * z)) * metres, r = (other.z + self.z) * metres;
-    float closeness = there ? clamp(2.0 - d / r, 0.0, 1.0) : 0.0;
+    float closeness = there ? closenessOf(d, r) : 0.0, turn = turnFrom(p, d, wanted, speed, closeness);
     near = max(near, closeness);
-    press = max(press, closeness * max(0.0, dot(p, wanted)) / max(d * speed, 1e-6));
+    right = max(right, turn);
+    left = max(left, -turn);
     int who = int(other.w);
     float share = moves.z != 0.0 ? 0.5 : 1.0;
-    planes[k] = halfPlaneOf(p, d, r, room, going.xy, going.xy - moves.xy, share,
+    planes[k] = halfPlaneOf(p, d, r, min(room, 1.0 + float(look) * metres / r), going.xy, going.xy - moves.xy, share,
                             partingLine(number, who));
     bool yields = moves.z == 0.0 || goesFirst(who, number, constants.tick);
-    sides[k] = cellSideOf(p, d, r, float(min(self.z, other.z)) * metres, wanted / max(speed, 1e-6),
-                          moves.xy, share, yields, parameters);
+    sides[k] = cellSideOf(p, d, r, float(min(self.z, other.z)) * metres, moves.xy, moves.z != 0.0, yields, parameters);
     sides[k].n = there ? sides[k].n : vec2(0.0);
     most = there ? min(most, speedToward(sides[k], moving.xy)) : most;
     // Nobody forbids anything.
@@ -100,7 +100,7 @@ void main() {
     planes[k].bound = there ? planes[k].bound : -1.0;
   }
 
-  float aside = press * max(0.0, 1.0 - moving.z / max(speed, 1e-6));
+  float aside = (right - left) * max(0.0, 1.0 - moving.z / max(speed, 1e-6));
   vec2 velocity = (wanted + aside * vec2(-wanted.y, wanted.x)) / sqrt(1.0 + aside * aside);
   bool forbidden = false;
   [[unroll]] for (int k = 0; k < NEIGHBOURS; ++k)

@@ -3,7 +3,7 @@
 #include "stages/neighbours.glsl"
 
 const int OTHERS_TIMES = 3;
-const float OTHERS_MARGIN = 0.15;   // of the footprint
+const float OTHERS_MARGIN = 0.6;    // of the footprint
 const float OTHERS_WEIGHT = 100.0;  // of the square of leg lengths beyond a line
 
 // Between the agent and each neighbour at each time: n from one to the other, and the most that n . q may be of a place

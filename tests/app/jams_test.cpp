@@ -95,17 +95,11 @@ TEST(Jams, WhoComesInBesideEndsAPauseToo) {
   EXPECT_NEAR(pauseWith({1, 2.5}, {1, 1.5}), 7, 1e-9);
 }
 
-TEST(Jams, WhoGetsOnAtLessThanHalfOfItsSpeedIsHeldUp) {
-  const glm::dvec2 before(1, 2), slow(1, 6.9), fast(1, 7.1);
-  using enum app::Headway;
-  EXPECT_EQ(app::headwayOf(2, 1.1, before, fast, 5), getsOn);
-  EXPECT_EQ(app::headwayOf(2, 0.9, before, fast, 5), heldUp) << "it stops now";
-  EXPECT_EQ(app::headwayOf(2, 1.1, before, slow, 5), heldUp) << "it starts now";
-  EXPECT_EQ(app::headwayOf(0, 0, before, before, 5), stands);
-  EXPECT_EQ(app::headwayOf(0, 1, before, fast, 5), stands) << "whatever pushes it";
-  EXPECT_EQ(app::headwayOf(2, 1.1, {NAN, NAN}, fast, 5), getsOn) << "it has come since";
-  EXPECT_EQ(app::headwayOf(2, 0.9, {NAN, NAN}, fast, 5), heldUp);
-  EXPECT_EQ(app::headwayOf(2, NAN, before, {NAN, NAN}, 5), stands) << "it is gone";
+TEST(Jams, WhoGetsOnAtLessThanHalfOfItsSpeedIsInOne) {
+  EXPECT_FALSE(app::isInJam(2, 1.1));
+  EXPECT_TRUE(app::isInJam(2, 0.9));
+  EXPECT_FALSE(app::isInJam(0, 0)) << "it wants to stand";
+  EXPECT_FALSE(app::isInJam(2, NAN)) << "it is not there";
 }
 
 TEST(Jams, LegsCrossAsSeenFromAbove) {

@@ -351,6 +351,8 @@ TEST_F(AvoidTest, SleepersWakeForWhoComes) {
   Scene scene = meetingScene(2);
   scene.herds[0].goal = {.kind = Goal::Kind::none};
   scene.herds[1].goal = {.kind = Goal::Kind::none};
+  // It goes straight on, so that the sleeper is in its way.
+  scene.herds[1].avoid = false;
   Crowd crowd(device(), ground, scene, {.sleep = true});
   const auto place = [&](uint32_t herd, float z, float heading) {
     crowd.teleport(crowd.agentId(herd, 0), {{0, z}, heading});

@@ -55,6 +55,23 @@ Results meeting(Device& device, Controller controller, const CrowdOptions& optio
   return replay(device, crowd, ground, 200);
 }
 
+// Small ones meet large ones, of whom they keep as far as they look, which is less than the room of both.
+Results meetingLarge(Device& device, Controller controller, const CrowdOptions& options) {
+  const Heightfield ground = smallRollingGround();
+  Scene scene = sceneOf(25, 1, 1, controller);
+  scene.herds[0].avoid = true;
+  scene.herds[0].spawn = {.kind = Spawn::Kind::grid, .spacing = 1, .centre = {0, -5}};
+  scene.herds[0].goal = {.kind = Goal::Kind::velocity, .velocity = {0, 1}};
+  scene.herds.push_back(scene.herds[0]);
+  scene.herds[0].sizes = {0.5f};
+  scene.herds[1].sizes = {2};
+  scene.herds[1].agents = 4;
+  scene.herds[1].spawn = {.kind = Spawn::Kind::grid, .spacing = 4, .centre = {0, 4}};
+  scene.herds[1].goal.velocity = {0, -1};
+  Crowd crowd(device, ground, scene, options);
+  return replay(device, crowd, ground, 200);
+}
+
 // They begin so close that nothing but their cells keeps them apart.
 Results crowding(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = smallRollingGround();
@@ -104,8 +121,8 @@ Results facing(Device& device, Controller controller, const CrowdOptions& option
     const float side = i % 2 == 0 ? 1.0f : -1.0f, beside = 0.02f * (static_cast<float>(i / 2) - 2.5f);
     const float x = 4 * static_cast<float>(i / 2) - 10 + side * beside;
     const AgentId agent = crowd.agentId(0, i);
-    places.push_back({agent, {{x, -2 * side}, i % 2 == 0 ? 0.0f : std::numbers::pi_v<float>}});
-    goals.push_back({agent, {.kind = Goal::Kind::velocity, .velocity = {0, side}}});
+    places.push_back({agent, {{x, -3 * side}, i % 2 == 0 ? 0.0f : std::numbers::pi_v<float>}});
+    goals.push_back({agent, {.kind = Goal::Kind::velocity, .velocity = {0, 2.5f * side}}});
   }
   crowd.teleport(places);
   crowd.steer(goals);
@@ -586,6 +603,7 @@ const std::vector<Situation>& situations() {
     std::vector<Situation> both = {
         {"walking", {Controller::adaptive}, walking, true},
         {"meeting", {Controller::adaptive, Controller::clip}, meeting},
+        {"meetingLarge", {Controller::adaptive}, meetingLarge},
         {"crowding", {Controller::adaptive}, crowding},
         {"parting", {Controller::adaptive}, parting},
         {"ranking", {Controller::adaptive}, ranking},

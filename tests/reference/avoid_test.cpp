@@ -66,33 +66,37 @@ TEST_F(Avoid, aLoneAgentGoesAsItWants) {
   EXPECT_TRUE(result.planes.empty());
 }
 
-// An agent that stands keeps one and a half footprints apart. w is (0, 0.5), and the cone's right side is at
-// an angle of 30 degrees to the way.
+// An agent that stands keeps 1.55 m apart. The two meet within 0.7 s, and the sine of the angle of the cone's
+// right side to the way is 1.55 / 3.25.
 TEST_F(Avoid, headOnBothPassOnTheirRight) {
-  const double lacking = 1 / 1.05, c = std::sqrt(3) / 2;
-  const AvoidResult result = first({at(3, 0, 0), at(5, 0, 3, {0, -2})}, {0, 1});
+  tuning.look = 3 * metre;
+  const double sine = 1.55 / 3.25, cosine = std::sqrt(1 - sine * sine), lacking = (3 + 3) * sine / 1.05;
+  const AvoidResult result = first({at(3, 0, 0), at(5, 0, 3.25, {0, -6})}, {0, 3});
   ASSERT_EQ(result.planes.size(), 1u);
   EXPECT_EQ(result.planes[0].neighbour, 5);
   EXPECT_EQ(result.planes[0].right, 1);
-  EXPECT_NEAR(result.planes[0].n.x, -c, 1e-12);
-  EXPECT_NEAR(result.planes[0].n.y, -0.5, 1e-12);
-  EXPECT_NEAR(result.planes[0].bound, 0.5, 1e-12);
-  EXPECT_NEAR(result.velocity.x, -c * lacking, 1e-9);
-  EXPECT_NEAR(result.velocity.y, 1 - 0.5 * lacking, 1e-9);
-  const AvoidResult other = first({at(5, 0, 3), at(3, 0, 0, {0, 2})}, {0, -1});
-  EXPECT_NEAR(other.velocity.x, c * lacking, 1e-9);
-  EXPECT_NEAR(other.velocity.y, -1 + 0.5 * lacking, 1e-9);
+  EXPECT_NEAR(result.planes[0].n.x, -cosine, 1e-12);
+  EXPECT_NEAR(result.planes[0].n.y, -sine, 1e-12);
+  EXPECT_NEAR(result.planes[0].bound, 3 * sine, 1e-12);
+  EXPECT_NEAR(result.velocity.x, -cosine * lacking, 1e-9);
+  EXPECT_NEAR(result.velocity.y, 3 - sine * lacking, 1e-9);
+  const AvoidResult other = first({at(5, 0, 3.25), at(3, 0, 0, {0, 6})}, {0, -3});
+  EXPECT_NEAR(other.velocity.x, cosine * lacking, 1e-9);
+  EXPECT_NEAR(other.velocity.y, -3 + sine * lacking, 1e-9);
 }
 
-// The bound is half of what is missing over two seconds, and of how fast the two come together.
+// The bound is half of what is missing over 0.7 s, and of how fast the two come together.
 TEST_F(Avoid, whoGetsOnKeepsMoreRoom) {
   const auto boundAt = [&](double speed, double wanted) {
     return first({at(0, 0, 0, {0, speed}), at(1, 0, 1.25)}, {0, wanted}).planes.at(0).bound;
   };
-  EXPECT_NEAR(boundAt(0, 1), (1.5 - 1.25) / 4, 1e-12);
-  EXPECT_NEAR(boundAt(0.25, 1), (2.1 - 1.25) / 4 - 0.125, 1e-12);
-  EXPECT_NEAR(boundAt(0.5, 1), (2.7 - 1.25) / 4 - 0.25, 1e-12) << "half of what it wants is all";
-  EXPECT_NEAR(boundAt(1, 1), (2.7 - 1.25) / 4 - 0.5, 1e-12);
+  EXPECT_NEAR(boundAt(0, 1), (1.55 - 1.25) / 1.4, 1e-12);
+  EXPECT_NEAR(boundAt(0.25, 1), (2.55 - 1.25) / 1.4 - 0.125, 1e-12);
+  tuning.look = 3 * metre;
+  EXPECT_NEAR(boundAt(0.5, 1), (3.55 - 1.25) / 1.4 - 0.25, 1e-12) << "half of what it wants is all";
+  EXPECT_NEAR(boundAt(1, 1), (3.55 - 1.25) / 1.4 - 0.5, 1e-12);
+  tuning.look = metre;
+  EXPECT_NEAR(boundAt(1, 1), (2 - 1.25) / 1.4 - 0.5, 1e-12) << "no farther than it looks";
 }
 
 // The wall is 0.5 m from the footprint, which is a second's way at 1 m/s.
@@ -162,50 +166,57 @@ TEST_F(Avoid, nobodyIsPushedIntoAWall) {
   EXPECT_GT(first({at(0, 0, 0), at(1, 0.1, -0.3), at(2, -0.1, -0.3)}, {0, 0}).velocity.y, 0.2);
 }
 
-// Footprints touch, or are 0.375 m apart, of which 0.1 is kept free in front and 0.01 and 0.005 everywhere.
+// Footprints touch, or are 0.375 m apart, of which 0.005 are kept.
 TEST_F(Avoid, nobodyLeavesItsCell) {
   const AvoidResult touching = first({at(0, 0, 0, {0, 0.5}), at(1, 0, 1)}, {0, 1});
   EXPECT_LE(touching.velocity.y, 1e-4 + 1e-9);
   EXPECT_NEAR(touching.mostSpeed, 1e-4, 1e-9);
   const std::vector<Walker> apart = {at(0, 0, 0, {0, 0.5}), at(1, 0, 1.375)};
-  EXPECT_LE(first(apart, {0, 1}).velocity.y, 0.5 * 0.365 / 0.4 + 1e-9);
   EXPECT_NEAR(first(apart, {0, 1}).mostSpeed, 0.5 * 0.37 / 0.4 + 1e-4, 1e-9);
   EXPECT_NEAR(first({apart[0], at(1, 0, 1.375, {0, 0.25})}, {0, 1}).mostSpeed, 0.5 * 0.37 / 0.4 + 0.25 + 1e-4,
               1e-9);
   EXPECT_NEAR(first({apart[0], at(1, 0, -1)}, {0, 1}).mostSpeed, 100, 1e-9) << "behind it";
   // Who overlap much part first.
   EXPECT_NEAR(first({apart[0], at(1, 0, 0.5)}, {0, 1}).mostSpeed, 0.4 / 0.4 + 1e-4, 1e-9);
+  Walker stranger = at(1, 0, 1.375);
+  stranger.yields = false;  // it takes no part, and all of the gap is the agent's
+  EXPECT_NEAR(first({at(0, 0, 0, {0, 0.5}), stranger}, {0, 1}).mostSpeed, 0.37 / 0.4 + 1e-4, 1e-9);
 }
 
-// A tenth of both footprints is for whose turn it is; a turn is 120 ticks. In the second turn, the numbers'
-// order by 0x9E3779B1 puts 1 before 0.
-TEST_F(Avoid, agentsMakeRoomInTurns) {
-  const auto roomOf = [&](int64_t number, int64_t other, int64_t now) {
+// Wishes that are so strong that half-planes yield more than the cell: 0.05 m beyond the room of legs, which
+// is 1.55 m, of which 0.4 or 0.6 may be taken in 0.4 s, and 0.5 of 0.6 m at a rate of 0.3 a second. A turn is
+// 120 ticks. In the second turn, the numbers' order by 0x9E3779B1 puts 1 before 0.
+TEST_F(Avoid, whoGoesFirstMayTakeMoreOfTheRoom) {
+  const auto shareOf = [&](int64_t number, Walker other, int64_t now) {
     tick.number = now;
-    return 0.37 - first({at(number, 0, 0, {0, 0.5}), at(other, 0, 1.375)}, {0, 1}).mostSpeed * 0.4 / 0.5;
+    other.z = std::llround(1.6 * metre);
+    const double room = static_cast<double>(other.z) / metre - 1.55;
+    const double creep = 0.3 * (other.yields ? 0.5 : 1) * (room + 0.55);
+    return (first({at(number, 0, 0), other}, {0, 40}).velocity.y - creep) * 0.4 / room;
   };
   for (const int64_t now : {1, 119, 240}) {
-    EXPECT_NEAR(roomOf(0, 1, now), 0, 1e-3) << now;
-    EXPECT_NEAR(roomOf(1, 0, now), 0.1, 1e-3) << now;
+    EXPECT_NEAR(shareOf(0, at(1, 0, 0), now), 0.6, 1e-6) << now;
+    EXPECT_NEAR(shareOf(1, at(0, 0, 0), now), 0.4, 1e-6) << now;
   }
   for (const int64_t now : {120, 239}) {
-    EXPECT_NEAR(roomOf(0, 1, now), 0.1, 1e-3) << now;
-    EXPECT_NEAR(roomOf(1, 0, now), 0, 1e-3) << now;
+    EXPECT_NEAR(shareOf(0, at(1, 0, 0), now), 0.4, 1e-6) << now;
+    EXPECT_NEAR(shareOf(1, at(0, 0, 0), now), 0.6, 1e-6) << now;
   }
-  Walker stranger = at(1, 0, 1.375);
-  stranger.yields =
-      false;  // it takes no part, so that there is room for it always, and the gap is the agent's
-  tick.number = 1;
-  EXPECT_NEAR(first({at(0, 0, 0, {0, 0.5}), stranger}, {0, 1}).mostSpeed, 0.27 / 0.4 + 1e-4, 1e-9);
+  Walker stranger = at(1, 0, 0);
+  stranger.yields = false;
+  EXPECT_NEAR(shareOf(0, stranger, 1), 1, 1e-6);
 }
 
-// A gap of 0.02 is 0.08 less than the room. The wish is so strong that half-planes yield more than that.
+// A gap of 0.45 is 0.1 less than the room of legs. Who goes first creeps on through half of it, at a rate of
+// 0.3 a second.
 TEST_F(Avoid, whoIsInTheWayOfATurnGoesBack) {
-  const std::vector<Walker> close = {at(1, 0, 0), at(0, 0, 1.02)};
-  EXPECT_NEAR(first(close, {0, 20}).velocity.y, -(1.1 - 1.02) / 0.4, 2e-3);
-  EXPECT_GE(first({at(0, 0, 0), at(1, 0, 1.02)}, {0, 20}).velocity.y, 0);
-  tuning.legLength = 0.5;
-  EXPECT_NEAR(first(close, {0, 20}).velocity.y, -0.15, 2e-3) << "0.3 leg lengths a second at most";
+  const std::vector<Walker> close = {at(1, 0, 0), at(0, 0, 1.45)};
+  const double gap = static_cast<double>(close[1].z) / metre - 1, creep = 0.3 * 0.5 * gap;
+  EXPECT_NEAR(first(close, {0, 40}).velocity.y, creep - (0.55 - gap) / 0.4, 1e-9);
+  EXPECT_NEAR(first({at(0, 0, 0), at(1, 0, 1.45)}, {0, 40}).velocity.y, creep, 1e-9);
+  tuning.legLength = 0.25;
+  EXPECT_NEAR(first(close, {0, 40}).velocity.y, creep - 0.3 * 0.25, 1e-9)
+      << "0.3 leg lengths a second at most";
 }
 
 TEST_F(Avoid, nobodyGoesBackIntoAWall) {
@@ -215,10 +226,19 @@ TEST_F(Avoid, nobodyGoesBackIntoAWall) {
   EXPECT_GE(first(close, {0, 1}).velocity.y, -1e-3);
 }
 
-TEST_F(Avoid, whoIsBlockedTurnsRight) {
-  const AvoidResult result = first({at(0, 0, 0), at(1, 0, 1.5)}, {0, 1});
+TEST_F(Avoid, whoIsBlockedTurnsAway) {
+  const AvoidResult result = first({at(0, 0, 0), at(1, 0, 1.56)}, {0, 1});
   EXPECT_LT(result.velocity.x, -0.4);
   EXPECT_LT(std::abs(result.velocity.y), 0.1);
+  const auto sideways = [&](std::vector<Walker> others) {
+    others.insert(others.begin(), at(0, 0, 0));
+    return first(others, {0, 1}).velocity.x;
+  };
+  // +x is to its left. A tangent of the room of legs leads past either side.
+  EXPECT_LT(sideways({at(1, 0.3, 1.6)}), -0.2);
+  EXPECT_LT(sideways({at(1, -0.1, 1.6)}), -0.2) << "a little to the right";
+  EXPECT_GT(sideways({at(1, -0.9, 1.3)}), 0.2);
+  EXPECT_NEAR(sideways({at(1, -1, 1.2), at(2, 1, 1.2)}), 0, 0.1) << "between two";
 }
 
 TEST_F(Avoid, noSpeedAboveTheWantedOneButToPart) {
@@ -276,8 +296,8 @@ TEST_F(Avoid, theOrderOfOthersDoesNotMatter) {
 }
 
 TEST_F(Avoid, aSleeperIsWokenByWhoComes) {
-  EXPECT_TRUE(first({at(0, 0, 0), at(1, 0, 1.5)}, {0, 0}, true).asleep);
-  EXPECT_FALSE(first({at(0, 0, 0), at(1, 0, 1.5, {0, -1})}, {0, 0}, true).asleep);
+  EXPECT_TRUE(first({at(0, 0, 0), at(1, 0, 1.6)}, {0, 0}, true).asleep);
+  EXPECT_FALSE(first({at(0, 0, 0), at(1, 0, 1.6, {0, -1})}, {0, 0}, true).asleep);
   EXPECT_FALSE(first({at(0, 0, 0), at(1, 0, 1.5)}, {0, 0}, false).asleep);
 }
 

@@ -6,12 +6,14 @@
 // second; x, z.
 namespace skitter::cpu_avoid {
 
-constexpr float horizon = 2, pushTime = 0.5f;
-constexpr float roomHeldUp = 1.5f, roomGoing = 2.7f;  // times the footprints
+constexpr float horizon = 0.7f, pushTime = 0.5f;
+constexpr float roomOfLegs = 1.55f, roomGoing = 3.55f;  // times the footprints
+constexpr float turnSlope = 4;
 constexpr float rightBias = 0.05f;
 constexpr float softness = 0.05f;
 constexpr int sweeps = 6;
-constexpr float frontRoom = 0.1f, nearRoom = 0.02f, deepRoom = 0.01f, looseBelow = 0.9f, easeTime = 0.4f;
+constexpr float deepRoom = 0.01f, looseBelow = 0.9f, easeTime = 0.4f;
+constexpr float shareOfSecond = 0.4f, creepRate = 0.3f;
 constexpr int cellSweeps = 2;
 // leg lengths a second
 constexpr float pushSpeed = 0.3f, steadySpeed = 0.05f, slackSpeed = 1e-4f, freeSpeed = 100;
@@ -48,19 +50,23 @@ template <class F>
 struct Wish {
   Vec2<F> desired;  // v_n
   F speed;          // |v_n|
-  F close = F(0), press = F(0);
+  F close = F(0), right = F(0), left = F(0);
 
   explicit Wish(const Vec2<F>& of) : desired(of), speed(lengthOf(of)) {}
   void see(const Neighbour<F>& other) {
-    const F c = select(other.isThere, clamp(F(2) - other.d / other.radii, 0, 1), F(0));
+    const F c = select(other.isThere, clamp(F(2) - other.d / (F(roomOfLegs) * other.radii), 0, 1), F(0));
     close = larger(close, c);
-    press = larger(press, c * larger(F(0), dot(other.p, desired)) / larger(other.d * speed, F(1e-6f)));
+    const F size = F(1) / larger(other.d * speed, F(1e-6f));
+    const F sine = (desired.x * other.p.z - desired.z * other.p.x) * size;
+    const F turn = c * larger(F(0), dot(other.p, desired)) * size * clamp(F(1) - F(turnSlope) * sine, -1, 1);
+    right = larger(right, turn);
+    left = larger(left, F(0) - turn);
   }
   // v_0, of an agent that goes at speed s.
   Vec2<F> wanted(const F& s) const {
-    const F t = press * larger(F(0), F(1) - s / larger(speed, F(1e-6f)));
+    const F t = (right - left) * larger(F(0), F(1) - s / larger(speed, F(1e-6f)));
     // Without neighbours it is v_n to the last bit, however the root is rounded.
-    const Mask<F> turns = F(0) < t;
+    const Mask<F> turns = F(0) < t * t;
     if (!any(turns)) return desired;
     const F norm = F(1) / squareRoot(F(1) + t * t);
     return {select(turns, (desired.x - t * desired.z) * norm, desired.x),
@@ -77,14 +83,14 @@ struct HalfPlane {
 // "3. Half-planes": m, of an agent that goes at speed s.
 template <class F>
 F roomOf(const F& s, const F& wanted) {
-  return F(roomHeldUp) + F(roomGoing - roomHeldUp) * clamp(F(2) * s / larger(wanted, F(1e-6f)), 0, 1);
+  return F(roomOfLegs) + F(roomGoing - roomOfLegs) * clamp(F(2) * s / larger(wanted, F(1e-6f)), 0, 1);
 }
 
 // A bound needs no more of a neighbour's u than n . u, so u is that number here.
 template <class F>
-HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own, const F& room) {
+HalfPlane<F> halfPlaneOf(const Neighbour<F>& other, const Vec2<F>& own, const F& room, float look) {
   const auto& [isThere, p, d, footprints, lesser, v, share, goesFirst, part] = other;
-  const F radii = footprints * room, power = (d - radii) * (d + radii);
+  const F radii = smaller(footprints * room, footprints + F(look)), power = (d - radii) * (d + radii);
   const Vec2<F> w{v.x - p.x * F(1 / horizon), v.z - p.z * F(1 / horizon)};
   const F along = dot(w, p), speed2 = dot(w, w), speed = squareRoot(speed2);
   // one of the cone's sides
@@ -147,23 +153,23 @@ struct CellSide {
 };
 
 template <class F>
-CellSide<F> cellSideOf(const Neighbour<F>& other, const Vec2<F>& own, const Wish<F>& wish, float dt,
-                       float legLength) {
+CellSide<F> cellSideOf(const Neighbour<F>& other, const Vec2<F>& own, float dt, float legLength) {
   // A neighbour that is not there has no distance.
   const F d = select(other.isThere, other.d, F(1)), inverse = F(1) / larger(d, F(1e-9f));
   const Vec2<F> n{select(other.isThere, other.p.x * inverse, F(0)),
                   select(other.isThere, other.p.z * inverse, F(0))};
-  const F ahead = dot(n, wish.desired) / larger(wish.speed, F(1e-6f));
-  const F room = select(other.goesFirst, F(frontRoom) * clamp(F(2) * ahead, 0, 1), F(0));
-  const F gap = d - other.radii * (F(1) + room);
-  const F lacking = select(other.goesFirst, larger(F(0), F(0) - gap), F(0));
+  const F gap = d - other.radii, room = d - F(roomOfLegs) * other.radii;
+  const F lacking = select(other.goesFirst, larger(F(0), F(0) - room), F(0));
   const F back = smaller(lacking * F(1 / easeTime), F(pushSpeed * legLength));
   const F leaves = larger(F(0), dot(n, own) - dot(n, other.v));
   const F loose = larger(F(0), F(looseBelow) * other.radii - d);
-  const F near = larger(F(0), gap - F(nearRoom) * other.lesser) * other.share + loose;
+  const F wish =
+      select(F(0.75f) < other.share, F(1), select(other.goesFirst, F(shareOfSecond), F(1 - shareOfSecond)));
+  const F near = larger(F(0), room) * wish + loose;
   const F deep = larger(F(0), gap - F(deepRoom) * other.lesser) * other.share + loose;
   const F aTick(1 / dt), aTime(1 / easeTime), slack(slackSpeed * legLength);
-  return {n, smaller(near * aTick, near * aTime + leaves) - back, deep * aTick + slack,
+  const F creep = F(creepRate) * other.share * larger(F(0), gap);
+  return {n, smaller(near * aTick, near * aTime + leaves) - back + creep, deep * aTick + slack,
           smaller(deep * aTick, deep * aTime + leaves) + slack};
 }
 

@@ -120,14 +120,15 @@ class SoftAvoider final : public Avoider {
     const Vec2<F> velocity{load<F>(&grid_.velocityX[first]), load<F>(&grid_.velocityZ[first])};
     Wish<F> wish({own(walkers_.wantedX), own(walkers_.wantedZ)});
     const F speed = own(walkers_.speed), room = roomOf(speed, wish.speed);
+    const float look = static_cast<float>(walkers_.look) / walkers_.quanta;
     const float hold = static_cast<float>(walkers_.round) * walkers_.dt;
     HalfPlane<F> planes[mostNeighbours];
     CellSide<F> sides[mostNeighbours];
     for (int k = 0; k < nearest.most; ++k) {
       const Neighbour<F> other = neighbourOf(nearest, k, first, velocity);
       wish.see(other);
-      planes[k] = halfPlaneOf(other, velocity, room);
-      sides[k] = cellSideOf(other, velocity, wish, hold, walkers_.legLength);
+      planes[k] = halfPlaneOf(other, velocity, room, look);
+      sides[k] = cellSideOf(other, velocity, hold, walkers_.legLength);
     }
     Vec2<F> v = wish.wanted(speed);
     if (isForbidden(planes, nearest.most, v)) v = solved(planes, nearest.most, v);
