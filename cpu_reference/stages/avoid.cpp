@@ -254,7 +254,7 @@ CellSide sideOf(const AvoidTuning& tuning, const AvoidTick& tick, const Walker& 
   const bool givesWay =
       !other.yields || isBefore(other.number, self.number, tick.number, tick.dt / tick.span);
   const double leaves = std::max(0.0, rounded(glm::dot(n, other.velocity), 4 * glm::length(other.velocity)));
-  // What is between them is the neighbour's in part, if it holds itself to it. Who overlaps much is not held.
+  // The neighbour takes its part of the way between them, if it avoids. Agents that overlap much are free.
   const double size = 4 * (d + 2 * radii);
   const double half = other.yields ? 0.5 : 1;
   const double wishes = !other.yields ? 1 : givesWay ? shareOfSecond : 1 - shareOfSecond;
