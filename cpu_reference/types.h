@@ -28,6 +28,7 @@ struct Tuning {
   double stretchSlow = 0, stretchStop = 0, errorStop = 0, followLeast = 0, heightBlend = 0, tiltBlend = 0,
          maxSlope = 0;
   double bellyClearance = 0, ridge = 0;
+  double sinkMost = 0, riseMost = 0, climbMost = 0, gapMost = 0;
   double leanGain = 0, leanMost = 0, leanLevel = 0, breathHeight = 0;
   double halfStrideStill = 0, halfStrideMax = 0, swingStill = 0, swingSpeed = 0;
   double dutyStill = 0, dutyGain = 0, dutyLeast = 0, lagShare = 0;

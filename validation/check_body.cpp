@@ -24,14 +24,21 @@ double blendError(const Moment& moment) {
 // Cosine to straight backward below which either way round is right.
 constexpr double eitherWay = 16 * tolerance::roundoff;
 // Share of the speed above which a body goes where it is led, by which both may be off: two squares, a sum, a
-// root, and a product with a number that is rounded itself. Who is shut in by others is led at just this
-// speed.
-constexpr double goesOrNot = 8 * tolerance::roundoff;
+// root, and a product with a number that is rounded itself. An agent that is shut in by others is led at just
+// this speed. On steep ground the velocity errs, too.
+double goesOrNot(const Setting& setting, double wished) {
+  return 8 * tolerance::roundoff + wished / (1e-4 * setting.tuning.legLength);
+}
 
 // What rounding may decide otherwise.
-std::vector<reference::BodyChoices> tiesOf(const reference::BodyResult& result) {
+std::vector<reference::BodyChoices> tiesOf(const Setting& setting, const tolerance::BodyInputs& inputs,
+                                           const reference::BodyResult& result) {
   std::vector<reference::BodyChoices> ties;
-  const bool mayGo = result.goMargin < goesOrNot, mayTurn = result.turnMargin < eitherWay;
+  const double wished =
+      tolerance::body(setting.tuning, setting.heights, setting.extent, setting.creature, inputs, result)
+          .wished;
+  const bool mayGo = result.goMargin < goesOrNot(setting, wished);
+  const bool mayTurn = result.turnMargin < eitherWay + wished / std::max(result.wantedSpeed, 1e-20);
   for (const int goes : mayGo ? std::vector{0, 1} : std::vector{-1})
     for (const int sign : mayTurn ? std::vector{-1, 1} : std::vector{0})
       ties.push_back({.follow = {}, .turnSign = sign, .goes = goes});
@@ -165,7 +172,7 @@ void checkBody(const Setting& setting, const Moment& moment, Judge& judge) {
     if (leg.behind > square) without = std::min(without, leg.factor);
   }
   for (const double follow : {with, without}) {
-    for (reference::BodyChoices choices : tiesOf(result)) {
+    for (reference::BodyChoices choices : tiesOf(setting, inputs, result)) {
       if (with != without) choices.follow = follow;
       const Sample other = compare(setting, moment, previous, inputs, run(choices));
       if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
@@ -185,7 +192,7 @@ void checkBlindBody(const Setting& setting, const Moment& moment, Judge& judge) 
   const reference::BodyResult result = run({});
   const Sample sample = compare(setting, moment, previous, inputs, result);
   if (sample.passes()) return judge.add(moment.n, moment.number(), -1, sample);
-  for (const reference::BodyChoices& choices : tiesOf(result)) {
+  for (const reference::BodyChoices& choices : tiesOf(setting, inputs, result)) {
     const Sample other = compare(setting, moment, previous, inputs, run(choices));
     if (other.passes()) return judge.add(moment.n, moment.number(), -1, other, true);
   }

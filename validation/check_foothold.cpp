@@ -85,6 +85,7 @@ std::vector<reference::FootholdChoices> alternatives(const Case& c, const refere
   double surelyBest = std::numeric_limits<double>::infinity();
   double leastMisfit = std::numeric_limits<double>::infinity();
   std::vector<CandidateBounds> bounds;
+  std::vector<double> spared;  // of a misfit, by a candidate that may face the body after all
   for (const reference::Candidate& candidate : all) {
     const CandidateBounds b = boundsOf(c, result, candidate);
     bounds.push_back(b);
@@ -93,7 +94,11 @@ std::vector<reference::FootholdChoices> alternatives(const Case& c, const refere
     mayFit.push_back(margin >= -1);
     lowest.push_back(candidate.score - b.score);
     if (margin > 1) surelyBest = std::min(surelyBest, candidate.score + b.score);
-    leastMisfit = std::min(leastMisfit, candidate.misfit + b.distance);
+    // What may face the body or not may have the misfit of either.
+    const double faces = std::abs(candidate.facingMargin) < b.facing ? c.setting.tuning.legLength : 0;
+    spared.push_back(candidate.facingMargin < 0 ? faces : 0);
+    leastMisfit =
+        std::min(leastMisfit, candidate.misfit + b.distance + (candidate.facingMargin < 0 ? 0 : faces));
   }
   std::vector<reference::FootholdChoices> choices;
   for (size_t i = 0; i < all.size(); ++i) {
@@ -101,7 +106,7 @@ std::vector<reference::FootholdChoices> alternatives(const Case& c, const refere
       choices.push_back({static_cast<int>(i), false, {}});
     }
     const bool noneSurelyFits = !std::isfinite(surelyBest);
-    if (noneSurelyFits && all[i].misfit - bounds[i].distance <= leastMisfit) {
+    if (noneSurelyFits && all[i].misfit - spared[i] - bounds[i].distance <= leastMisfit) {
       choices.push_back({static_cast<int>(i), true, {}});
     }
   }
@@ -146,11 +151,6 @@ StepBounds stepBounds(const Case& c, const reference::FootholdResult& result) {
   StepBounds bound{};
   bound.landing = b.horizontal + 2 * tolerance::local;
   bound.landingHeight = b.vertical + 2 * tolerance::roundoff * world;
-  if (result.lastResort) {
-    // Moved along its ray: the ray's direction and length err like the distance.
-    bound.landing += 2 * b.distance;
-    bound.landingHeight += 2 * b.distance;
-  }
   // A hanging foot is where forward kinematics has it.
   const double hangs =
       c.hanging ? tolerance::bonePosition(c.setting.bones) * (c.limb.reach + glm::length(c.limb.root)) : 0;

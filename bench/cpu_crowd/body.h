@@ -20,6 +20,7 @@ class PlaneSums {
 
   struct Plane {
     F slopeX, slopeZ, height;  // the latter at x = z = 0
+    F steepness;               // of the ground points, 1 where the body can tilt as they lie
   };
   Plane fit(const shared::Parameters& q, float count) const {
     const Vec3<F> mean = sum_ * (1 / count);
@@ -32,7 +33,7 @@ class PlaneSums {
     const F share = smaller(F(1), rsqrt(larger(b * b + c * c, 1e-20f)) * q.maxSlope);
     b = b * share;
     c = c * share;
-    return {b, c, mean.y - b * mean.x - c * mean.z};
+    return {b, c, mean.y - b * mean.x - c * mean.z, reciprocal(share)};
   }
 
  private:
@@ -110,16 +111,50 @@ F speedToEdge(const shared::Parameters& q, const Agent<F>& a) {
   return way * reciprocal(squareRoot(way * (0.5f / q.braking) + halfTick * halfTick) + halfTick);
 }
 
+// The ground below a body that is at (x, z).
+template <class F>
+struct Underneath {
+  F highest;               // below the origin and the ends of the middle line
+  F lowest, belly, ahead;  // where the origin may be for what is below it, both ends, and the front end
+};
+
+template <class F>
+Underneath<F> underneath(const World& world, const F& x, const F& z, const Vec3<F>& normal,
+                         const Vec3<F>& forward) {
+  const shared::Parameters& q = world.q;
+  const Vec3<F> middle = normal * q.bodyHeight, front = forward * q.bodyRadius;
+  const F below = groundAt(world.terrain, x, z).height;
+  const F behind = groundAt(world.terrain, x + middle.x - front.x, z + middle.z - front.z).height;
+  const F ahead = groundAt(world.terrain, x + middle.x + front.x, z + middle.z + front.z).height;
+  const F clear = F(q.bellyClearance) - middle.y, forAhead = ahead + clear - front.y;
+  return {larger(below, larger(behind, ahead)),
+          below + std::max(-q.sinkMost, q.bellyClearance - q.bodyHeight),
+          larger(behind + clear + front.y, forAhead), forAhead};
+}
+
+// The share of its speed that the ground ahead leaves to a body.
+template <class F>
+F passable(const shared::Parameters& q, const F& rises) {
+  return clamp(
+      smaller((F(q.climbMost) - rises) * (2 / q.climbMost), (F(q.gapMost) + rises) * (2 / q.gapMost)), 0, 1);
+}
+
 template <class F>
 void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
   const shared::Parameters& q = world.q;
   const F follow = footing.follow;
+  const auto plane = footing.ground.fit(q, float(world.legs.size()));
+  constexpr float steepnessMost = 1.25f;
+  const F kept = clamp((F(steepnessMost) - plane.steepness) * (1 / (steepnessMost - 1)), 0, 1);
+  const F lost = (F(1) - kept) * (plane.slopeX * a.velocityX + plane.slopeZ * a.velocityZ) *
+                 reciprocal(larger(plane.slopeX * plane.slopeX + plane.slopeZ * plane.slopeZ, 1e-20f));
+  const F velocityX = a.velocityX - plane.slopeX * lost, velocityZ = a.velocityZ - plane.slopeZ * lost;
 
-  const F commanded = squareRoot(a.velocityX * a.velocityX + a.velocityZ * a.velocityZ);
+  const F commanded = squareRoot(velocityX * velocityX + velocityZ * velocityZ);
   const auto going = F(1e-4f * q.legLength) < commanded;
   const F inverse = reciprocal(larger(commanded, 1e-20f));
-  const F wx = select(going, a.velocityX * inverse, a.heading.x),
-          wz = select(going, a.velocityZ * inverse, a.heading.z);
+  const F wx = select(going, velocityX * inverse, a.heading.x),
+          wz = select(going, velocityZ * inverse, a.heading.z);
   const F c = wx * a.heading.z - wz * a.heading.x, d = wx * a.heading.x + wz * a.heading.z;
   const F e = select(F(0) < d, c, select(F(0) <= c, F(1), F(-1)));
   const F rate = clamp(e * q.turnGain, -q.turnRate, q.turnRate) * (follow * 0.75f + 0.25f);
@@ -132,11 +167,6 @@ void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
   const F speed = follow * commanded * larger(F(0), wx * a.heading.x + wz * a.heading.z);
   a.speed = a.speed + clamp(speed - a.speed, -q.braking * q.dt, q.acceleration * q.dt);
   a.speed = smaller(a.speed, speedToEdge(q, a));
-  const F movedX = a.heading.x * (a.speed * q.dt), movedZ = a.heading.z * (a.speed * q.dt);
-
-  const auto plane = footing.ground.fit(q, float(world.legs.size()));
-  const F rise = plane.slopeX * movedX + plane.slopeZ * movedZ;
-  const F planeHeight = a.y + plane.height + rise;
 
   const F swell = a.phase * (F(1) - a.phase) * 4.0f;
   const F breath = swell * swell * smaller(F(1), a.still * (1 / q.settleTime));
@@ -150,6 +180,30 @@ void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
   const Quaternion<F> opposite{-orientation.x, -orientation.y, -orientation.z, -orientation.w};
   a.orientation = select(dot(orientation, a.orientation) < F(0), opposite, orientation);
 
+  F movedX = a.heading.x * (a.speed * q.dt), movedZ = a.heading.z * (a.speed * q.dt);
+  const auto look = [&] {
+    return underneath(world, a.tileX * shared::TILE_SIZE + (a.localX + movedX),
+                      a.tileZ * shared::TILE_SIZE + (a.localZ + movedZ), normal, forward);
+  };
+  Underneath<F> ground = look();
+  F rise = plane.slopeX * movedX + plane.slopeZ * movedZ;
+  const F passes = passable(q, ground.ahead - (a.y + plane.height + rise));
+  if (any(passes < F(1))) {
+    const F share =
+        select(passes < F(1),
+               clamp(passes * commanded * reciprocal(larger(a.speed, 1e-6f * q.legLength)), 0, 1), F(1));
+    a.speed = a.speed * share;
+    movedX = movedX * share;
+    movedZ = movedZ * share;
+    ground = look();
+    rise = plane.slopeX * movedX + plane.slopeZ * movedZ;
+  }
+  const F planeHeight = a.y + plane.height + rise;
+  const F belly = smaller(ground.belly, planeHeight + q.climbMost);
+  const F height = larger(planeHeight + breath * q.breathHeight, larger(ground.lowest, belly));
+  a.y = smaller(larger(mix(a.y + rise, height, F(q.heightBlend)), ground.lowest - 0.5f * q.sinkMost),
+                ground.highest + q.riseMost);
+
   const auto advance = [](F& local, F& tile, const F& by) {
     const F to = local + by, crossed = roundDown(to * (1 / shared::TILE_SIZE));
     tile = tile + crossed;
@@ -158,20 +212,11 @@ void move(const World& world, const Footing<F>& footing, Agent<F>& a) {
   advance(a.localX, a.tileX, movedX);
   advance(a.localZ, a.tileZ, movedZ);
 
-  const F x = a.tileX * shared::TILE_SIZE + a.localX, z = a.tileZ * shared::TILE_SIZE + a.localZ;
-  F height = planeHeight + breath * q.breathHeight;
-  for (int k = -1; k <= 1; ++k) {
-    const Vec3<F> belly = normal * q.bodyHeight + forward * (float(k) * q.bodyRadius);
-    height =
-        larger(height, groundAt(world.terrain, x + belly.x, z + belly.z).height + q.bellyClearance - belly.y);
-  }
-  a.y = mix(a.y + rise, height, F(q.heightBlend));
-
   a.surfaceSpeed = a.speed * rsqrt(larger(forward.x * forward.x + forward.z * forward.z, 1e-20f));
   const F slow(1e-2f * q.legLength);
   const auto still = (commanded < slow) & (a.speed < slow) & (absolute(a.turnRate) < F(1e-2f));
   a.still = select(still, a.still + q.dt, F(0));
-  a.follow = follow;
+  a.follow = follow * passes;
 }
 
 template <class F, int N>

@@ -94,16 +94,21 @@ class Foothold {
     }
   }
 
+  // Cosine between the ground and the body's up axis.
+  F facing(const Ground<F>& g) const {
+    const Vec3<F>& up = r_.y;
+    return (up.y - g.slopeX * up.x - g.slopeZ * up.z) *
+           rsqrt(g.slopeX * g.slopeX + g.slopeZ * g.slopeZ + 1.0f);
+  }
+
   // Where any candidate fits.
   Mask<F> findBest(const Ladder& ladder, Vec3<F>& best) const {
     const F least = b_.reach * q_.reachLeast, most = b_.reach * q_.reachMost,
             inverseReach = reciprocal(b_.reach);
-    const Vec3<F>& up = r_.y;
     F lowest(3e38f);
     best = ladder.predicted;
     eachCandidate(ladder, [&](const Vec3<F>& point, const Ground<F>& g, const F& distance) {
-      const F steep = g.slopeX * g.slopeX + g.slopeZ * g.slopeZ + 1.0f;
-      const F aligned = (up.y - g.slopeX * up.x - g.slopeZ * up.z) * rsqrt(steep);
+      const F aligned = facing(g);
       const auto fits = (least <= distance) & (distance <= most) & (F(q_.slopeLeast) <= aligned);
       const Vec3<F> miss = point - ladder.predicted;
       F score = dot(miss, miss) * (1 / (q_.legLength * q_.legLength));
@@ -118,21 +123,19 @@ class Foothold {
     return lowest < F(3e38f);
   }
 
-  // The candidate that is nearest to the leg's range, where none fits. It is moved into the range along its
-  // line from the root.
+  // The candidate that is nearest to the leg's range, where none fits: one that faces up, if there is one.
   Vec3<F> lastResort(const Ladder& ladder) const {
     const F least = b_.reach * q_.reachLeast, most = b_.reach * q_.reachMost;
-    F misfit(3e38f), far(1);
+    F misfit(3e38f);
     Vec3<F> nearest = ladder.predicted;
-    eachCandidate(ladder, [&](const Vec3<F>& point, const Ground<F>&, const F& distance) {
-      const F off = larger(larger(least - distance, distance - most), 0);
+    eachCandidate(ladder, [&](const Vec3<F>& point, const Ground<F>& g, const F& distance) {
+      const F off = larger(larger(least - distance, distance - most), 0) +
+                    select(facing(g) < F(q_.slopeLeast), F(q_.legLength), F(0));
       const auto nearer = off < misfit;
       misfit = select(nearer, off, misfit);
-      far = select(nearer, distance, far);
       nearest = select(nearer, point, nearest);
     });
-    const F range = larger(smaller(far, most), least);
-    return ladder.root + (nearest - ladder.root) * (range * reciprocal(larger(far, 1e-6f)));
+    return nearest;
   }
 
   // The shortest lift vector that clears the ground at all places of its lane.

@@ -78,9 +78,9 @@ glm::dvec2 besideOthers(const Tuning& tuning, double most, const glm::dvec2& w, 
   return glm::mix(body.speed * body.heading, aside * w, blocked);
 }
 
-// Returns the velocity with which the body went. Its heading was `before` the turn.
-glm::dvec2 walk(const Tuning& tuning, const Wish& wish, const glm::dvec2& before, const glm::dvec2& pushed,
-                const BodyChoices& choices, BodyResult& result) {
+// Returns the velocity with which the body would walk. Its heading was `before` the turn.
+glm::dvec2 walk(const Tuning& tuning, const Wish& wish, const glm::dvec2& before, const BodyChoices& choices,
+                BodyResult& result) {
   AgentBody& body = result.body;
   result.wantedSpeed = glm::length(wish.velocity);
   const glm::dvec2 w = goes(tuning, result.wantedSpeed, choices) ? glm::normalize(wish.velocity) : before;
@@ -88,20 +88,19 @@ glm::dvec2 walk(const Tuning& tuning, const Wish& wish, const glm::dvec2& before
   body.speed += std::clamp(wanted - body.speed, -tuning.braking * tuning.dt, tuning.acceleration * tuning.dt);
   result.ways = waysToEdges(tuning, body, body.heading);
   body.speed = std::min(body.speed, stoppingSpeed(tuning, std::min(result.ways.x, result.ways.y)));
-  glm::dvec2 velocity = body.speed * body.heading;
-  if (wish.mostSpeed) {
-    body.speed = std::min(body.speed, *wish.mostSpeed);
-    velocity = besideOthers(tuning, *wish.mostSpeed, w, result);
-  }
-  velocity += pushed;
-  body.localX += velocity.x * tuning.dt;
-  body.localZ += velocity.y * tuning.dt;
+  if (!wish.mostSpeed) return body.speed * body.heading;
+  body.speed = std::min(body.speed, *wish.mostSpeed);
+  return besideOthers(tuning, *wish.mostSpeed, w, result);
+}
+
+void advance(AgentBody& body, const glm::dvec2& by) {
+  body.localX += by.x;
+  body.localZ += by.y;
   const double overX = std::floor(body.localX / tileSize), overZ = std::floor(body.localZ / tileSize);
   body.tileX += overX;
   body.tileZ += overZ;
   body.localX -= overX * tileSize;
   body.localZ -= overZ * tileSize;
-  return velocity;
 }
 
 // Where the ground points are, relative to the previous body.
@@ -168,6 +167,38 @@ SupportPlane supportPlane(const Tuning& tuning, const std::vector<glm::dvec3>& p
   return plane;
 }
 
+constexpr double steepnessMost = 1.25;  // of maxSlope; on steeper ground a body goes along the slope only
+
+// `wished` without its part up or down the slope, where this is too steep.
+glm::dvec2 walkable(const Tuning& tuning, const SupportPlane& plane, const glm::dvec2& wished) {
+  const double steepness = std::max(1.0, plane.unclampedSlope / tuning.maxSlope);
+  const double kept = std::clamp((steepnessMost - steepness) / (steepnessMost - 1), 0.0, 1.0);
+  const glm::dvec2 uphill = normalized(glm::dvec2(plane.b, plane.c));
+  return wished - (1 - kept) * glm::dot(uphill, wished) * uphill;
+}
+
+// The ground below a body that has moved `by` so far.
+GroundBelow groundBelow(const Tuning& tuning, const Heights& heights, const AgentBody& body,
+                        const glm::dvec2& by, const glm::dvec3& up, const glm::dvec3& forward) {
+  const glm::dvec2 origin = body.world() + by;
+  GroundBelow ground;
+  ground.atOrigin = heightAt(heights, origin.x, origin.y);
+  ground.highest = ground.atOrigin;
+  for (const double end : {-1.0, 1.0}) {
+    const glm::dvec3 q = tuning.bodyHeight * up + end * tuning.bodyRadius * forward;
+    const double height = heightAt(heights, origin.x + q.x, origin.y + q.z);
+    ground.highest = std::max(ground.highest, height);
+    (end > 0 ? ground.ahead : ground.behind) = height + tuning.bellyClearance - q.y;
+  }
+  return ground;
+}
+
+double passable(const Tuning& tuning, double rises) {
+  const double wall = (tuning.climbMost - rises) / (tuning.climbMost / 2);
+  const double cliff = (tuning.gapMost + rises) / (tuning.gapMost / 2);
+  return std::clamp(std::min(wall, cliff), 0.0, 1.0);
+}
+
 // Square to the plane but for a share of its slope, and leaning to where a turn's middle is.
 glm::dvec3 leaningNormal(const Tuning& tuning, const SupportPlane& plane, const AgentBody& body) {
   const double lean =
@@ -177,18 +208,17 @@ glm::dvec3 leaningNormal(const Tuning& tuning, const SupportPlane& plane, const 
   return normalized(glm::dvec3(-plane.b * kept, 1, -plane.c * kept) + lean * left);
 }
 
-// From the follow factor on. `points` are relative to the previous body.
-void move(const Tuning& tuning, const Heights& heights, const AgentBody& previous, const Wish& wish,
-          std::vector<glm::dvec3> points, double phase, double drop, const glm::dvec2& pushed,
+// From the support plane on. `points` are relative to the previous body.
+void move(const Tuning& tuning, const Heights& heights, const AgentBody& previous, const Wish& wished,
+          const std::vector<glm::dvec3>& points, double phase, double drop, const glm::dvec2& pushed,
           const BodyChoices& choices, BodyResult& result) {
   AgentBody& next = result.body;
-  turn(tuning, wish.velocity, choices, result);
-  const glm::dvec2 moves = walk(tuning, wish, previous.heading, pushed, choices, result);
-  const glm::dvec3 way((next.tileX - previous.tileX) * tileSize + next.localX - previous.localX, 0,
-                       (next.tileZ - previous.tileZ) * tileSize + next.localZ - previous.localZ);
-  for (glm::dvec3& point : points) point -= way;
   result.plane = supportPlane(tuning, points);
   const SupportPlane& plane = result.plane;
+  const Wish wish{walkable(tuning, plane, wished.velocity), wished.mostSpeed};
+  result.wishedSpeed = glm::length(wished.velocity);
+  turn(tuning, wish.velocity, choices, result);
+  glm::dvec2 walks = walk(tuning, wish, previous.heading, choices, result);
 
   const glm::dvec3 upBefore = previous.orientation * glm::dvec3(0, 1, 0);
   const glm::dvec3 up = normalized(glm::mix(upBefore, leaningNormal(tuning, plane, next), tuning.tiltBlend));
@@ -197,18 +227,38 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
   next.orientation = glm::quat_cast(glm::dmat3(glm::cross(up, forward), up, forward));
   if (glm::dot(next.orientation, previous.orientation) < 0) next.orientation = -next.orientation;
 
-  const double predicted = previous.y + (plane.b * moves.x + plane.c * moves.y) * tuning.dt;
+  const auto climbs = [&] {
+    return (plane.b * (walks + pushed).x + plane.c * (walks + pushed).y) * tuning.dt;
+  };
+  const auto planeHeight = [&] { return previous.y + plane.height + climbs(); };
+  result.ground = groundBelow(tuning, heights, previous, (walks + pushed) * tuning.dt, up, forward);
+  result.rises = result.ground.ahead - planeHeight();
+  const glm::dvec3 front = tuning.bodyHeight * up + tuning.bodyRadius * forward;
+  result.lookedAhead = previous.world() + (walks + pushed) * tuning.dt + glm::dvec2(front.x, front.z);
+  result.passes = passable(tuning, result.rises);
+  result.unhinderedSpeed = next.speed;
+  if (result.passes < 1) {
+    const double share = std::clamp(
+        result.passes * result.wantedSpeed / std::max(next.speed, 1e-6 * tuning.legLength), 0.0, 1.0);
+    next.speed *= share;
+    walks *= share;
+    result.ground = groundBelow(tuning, heights, previous, (walks + pushed) * tuning.dt, up, forward);
+  }
+  next.follow *= result.passes;
+
+  const GroundBelow& ground = result.ground;
+  const double predicted = previous.y + climbs();
   const double breath =
       std::pow(4 * phase * (1 - phase), 2) * std::min(1.0, previous.still / tuning.settleTime);
-  double wanted = previous.y + plane.height - drop + tuning.breathHeight * breath;
-  const glm::dvec2 position = next.world();
-  for (int k = -1; k <= 1; ++k) {
-    const glm::dvec3 q = tuning.bodyHeight * up + k * tuning.bodyRadius * forward;
-    const double ground = heightAt(heights, position.x + q.x, position.y + q.z);
-    wanted = std::max(wanted, ground + tuning.bellyClearance - q.y);
-  }
-  next.y = glm::mix(predicted, wanted, tuning.heightBlend);
+  const double lowest =
+      ground.atOrigin + std::max(-tuning.sinkMost, tuning.bellyClearance - tuning.bodyHeight);
+  const double wanted =
+      std::max({planeHeight() - drop + tuning.breathHeight * breath, lowest,
+                std::min(std::max(ground.ahead, ground.behind), planeHeight() + tuning.climbMost)});
+  next.y = std::min(std::max(glm::mix(predicted, wanted, tuning.heightBlend), lowest - tuning.sinkMost / 2),
+                    ground.highest + tuning.riseMost);
   result.rise = std::abs(wanted - predicted);
+  advance(next, (walks + pushed) * tuning.dt);
 
   next.surfaceSpeed = next.speed / std::hypot(forward.x, forward.z);
   const double pace = 1e-2 * tuning.legLength;

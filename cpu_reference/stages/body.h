@@ -15,7 +15,7 @@ struct LegFollow {
   double factor = 1;       // clamp((stretchStop - stretch) / (stretchStop - stretchSlow), 0, 1)
 };
 
-// y = height + b x + c z relative to the new position, with what its conditioning depends on.
+// y = height + b x + c z relative to the previous body, with what its conditioning depends on.
 struct SupportPlane {
   double b = 0, c = 0, height = 0;
   double leastEigenvalue = 0, largestEigenvalue = 0;  // of the regularised normal matrix
@@ -25,15 +25,27 @@ struct SupportPlane {
   double unclampedSlope = 0;
 };
 
+// Heights of the ground below a body, and those of its origin at which its middle line clears the ground.
+struct GroundBelow {
+  double atOrigin = 0, highest = 0;  // below the origin, and of it and what is below the middle line's ends
+  double ahead = 0, behind = 0;      // for the ends of the middle line
+};
+
 struct BodyResult {
   AgentBody body;
   std::vector<LegFollow> follow;
   double turnMargin = 0;  // |c| where its sign chose the way round (d <= 0), infinite elsewhere
   double goMargin = 0;    // of |v| from what counts as going anywhere, as a share of it
   SupportPlane plane;
-  double wantedSpeed = 0;  // |v|
-  double rise = 0;         // |y_want - y_pred|
-  glm::dvec2 ways{0};      // m left along the new heading to the terrain's edges in x and z
+  double wishedSpeed = 0;  // |v|
+  double wantedSpeed = 0;  // without what is too steep
+  GroundBelow ground;
+  double rises = 0;            // of the ground ahead over the support plane,
+  glm::dvec2 lookedAhead{0};   // and where that is
+  double passes = 1;           // share of its speed that the ground ahead leaves
+  double unhinderedSpeed = 0;  // that it would have without it
+  double rise = 0;             // |y_want - y_pred|
+  glm::dvec2 ways{0};          // m left along the new heading to the terrain's edges in x and z
   bool isStill = false;
   double stillMargin = 0;  // nearest of the three thresholds of standing still, as a share of it
 };

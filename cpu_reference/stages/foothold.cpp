@@ -61,7 +61,8 @@ Candidate evaluate(const Tuning& tuning, const Heights& heights, const Limb& lim
   candidate.mostMargin = most - candidate.distance;
   candidate.facingMargin = candidate.facing - tuning.slopeLeast;
   candidate.fits = candidate.leastMargin >= 0 && candidate.mostMargin >= 0 && candidate.facingMargin >= 0;
-  candidate.misfit = std::abs(candidate.distance - std::clamp(candidate.distance, least, most));
+  candidate.misfit = std::abs(candidate.distance - std::clamp(candidate.distance, least, most)) +
+                     (candidate.facingMargin < 0 ? tuning.legLength : 0);
 
   const glm::dvec3 miss = q - body.orientation * plan.target;
   candidate.score = glm::dot(miss, miss) / (tuning.legLength * tuning.legLength);
@@ -127,13 +128,7 @@ FootholdResult foothold(const Tuning& tuning, const Heights& heights, const Limb
   }
 
   const Candidate& candidate = result.candidates[static_cast<size_t>(result.chosen)];
-  glm::dvec3 landing = candidate.point;
-  if (result.lastResort) {
-    const glm::dvec3 root = body.orientation * result.root;
-    const double onRange =
-        std::clamp(candidate.distance, tuning.reachLeast * limb.reach, tuning.reachMost * limb.reach);
-    landing = root + normalized(landing - root) * onRange;
-  }
+  const glm::dvec3 landing = candidate.point;
 
   Step& next = result.step;
   const double u = step.progress(tick - 1);

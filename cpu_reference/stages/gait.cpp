@@ -42,7 +42,7 @@ void look(const Tuning& tuning, const AgentBody& body, const Step& step, const H
   const auto exceeds = [&](double distance) {
     moved.add(distance > tuning.groundTolerance, std::abs(distance - tuning.groundTolerance));
   };
-  if (step.duration > 0) exceeds(std::abs(above(step.landing)));
+  exceeds(std::abs(above(step.landing)));
   const double way = eased(step, leg.progress).progress;
   for (int i = 0; i < 3 && !leg.planted; ++i)
     exceeds(above(splineAt(step, glm::mix(way, 1.0, i / 3.0)).position));

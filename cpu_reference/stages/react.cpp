@@ -42,7 +42,7 @@ class Reacting {
       disturbed = disturbed || (!carries && (idleBefore >> l & 1u) == 0);
       if (!carries || !planted) continue;
       disturbed = disturbed || misses[l] > tuning_.slipMiss;
-      if (watched == nullptr || steps[l].duration < 0) continue;
+      if (watched == nullptr) continue;
       const glm::dvec3 landing = steps[l].relative(steps[l].landing, body_);
       const glm::dvec2 at = body_.world() + glm::dvec2(landing.x, landing.z);
       const double below = body_.y + landing.y - heightAt(*watched, at.x, at.y);

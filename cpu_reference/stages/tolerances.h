@@ -119,7 +119,7 @@ inline BodyInputs blindGround(const Heights& heights, double extent, const Creat
 }
 
 struct BodyBounds {
-  double follow, turnRate, heading, speed, position, slope, orientation, height, surfaceSpeed;
+  double follow, slope, wished, turnRate, heading, speed, position, orientation, passes, height, surfaceSpeed;
 };
 // Follows the steps of the stage in order; each bound feeds the next.
 inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, const Creature& creature,
@@ -127,36 +127,13 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
   BodyBounds bound{};
   const AgentBody& next = result.body;
   const SupportPlane& plane = result.plane;
-
   bound.follow = inputs.follow;
-  // omega: turnGain e with e from two normalised vectors, scaled by followTurn = 1/4 + 3/4 follow.
-  bound.turnRate =
-      t.turnGain * 10 * roundoff + 0.75 * t.turnRate * bound.follow + 8 * roundoff * (t.turnRate + 1);
-  bound.heading = bound.turnRate * t.dt + 10 * roundoff;
-  // The speed before was at most what braking adds.
-  bound.speed = result.wantedSpeed * (bound.follow + bound.heading + 12 * roundoff) +
-                4 * roundoff * (next.speed + t.braking * t.dt);
-  // Not beyond the edge: places are records, their distance is taken within a tile of it, and divided by the
-  // heading's share. The speed rises with the way, so it lies between those of the least and the longest.
-  glm::dvec2 least, most;
-  for (int axis = 0; axis < 2; ++axis) {
-    const double share = std::max(std::abs(next.heading[axis]), 1e-6), left = result.ways[axis] * share;
-    const double error = 2 * local + 8 * roundoff * left;
-    least[axis] = std::max(0.0, left - error) / (share + bound.heading);
-    most[axis] = (left + error) / std::max(share - bound.heading, 1e-6);
-  }
-  const double slowest = stoppingSpeed(t, std::min(least.x, least.y));
-  const double fastest = stoppingSpeed(t, std::min(most.x, most.y));
-  if (slowest <= next.speed + bound.speed)
-    bound.speed = std::max(bound.speed, fastest - slowest + 12 * roundoff * fastest);
-  const double pushed = creature.reaction ? glm::length(creature.reaction->velocity) : 0;
-  bound.position = 3 * local + t.dt * (bound.speed + next.speed * bound.heading + 4 * roundoff * pushed);
 
   // (b, c) = M^-1 (Sxy, Szy): errors of the points through M^-1 (at most 1 / least eigenvalue), roundings of
   // the sums, and of the determinant in Cramer's rule (the condition number of M).
   const double legs = static_cast<double>(creature.limbs.size());
   const double slope = plane.unclampedSlope;
-  const double point = inputs.horizontal + bound.position;
+  const double point = inputs.horizontal;
   const double vertical = inputs.vertical + 4 * roundoff * plane.heightSpread;
   const double condition = plane.largestEigenvalue / plane.leastEigenvalue;
   bound.slope =
@@ -171,33 +148,85 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
   if (!all)
     bound.slope += (8 + legs) * roundoff * legs * mean * (mean * slope + std::abs(plane.mean.y) + mean) /
                    plane.leastEigenvalue;
+  // On ground that is steeper than a body tilts, a share of the velocity is lost that falls by 1 while the
+  // slope grows by a quarter of that; it is lost along the slope, whose direction errs by its error over it.
+  if (slope + bound.slope > t.maxSlope)
+    bound.wished =
+        result.wishedSpeed * (4 * bound.slope / t.maxSlope + 4 * bound.slope / slope + 24 * roundoff);
+  const double aside = std::min(2.0, bound.wished / std::max(result.wantedSpeed, 1e-20));
+
+  // omega: turnGain e with e from two normalised vectors, scaled by followTurn = 1/4 + 3/4 follow.
+  bound.turnRate = t.turnGain * (10 * roundoff + aside) + 0.75 * t.turnRate * bound.follow +
+                   8 * roundoff * (t.turnRate + 1);
+  bound.heading = bound.turnRate * t.dt + 10 * roundoff;
+  // The speed before was at most what braking adds.
+  bound.speed = result.wantedSpeed * (bound.follow + bound.heading + aside + 12 * roundoff) + bound.wished +
+                4 * roundoff * (result.unhinderedSpeed + t.braking * t.dt);
+  // Not beyond the edge: places are records, their distance is taken within a tile of it, and divided by the
+  // heading's share. The speed rises with the way, so it lies between those of the least and the longest.
+  glm::dvec2 least, most;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double share = std::max(std::abs(next.heading[axis]), 1e-6), left = result.ways[axis] * share;
+    const double error = 2 * local + 8 * roundoff * left;
+    least[axis] = std::max(0.0, left - error) / (share + bound.heading);
+    most[axis] = (left + error) / std::max(share - bound.heading, 1e-6);
+  }
+  const double slowest = stoppingSpeed(t, std::min(least.x, least.y));
+  const double fastest = stoppingSpeed(t, std::min(most.x, most.y));
+  if (slowest <= result.unhinderedSpeed + bound.speed)
+    bound.speed = std::max(bound.speed, fastest - slowest + 12 * roundoff * fastest);
+  const double pushed = creature.reaction ? glm::length(creature.reaction->velocity) : 0;
+  bound.position =
+      3 * local + t.dt * (bound.speed + result.unhinderedSpeed * bound.heading + 4 * roundoff * pushed);
+
   // The lean into a turn: s omega times its gain.
-  const double lean = t.leanGain * (next.speed * bound.turnRate + std::abs(next.turnRate) * bound.speed) +
-                      8 * roundoff * t.leanMost + t.leanMost * bound.heading;
+  const double lean =
+      t.leanGain * (result.unhinderedSpeed * bound.turnRate + std::abs(next.turnRate) * bound.speed) +
+      8 * roundoff * t.leanMost + t.leanMost * bound.heading;
   // Unit vectors are at most 2 apart.
   const double up = t.tiltBlend * (bound.slope + lean) + 16 * roundoff + 2 * inputs.blend;
   // F = (h.x, -(N . h) / N.y, h.z): a steep body amplifies by 1 / N.y.
   const double upY = (next.orientation * glm::dvec3(0, 1, 0)).y;
   const double forward = 2 * (up + bound.heading) / upY + 8 * roundoff;
   bound.orientation = up + forward + 16 * roundoff;
+
+  const double arm = (t.bodyHeight + t.bodyRadius) * (up + forward);
+  const auto groundAt = [&](const glm::dvec2& place) {
+    return height(reliefNear(heights, place.x, place.y), extent, bound.position + arm) + arm;
+  };
+  const auto planeHeight = [&] {
+    return vertical + mean * bound.slope + slope * (point + bound.position) +
+           t.dt * (result.unhinderedSpeed + pushed) * bound.slope + 8 * roundoff * slope * t.legLength;
+  };
+  // How far a body may go falls by 1 while the ground ahead rises by half of what stops it.
+  const double stops = std::min(t.climbMost, t.gapMost) / 2;
+  const double rises = groundAt(result.lookedAhead) + planeHeight() + 6 * roundoff * std::abs(next.y);
+  if (std::min(t.climbMost - result.rises, t.gapMost + result.rises) < stops + rises ||
+      t.gapMost + result.rises < t.gapMost / 2 + rises) {
+    bound.passes = std::min(1.0, rises / stops + 8 * roundoff);
+    const double slows = result.wantedSpeed * bound.passes + bound.wished;
+    const double share = slows / std::max(result.unhinderedSpeed, 1e-6 * t.legLength);
+    const double walks = std::max(result.unhinderedSpeed, std::min(result.wantedSpeed, 0.3 * t.legLength));
+    bound.speed += slows;
+    bound.position += t.dt * walks * std::min(1.0, share);
+    bound.follow += bound.passes;
+  }
   const glm::dvec3 f = next.orientation * glm::dvec3(0, 0, 1);
   const double level = std::hypot(f.x, f.z);
   bound.surfaceSpeed = (bound.speed + next.speed * forward / level) / level + 8 * roundoff;
 
-  const double planeHeight = vertical + std::hypot(plane.mean.x, plane.mean.z) * bound.slope + slope * point +
-                             8 * roundoff * slope * t.legLength;
-  const double arm = t.bodyHeight + t.bodyRadius;
-  double belly = 0;
+  double below = 0;
   const glm::dvec2 position = next.world();
   for (int k = -1; k <= 1; ++k) {
-    const glm::dvec3 q = next.orientation * glm::dvec3(0, t.bodyHeight, k * t.bodyRadius);
-    const Relief relief = reliefNear(heights, position.x + q.x, position.y + q.z);
-    const double q_error = arm * (up + forward);
-    belly = std::max(belly, height(relief, extent, bound.position + q_error) + q_error);
+    const double ends = k == 0 ? 0 : 1;  // the ground below the origin, and that below the middle line's ends
+    const glm::dvec3 q = next.orientation * glm::dvec3(0, ends * t.bodyHeight, k * t.bodyRadius);
+    below = std::max(below, groundAt(position + glm::dvec2(q.x, q.z)));
   }
-  bound.height = t.heightBlend * (std::max(planeHeight, belly) + 24 * roundoff * t.breathHeight) +
-                 t.dt * ((next.speed + pushed) * bound.slope + slope * bound.speed) +
-                 6 * roundoff * std::abs(next.y) + 4 * roundoff + inputs.blend * result.rise;
+  // Where the ground holds the body it is not blended with where that was.
+  bound.height =
+      std::max(t.heightBlend * (std::max(planeHeight(), below) + 24 * roundoff * t.breathHeight), below) +
+      t.dt * ((next.speed + pushed) * bound.slope + slope * bound.speed) + 6 * roundoff * std::abs(next.y) +
+      4 * roundoff + inputs.blend * result.rise;
   return bound;
 }
 

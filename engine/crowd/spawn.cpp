@@ -246,14 +246,18 @@ void Spawner::stand(uint32_t agent, const Place& place, uint32_t at, const Spawn
   const float phase =
       herd_.phase ? *herd_.phase - std::floor(*herd_.phase) : uniform(seed_, spotOf(agent), 2);
 
-  // Standing on the plane through the ground a leg length around.
+  // Standing on the plane through the ground a leg length around, as far as it can tilt.
   const glm::vec2 p = place.position;
   const float reach = rig_.legLength;
   const float left = terrain_.at(p.x - reach, p.y), right = terrain_.at(p.x + reach, p.y);
   const float back = terrain_.at(p.x, p.y - reach), ahead = terrain_.at(p.x, p.y + reach);
-  const glm::vec3 normal =
-      glm::normalize(glm::vec3((left - right) / (2 * reach), 1, (back - ahead) / (2 * reach)));
-  const float height = (left + right + back + ahead) / 4;
+  glm::vec2 downhill(left - right, back - ahead);
+  downhill /= std::max(2 * reach, glm::length(downhill) / tuning_.maxSlope);
+  const glm::vec3 normal = glm::normalize(glm::vec3(downhill.x, 1, downhill.y));
+  // On broken ground the mean of heights may be far from the ground in their middle.
+  const float below = terrain_.at(p.x, p.y);
+  const float height =
+      std::clamp((left + right + back + ahead) / 4, below - tuning_.sinkMost, below + tuning_.riseMost);
   const glm::vec2 heading(std::sin(place.heading), std::cos(place.heading));
   const glm::vec3 forward = glm::normalize(
       glm::vec3(heading.x, -(normal.x * heading.x + normal.z * heading.y) / normal.y, heading.y));

@@ -54,7 +54,7 @@
       "time in which the body's tilt follows the ground", \
       "less: it shakes; more: legs stretch where the slope changes") \
   ROW(X, KNOWN, 13, body, maxSlope, number, 2.75, 0.1, 2.75, \
-      "tangent of the steepest tilt", \
+      "tangent of the steepest tilt; on ground over a quarter steeper a body goes along the slope only", \
       "less: legs on the low side stretch on steep ground; more: the up axis is lost") \
   ROW(X, KNOWN, 14, body, bellyClearance, bodyHeights, 0.6, 0, 1.5, \
       "least height of the body's middle line above the ground", \

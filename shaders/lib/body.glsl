@@ -54,8 +54,14 @@ void addPoint(inout PlaneSums s, vec3 g) {
   s.xy_zy += vec2(g.x * g.y, g.z * g.y);
 }
 
-// Slope (b, c) and, third, the plane's height at x = z = 0.
-vec3 fitPlane(Parameters q, PlaneSums s, float count) {
+// The plane, which is no steeper than the body can tilt, and how much steeper the ground points lie: 1 as the plane.
+struct Plane {
+  vec2 slope;  // (b, c)
+  float height;  // at x = z = 0
+  float steepness;
+};
+
+Plane fitPlane(Parameters q, PlaneSums s, float count) {
   vec3 m = s.sum / count;
   vec3 a = s.xx_xz_zz - count * vec3(m.x * m.x, m.x * m.z, m.z * m.z);
   vec2 r = s.xy_zy - count * vec2(m.x * m.y, m.z * m.y);
@@ -63,8 +69,19 @@ vec3 fitPlane(Parameters q, PlaneSums s, float count) {
   float xx = a.x + ridge, zz = a.z + ridge;
   float inverse = 1.0 / (xx * zz - a.y * a.y);
   vec2 slope = vec2(r.x * zz - r.y * a.y, r.y * xx - r.x * a.y) * inverse;
-  slope *= min(1.0, q.maxSlope * inversesqrt(max(dot(slope, slope), 1e-20)));
-  return vec3(slope, m.y - slope.x * m.x - slope.y * m.z);
+  float share = min(1.0, q.maxSlope * inversesqrt(max(dot(slope, slope), 1e-20)));
+  slope *= share;
+  return Plane(slope, m.y - slope.x * m.x - slope.y * m.z, 1.0 / share);
+}
+
+// From here on up and down ground that is steeper than the body can tilt, it goes along the slope only.
+const float STEEPNESS_MOST = 1.25;
+
+// 2. The velocity without the part of it up or down ground that is too steep.
+vec2 walkableVelocity(Plane plane, vec2 velocity) {
+  float kept = clamp((STEEPNESS_MOST - plane.steepness) / (STEEPNESS_MOST - 1.0), 0.0, 1.0);
+  float lost = (1.0 - kept) / max(dot(plane.slope, plane.slope), 1e-20);
+  return velocity - plane.slope * (dot(plane.slope, velocity) * lost);
 }
 
 // 5. Where the body's up axis is drawn to: square to the plane, a little more level, and into the turn. `toward`: the
@@ -79,6 +96,20 @@ vec3 leaningNormal(Parameters q, vec2 slope, vec2 heading, float toward) {
 float breathing(float phase) {
   float x = phase * (1.0 - phase);
   return 16.0 * x * x;
+}
+
+// 6. The ground below a body.
+struct Underneath {
+  float highest;  // of the ground below the origin and the ends of the middle line
+  float lowest;   // where the origin may be for the ground below itself,
+  float belly;    // for both ends,
+  float ahead;    // and for the front end alone
+};
+
+// 6. The share of its speed that the ground ahead leaves to a body: 0 before a wall, or before a cliff. `rises`: the
+// ground ahead, above where a body on the support plane has it.
+float passable(Parameters q, float rises) {
+  return clamp(min((q.climbMost - rises) / (0.5 * q.climbMost), (q.gapMost + rises) / (0.5 * q.gapMost)), 0.0, 1.0);
 }
 
 // 5. R_0 with up axis `normal` and a forward axis whose horizontal direction is `heading`.

@@ -34,12 +34,16 @@ Range rangeOf(Parameters q, float reach) {
   return Range(q.reachLeast * reach, q.reachMost * reach, 1.0 / reach, 1.0 / (q.legLength * q.legLength));
 }
 
+// Cosine between ground of a gradient and the body's up axis.
+float facing(vec2 gradient, vec3 up) {
+  return (up.y - gradient.x * up.x - gradient.y * up.z) * inversesqrt(dot(gradient, gradient) + 1.0);
+}
+
 Candidate judge(Parameters q, vec3 point, vec3 gradient, vec3 up, vec3 root, vec3 predicted, Range range) {
   Candidate c;
   c.point = point;
   c.distance = distance(point, root);
-  float steep = dot(gradient.yz, gradient.yz) + 1.0;
-  float aligned = (up.y - gradient.y * up.x - gradient.z * up.z) * inversesqrt(steep);
+  float aligned = facing(gradient.yz, up);
   c.fits = c.distance >= range.least && c.distance <= range.most && aligned >= q.slopeLeast;
   vec3 miss = point - predicted;
   float stretched = max(0.0, c.distance * range.inverseReach - q.reachComfort);

@@ -24,6 +24,10 @@ namespace skitter::shared {
         "counts as arrived; a planted foot's slide is the sum of such errors") \
   FIXED(X, KNOWN, 54, missLeast, reaches, 2e-4, \
         "body and gait do not hear of a planted foot that misses by less; one planted leg of a thousand misses by more") \
+  FIXED(X, UNIFORM, _, sinkMost, legLengths, 0.1, "a body is wanted at most so far below the ground at its origin") \
+  FIXED(X, UNIFORM, _, riseMost, legLengths, 1, "a body is at most so far above the highest ground below it") \
+  FIXED(X, UNIFORM, _, climbMost, legLengths, 0.6, "ground ahead that is so much too high for the support plane is a wall") \
+  FIXED(X, UNIFORM, _, gapMost, legLengths, 1.8, "ground ahead that is so far below it is a cliff") \
   FIXED(X, UNIFORM, _, deadZone, legLengths, 0.005, "depth or height of a foot that counts as touching") \
   FIXED(X, UNIFORM, _, skateSpeed, legLengthsPerSecond, 0.1, "horizontal speed above which a planted foot skates") \
   FIXED(X, UNIFORM, _, limitDeadZone, radians, 1e-4, \

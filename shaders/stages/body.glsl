@@ -25,6 +25,21 @@ Body looseBody(Body body, Reaction r) {
 
 layout(constant_id = CONSTANT_AVOIDS) const bool AVOIDS = false;
 
+// The ground below a body that has moved, with up and forward axis.
+Underneath underneath(Body body, vec2 moved, vec3 normal, vec3 forward) {
+  vec2 world = worldOf(vec3(body.local.x + moved.x, 0.0, body.local.z + moved.y), body.tile);
+  vec3 middle = parameters.bodyHeight * normal, front = parameters.bodyRadius * forward;
+  float below = groundAt(world).x, behind = groundAt(world + middle.xz - front.xz).x,
+        ahead = groundAt(world + middle.xz + front.xz).x;
+  float clear = parameters.bellyClearance - middle.y;
+  Underneath ground;
+  ground.highest = max(below, max(behind, ahead));
+  ground.lowest = below + max(-parameters.sinkMost, parameters.bellyClearance - parameters.bodyHeight);
+  ground.ahead = ahead + clear - front.y;
+  ground.belly = max(behind + clear + front.y, ground.ahead);
+  return ground;
+}
+
 // `body` is the agent's, `steer` the record of it, or avoid's.
 Body makeBody(int agent, Body body, vec4 steer) {
   vec2 velocity = steer.xy;
@@ -72,6 +87,9 @@ Body makeBody(int agent, Body body, vec4 steer) {
 #endif
 
   float follow = max(followFactor(parameters, hold), parameters.followLeast);
+  Plane plane = fitPlane(parameters, sums, points);
+  vec2 slope = plane.slope;
+  velocity = walkableVelocity(plane, velocity);
 
   float commanded = length(velocity);
   bool going = commanded > 1e-4 * parameters.legLength;
@@ -82,26 +100,17 @@ Body makeBody(int agent, Body body, vec4 steer) {
   body.speed += clamp(speed - body.speed, -parameters.braking * dt, parameters.acceleration * dt);
   body.speed = min(body.speed, speedToEdge(parameters, body.local, body.tile, body.heading));
   if (AVOIDS) body.speed = min(body.speed, steer.w);
-  vec2 moved = body.heading * (body.speed * dt);
+  vec2 walked = body.heading * (body.speed * dt);
   if (AVOIDS) {
     // Who is blocked ahead steps aside. Both displacements lie in its cell, which is convex.
     float toEdge = speedToEdge(parameters, body.local, body.tile, wanted);
     float aside = AVOID_PUSH_SPEED * parameters.legLength;
     vec2 stepped = wanted * (min(follow * min(commanded, aside), toEdge) * dt);
-    moved = mix(moved, stepped, clamp(1.0 - steer.w / aside, 0.0, 1.0));
+    walked = mix(walked, stepped, clamp(1.0 - steer.w / aside, 0.0, 1.0));
   }
+  vec2 carried = vec2(0.0);
 #ifdef REACTS
-  moved += reaction.velocity * dt;
-#endif
-
-  vec3 plane = fitPlane(parameters, sums, points);
-  vec2 slope = plane.xy;
-  float planeHeight = body.local.y + plane.z + dot(slope, moved);
-#ifdef HURT
-  planeHeight -= hurt.shift.y;  // the body is so much lower
-#endif
-#ifdef REACTS
-  planeHeight -= reaction.drop;
+  carried = reaction.velocity * dt;
 #endif
 
 #ifdef BLIND
@@ -117,24 +126,44 @@ Body makeBody(int agent, Body body, vec4 steer) {
   vec4 orientation = quaternionFromColumns(cross(normal, forward), normal, forward);
   body.orientation = dot(orientation, body.orientation) < 0.0 ? -orientation : orientation;
 
+  // A body that the ground ahead slows goes no farther than it may, and looks again at where it comes to: a loop, which
+  // ends after one turn where no body does.
+  vec2 moved;
+  Underneath ground;
+  float passes = 1.0;
+  for (bool first = true, looks = true; looks; first = false) {
+    moved = walked + carried;
+    ground = underneath(body, moved, normal, forward);
+    float rises = ground.ahead - (body.local.y + plane.height + dot(slope, moved));
+    passes = first ? passable(parameters, rises) : passes;
+    looks = first && passes < 1.0;
+    float share = clamp(passes * commanded / max(body.speed, 1e-6 * parameters.legLength), 0.0, 1.0);
+    share = looks ? share : 1.0;
+    body.speed *= share;
+    walked *= share;
+  }
+  float planeHeight = body.local.y + plane.height + dot(slope, moved);
+  float lowest = max(ground.lowest, min(ground.belly, planeHeight + parameters.climbMost));
+#ifdef HURT
+  planeHeight -= hurt.shift.y;  // the body is so much lower
+#endif
+#ifdef REACTS
+  planeHeight -= reaction.drop;
+#endif
+  float height = max(planeHeight + parameters.breathHeight * breath, lowest);
+  height = mix(body.local.y + dot(slope, moved), height, parameters.heightBlend);
+  body.local.y = min(max(height, ground.lowest - 0.5 * parameters.sinkMost), ground.highest + parameters.riseMost);
+
   body.local.xz += moved;
   vec2 crossed = floor(body.local.xz / TILE_SIZE);
   body.tile += crossed;
   body.local.xz -= crossed * TILE_SIZE;
 
-  vec2 world = worldOf(body.local, body.tile);
-  float height = planeHeight + parameters.breathHeight * breath;
-  [[unroll]] for (int k = -1; k <= 1; ++k) {
-    vec3 belly = parameters.bodyHeight * normal + float(k) * parameters.bodyRadius * forward;
-    height = max(height, groundAt(world + belly.xz).x + parameters.bellyClearance - belly.y);
-  }
-  body.local.y = mix(body.local.y + dot(slope, moved), height, parameters.heightBlend);
-
   body.surfaceSpeed = body.speed * inversesqrt(max(dot(forward.xz, forward.xz), 1e-20));
   float l = parameters.legLength;
   bool still = commanded < 1e-2 * l && body.speed < 1e-2 * l && abs(body.turnRate) < 1e-2;
   body.still = still ? body.still + dt : 0.0;
-  body.follow = follow;
+  body.follow = follow * passes;
 #ifdef REACTS
   body.still = reaction.phase == REACTION_STEADY ? body.still : 0.0;
   if (isLoose(reaction)) body = looseBody(old, reaction);

@@ -84,28 +84,23 @@ Candidate bestOn(Search search) {
   return best;
 }
 
-// Where none fits, `point` moves to the candidate that is nearest to doing so, brought into range. Few legs have none
-// that fits; where none of those solved side by side has, these loops end after a turn.
+// Where none fits, `point` moves to the candidate that is nearest to doing so: one that faces up, if there is one. Few legs
+// have none that fits; where none of those solved side by side has, these loops end after a turn.
 void takeLastResort(Search search, bool lastResort, int agent, inout vec3 point) {
-  vec3 nearest = search.predicted;
   float nearestMiss = 3e38;
   for (int k = 1; lastResort && k <= RUNGS; ++k) {
     for (int j = -k; j <= k; ++j) {
-      vec3 q = placeOn(search.ladder, k, j);
-      q.y = groundAt(search.world + q.xz).x - search.height;
+      vec3 q = placeOn(search.ladder, k, j), ground = groundAt(search.world + q.xz);
+      q.y = ground.x - search.height;
       float far = distance(q, search.root), miss = abs(far - clamp(far, search.range.least, search.range.most));
+      miss += facing(ground.yz, search.up) < parameters.slopeLeast ? parameters.legLength : 0.0;
       if (miss < nearestMiss) {
         nearestMiss = miss;
-        nearest = q;
+        point = q;
       }
     }
   }
-  if (lastResort) {
-    vec3 d = nearest - search.root;
-    float far = length(d);
-    point = search.root + d * (clamp(far, search.range.least, search.range.most) / max(far, 1e-6));
-    countForHerd(true, agent, ROW_LAST_RESORTS);
-  }
+  if (lastResort) countForHerd(true, agent, ROW_LAST_RESORTS);
 }
 
 // The shortest lift of at least `least` that clears the ground between p0 and p1.

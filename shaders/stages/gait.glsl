@@ -58,7 +58,7 @@ void makeGait(int agent, Body body) {
     float u = stepProgress(s, thisTick - 1.0);
     vec3 landing = fromStep(s.landing, s, body.local, body.tile);
     vec3 foot = landing * orientation;
-    bool moved = WATCH != 0 && !s.lastResort && abs(above(landing, body)) > parameters.groundTolerance;
+    bool moved = WATCH != 0 && abs(above(landing, body)) > parameters.groundTolerance;
     WHERE_CARRIES(hurt, leg)
     if (u >= 1.0) {
       // Distances are compared by their squares.

@@ -38,7 +38,7 @@ Legs legsOf(int agent, Body body, uint idle) {
     if (WATCH != 0) {
       vec3 landing = fromStep(s.landing, s, body.local, body.tile);
       float ground = groundAt(worldOf(body.local, body.tile) + landing.xz).x - (body.local.y + landing.y);
-      slips = slips || (!s.lastResort && ground < -parameters.groundTolerance);
+      slips = slips || ground < -parameters.groundTolerance;
     }
     legs.disturbed = legs.disturbed || (carries && planted && slips);
   }

@@ -171,13 +171,23 @@ TEST_F(CrowdTest, TurnsBackAtTheFarSide) {
   EXPECT_LT(last, farthest - 2);
 }
 
-TEST_F(CrowdTest, FollowsItsGoalPastACliff) {
-  // Never stuck while the goal can be reached: down the wall by last resorts, and on.
+TEST_F(CrowdTest, StopsBeforeACliffAndGoesBackWhenItIsLedBack) {
   Crowd crowd(device(), cliffGround(), sceneOf(8));
+  crowd.steer(0, Goal{.kind = Goal::Kind::velocity, .velocity = {0, 1}});
   simulate(device(), crowd, 2400);
-  const HerdState state = crowd.download(0);
-  for (size_t agent = 0; agent < 8; ++agent) EXPECT_GT(positionOf(state, agent).z, -10) << "agent " << agent;
-  EXPECT_GT(crowd.fidelity().lastResorts, 0u);
+  const HerdState stopped = crowd.download(0);
+  // The ground ends a cell before the row that lies below.
+  const double edge = cliffGround().originZ() + cliffGround().spacingZ * (cliffGround().rows / 4 - 1.0);
+  for (size_t agent = 0; agent < 8; ++agent) {
+    EXPECT_LT(positionOf(stopped, agent).z, edge) << "agent " << agent;
+    EXPECT_GT(positionOf(stopped, agent).z, edge - 2) << "agent " << agent;
+    // docs/stages/body.md: less than followLeast says that the ground stops it.
+    EXPECT_LT(stopped.body[16 * agent + 14], 0.05f) << "agent " << agent;
+  }
+  crowd.steer(0, Goal{.kind = Goal::Kind::velocity, .velocity = {0, -1}});
+  simulate(device(), crowd, 300);
+  for (size_t agent = 0; agent < 8; ++agent)
+    EXPECT_LT(positionOf(crowd.download(0), agent).z, edge - 2) << "agent " << agent;
 }
 
 }  // namespace

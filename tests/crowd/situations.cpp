@@ -272,8 +272,7 @@ Results liftingAtOnce(Device& device, Controller controller, const CrowdOptions&
   return replay(device, crowd, crowd.terrain(), 2);
 }
 
-// All feet stand at home, on landings that were last resorts. They have no other reason to step: the ground
-// drops, but a last resort was never on it.
+// All feet stand at home, on landings that were last resorts. They have no other reason to step.
 Results onLastResorts(Device& device, Controller controller, const CrowdOptions& options) {
   const Heightfield ground = rollingGround();
   Scene scene = sceneOf(16, 1, 1, controller);
@@ -282,8 +281,26 @@ Results onLastResorts(Device& device, Controller controller, const CrowdOptions&
   simulate(device, crowd, 1);
   forEachRecord(device, pageOf(crowd).step, shared::STEP_STRIDE,
                 [](size_t, float* step) { step[7] = -std::abs(step[7]); });
-  raiseAll(crowd, -0.05f);
   return replay(device, crowd, crowd.terrain(), 30);
+}
+
+// Ground that stops who walks on it: steps and pits with sheer sides, spikes, and a slope that is too steep,
+// a quarter of the map each.
+Results onBrokenGround(Device& device, Controller controller, const CrowdOptions& options) {
+  Heightfield ground = smallRollingGround();
+  for (uint32_t row = 0; row < ground.rows; ++row) {
+    for (uint32_t column = 0; column < ground.columns; ++column) {
+      float& height = ground.heights[row * ground.columns + column];
+      const bool right = column > ground.columns / 2, far = row > ground.rows / 2;
+      const float hashed = static_cast<float>((row * 7919 + column * 104729) % 1000) / 1000;
+      if (right && far) height = 1.1f * static_cast<float>((row / 6 + column / 6) % 3);
+      if (right && !far) height = (row / 5 + column / 7) % 4 == 0 ? -3.0f : 0.0f;
+      if (!right && far) height += 1.5f * hashed;
+      if (!right && !far) height += 3.2f * ground.spacingX * static_cast<float>(column);
+    }
+  }
+  Crowd crowd(device, ground, sceneOf(48, 1.2f, 1, controller), options);
+  return replay(device, crowd, ground, 150);
 }
 
 // Ticks so long that a step lasts the least number of them, and that its windows set the length of a cycle.
@@ -620,6 +637,7 @@ const std::vector<Situation>& situations() {
         {"reachingOverRocks", {Controller::adaptive}, reachingOverRocks},
         {"liftingAtOnce", {Controller::adaptive}, liftingAtOnce},
         {"onLastResorts", {Controller::adaptive}, onLastResorts},
+        {"onBrokenGround", {Controller::adaptive, Controller::loop}, onBrokenGround},
         {"inLongTicks", {Controller::adaptive, Controller::loop}, inLongTicks},
         {"fading", {Controller::clip, Controller::planted}, fading},
         {"changingGaits", {Controller::clip, Controller::planted}, changingGaits},

@@ -152,8 +152,62 @@ TEST_F(Body, bellyStaysAboveABump) {
   terrain = field(257, 0.125f, bump);
   heights = validation::heightsOf(terrain, parametersFor(terrain));
   walk({0, 0}, 120, flat);
-  EXPECT_NEAR(body.y + tuning.bodyHeight * (body.orientation * glm::dvec3(0, 1, 0)).y,
-              0.4 + tuning.bellyClearance, 1e-3);
+  EXPECT_NEAR(body.y, 0.4 + std::max(-tuning.sinkMost, tuning.bellyClearance - tuning.bodyHeight), 1e-3);
+}
+
+// Its feet stay where the ground is level, as foothold keeps them.
+TEST_F(Body, stopsBeforeWallsAndCliffsAndWalksOnWhenLedBack) {
+  for (const double high : {5.0, -5.0}) {
+    terrain = field(257, 0.125f, [&](double, double z) { return z > 3 ? high : 0; });
+    heights = validation::heightsOf(terrain, parametersFor(terrain));
+    body = bodyAt(0.5, 0.5);
+    double fastest = 0;
+    for (int i = 0; i < 400; ++i) {
+      walk({0, 1}, 1, flat);
+      fastest = std::max(fastest, body.speed);
+      EXPECT_NEAR(body.y, 0, 1.01 * tuning.climbMost);
+    }
+    EXPECT_NEAR(fastest, 1, 1e-3);
+    // The front end is in the ground's slope, which is a cell wide.
+    EXPECT_NEAR(body.world().y + tuning.bodyRadius, 3, 0.2) << high;
+    EXPECT_LT(body.follow, 0.05);
+    EXPECT_LT(body.speed, 0.05);
+    walk({0, -1}, 300, flat);
+    EXPECT_LT(body.world().y, 1) << high;
+    EXPECT_EQ(body.follow, 1);
+  }
+}
+
+TEST_F(Body, goesAlongGroundThatIsTooSteepAndStopsWhereItLeadsStraightUp) {
+  const auto slope = [](double x, double) { return 0.8 * x; };
+  terrain = field(257, 0.25f, slope);
+  heights = validation::heightsOf(terrain, parametersFor(terrain));
+  for (const double maxSlope : {0.8, 0.6}) {
+    tuning.maxSlope = maxSlope;
+    body = bodyAt(0.5, 0.5);
+    body.y = 0.4;
+    const bool tooSteep = maxSlope < 0.7;
+    walk({0.5, 0.5}, 240, slope);
+    EXPECT_GT(body.world().y, 1.5);
+    if (tooSteep) {
+      EXPECT_NEAR(body.world().x, 0.5, 0.05);
+    } else {
+      EXPECT_GT(body.world().x, 1.5);
+    }
+    const double before = body.world().x;
+    walk({0.5, 0}, 120, slope);
+    EXPECT_NEAR(body.speed, tooSteep ? 0 : 0.5, 1e-2);
+    EXPECT_EQ(body.world().x > before + 0.3, !tooSteep);
+  }
+}
+
+TEST_F(Body, isNeverFarFromTheGroundWhereverItsFeetAre) {
+  for (const double feet : {-50.0, 50.0}) {
+    body = bodyAt(0.5, 0.5);
+    walk({0, 1}, 120, [&](double, double) { return feet; });
+    EXPECT_GE(body.y, -1.5 * tuning.sinkMost);
+    EXPECT_LE(body.y, tuning.riseMost);
+  }
 }
 
 TEST_F(Body, stretchedLegBehindHoldsTheBodyAndOneAheadDoesNot) {

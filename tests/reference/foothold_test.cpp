@@ -66,13 +66,25 @@ TEST_F(Foothold, cliffIsAvoided) {
   EXPECT_GE(distance, tuning.reachLeast - 1e-9);
 }
 
-TEST_F(Foothold, lastResortLiesOnTheShell) {
-  ground(flatField(-5));
-  const auto result = lift(2);
+TEST_F(Foothold, lastResortLiesOnTheGroundHoweverFarThatIs) {
+  for (const float below : {-5.0f, -0.1f, 0.1f}) {
+    ground(flatField(below));
+    tuning.reachMost = tuning.reachLeast = below < -1 ? 0.95 : 0.01;
+    const auto result = lift(2);
+    EXPECT_TRUE(result.lastResort);
+    EXPECT_LT(result.step.duration, 0);
+    EXPECT_NEAR(landing(result.step).y, below, 1e-6);
+  }
+}
+
+TEST_F(Foothold, lastResortFacesUpWhereAnythingDoes) {
+  // A slope that faces the wrong way but is within reach, and level ground beyond it that is not.
+  const double edge = 1 + creature.limbs[1].home.x;
+  ground(field(513, 0.0625f, [=](double x, double) { return std::max(-8.0, 8 * std::min(0.0, edge - x)); }));
+  tuning.reachLeast = tuning.reachMost = 0.01;
+  const auto result = lift(1);
   EXPECT_TRUE(result.lastResort);
-  EXPECT_LT(result.step.duration, 0);
-  const glm::dvec3 root = body.orientation * result.root;
-  EXPECT_NEAR(glm::length(landing(result.step) - root), tuning.reachMost, 1e-9);
+  EXPECT_GE(result.candidates[static_cast<size_t>(result.chosen)].facing, tuning.slopeLeast);
 }
 
 TEST_F(Foothold, nearestOnlyIgnoresEverythingElse) {
