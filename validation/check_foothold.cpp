@@ -154,7 +154,8 @@ StepBounds stepBounds(const Case& c, const reference::FootholdResult& result) {
   // A hanging foot is where forward kinematics has it.
   const double hangs =
       c.hanging ? tolerance::bonePosition(c.setting.bones) * (c.limb.reach + glm::length(c.limb.root)) : 0;
-  bound.liftOff = tolerance::relative + (c.lifts ? hangs : tolerance::spline);
+  bound.liftOff = c.lifts ? tolerance::relativeOver(tolerance::stepAside(c.before, c.body)) + hangs
+                          : tolerance::footAside(c.before, c.body, false);
   bound.liftOffHeight = (c.lifts ? 6 : 20) * tolerance::roundoff * world + hangs;
   // A present tangent shifts the way by at most 4/27 of its error.
   const double tangent = c.lifts ? 0 : 6 * tolerance::local + 24 * tolerance::roundoff * world;

@@ -51,7 +51,7 @@ double groundBound(const Setting& setting, const Moment& moment, const reference
       const reference::Relief relief =
           reference::reliefNear(setting.heights, position.x + p.x, position.y + p.z);
       bound =
-          std::max(bound, tolerance::height(relief, setting.extent, tolerance::spline + tolerance::relative));
+          std::max(bound, tolerance::height(relief, setting.extent, tolerance::footAside(step, body, false)));
     }
   }
   return bound + 16 * tolerance::roundoff * std::max(1.0, std::abs(body.y));

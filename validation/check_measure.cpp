@@ -56,12 +56,13 @@ struct TrailBounds {
   double at, first, second, third;
 };
 
+// `apart` is how far the points may be from their body along x or z.
 TrailBounds compareTrail(const reference::Trail& expected, const reference::Trail& got, double at,
-                         double unit, Sample& sample) {
+                         double apart, double unit, Sample& sample) {
   // x_n - x_(n-1) of tile-local coordinates: both are records or have just been compared.
-  const TrailBounds bound{at, at + tolerance::relative,
-                          at + tolerance::relative + 2 * tolerance::roundoff * glm::length(expected.second),
-                          at + tolerance::relative + 8 * tolerance::roundoff * glm::length(expected.second)};
+  const double step = at + tolerance::relativeOver(apart);
+  const TrailBounds bound{at, step, step + 2 * tolerance::roundoff * glm::length(expected.second),
+                          step + 8 * tolerance::roundoff * glm::length(expected.second)};
   compareFields(expected, got, sample);
   const auto vector = [&](const char* quantity, const glm::dvec3& e, const glm::dvec3& g, double by) {
     sample.compare(quantity, glm::length(e - g) / unit, by / unit, {e, 0}, {g, 0});
@@ -167,12 +168,14 @@ void addLeg(const Setting& setting, const Legs& legs, const reference::Measured&
   const reference::Chain& chain = legs.chains[l];
   const reference::TipTrail& trail = expected.watched.tips[l];
   const reference::LegDecisions& leg = expected.legs[l];
-  // Adding a tip to its body rounds once, in x and z below 32 m, in y with the height.
+  // Adding a tip to its body rounds once, in x and z below 32 m or a tile and the reach, in y with the
+  // height.
+  const double aside = tolerance::relativeOver(limb.reach);
   const double height = 6 * tolerance::roundoff * (std::abs(body.y) + limb.reach);
-  const TrailBounds bound = compareTrail(trail, got.tips[l], tolerance::relative + height, unit, sample);
+  const TrailBounds bound = compareTrail(trail, got.tips[l], aside + height, limb.reach, unit, sample);
   sample.compare("slip of the stance / leg length", std::abs(trail.slip - got.tips[l].slip) / unit,
-                 (2 * tolerance::relative + 4 * tolerance::roundoff * std::abs(trail.slip)) / unit,
-                 {trail.slip, 0, 0, 0}, {got.tips[l].slip, 0, 0, 0});
+                 (2 * aside + 4 * tolerance::roundoff * std::abs(trail.slip)) / unit, {trail.slip, 0, 0, 0},
+                 {got.tips[l].slip, 0, 0, 0});
 
   if (limb.lost) return;
   const glm::dvec2 world = body.world();
@@ -208,7 +211,7 @@ Bounds compareTrails(const Setting& setting, const Legs& legs, const reference::
   Bounds bounds;
   const double ticks = setting.tuning.jerkTicks;
   const reference::Trail& body = expected.watched.body;
-  const TrailBounds bound = compareTrail(body, got.body, 0, setting.tuning.legLength, sample);
+  const TrailBounds bound = compareTrail(body, got.body, 0, 0, setting.tuning.legLength, sample);
   if (expected.closes) {
     bounds.bodyJerk = jerkBound(body, bound, ticks);
     bounds.bodyPath = pathBound(body, bound);

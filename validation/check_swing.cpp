@@ -34,7 +34,7 @@ void checkSwing(const Setting& setting, const Moment& moment, Judge& judge) {
     sample.same("planted", planted, got.progress >= 1);
     sample.compare("progress", std::abs(expected.progress - got.progress), 4 * tolerance::roundoff,
                    {expected.progress, 0, 0, 0}, {got.progress, 0, 0, 0});
-    double horizontal = tolerance::footAside(way >= 1),
+    double horizontal = tolerance::footAside(step, body, way >= 1),
            vertical = tolerance::footHeight(step, body, way >= 1);
     if (limb.folds) {
       // The place in the model is rotated once, and mixed; then the ground is looked up there.

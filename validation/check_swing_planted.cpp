@@ -34,7 +34,7 @@ Bounds boundsOf(const Setting& setting, const Moment& moment, double clipFoot, c
   // The device multiplies an offset by a power of the share that one tick leaves.
   const double kept =
       (static_cast<double>(moment.span) - 1) * tolerance::roundoff * glm::length(expected.plant.offset);
-  bounds.horizontal = place + tolerance::relative + kept;
+  bounds.horizontal = place + tolerance::relativeOver(reach) + kept;
   bounds.vertical = place + kept + ground(expected.wanted, place) +
                     ground(expected.foot.target, bounds.horizontal) +
                     16 * tolerance::roundoff * (std::abs(body.y) + reach);

@@ -25,9 +25,15 @@ inline constexpr double local = tileSize * roundoff;
 // Difference of two tile-local points: the tile difference times 16 is exact, its sum with one coordinate is
 // below 32 m (2 local), the difference with the other rounds once more (2 local at most).
 inline constexpr double relative = 4 * local;
+// The same of points so far apart along x or z. The tiles between them are up to `apart` and one tile; with a
+// coordinate that is within a tile of a point (apart + 2 tiles) one rounding, the difference itself is the
+// other.
+inline double relativeOver(double apart) { return std::max(relative, (2 * apart + 2 * tileSize) * roundoff); }
 // A cubic Hermite spline in tile-local coordinates: four products and three sums of terms below 16 m, the
 // basis functions err by 4 roundoff each; half of these roundings cancel at worst.
 inline constexpr double spline = 12 * local;
+// The same of terms up to `largest`.
+inline double splineOver(double largest) { return std::max(spline, 12 * roundoff * largest); }
 
 // heightAt at a point known to within `horizontal`, on a terrain that reaches `extent` from the origin:
 // forming the world coordinate errs by 1 roundoff of it, subtracting the origin and scaling by 2 each of
@@ -75,19 +81,33 @@ inline double breathedOut(const Tuning& t, int ticks, const Gait& gait) {
 inline double rotated(double length) { return 16 * roundoff * length; }
 // A foot's target, in its step or planted. A spline errs in the coordinates that it is evaluated in; heights
 // are world ones.
-inline double footAside(bool planted) { return planted ? relative : spline + relative; }
+// How far its step's points are from a body along x or z, and how far its knot and tangents are from those:
+// the knot lies half way between them, plus the lift.
+inline double stepAside(const Step& step, const AgentBody& body) {
+  const glm::dvec3 from = step.relative(step.liftOff, body), to = step.relative(step.landing, body);
+  return std::max({std::abs(from.x), std::abs(from.z), std::abs(to.x), std::abs(to.z)});
+}
+inline double stepArc(const Step& step, bool sideways) {
+  const glm::dvec3 lift = glm::abs(step.lift), tangent = glm::abs(step.startTangent);
+  return sideways ? std::max({lift.x, lift.z, tangent.x, tangent.z}) : std::max(lift.y, tangent.y);
+}
+inline double footAside(const Step& step, const AgentBody& body, bool planted) {
+  const double points = stepAside(step, body);
+  return relativeOver(points) + (planted ? 0 : splineOver(points + stepArc(step, true)));
+}
 // The largest of the heights that a point of a step is made of.
 inline double stepHeight(const Step& step, const AgentBody& body) {
   return std::max({std::abs(step.landing.y), std::abs(step.liftOff.y), std::abs(body.y), 1.0});
 }
 inline double footHeight(const Step& step, const AgentBody& body, bool planted) {
-  return (planted ? 4 : 16) * roundoff * stepHeight(step, body);
+  const double points = stepHeight(step, body);
+  return planted ? 4 * roundoff * points : 16 * roundoff * (points + stepArc(step, false));
 }
 inline double foot(const Step& step, const AgentBody& body, bool planted) {
-  return std::hypot(footAside(planted), footHeight(step, body, planted));
+  return std::hypot(footAside(step, body, planted), footHeight(step, body, planted));
 }
 // Distance of a foot from its root or home.
-inline double footDistance(double length) { return relative + rotated(length); }
+inline double footDistance(double length) { return relativeOver(length) + rotated(length); }
 
 // Inputs of the body err by so much: follow, the points that its plane goes through (level and upright), and
 // the blends of height and tilt.

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <signal.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "../support/stages_page.h"
 #include "process.h"
 #include "skitter/controller.h"
@@ -44,6 +47,25 @@ TEST_F(Validate, EveryStageAgreesWithTheReference) {
     EXPECT_TRUE(validation.at("device").is_string());
     EXPECT_EQ(stagesThatAgree(validation), replayedOnThePage({nameOf(controller)}));
   }
+}
+
+// Bounds grow with the legs: a step's arc is as high as they are long.
+TEST_F(Validate, LegsOfAnyLengthAgreeWithTheReference) {
+  std::filesystem::copy_file(SKITTER_ROOT "/assets/quadruped.glb", file("quadruped.glb"));
+  std::ifstream from(SKITTER_ROOT "/assets/quadruped.rig.json");
+  nlohmann::json rig = nlohmann::json::parse(from);
+  const auto validated = [&](double metres, const char* terrain) {
+    rig["legLength"] = metres;
+    std::ofstream(file("quadruped.rig.json")) << rig;
+    return skitter({"validate", "--rig", file("quadruped.rig.json"), "--agents", "4", "--terrain", terrain});
+  };
+  for (const double metres : {0.001, 0.03, 22.0, 40.0, 60.0, 100.0}) {
+    for (const char* terrain : {"noise:amplitude=0", "noise"}) {
+      const Result result = validated(metres, terrain);
+      EXPECT_EQ(result.code, 0) << metres << " m, " << terrain << ": " << result.out << result.err;
+    }
+  }
+  expectRefusal(validated(1000, "noise"), 2, {"legs of 1000 m, expected at most 100 m: scale the rig down"});
 }
 
 TEST_F(Validate, AgentsThatAvoidEachOtherAgreeWithTheReference) {
