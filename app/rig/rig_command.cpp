@@ -9,6 +9,7 @@
 #include "app/common/files.h"
 #include "app/common/signals.h"
 #include "app/common/values.h"
+#include "app/common/warnings.h"
 #include "assets/files/partial_file.h"
 #include "skitter/error.h"
 #include "skitter/rig_setup.h"
@@ -48,6 +49,7 @@ int propose(const RigOptions& options) {
   if (fs::exists(out) && !options.force) {
     throw inputError(fmt::format("{} exists and may have been edited: --force overwrites it", out.string()));
   }
+  const ModelWarnings warnings;
   std::optional<StopDeadline> deadline(std::in_place);
   const Model model = loadModel(options.file);
   RigProposal proposal = proposeRig(model);

@@ -15,6 +15,7 @@
 #include "app/common/manifest.h"
 #include "app/common/scene_options.h"
 #include "app/common/signals.h"
+#include "app/common/warnings.h"
 #include "app/run/damage_watch.h"
 #include "app/run/forage_log.h"
 #include "app/run/obstacle.h"
@@ -175,6 +176,7 @@ void Run::start() {
     if (!options_.json.empty()) writeJson(options_.json, unfinished(), manifest);
     return stopped();
   });
+  const ModelWarnings warnings;
   terrain_ = state_ ? state_->terrain : scene_.loadTerrain();
   DeviceRequest request = options_.deviceRequest();
   if (windowed_) {

@@ -17,6 +17,7 @@
 #include "app/common/signals.h"
 #include "app/common/simulate.h"
 #include "app/common/values.h"
+#include "app/common/warnings.h"
 #include "app/validate/ground_edits.h"
 #include "app/validate/outcome.h"
 #include "crowd/events.h"
@@ -188,6 +189,7 @@ Outcome validateOn(const std::string& name, Validation& validation, Files& files
   DeviceRequest request;
   if (!name.empty()) request.device = name;
   Device device = Device::create(request);
+  const ModelWarnings warnings;
   CrowdOptions crowdOptions;
   if (!options.levels.empty()) crowdOptions.levels = loadLevels(options.levels);
   // All that can be.

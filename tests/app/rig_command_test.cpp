@@ -79,6 +79,43 @@ TEST_F(RigCommand, ABrokenImageIsAWarningAndAFlatColour) {
   EXPECT_NE(drawn.err.find(": drawn as a flat colour\n"), std::string::npos) << drawn.err;
 }
 
+size_t timesIn(const std::string& text, const std::string& part) {
+  size_t count = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(RigCommand, WhatIsOddIsSaidWhereUsersLook) {
+  writeMadeModels(file(""));
+  Glb fox = readGlb(file("fox.glb"));
+  fox.json["extensionsRequired"] = {"KHR_lights_punctual"};
+  fox.json["animations"][0]["channels"].push_back({{"sampler", 0}, {"target", {{"path", "visible"}}}});
+  fox.write(file("fox.glb"));
+  const std::string
+      lights = "requires extension \"KHR_lights_punctual\", which is not read: its lights are left out\n",
+      clip = "animations[0] drives \"visible\", which is not played: channel left out\n";
+  const std::string warnings =
+      "warning: " + file("fox.glb") + ": " + lights + "warning: " + file("fox.glb") + ": " + clip;
+  const Result seen = skitter({"inspect", file("fox.glb")});
+  EXPECT_NE(seen.out.find("odd     " + lights), std::string::npos) << seen.out;
+  EXPECT_EQ(seen.err, "");
+  EXPECT_EQ(skitter({"rig", file("fox.glb")}).err, warnings);
+  // The model is read twice, for the rig and for its clips.
+  const Result run = skitter(
+      {"run", "--rig", file("fox.glb"), "--controller", "clip", "--agents", "2", "--frames", "2", "--quiet"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(timesIn(run.err, warnings), 1u) << run.err;
+  EXPECT_EQ(timesIn(run.err, lights), 1u) << run.err;
+
+  // A run that fails says why there is nothing to play.
+  for (nlohmann::json& each : fox.json["animations"])
+    for (nlohmann::json& sampler : each["samplers"]) sampler["input"] = 9999;
+  fox.write(file("fox.glb"));
+  const Result none = skitter({"run", "--rig", file("fox.glb"), "--controller", "clip", "--frames", "2"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.err.find("animations[0].samplers[0].input is 9999"), std::string::npos) << none.err;
+}
+
 TEST_F(RigCommand, InspectSaysHowClipsAreBaked) {
   const Result result =
       skitter({"inspect", SKITTER_ROOT "/assets/spider.glb", "--json", file("spider.json")});

@@ -459,12 +459,8 @@ TEST_F(SmallClips, NoCubicErrsMoreBetweenTheQuarterPoints) {
   }
 }
 
-TEST_F(SmallClips, FaultsCostTheClip) {
+TEST_F(SmallClips, AFaultOfAllChannelsCostsTheClip) {
   const std::pair<std::function<void(Glb&)>, const char*> cases[] = {
-      {[](Glb& g) {
-         move(g, "knee", "translation", "LINEAR", {0, 2, 1}, {1, 0, 0, 1, 0, 0, 1, 0, 0});
-       },
-       "the time 1 at key 2, expected times that rise from 0"},
       {[](Glb& g) {
          move(g, "knee", "translation", "LINEAR", {0, 1}, {1, 0, 0});
        },
@@ -474,22 +470,9 @@ TEST_F(SmallClips, FaultsCostTheClip) {
        },
        "2 outputs for 2 keys, expected 6"},
       {[](Glb& g) {
-         move(g, "knee", "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, 0, 0});
-       },
-       "a rotation of length 0 at key 1"},
-      {[](Glb& g) {
-         move(g, "knee", "translation", "LINEAR", {0, 1}, {1, 0, 0, NAN, 0, 0});
-       },
-       "holds nan"},
-      {[](Glb& g) {
          move(g, "knee", "translation", "SMOOTH", {0}, {1, 0, 0});
        },
        "interpolation is \"SMOOTH\""},
-      {[](Glb& g) {
-         move(g, "knee", "translation", "LINEAR", {0}, {1, 0, 0});
-         g.json["animations"][0]["channels"][0]["target"]["path"] = "colour";
-       },
-       "drives \"colour\""},
   };
   for (const auto& [change, expected] : cases) {
     Glb glb = small();

@@ -160,7 +160,7 @@ TEST_F(Models, WeightsThatAreNotFiniteCountAsZero) {
   const float weights[] = {nan, 0.5f, 0, 0, nan, nan, nan, infinity, 0.5f, 0.5f, 0, 0};
   std::memcpy(glb.data(2), weights, sizeof(weights));
   const Model model = load(glb);
-  EXPECT_TRUE(hasNote(model, "WEIGHTS_0 has 5 weights that are not finite: they count as 0"));
+  EXPECT_TRUE(hasNote(model, "WEIGHTS_0 has 5 numbers that are not finite: they count as 0"));
   EXPECT_TRUE(hasNote(model, "1 vertices have no weight: each follows the joint that it names first"));
   const auto follows = [&](size_t vertex) {
     const Model::Vertex& v = model.vertices[vertex];

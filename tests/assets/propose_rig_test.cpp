@@ -155,7 +155,7 @@ TEST_F(ProposeRig, AModelThatStandsAslantIsTakenSo) {
 TEST_F(ProposeRig, VerticesWithoutWeightAreNoted) {
   const std::vector<std::string> notes = load("crawler.glb").notes;
   ASSERT_EQ(notes.size(), 2u);
-  EXPECT_NE(notes[0].find("24 weights that are not finite: they count as 0"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("24 numbers that are not finite: they count as 0"), std::string::npos) << notes[0];
   EXPECT_NE(notes[1].find("6 vertices have no weight"), std::string::npos) << notes[1];
   expectSound(rigOf("crawler.glb"));
 }

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <mutex>
 #include <set>
+#include <string_view>
 #include <system_error>
 
 #include "skitter/error.h"
@@ -18,6 +20,13 @@ struct Opened {
 Opened& opened() {
   static Opened all;
   return all;
+}
+
+// What a clone holds in place of a large file that was not fetched: a few lines of text, of which these are
+// the first words (Git LFS specification, docs/spec.md; the second is the name that it had before).
+bool isLfsPointer(std::string_view start) {
+  return start.starts_with("version https://git-lfs.github.com/spec/") ||
+         start.starts_with("version https://hawser.github.com/spec/");
 }
 
 }  // namespace
@@ -38,6 +47,10 @@ FileStream::FileStream(const std::filesystem::path& file) : file_(file) {
   if (size_ == 0) throw inputError(fmt::format("{}: is empty", name));
   stream_.open(file, std::ios::binary);
   if (!stream_) throw inputError(fmt::format("{}: cannot be opened for reading", name));
+  std::string start(std::min<uintmax_t>(size_, 48), '\0');
+  read(start.data(), start.size());
+  if (isLfsPointer(start)) throw inputError(fmt::format("{}: is a Git LFS pointer; run git lfs pull", name));
+  seek(0);
   const std::lock_guard lock(opened().mutex);
   opened().files.insert(file);
 }

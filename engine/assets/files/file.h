@@ -7,8 +7,8 @@
 
 namespace skitter {
 
-// A file read piece by piece. Opening it throws Error(input) where it is missing, a directory, empty or
-// unreadable.
+// A file read piece by piece. Opening it throws Error(input) where it is missing, a directory, empty,
+// unreadable or a Git LFS pointer.
 class FileStream {
  public:
   explicit FileStream(const std::filesystem::path& file);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <new>
+#include <string_view>
 
 #include "assets/files/jpeg_reader.h"
 #include "assets/files/png_reader.h"
@@ -60,8 +62,29 @@ Texels decodeJpeg(const ImageFile& image) {
 
 }  // namespace
 
-bool isImage(std::span<const uint8_t> bytes) {
-  return PngReader::hasSignature(bytes) || JpegReader::hasSignature(bytes);
+std::string notAnImage(std::span<const uint8_t> bytes) {
+  if (PngReader::hasSignature(bytes) || JpegReader::hasSignature(bytes)) return "";
+  const auto has = [&](size_t at, std::string_view signature) {
+    return bytes.size() >= at + signature.size() &&
+           std::memcmp(bytes.data() + at, signature.data(), signature.size()) == 0;
+  };
+  struct Format {
+    size_t at;
+    std::string_view signature, name;
+  };
+  for (const Format& format : {Format{0, "\xabKTX 20", "KTX2"},
+                               {0, "\xabKTX 11", "KTX"},
+                               {8, "WEBP", "WebP"},
+                               {4, "ftypavif", "AVIF"},
+                               {0, "DDS ", "DDS"},
+                               {0, "GIF8", "GIF"},
+                               {0, "BM", "BMP"},
+                               {0, "II*", "TIFF"},
+                               {0, std::string_view("MM\0*", 4), "TIFF"},
+                               {0, "8BPS", "PSD"},
+                               {0, "sB", "Basis"}})
+    if (has(format.at, format.signature)) return fmt::format("is {}, expected PNG or JPEG", format.name);
+  return "is neither PNG nor JPEG";
 }
 
 Texels decodeImage(const ImageFile& image) {
@@ -72,7 +95,7 @@ Texels decodeImage(const ImageFile& image) {
   } catch (const std::bad_alloc&) {
     refuse(image, "does not fit into memory");
   }
-  refuse(image, "is neither PNG nor JPEG");
+  refuse(image, "{}", notAnImage(image.bytes));
 }
 
 }  // namespace skitter

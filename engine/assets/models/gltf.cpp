@@ -4,19 +4,22 @@
 
 #include <cstring>
 #include <new>
+#include <set>
 
+#include "assets/files/json.h"
 #include "assets/models/gltf_clips.h"
 #include "assets/models/gltf_materials.h"
 #include "assets/models/gltf_meshes.h"
 #include "assets/models/gltf_nodes.h"
 #include "assets/models/gltf_source.h"
+#include "assets/models/reading_notes.h"
 #include "skitter/error.h"
 
 namespace skitter::gltf {
 namespace {
 
 void checkSkinning(const Source& source, const Document& document, const Node& node) {
-  if (node.mesh == -1 || node.skin == -1) return;
+  if (!node.inScene || node.mesh == -1 || node.skin == -1) return;
   const size_t joints = document.skins[static_cast<size_t>(node.skin)].joints.size();
   const uint32_t highest = document.meshes[static_cast<size_t>(node.mesh)].highestJoint;
   if (highest >= joints) {
@@ -24,16 +27,52 @@ void checkSkinning(const Source& source, const Document& document, const Node& n
   }
 }
 
+// What no node of the scene has need not be right.
+template <typename Part, typename Read>
+void readPart(Source& source, std::vector<Part>& parts, bool placed, const Read& read) {
+  try {
+    parts.push_back(read(parts.size()));
+  } catch (const Error& error) {
+    if (placed) throw;
+    source.notes.lines.push_back(error.detail(source.name) + ": left out, no node of the scene has it");
+    parts.emplace_back();
+  }
+}
+
+void noteBackslashes(Source& source) {
+  for (const char* key : {"buffers", "images"}) {
+    const auto list = source.file.json.find(key);
+    if (list == source.file.json.end() || !list->is_array()) continue;
+    for (size_t i = 0; i < list->size(); ++i) {
+      const nlohmann::json& each = (*list)[i];
+      const auto uri = each.is_object() ? each.find("uri") : each.end();
+      if (!each.is_object() || uri == each.end() || !uri->is_string()) continue;
+      const std::string& text = uri->get_ref<const std::string&>();
+      if (text.starts_with("data:") || text.find('\\') == std::string::npos) continue;
+      source.notes.add("backslash", fmt::format("{}[{}].uri is {}: its backslashes count as slashes", key, i,
+                                                describeJson(*uri)));
+    }
+  }
+}
+
 Document read(Source source) {
   Document document;
+  noteBackslashes(source);
   readNodes(source, document);
   document.materials = readMaterials(source);
+  std::set<int> meshes, skins;
+  for (const Node& node : document.nodes) {
+    if (node.inScene && node.mesh != -1) meshes.insert(node.mesh), skins.insert(node.skin);
+  }
   for (size_t i = 0; i < source.model.meshes.size(); ++i)
-    document.meshes.push_back(readMesh(source, document.materials, i));
-  for (size_t i = 0; i < source.model.skins.size(); ++i) document.skins.push_back(readSkin(source, i));
+    readPart(source, document.meshes, meshes.contains(static_cast<int>(i)),
+             [&](size_t index) { return readMesh(source, document.materials, index); });
+  for (size_t i = 0; i < source.model.skins.size(); ++i)
+    readPart(source, document.skins, skins.contains(static_cast<int>(i)),
+             [&](size_t index) { return readSkin(source, document, index); });
   for (const Node& node : document.nodes) checkSkinning(source, document, node);
   readClips(source, document);
-  document.notes = std::move(source.notes);
+  document.notes = source.notes.finished();
   return document;
 }
 
@@ -68,9 +107,12 @@ nlohmann::json findExtras(const nlohmann::json& json) {
 Document parse(std::span<const uint8_t> bytes, const std::string& name, const std::filesystem::path& folder) {
   try {
     const File file = openFile(bytes, name, folder);
-    const tinygltf::Model model = loadModel(file.json, name);
-    Document document = read({.model = model, .file = file, .name = name});
+    Notes notes;
+    notes.lines = file.notes;
+    const tinygltf::Model model = loadModel(file.json, name, notes);
+    Document document = read({.model = model, .file = file, .name = name, .notes = std::move(notes)});
     document.extras = findExtras(file.json);
+    noteReading(name, document.notes);
     return document;
   } catch (const Error&) {
     throw;

@@ -62,9 +62,9 @@ struct Skin {
 enum class Path { translation, rotation, scale };
 enum class Interpolation { step, linear, cubicSpline };
 
-// Keys: times that rise strictly from 0 or later, and their values: 4 numbers each (xyzw) for a rotation, of
-// unit length but for cubic splines, else 3; for a cubic spline three runs of those a key: in-tangent, value,
-// out-tangent.
+// Keys: times that rise strictly from 0 or later, at least one where a channel has it, and their values: 4
+// numbers each (xyzw) for a rotation, of unit length but for cubic splines, else 3; for a cubic spline three
+// runs of those a key: in-tangent, value, out-tangent.
 struct Sampler {
   Path path = Path::translation;
   Interpolation interpolation = Interpolation::linear;

@@ -19,7 +19,14 @@ const uint8_t* view(const Source& source, int index, uint64_t offset, uint64_t s
   const std::string viewName = fmt::format("bufferViews[{}]", index);
   source.checkIndex(from.buffer, source.file.buffers.size(), viewName + ".buffer");
   const auto& data = source.file.buffers[static_cast<size_t>(from.buffer)];
-  if (data.empty()) source.fail("{} is of buffers[{}], which has no data", viewName, from.buffer);
+  if (data.empty()) {
+    // The data are in the extension's own buffer view, this one is for what unpacks them.
+    const nlohmann::json& view = source.file.json.at("bufferViews")[static_cast<size_t>(index)];
+    for (const char* packer : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+      if (view.contains("extensions") && view.at("extensions").contains(packer))
+        source.fail("{} {}", viewName, unpackHint(packer));
+    source.fail("{} is of buffers[{}], which has no data", viewName, from.buffer);
+  }
   if (from.byteOffset > data.size() || from.byteLength > data.size() - from.byteOffset) {
     source.fail("{} reaches past the {} bytes of its buffer", viewName, data.size());
   }
@@ -95,12 +102,13 @@ Values readAccessor(Source& source, int index, std::initializer_list<int> types,
       (from.type == TINYGLTF_TYPE_MAT4 && from.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)) {
     source.fail("{} has component type {}, which does not fit", what, from.componentType);
   }
-  if (from.count < 1 || from.count > maxElements) {
-    source.fail("{} has {} elements, expected 1 to {}", what, from.count, maxElements);
+  if (from.count > maxElements) {
+    source.fail("{} has {} elements, expected up to {}", what, from.count, maxElements);
   }
   Values values;
   values.count = from.count;
   values.components = static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(from.type)));
+  if (values.count == 0) return values;
   const size_t size = values.components * static_cast<size_t>(width);
   const uint8_t* data = nullptr;
   size_t stride = size;
@@ -124,8 +132,8 @@ Values readAccessor(Source& source, int index, std::initializer_list<int> types,
       double number = component(at + k * static_cast<size_t>(width), from.componentType, from.normalized);
       if (!std::isfinite(number)) {
         if (notFinite == NotFinite::refused) source.fail("{} holds {} in element {}", what, number, element);
-        number = 0;
-        ++values.zeroed;
+        if (notFinite == NotFinite::zero) number = 0;
+        ++values.notFinite;
       }
       values.numbers[element * values.components + k] = number;
     }

@@ -13,12 +13,12 @@ namespace skitter::gltf {
 struct Values {
   std::vector<double> numbers;
   size_t components = 1, count = 0;
-  size_t zeroed = 0;  // numbers that were not finite
+  size_t notFinite = 0;  // numbers
 };
-enum class NotFinite { refused, zero };
+enum class NotFinite { refused, zero, kept };
 
 // All numbers of an accessor whose type has one of the given component counts; sparse and normalized ones as
-// well. `use` is what the file has it for.
+// well. It may have no elements. `use` is what the file has it for.
 Values readAccessor(Source& source, int index, std::initializer_list<int> types, bool integers,
                     const std::string& use, NotFinite notFinite = NotFinite::refused);
 

@@ -26,28 +26,33 @@ struct Chunks {
   std::span<const uint8_t> binary;
 };
 
-Chunks splitChunks(std::span<const uint8_t> glb, const std::string& name) {
+constexpr const char* olderFormat = ": gltf-pipeline converts glTF 1.0 to 2.0";
+
+// Chunks say their own sizes. The header's may be wrong where a program has changed the file since.
+Chunks splitChunks(std::span<const uint8_t> glb, const std::string& name, std::vector<std::string>& notes) {
   constexpr uint32_t jsonType = 0x4e4f534a, binaryType = 0x004e4942;
   if (glb.size() >= 8 && readWord(glb, 4) != 2) {
-    throw inputError(fmt::format("{}: is glTF binary version {}, expected 2", name, readWord(glb, 4)));
+    throw inputError(fmt::format("{}: is glTF binary version {}, expected 2{}", name, readWord(glb, 4),
+                                 readWord(glb, 4) == 1 ? olderFormat : ""));
   }
   if (glb.size() < 20) {
     throw inputError(fmt::format("{}: ends after {} bytes, within the header of {}", name, glb.size(),
                                  glb.size() < 12 ? "the file" : "its first chunk"));
   }
   const size_t length = readWord(glb, 8);
-  if (length < 20 || length > glb.size()) {
-    throw inputError(fmt::format("{}: its header says {} bytes, the file has {}", name, length, glb.size()));
-  }
+  const size_t end = length < 20 ? glb.size() : std::min(length, glb.size());
   Chunks chunks;
-  for (size_t offset = 12; offset < length;) {
-    if (length - offset < 8) throw inputError(fmt::format("{}: ends within a chunk header", name));
+  size_t offset = 12;
+  while (offset + 8 <= end) {
     const size_t size = readWord(glb, offset);
     const uint32_t type = readWord(glb, offset + 4);
     const bool first = offset == 12;
     offset += 8;
-    if (size > length - offset) {
-      throw inputError(fmt::format("{}: a chunk of {} bytes has only {} left", name, size, length - offset));
+    if (size > glb.size() - offset) {
+      throw inputError(
+          fmt::format("{}: is cut off: a chunk of {} bytes has only {} left; its header says {} bytes, the "
+                      "file has {}",
+                      name, size, glb.size() - offset, length, glb.size()));
     }
     if (first != (type == jsonType)) {
       throw inputError(fmt::format("{}: its first chunk, and only that, must be JSON", name));
@@ -56,6 +61,9 @@ Chunks splitChunks(std::span<const uint8_t> glb, const std::string& name) {
     if (type == binaryType && chunks.binary.empty()) chunks.binary = glb.subspan(offset, size);
     offset += size;
   }
+  if (offset != length)
+    notes.push_back(
+        fmt::format("its header says {} bytes, its chunks end after {}: the chunks count", length, offset));
   return chunks;
 }
 
@@ -100,10 +108,22 @@ bool leavesFolder(const std::filesystem::path& folder, const std::filesystem::pa
   return !unresolved && (inside.empty() || *inside.begin() == "..");
 }
 
+// The escapes of an URI are undone, but for names that hold a % as it is. Its backslashes separate folders as
+// its writer's system has them, unless a file has them in its name. Whether it may be read is not checked.
+std::filesystem::path fileOf(const std::filesystem::path& folder, const std::string& uri) {
+  const std::string decoded = decodeUri(uri);
+  std::string slashed = decoded;
+  std::replace(slashed.begin(), slashed.end(), '\\', '/');
+  std::error_code none;
+  for (const std::string& name : {decoded, slashed, uri})
+    if (name.find('\0') == std::string::npos && std::filesystem::exists(folder / name, none)) return name;
+  return slashed;
+}
+
 FileStream openBeside(const std::filesystem::path& folder, const std::string& uri, const std::string& what) {
   const std::string refersTo = fmt::format("{} refers to {}", what, describeJson(uri));
-  const std::filesystem::path file = decodeUri(uri);
   if (folder.empty()) throw inputError(refersTo + ", expected everything in one file");
+  const std::filesystem::path file = fileOf(folder, uri);
   if (uri.find(':') != std::string::npos || file.is_absolute() ||
       file.native().find('\0') != std::string::npos || leavesFolder(folder, file)) {
     throw inputError(refersTo + ", expected a file in its folder");
@@ -138,14 +158,14 @@ class BufferReader {
     if (!buffer.is_object())
       throw inputError(fmt::format("{} is {}, expected an object", what, describeJson(buffer)));
     const auto length = buffer.find("byteLength");
-    if (length == buffer.end() || !length->is_number_unsigned() || length->get<uint64_t>() < 1) {
-      throw inputError(fmt::format("{}.byteLength is {}, expected a whole number over 0", what,
+    if (length == buffer.end() || !length->is_number_unsigned()) {
+      throw inputError(fmt::format("{}.byteLength is {}, expected a whole number", what,
                                    length == buffer.end() ? "missing" : describeJson(*length)));
     }
     const auto wanted = length->get<uint64_t>();
+    if (wanted == 0) return {};  // a placeholder, which matters only to what is read of it
     const auto uri = buffer.find("uri");
     if (uri == buffer.end()) {
-      // A placeholder, which matters only to what is read of it.
       if (index > 0 || binary_.empty()) return {};
       expectThere(wanted, binary_.size(), what);
       return {binary_.begin(), binary_.begin() + static_cast<std::ptrdiff_t>(wanted)};
@@ -173,6 +193,21 @@ class BufferReader {
   const std::filesystem::path& folder_;
 };
 
+// glTF 1.0 has objects, keyed by names, where 2.0 has arrays, and may leave its version out.
+void checkVersion(const nlohmann::json& json, const std::string& name) {
+  const auto asset = json.find("asset");
+  const auto version = asset != json.end() && asset->is_object() ? asset->find("version") : json.end();
+  const bool has = asset != json.end() && asset->is_object() && version != asset->end();
+  std::string number;
+  if (has) number = version->is_string() ? version->get<std::string>() : version->dump();
+  if (number == "2" || number.starts_with("2.")) return;
+  const auto isKeyed = [&](const char* key) { return json.contains(key) && json.at(key).is_object(); };
+  const bool older = number == "1" || number.starts_with("1.") ||
+                     (!has && (isKeyed("buffers") || isKeyed("nodes") || isKeyed("meshes")));
+  throw inputError(fmt::format("{}: its asset.version is {}, expected 2.x{}", name,
+                               has ? describeJson(*version) : "missing", older ? olderFormat : ""));
+}
+
 // One file may serve every buffer, so that little on disk asks for much memory.
 void checkTotal(const nlohmann::json& buffers, const std::string& name) {
   uint64_t total = 0;
@@ -187,6 +222,11 @@ void checkTotal(const nlohmann::json& buffers, const std::string& name) {
 }
 
 }  // namespace
+
+std::string unpackHint(const std::string& extension) {
+  return fmt::format("is packed by {}, which is not read: `gltf-transform cp IN OUT` writes it unpacked",
+                     extension);
+}
 
 std::string decodeUri(const std::string& uri) {
   std::string text;
@@ -210,24 +250,48 @@ std::vector<uint8_t> readUri(const File& file, const std::string& uri, const std
   return bytes;
 }
 
+namespace {
+
+// What a file is that is no glTF, where its first bytes show it, and the way out.
+const char* otherKind(std::string_view bytes) {
+  constexpr std::pair<std::string_view, const char*> kinds[] = {
+      {"\x1f\x8b", "gzip: unpack it"},
+      {"PK\x03\x04", "ZIP: unpack it"},
+      {"Kaydara FBX Binary", "FBX: Blender or FBX2glTF converts it"},
+      {"; FBX", "FBX: Blender or FBX2glTF converts it"},
+      {"BLENDER", "a Blender file: export it as glTF 2.0"},
+      {"PXR-USDC", "USD: Blender converts it"},
+      {"<", "HTML or XML, as a download may be that failed"},
+      {"\xff\xfe", "UTF-16, expected UTF-8"},
+      {"\xfe\xff", "UTF-16, expected UTF-8"}};
+  for (const auto& [start, kind] : kinds)
+    if (bytes.starts_with(start)) return kind;
+  return nullptr;
+}
+
+}  // namespace
+
 File openFile(std::span<const uint8_t> bytes, const std::string& name, const std::filesystem::path& folder) {
+  File file;
+  file.folder = folder;
   Chunks chunks;
   if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
-    chunks = splitChunks(bytes, name);
+    chunks = splitChunks(bytes, name, file.notes);
   } else {
     // A text file begins with the brace of its one object, after a byte order mark or blanks at most.
     chunks.json = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
     if (chunks.json.rfind("\xef\xbb\xbf", 0) == 0) chunks.json.remove_prefix(3);
     const size_t start = chunks.json.find_first_not_of(" \t\r\n");
     if (start == std::string_view::npos || chunks.json[start] != '{') {
+      if (const char* kind = otherKind(chunks.json.substr(std::min(start, chunks.json.size()))))
+        throw inputError(fmt::format("{}: is not glTF but {}", name, kind));
       throw inputError(fmt::format(
           "{}: is not glTF: begins neither with a binary file's signature nor with a brace", name));
     }
   }
-  File file;
-  file.folder = folder;
   file.json = parseJson(chunks.json, name);
   if (!file.json.is_object()) throw inputError(fmt::format("{}: its JSON is not an object", name));
+  checkVersion(file.json, name);
   const auto buffers = file.json.find("buffers");
   if (buffers == file.json.end()) return file;
   if (!buffers->is_array() || buffers->size() > maxBuffers) {

@@ -48,7 +48,7 @@ class MaterialReader {
  private:
   template <typename... Arguments>
   void note(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-    source_.notes.push_back(fmt::format(format, std::forward<Arguments>(arguments)...));
+    source_.notes.lines.push_back(fmt::format(format, std::forward<Arguments>(arguments)...));
   }
 
   Material material(const Json& from, const std::string& what) {
@@ -155,9 +155,26 @@ class MaterialReader {
       const int place = indexOf(sampler, "samplers", path + ".sampler");
       if (place != -1) made.sampler = samplerOf(objectAt("samplers", place));
     }
+    if (const std::string format = onlyFormat(from); !format.empty()) {
+      note("{} has its image as {} alone, expected PNG or JPEG: drawn as a flat colour", path, format);
+      return made;
+    }
     const int image = indexOf(memberOf(from, "source"), "images", path + ".source");
     if (image != -1) made.image = imageOf(image);
     return made;
+  }
+
+  // The format that an extension says a texture's only image has, and the extension; empty where it has
+  // another.
+  static std::string onlyFormat(const Json& texture) {
+    const Json* extensions = memberOf(texture, "extensions");
+    if (!extensions || memberOf(texture, "source")) return "";
+    for (const auto& [extension, format] : {std::pair{"KHR_texture_basisu", "KTX2"},
+                                            {"EXT_texture_webp", "WebP"},
+                                            {"EXT_texture_avif", "AVIF"},
+                                            {"MSFT_texture_dds", "DDS"}})
+      if (memberOf(*extensions, extension)) return fmt::format("{} ({})", format, extension);
+    return "";
   }
 
   // 0 or 1, else -1.
@@ -208,7 +225,8 @@ class MaterialReader {
       image.bytes = bytesOf(from, path);
       imageBytes_ += image.bytes.size();
       if (imageBytes_ > maxImageBytes) source_.fail("{}: all images take over {} bytes", path, maxImageBytes);
-      if (!isImage(image.bytes)) source_.fail("{}: is neither PNG nor JPEG", path);
+      if (const std::string other = notAnImage(image.bytes); !other.empty())
+        source_.fail("{}: {}", path, other);
     } catch (const Error& error) {
       image.bytes.clear();
       image.fault = error.what();

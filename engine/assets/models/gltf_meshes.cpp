@@ -1,6 +1,8 @@
 #include "assets/models/gltf_meshes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "assets/models/gltf_accessors.h"
 #include "assets/models/gltf_materials.h"
@@ -18,14 +20,21 @@ glm::dvec4 baseColour(const Source& source, int material, const std::string& wha
   return factor.empty() ? glm::dvec4(1) : glm::dvec4(factor[0], factor[1], factor[2], factor[3]);
 }
 
+// -1: none.
+int indexAccessor(const tinygltf::Primitive& from) {
+  const auto found = from.attributes.find(indexAttribute);
+  return found == from.attributes.end() ? -1 : found->second;
+}
+
 std::vector<uint32_t> triangles(Source& source, const tinygltf::Primitive& from, size_t vertexCount,
                                 const std::string& what) {
   std::vector<uint32_t> indices;
-  if (from.indices == -1) {
+  const int accessor = indexAccessor(from);
+  if (accessor == -1) {
     indices.resize(vertexCount);
     for (size_t i = 0; i < vertexCount; ++i) indices[i] = static_cast<uint32_t>(i);
   } else {
-    const Values values = readAccessor(source, from.indices, {TINYGLTF_TYPE_SCALAR}, true, what + ".indices");
+    const Values values = readAccessor(source, accessor, {TINYGLTF_TYPE_SCALAR}, true, what + ".indices");
     for (double number : values.numbers) {
       if (number >= static_cast<double>(vertexCount)) {
         source.fail("{}.indices holds {}, but there are {} vertices", what, number, vertexCount);
@@ -52,21 +61,22 @@ std::vector<uint32_t> triangles(Source& source, const tinygltf::Primitive& from,
 Primitive primitive(Source& source, const tinygltf::Primitive& from, const Materials& materials,
                     const std::string& what) {
   Primitive primitive;
-  const auto attribute = [&](const std::string& key, std::initializer_list<int> types, bool integers,
-                             NotFinite notFinite = NotFinite::refused) {
+  primitive.positions = toVectors(
+      readAccessor(source, from.attributes.at("POSITION"), {TINYGLTF_TYPE_VEC3}, false, what + ".POSITION"));
+  const size_t count = primitive.positions.size();
+  const auto attribute = [&](const std::string& key, std::initializer_list<int> types, bool integers) {
     Values values;
-    if (const auto found = from.attributes.find(key); found != from.attributes.end()) {
-      values = readAccessor(source, found->second, types, integers, what + "." + key, notFinite);
-      if (key != "POSITION" && values.count != primitive.positions.size()) {
-        source.fail("{}.{} has {} vertices, POSITION {}", what, key, values.count,
-                    primitive.positions.size());
-      }
-    }
+    const auto found = from.attributes.find(key);
+    if (found == from.attributes.end()) return values;
+    // Exporters divide weights by a sum of 0, and tangents by a length of 0.
+    values = readAccessor(source, found->second, types, integers, what + "." + key, NotFinite::zero);
+    if (values.count != 0 && values.count != count)
+      source.fail("{}.{} has {} vertices, POSITION {}", what, key, values.count, count);
+    if (values.notFinite > 0)
+      source.notes.lines.push_back(fmt::format("{}.{} has {} numbers that are not finite: they count as 0",
+                                               what, key, values.notFinite));
     return values;
   };
-  primitive.positions = toVectors(attribute("POSITION", {TINYGLTF_TYPE_VEC3}, false));
-  const size_t count = primitive.positions.size();
-  if (count == 0) source.fail("{} has no POSITION", what);
   primitive.normals = toVectors(attribute("NORMAL", {TINYGLTF_TYPE_VEC3}, false));
   const Values colours = attribute("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, false);
   const glm::dvec4 base = baseColour(source, from.material, what);
@@ -90,13 +100,14 @@ Primitive primitive(Source& source, const tinygltf::Primitive& from, const Mater
         return t.image != -1 && t.set == static_cast<int>(set);
       };
       if (uvs.count == 0 && std::any_of(material.textures.begin(), material.textures.end(), looksThere))
-        source.notes.push_back(
+        source.notes.lines.push_back(
             fmt::format("{} has no TEXCOORD_{}, where materials[{}] looks textures up: "
                         "(0, 0) counts",
                         what, set, from.material));
     }
     const Values tangents = attribute("TANGENT", {TINYGLTF_TYPE_VEC4}, false);
-    for (size_t v = 0; v < tangents.count; ++v) {
+    // Without a direction for each vertex they are computed instead.
+    for (size_t v = 0; v < tangents.count && tangents.notFinite == 0; ++v) {
       const double* at = &tangents.numbers[4 * v];
       primitive.tangents.emplace_back(at[0], at[1], at[2], at[3]);
     }
@@ -104,14 +115,13 @@ Primitive primitive(Source& source, const tinygltf::Primitive& from, const Mater
 
   std::vector<Values> joints, weights;
   for (int set = 0;; ++set) {
-    joints.push_back(attribute(fmt::format("JOINTS_{}", set), {TINYGLTF_TYPE_VEC4}, true));
-    // Exporters divide the weights of a vertex by their sum, even where that is 0.
-    weights.push_back(
-        attribute(fmt::format("WEIGHTS_{}", set), {TINYGLTF_TYPE_VEC4}, false, NotFinite::zero));
-    if (const size_t zeroed = weights.back().zeroed; zeroed > 0) {
-      source.notes.push_back(fmt::format("{}.WEIGHTS_{} has {} weights that are not finite: they count as 0",
-                                         what, set, zeroed));
+    joints.push_back(attribute(fmt::format("JOINTS_{}", set), {TINYGLTF_TYPE_VEC4}, false));
+    // Some exporters write them as floats.
+    for (const double joint : joints.back().numbers) {
+      if (!(joint >= 0 && joint <= UINT16_MAX && joint == std::trunc(joint)))
+        source.fail("{}.JOINTS_{} holds {}, expected the number of a joint", what, set, joint);
     }
+    weights.push_back(attribute(fmt::format("WEIGHTS_{}", set), {TINYGLTF_TYPE_VEC4}, false));
     if (joints.back().count != weights.back().count)
       source.fail("{} has JOINTS_{} or WEIGHTS_{} alone", what, set, set);
     if (joints.back().count == 0) break;
@@ -134,6 +144,21 @@ Primitive primitive(Source& source, const tinygltf::Primitive& from, const Mater
   return primitive;
 }
 
+// Why nothing of a primitive can be drawn; empty where something can.
+std::string whyNothing(const Source& source, const tinygltf::Primitive& from) {
+  const auto positions = from.attributes.find("POSITION");
+  if (positions == from.attributes.end()) return "has no POSITION";
+  const auto accessor = [&](int index) -> const tinygltf::Accessor* {
+    const bool fits = index >= 0 && static_cast<size_t>(index) < source.model.accessors.size();
+    return fits ? &source.model.accessors[static_cast<size_t>(index)] : nullptr;
+  };
+  const tinygltf::Accessor* vertices = accessor(positions->second);
+  if (vertices && vertices->count == 0) return "has no vertices";
+  const tinygltf::Accessor* indices = accessor(indexAccessor(from));
+  if (indices && indices->count == 0) return "has no triangles";
+  return "";
+}
+
 }  // namespace
 
 Mesh readMesh(Source& source, const Materials& materials, size_t index) {
@@ -146,19 +171,24 @@ Mesh readMesh(Source& source, const Materials& materials, size_t index) {
       source.fail("{} has mode {}, expected 0 to 6", what, mode);
     }
     if (mode < TINYGLTF_MODE_TRIANGLES) {
-      source.notes.push_back(fmt::format("{} is points or lines (mode {}): left out", what, mode));
+      source.notes.lines.push_back(fmt::format("{} is points or lines (mode {}): left out", what, mode));
       continue;
     }
-    if (!from.targets.empty()) source.notes.push_back(what + " has morph targets: not applied");
+    if (const std::string nothing = whyNothing(source, from); !nothing.empty()) {
+      source.notes.lines.push_back(fmt::format("{} {}: left out", what, nothing));
+      continue;
+    }
+    if (!from.targets.empty()) source.notes.lines.push_back(what + " has morph targets: not applied");
     mesh.primitives.push_back(primitive(source, from, materials, what));
     for (const Influence& influence : mesh.primitives.back().influences) {
-      mesh.highestJoint = std::max(mesh.highestJoint, influence.joint);
+      // Joints without weight are padding, which may hold anything.
+      if (influence.weight > 0) mesh.highestJoint = std::max(mesh.highestJoint, influence.joint);
     }
   }
   return mesh;
 }
 
-Skin readSkin(Source& source, size_t index) {
+Skin readSkin(Source& source, const Document& document, size_t index) {
   const tinygltf::Skin& from = source.model.skins[index];
   const std::string what = fmt::format("skins[{}]", index);
   if (from.joints.empty()) source.fail("{} has no joints", what);
@@ -168,15 +198,29 @@ Skin readSkin(Source& source, size_t index) {
   skin.nodeFromBind.resize(skin.joints.size(), glm::dmat4(1));
   if (from.inverseBindMatrices == -1) return skin;
   const Values values = readAccessor(source, from.inverseBindMatrices, {TINYGLTF_TYPE_MAT4}, false,
-                                     what + ".inverseBindMatrices");
+                                     what + ".inverseBindMatrices", NotFinite::kept);
   if (values.count < skin.joints.size()) {
     source.fail("{} has {} inverse bind matrices for {} joints", what, values.count, skin.joints.size());
   }
+  size_t useless = 0;
   for (size_t k = 0; k < skin.joints.size(); ++k) {
-    for (size_t e = 0; e < 16; ++e) {
-      skin.nodeFromBind[k][static_cast<int>(e / 4)][static_cast<int>(e % 4)] = values.numbers[16 * k + e];
+    const std::span<const double> matrix(values.numbers.data() + 16 * k, 16);
+    const auto isFinite = [](double number) { return std::isfinite(number); };
+    const auto isZero = [](double number) { return number == 0; };
+    if (!std::ranges::all_of(matrix, isFinite) || std::ranges::all_of(matrix, isZero)) {
+      const glm::dmat4& rest = document.nodes[static_cast<size_t>(skin.joints[k])].modelFromNode;
+      if (glm::determinant(rest) != 0) skin.nodeFromBind[k] = glm::inverse(rest);
+      ++useless;
+      continue;
     }
+    for (size_t e = 0; e < 16; ++e)
+      skin.nodeFromBind[k][static_cast<int>(e / 4)][static_cast<int>(e % 4)] = matrix[e];
   }
+  if (useless > 0)
+    source.notes.lines.push_back(
+        fmt::format("{} has {} inverse bind matrices of zeros or of what is no number: their joints are "
+                    "bound as they rest",
+                    what, useless));
   return skin;
 }
 

@@ -8,6 +8,6 @@ namespace skitter::gltf {
 // Points and lines are left out, with a note.
 Mesh readMesh(Source& source, const Materials& materials, size_t index);
 // Its joints are nodes of the file.
-Skin readSkin(Source& source, size_t index);
+Skin readSkin(Source& source, const Document& document, size_t index);
 
 }  // namespace skitter::gltf

@@ -1,12 +1,13 @@
 #include "assets/models/gltf_nodes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
 namespace skitter::gltf {
 namespace {
 
-void readTransform(const Source& source, size_t index, Node& to) {
+void readTransform(Source& source, size_t index, Node& to) {
   const tinygltf::Node& node = source.model.nodes[index];
   const std::string what = fmt::format("nodes[{}]", index);
   source.checkFinite(node.matrix, 16, what + ".matrix");
@@ -22,9 +23,19 @@ void readTransform(const Source& source, size_t index, Node& to) {
   if (!node.scale.empty()) to.scale = {node.scale[0], node.scale[1], node.scale[2]};
   if (!node.rotation.empty()) {
     const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (std::fabs(glm::length(q) - 1) > 0.01)
-      source.fail("{}.rotation has length {}, expected 1", what, glm::length(q));
-    to.rotation = glm::normalize(q);
+    const double length = glm::length(q);
+    const auto note = [&](const char* done) {
+      source.notes.add(done,
+                       fmt::format("{}.rotation has length {:.3g}, expected 1: {}",
+                                   nodeLabel(index, source.file.json.at("nodes")[index]), length, done));
+    };
+    // Exporters write rotations of nothing but zeros, and such as have been scaled or rounded.
+    if (length < 1e-6) {
+      note("not turned");
+    } else {
+      if (std::fabs(length - 1) > 0.01) note("scaled to it");
+      to.rotation = glm::normalize(q);
+    }
     local = glm::mat4_cast(to.rotation);
   }
   for (int k = 0; k < 3; ++k) local[k] *= to.scale[k];
@@ -34,13 +45,38 @@ void readTransform(const Source& source, size_t index, Node& to) {
   }
 }
 
-void markScene(const Source& source, Document& document) {
+// The default scene; where the file names none, the first that places a mesh, else the first.
+int chosenScene(Source& source) {
+  const auto& scenes = source.model.scenes;
+  if (source.model.defaultScene != -1) {
+    source.checkIndex(source.model.defaultScene, scenes.size(), "scene");
+    return source.model.defaultScene;
+  }
+  const auto placesMesh = [&](const tinygltf::Scene& scene) {
+    std::vector<int> left = scene.nodes;
+    // A tree has each node once, so that one with cycles, which is refused later, ends here, too.
+    for (size_t k = 0; k < left.size() && k <= source.model.nodes.size(); ++k) {
+      if (left[k] < 0 || static_cast<size_t>(left[k]) >= source.model.nodes.size()) continue;
+      const tinygltf::Node& node = source.model.nodes[static_cast<size_t>(left[k])];
+      if (node.mesh != -1) return true;
+      left.insert(left.end(), node.children.begin(), node.children.end());
+    }
+    return false;
+  };
+  const auto found = std::find_if(scenes.begin(), scenes.end(), placesMesh);
+  const int chosen = found == scenes.end() ? 0 : static_cast<int>(found - scenes.begin());
+  if (scenes.size() > 1)
+    source.notes.lines.push_back(
+        fmt::format("has {} scenes and names none of them: scenes[{}] counts", scenes.size(), chosen));
+  return chosen;
+}
+
+void markScene(Source& source, Document& document) {
   if (source.model.scenes.empty()) {
     for (Node& node : document.nodes) node.inScene = true;
     return;
   }
-  const int scene = source.model.defaultScene == -1 ? 0 : source.model.defaultScene;
-  source.checkIndex(scene, source.model.scenes.size(), "scene");
+  const int scene = chosenScene(source);
   for (int node : source.model.scenes[static_cast<size_t>(scene)].nodes) {
     source.checkIndex(node, document.nodes.size(), fmt::format("a node of scenes[{}]", scene));
     document.nodes[static_cast<size_t>(node)].inScene = true;
@@ -49,7 +85,7 @@ void markScene(const Source& source, Document& document) {
 
 }  // namespace
 
-void readNodes(const Source& source, Document& document) {
+void readNodes(Source& source, Document& document) {
   const size_t count = source.model.nodes.size();
   document.nodes.resize(count);
   for (size_t i = 0; i < count; ++i) {

@@ -6,6 +6,6 @@
 namespace skitter::gltf {
 
 // Fills nodes and parentsFirst.
-void readNodes(const Source& source, Document& document);
+void readNodes(Source& source, Document& document);
 
 }  // namespace skitter::gltf

@@ -18,8 +18,8 @@ struct Source {
   const tinygltf::Model& model;
   const File& file;
   const std::string& name;
-  std::vector<std::string> notes = {};  // what was left out
-  size_t numbersRead = 0;               // of all accessors
+  Notes notes = {};        // what was left out or mended
+  size_t numbersRead = 0;  // of all accessors
 
   template <typename... Arguments>
   [[noreturn]] void fail(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace skitter {
+
+// What was left out or mended as this process read models and their clips, so that a program can tell its
+// user: lines that begin with the file's name, in the order in which they came, each once.
+void noteReading(const std::string& name, const std::vector<std::string>& notes);
+std::vector<std::string> readingNotes();
+
+}  // namespace skitter
