@@ -521,5 +521,42 @@ TEST_F(FoundFiles, ExtensionsMayBeInCapitals) {
   EXPECT_EQ(loadRig(folder_ / "FOUND.GLB").legs.size(), 1u);
 }
 
+// An armature that the clip scales by 100 and the rest pose does not, or the other way round.
+TEST_F(FoundFiles, AClipOfAnotherUnitIsPlayedInTheSizeAtRest) {
+  const auto walking = [](float rest, const std::vector<float>& scale) {
+    Glb glb = test::smallestRig();
+    glb.node("body")["scale"] = {rest, rest, rest};
+    swingKnee(glb);
+    if (!scale.empty()) glb.animate(1, "scale", "LINEAR", {0, 1}, scale);
+    return glb;
+  };
+  const ClipSet expected = clips(walking(1, {}));
+  for (const auto& [rest, scale] : {std::pair{1.0f, 100.0f}, {1.0f, 0.01f}, {1.0f, 2.54f}, {1.0f, 1000.0f}}) {
+    const ClipSet set = clips(walking(rest, std::vector<float>(6, scale)));
+    ASSERT_EQ(set.clips.size(), 1u);
+    EXPECT_SAYS(all(set.notes), "clip 0 \"clip\": its scale shows the skin");
+    EXPECT_SAYS(all(set.notes), "times as large as at rest: played in the size at rest");
+    for (size_t f = 0; f < expected.clips[0].feet.size(); ++f)
+      EXPECT_LT(glm::distance(set.clips[0].feet[f], expected.clips[0].feet[f]), 1e-5f) << scale;
+  }
+  // A scale that the rest has as well is no other unit, and a creature may grow or breathe.
+  for (const auto& [rest, scale] :
+       std::initializer_list<std::pair<float, std::vector<float>>>{{2.0f, std::vector<float>(6, 2.0f)},
+                                                                   {1.0f, {1, 1, 1, 100, 100, 100}},
+                                                                   {1.0f, std::vector<float>(6, 1.2f)}}) {
+    const ClipSet set = clips(walking(rest, scale));
+    EXPECT_EQ(all(set.notes), "");
+  }
+}
+
+// Translations in centimetres of a skin in metres: nothing says which is meant.
+TEST_F(FoundFiles, AClipWhoseJointsAreFarApartSaysSo) {
+  Glb glb = test::smallestRig();
+  swingKnee(glb, {0, 1}, {100, 0, 0, 100, 0, 0});
+  glb.animate(4, "translation", "LINEAR", {0, 1}, {0, -100, 0, 0, -100, 0});
+  EXPECT_SAYS(all(clips(glb).notes),
+              "times as far apart as at rest: its translations may be in another unit");
+}
+
 }  // namespace
 }  // namespace skitter

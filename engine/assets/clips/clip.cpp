@@ -6,8 +6,10 @@
 #include <new>
 
 #include "assets/clips/clip_bake.h"
+#include "assets/clips/clip_size.h"
 #include "assets/clips/clip_skin.h"
 #include "assets/clips/clip_stance.h"
+#include "assets/models/reading_notes.h"
 #include "assets/rigs/placement.h"
 #include "assets/rigs/rig_source.h"
 #include "base/spelling.h"
@@ -45,8 +47,9 @@ class SetBaker {
     const std::vector<gltf::Clip>& clips = source_.document.clips;
     for (size_t i = 0; i < clips.size(); ++i) {
       const std::string what = fmt::format("clip {} \"{}\"", i, clips[i].name);
+      clips_.push_back(inRestSize(source_.document, clips[i], skin_, what, set_.notes));
       try {
-        add({clips[i], 0, clips[i].seconds}, clips[i].name, what);
+        add({clips_[i], 0, clips_[i].seconds}, clips_[i].name, what);
       } catch (const Error& error) {
         set_.notes.push_back(fmt::format("{}: left out", error.what()));
       }
@@ -66,10 +69,9 @@ class SetBaker {
   }
 
   BakeRange find(const ClipCut& cut) const {
-    const std::vector<gltf::Clip>& clips = source_.document.clips;
-    const auto found = std::find_if(clips.begin(), clips.end(),
+    const auto found = std::find_if(clips_.begin(), clips_.end(),
                                     [&](const gltf::Clip& clip) { return clip.name == cut.clip; });
-    if (found == clips.end()) {
+    if (found == clips_.end()) {
       throw inputError(fmt::format("{}: cut \"{}\" is of a clip \"{}\", which there is not", source_.name,
                                    cut.name, cut.clip));
     }
@@ -84,12 +86,15 @@ class SetBaker {
   const Rig& rig_;
   ClipSet set_;
   ClipSkin skin_;
+  std::vector<gltf::Clip> clips_;  // in the size at rest
   BakeBudget budget_;
 };
 
 ClipSet bake(const RigSource& source, const Rig& rig, std::span<const ClipCut> cuts) {
   try {
-    return SetBaker(source, rig).bake(cuts);
+    ClipSet set = SetBaker(source, rig).bake(cuts);
+    noteReading(source.model.name, set.notes);
+    return set;
   } catch (const std::bad_alloc&) {
     throw inputError(fmt::format("{}: its clips do not fit into memory", source.name));
   }
