@@ -227,6 +227,12 @@ TEST_F(FoundFiles, NodesWithoutNumbersRestAsIfTheyWereNotThere) {
             "nodes[2] (\"hip\").rotation has length 0, expected 1: not turned, and 2 more like it\n");
 }
 
+TEST_F(FoundFiles, AScaleOfZeroIsNamed) {
+  Glb glb = test::smallestRig();
+  glb.json["nodes"].push_back({{"name", "hidden"}, {"scale", {1, 0, 1}}});
+  EXPECT_EQ(notes(glb), "nodes[5] (\"hidden\").scale holds 0: what it moves has no size\n");
+}
+
 TEST_F(FoundFiles, RotationsAreScaledToOne) {
   Glb glb = test::smallestRig();
   glb.node("knee")["rotation"] = {0, 0, 0.5, 0.5};
@@ -556,6 +562,13 @@ TEST_F(FoundFiles, AClipWhoseJointsAreFarApartSaysSo) {
   glb.animate(4, "translation", "LINEAR", {0, 1}, {0, -100, 0, 0, -100, 0});
   EXPECT_SAYS(all(clips(glb).notes),
               "times as far apart as at rest: its translations may be in another unit");
+  Glb root = test::smallestRig();
+  root.animate(1, "translation", "LINEAR", {0, 1}, {0, 100, 0, 0, 100, 50});
+  EXPECT_SAYS(all(clips(root).notes),
+              "clip 0 \"clip\": its root is 100 times as far from its parent as at rest");
+  Glb away = test::smallestRig();
+  away.animate(1, "translation", "LINEAR", {0, 1}, {0, 1, 0, 0, 1, 50});
+  EXPECT_EQ(all(clips(away).notes), "");
 }
 
 }  // namespace

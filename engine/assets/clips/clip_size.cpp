@@ -13,6 +13,9 @@ namespace {
 
 // Creatures breathe, squash and stretch by less. Units differ by more: an inch is 2.54 cm.
 constexpr double largestChange = 1.5;
+// A root that is that much further from its parent than at rest, at the beginning, the middle and the end of
+// a clip, is in another unit: a creature may well lie, jump or walk away.
+constexpr double furthestRoot = 20;
 // A size that varies by more while the clip plays is part of the motion.
 constexpr double steady = 1.05;
 
@@ -80,6 +83,28 @@ class Comparison {
   std::vector<std::pair<int, int>> bones_;  // parents and their children, both of which move skin
 };
 
+// How many times as far from its parent as at rest the highest node is all along that is translated and has
+// most of the skin on it and below; nothing where it rests at its parent, so that there is nothing to
+// compare.
+std::optional<double> rootReach(const gltf::Document& document, const gltf::Clip& clip,
+                                const ClipSkin& skin) {
+  for (const int node : skin.nodes) {
+    const auto n = static_cast<size_t>(node);
+    if (!(skin.weightBelow[n] > 0.5) || skin.inLeg[n]) continue;
+    for (const gltf::Channel& channel : clip.moving) {
+      const gltf::Sampler& sampler = clip.samplers[channel.sampler];
+      if (channel.node != node || sampler.path != gltf::Path::translation) continue;
+      const double rest = glm::length(document.nodes[n].translation);
+      std::vector<double> reaches;
+      for (const double share : {0.0, 0.5, 1.0})
+        reaches.push_back(glm::length(sampleVector(sampler, share * clip.seconds)));
+      if (!(rest > 0)) return {};
+      return *std::ranges::min_element(reaches) / rest;
+    }
+  }
+  return {};
+}
+
 // Divides the scale of the highest nodes that are scaled so, whose channels are the cause.
 gltf::Clip divided(const gltf::Document& document, const gltf::Clip& clip, const ClipSkin& skin,
                    double ratio) {
@@ -132,6 +157,11 @@ gltf::Clip inRestSize(const gltf::Document& document, const gltf::Clip& clip, co
         fmt::format("{}: its joints are {:.3g} times as far apart as at rest: its translations "
                     "may be in another unit",
                     what, ratio->spread));
+  } else if (const auto reach = rootReach(document, clip, skin); reach && *reach > furthestRoot) {
+    notes.push_back(
+        fmt::format("{}: its root is {:.3g} times as far from its parent as at rest: its "
+                    "translations may be in another unit",
+                    what, *reach));
   }
   return clip;
 }

@@ -38,6 +38,9 @@ void readTransform(Source& source, size_t index, Node& to) {
     }
     local = glm::mat4_cast(to.rotation);
   }
+  if (to.scale.x == 0 || to.scale.y == 0 || to.scale.z == 0)
+    source.notes.add("flat", fmt::format("{}.scale holds 0: what it moves has no size",
+                                         nodeLabel(index, source.file.json.at("nodes")[index])));
   for (int k = 0; k < 3; ++k) local[k] *= to.scale[k];
   if (!node.translation.empty()) {
     to.translation = {node.translation[0], node.translation[1], node.translation[2]};
