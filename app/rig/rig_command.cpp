@@ -20,6 +20,7 @@ namespace {
 struct RigOptions {
   std::string file, out;
   double legLength = 1;
+  std::optional<glm::dvec3> forward;
   bool force = false;
 };
 
@@ -34,6 +35,26 @@ void print(const RigProposal& proposal, const Rig& rig, const std::filesystem::p
   }
   for (const std::string& note : proposal.notes) fmt::print("  {}\n", note);
   fmt::print("try it: skitter run --rig {}\n", out.string());
+}
+
+// "-X", or three numbers: a direction in the model's axes.
+glm::dvec3 parseDirection(const std::string& option, const std::string& text) {
+  if (text.size() == 2 && (text[0] == '+' || text[0] == '-') && text[1] >= 'X' && text[1] <= 'Z') {
+    glm::dvec3 axis(0);
+    axis[text[1] - 'X'] = text[0] == '+' ? 1 : -1;
+    return axis;
+  }
+  glm::dvec3 direction(0);
+  size_t from = 0, k = 0;
+  for (size_t comma = 0; comma != text.npos && k < 3; from = comma + 1, ++k) {
+    comma = text.find(',', from);
+    direction[static_cast<int>(k)] = parseNumber(option, text.substr(from, comma - from), -1e6, 1e6);
+    if (k == 2 && comma != text.npos) ++k;
+  }
+  if (k != 3 || !(glm::length(direction) > 1e-9)) {
+    throw inputError(fmt::format("{} is {}, expected +X, -X, +Y, -Y, +Z, -Z or X,Y,Z", option, text));
+  }
+  return direction;
 }
 
 int propose(const RigOptions& options) {
@@ -52,7 +73,7 @@ int propose(const RigOptions& options) {
   const ModelWarnings warnings;
   std::optional<StopDeadline> deadline(std::in_place);
   const Model model = loadModel(options.file);
-  RigProposal proposal = proposeRig(model);
+  RigProposal proposal = proposeRig(model, options.forward);
   if (proposal.setup.legs.empty()) {
     throw inputError(fmt::format("{}: {} (skitter inspect shows what there is; docs/rig.md)", options.file,
                                  proposal.notes.empty() ? "has no legs" : proposal.notes.back()));
@@ -88,12 +109,19 @@ void addRig(CLI::App& app, Command& chosen) {
           },
           "metres that the longest leg shall have [1]")
       ->type_name("M");
+  command
+      ->add_option_function<std::string>(
+          "--forward",
+          [options](const std::string& text) { options->forward = parseDirection("--forward", text); },
+          "the way the creature faces in the model's axes, where the proposal is wrong: -Z, or X,Y,Z")
+      ->type_name("AXIS");
   command->add_flag("--force", options->force, "overwrite a sidecar that is there");
   command->footer(
       "The sidecar is made to be edited by hand: docs/rig.md explains each key.\n"
       "\n"
       "Examples:\n"
       "  skitter rig crab.glb\n"
+      "  skitter rig crab.glb --forward -Z --force\n"
       "  skitter rig crab.glb --leg-length 0.4 --out rigs/crab.rig.json");
   command->callback([options, &chosen] { chosen = [options] { return propose(*options); }; });
 }

@@ -24,6 +24,14 @@ struct RigSetup {
     std::vector<double> coneHalfAngleDegrees;  // one per bone; empty: unlimited
     std::optional<glm::dvec3> bend;            // the way the leg's middle goes from its rest before it walks
     double bendDegrees = 30;                   // by so much, at the middle of a straight leg
+    // Set: the leg rests with its foot at home, and this many of its last bones, the foot's, keep the way
+    // they point in the model.
+    std::optional<size_t> footBones;
+  };
+  // A joint outside the legs whose skin goes with a leg's bone.
+  struct Follower {
+    std::string joint;  // a name, or #INDEX
+    std::string bone;   // the joint of a leg at which the bone starts
   };
 
   std::string model;                // the file, relative to the sidecar's folder
@@ -35,6 +43,7 @@ struct RigSetup {
   glm::dvec3 colour{1};             // linear RGB that the model's colours are multiplied by
   std::vector<std::string> groups;  // in the order in which they step
   std::vector<Leg> legs;
+  std::vector<Follower> followers;  // what is below such a joint goes with it, too
 };
 
 // Throws Error(input) that names the file and the key.
@@ -63,7 +72,8 @@ struct RigProposal {
   std::vector<std::string> notes;  // what was decided and why, a line each
 };
 
-// Legs by geometry and names; docs/rig.md states the rules.
-SKITTER_API RigProposal proposeRig(const Model& model);
+// Legs by geometry and names; docs/rig.md states the rules. `forward`, a direction in the model's axes across
+// its up, overrules what feet, names and knees say.
+SKITTER_API RigProposal proposeRig(const Model& model, const std::optional<glm::dvec3>& forward = {});
 
 }  // namespace skitter

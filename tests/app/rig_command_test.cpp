@@ -184,6 +184,19 @@ TEST_F(RigCommand, RigWritesASidecarThatWalks) {
   EXPECT_EQ(skitter({"run", file("scene.json"), "--headless", "--frames", "2"}).code, 0);
 }
 
+TEST_F(RigCommand, ForwardOverrulesTheProposal) {
+  const auto proposed = [&](const char* forward) {
+    EXPECT_EQ(skitter({"rig", file("beast.glb"), "--force", "--forward", forward}).code, 0) << forward;
+    return json("beast.rig.json").at("forward");
+  };
+  EXPECT_EQ(proposed("-Z"), "-Z");
+  EXPECT_EQ(proposed("0,0,-2"), "-Z");
+  for (const char* faulty : {"ahead", "+W", "1,2", "0,0,0", "1,2,3,4"})
+    expectRefusal(skitter({"rig", file("beast.glb"), "--force", "--forward", faulty}), 2, {"--forward"});
+  expectRefusal(skitter({"rig", file("beast.glb"), "--force", "--forward", "+Y"}), 2,
+                {"forward", "along up"});
+}
+
 TEST_F(RigCommand, ASidecarThatMayBeEditedIsNotOverwritten) {
   write("beast.rig.json", "{}");
   expectRefusal(skitter({"rig", file("beast.glb")}), 2, {"beast.rig.json", "--force"});

@@ -128,6 +128,21 @@ TEST_F(Sidecar, BendMovesTheKneeAndTheSkin) {
   EXPECT_NEAR(glm::length(straight), glm::length(moved), 1e-5f);
 }
 
+TEST_F(Sidecar, FootBonesBringTheFootHome) {
+  leg()["footBones"] = 0;
+  leg()["home"] = {0.7, -0.2, 0.1};
+  const Rig rig = load();
+  const Bone& last = rig.legs[0].bones.back();
+  EXPECT_EQ(rig.legs[0].root(), glm::vec3(0, 1, 0));
+  EXPECT_LT(glm::length(last.start + last.direction * last.length - rig.legs[0].home), 1e-5f);
+  // Vertex 2 hangs from knee and foot alone: it goes with the lower bone.
+  const glm::vec3 moved = rig.vertices[2].position - last.start;
+  leg().erase("footBones");
+  const Rig before = load();
+  EXPECT_NEAR(glm::length(before.vertices[2].position - before.legs[0].bones.back().start),
+              glm::length(moved), 1e-5f);
+}
+
 TEST_F(Sidecar, JointsByIndex) {
   leg()["joints"] = {"#2", "knee", "#4"};
   EXPECT_EQ(load().legs[0].home, glm::vec3(1, 0, 0));
@@ -205,6 +220,16 @@ TEST_F(Sidecar, FaultsNameTheKey) {
        },
        "legs[0].bend"},
       {[](auto& j) { j["legs"][0]["bendDegrees"] = 121; }, "legs[0].bendDegrees is 121"},
+      {[](auto& j) { j["legs"][0]["footBones"] = 2; },
+       "legs[0].footBones is 2, expected a whole number less than"},
+      {[](auto& j) {
+         j["legs"][0]["joints"] = {"knee", "hip", "foot"};
+       },
+       "\"hip\" is above \"knee\""},
+      {[](auto& j) { j["follow"] = "knee"; }, "follow is \"knee\", expected an object"},
+      {[](auto& j) { j["follow"]["knee"] = "hip"; }, "follow: \"knee\" is a joint of a leg"},
+      {[](auto& j) { j["follow"]["body"] = "body"; }, "follow.body is \"body\", expected a joint of a leg"},
+      {[](auto& j) { j["follow"]["tail"] = "hip"; }, "follow: no node is named \"tail\""},
       {[](auto& j) { j["legs"][0]["coneHalfAngleDegrees"] = 60; }, "legs[0].coneHalfAngleDegrees is 60"},
       {[](auto& j) { j["legs"][0]["coneHalfAngleDegrees"] = {60}; }, "1 angles, the leg 2 bones"},
       {[](auto& j) {
@@ -237,6 +262,7 @@ TEST_F(Sidecar, WhatIsWrittenReadsTheSame) {
   leg()["bendDegrees"] = 20;
   leg()["coneHalfAngleDegrees"] = {60, 70, 180};
   leg()["joints"][0] = "a, \"b\"";
+  json_["follow"]["body"] = "knee";
   json_["forward"] = "-X";
   json_["colour"] = {0.5, 0.5, 0.5};
   const std::string once = writeRigSetup(parseRigSetup(json_.dump(), "once"));
@@ -244,6 +270,10 @@ TEST_F(Sidecar, WhatIsWrittenReadsTheSame) {
   EXPECT_NE(once.find("\"coneHalfAngleDegrees\": [60, 70, 180]"), std::string::npos) << once;
   EXPECT_EQ(nlohmann::json::parse(once)["legs"][0]["joints"][0], "a, \"b\"");
   EXPECT_EQ(nlohmann::json::parse(once)["forward"], "-X");
+  EXPECT_EQ(nlohmann::json::parse(once)["follow"]["body"], "knee");
+  leg()["footBones"] = 1;
+  EXPECT_EQ(
+      nlohmann::json::parse(writeRigSetup(parseRigSetup(json_.dump(), "thrice")))["legs"][0]["footBones"], 1);
 }
 
 }  // namespace

@@ -131,8 +131,8 @@ TEST(Rig, FaultsOfTheExtras) {
       {[](Glb& g) {
          leg(g)["joints"] = {"knee", "hip", "foot"};
        },
-       "\"hip\" is no descendant of \"knee\""},
-      {[](Glb& g) { leg(g)["joints"][2] = "knee"; }, "no descendant"},
+       "\"hip\" is above \"knee\""},
+      {[](Glb& g) { leg(g)["joints"][2] = "knee"; }, "\"knee\" is named twice"},
       {[](Glb& g) { g.node("knee")["name"] = "hip"; }, "two nodes are named \"hip\""},
       {[](Glb& g) { leg(g)["coneHalfAngleDegrees"] = {40}; }, "1 angles, the leg 2 bones"},
       {[](Glb& g) {

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "assets/rigs/leg_finder.h"
+#include "assets/rigs/joint_names.h"
 #include "skitter/clip.h"
 
 namespace skitter {

@@ -239,24 +239,14 @@ class SkinBinder {
   }
 
   void describeJoints() {
-    std::vector<ClipJoint> joints(document_.nodes.size());
-    for (size_t l = 0; l < placement_.chains.size(); ++l) {
-      const int lastBone = static_cast<int>(placement_.points[l].size()) - 2;
-      for (size_t j = 0; j < placement_.chains[l].size(); ++j) {
-        ClipJoint& joint = joints[static_cast<size_t>(placement_.chains[l][j])];
-        joint.leg = static_cast<int>(l);
-        joint.bone = std::min(static_cast<int>(j), lastBone);
-      }
-    }
-    for (const int i : skin_.nodes) {
-      ClipJoint& joint = joints[static_cast<size_t>(i)];
-      const int parent = document_.nodes[static_cast<size_t>(i)].parent;
-      if (joint.leg == -1 && parent != -1) joint = joints[static_cast<size_t>(parent)];
-      skin_.inLeg[static_cast<size_t>(i)] = joint.leg != -1;
-    }
+    for (const int i : skin_.nodes)
+      skin_.inLeg[static_cast<size_t>(i)] = placement_.carriers[static_cast<size_t>(i)].leg != -1;
     for (const ClipSkin::Entry& entry : skin_.entries) {
-      ClipJoint joint = joints[static_cast<size_t>(entry.node)];
+      const Placement::Carrier& carrier = placement_.carriers[static_cast<size_t>(entry.node)];
+      ClipJoint joint;
       joint.name = model_.reference(entry.node);
+      joint.leg = carrier.leg;
+      joint.bone = carrier.bone;
       set_.joints.push_back(std::move(joint));
     }
   }

@@ -13,9 +13,11 @@ namespace skitter {
 // which of its chains of joints are legs. Coordinates are the file's.
 struct BodyPlan {
   const Model& model;
+  const SkinOfNodes& skin;
   std::vector<Limb> limbs = {};
   glm::dvec3 up{0, 1, 0}, forward{0, 0, 1}, left{1, 0, 0};
   double middle = 0;                    // of the body, along `left`
+  double confidence = 1;                // that it walks along `forward`, 0 to 1
   std::vector<std::string> notes = {};  // for people, a line each
 
   glm::dvec3 at(int node) const { return model.nodes[static_cast<size_t>(node)].position(); }

@@ -8,8 +8,10 @@
 namespace skitter {
 namespace {
 
-constexpr double standShare = 0.75;    // of the reach, root to home: no leg stands straighter
-constexpr double strideShare = 0.3;    // of the longest reach: half the longest stride (crowd/tuning.cpp)
+constexpr double standShare = 0.75;  // of the reach, root to home: no leg stands straighter
+constexpr double strideShare = 0.3;  // of the longest reach: half the longest stride (crowd/tuning.cpp)
+constexpr double strideApart =
+    0.1;  // of the reach: feet of a pair further from mirrored places are in mid-stride
 constexpr double stretchShare = 0.95;  // of the reach, root to foot: a leg stretched further steps at once
 
 // Brings homes nearer to their roots where the foot could not go ahead of or behind its home by half a
@@ -27,6 +29,22 @@ void drawIn(const BodyPlan& plan, double ground, std::vector<glm::dvec3>& homes)
     if (a + 2 * b + c <= 0) continue;
     const double share = (std::sqrt(std::max(0.0, b * b - a * c)) - b) / std::max(a, 1e-12);
     homes[i] = plan.flat(root) + out * std::max(0.0, share);
+  }
+}
+
+// In a model that rests in mid-stride one foot of a pair is ahead of the other: both stand amid that.
+void mirrorPairs(BodyPlan& plan, std::vector<glm::dvec3>& homes) {
+  const auto image = [&](const glm::dvec3& p) {
+    return p - plan.left * (2 * (glm::dot(p, plan.left) - plan.middle));
+  };
+  for (size_t a = 0; a < plan.limbs.size(); ++a) {
+    for (size_t b = a + 1; b < plan.limbs.size(); ++b) {
+      if (plan.limbs[a].pair == -1 || plan.limbs[a].pair != plan.limbs[b].pair) continue;
+      if (glm::length(image(homes[b]) - homes[a]) < strideApart * plan.limbs[a].reach) continue;
+      homes[a] = 0.5 * (homes[a] + image(homes[b]));
+      homes[b] = image(homes[a]);
+      plan.limbs[a].strides = plan.limbs[b].strides = true;
+    }
   }
 }
 
@@ -50,6 +68,7 @@ FootHomes placeFeet(BodyPlan& plan) {
     ground = std::max(ground, plan.height(root) - drop);
   }
   const double lowered = ground - rest;
+  mirrorPairs(plan, homes);
   drawIn(plan, ground, homes);
   glm::dvec3 centre(0);
   for (glm::dvec3& home : homes) {

@@ -9,7 +9,9 @@
 namespace skitter {
 namespace {
 
-constexpr double leastCone = 45, mostCone = 120, rootCone = 60, rootMargin = 40;  // degrees
+constexpr double leastCone = 45, mostCone = 120, rootCone = 60, rootMargin = 40, footCone = 45;  // degrees
+constexpr double kneeBend = 15;     // degrees at rest: a joint that bends more has a side to which it bends
+constexpr double tightFold = 0.45;  // of the reach: legs that fold so far walk without turning a knee over
 constexpr double foldShare =
     0.25;  // of the reach, root to foot: gait lets feet come as near (crowd/tuning.cpp)
 constexpr double inDegrees = 180 / std::numbers::pi;
@@ -43,18 +45,32 @@ double foldedSpan(const Leg& leg, const std::vector<double>& cones) {
 
 }  // namespace
 
-std::vector<double> conesOf(const Leg& leg) {
+std::vector<double> conesOf(const Leg& leg, size_t footBones) {
   std::vector<double> cones;
+  std::vector<bool> knees;
   for (size_t i = 0; i < leg.bones.size(); ++i) {
     const glm::dvec3 bone(leg.bones[i].direction);
-    const double cone =
-        i == 0 ? std::max(rootCone, angleBetween(bone, glm::dvec3(leg.home - leg.root())) + rootMargin)
-               : std::max(leastCone, angleBetween(glm::dvec3(leg.bones[i - 1].direction), bone));
-    cones.push_back(std::round(std::min(cone, mostCone)));
+    if (i == 0) {
+      const double cone =
+          std::max(rootCone, angleBetween(bone, glm::dvec3(leg.home - leg.root())) + rootMargin);
+      cones.push_back(std::round(std::min(cone, mostCone)));
+      knees.push_back(true);
+      continue;
+    }
+    const double bend = angleBetween(glm::dvec3(leg.bones[i - 1].direction), bone);
+    const bool foot = i + footBones >= leg.bones.size();
+    knees.push_back(foot || bend > kneeBend);
+    cones.push_back(foot ? footCone : bend > kneeBend ? std::floor(std::min(bend, mostCone)) : leastCone);
   }
-  for (double widest = leastCone; widest < mostCone && foldedSpan(leg, cones) > foldShare; widest += 5) {
-    for (size_t i = 1; i < cones.size(); ++i) cones[i] = std::max(cones[i], widest + 5);
-  }
+  const auto widen = [&](bool all) {
+    for (double widest = leastCone; widest < mostCone && foldedSpan(leg, cones) > foldShare; widest += 5) {
+      for (size_t i = 1; i + footBones < cones.size(); ++i) {
+        if (all || !knees[i]) cones[i] = std::max(cones[i], widest + 5);
+      }
+    }
+  };
+  widen(false);
+  if (foldedSpan(leg, cones) > tightFold) widen(true);
   return cones;
 }
 

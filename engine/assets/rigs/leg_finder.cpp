@@ -1,66 +1,82 @@
 #include "assets/rigs/leg_finder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
+
+#include "assets/rigs/joint_names.h"
 
 namespace skitter {
 namespace {
 
-constexpr double lowShare = 0.2;     // of the model's height: a foot's tip lies in it
 constexpr double offsetShare = 0.1;  // of the last bone: skin so far beyond its end is a foot without a joint
 constexpr double shortest = 0.5;     // of the longest limb's reach: a shorter one is a palp, a claw or a toe
 constexpr double levelShare = 0.25;  // of the reach: feet are no further from the middle one's height
 constexpr size_t mostJoints = 2048, mostLeaves = 128;  // of all; of those near the ground
 constexpr size_t leastBones = 2;                       // one bone cannot choose where its foot goes
 constexpr double sharedShare = 0.05;  // of the reach: nearer first joints are one point of the body
-
-// Joints that steer others and carry no skin.
-constexpr std::array helperWords = {"ik", "pole", "target", "ctrl", "control", "helper", "twist", "mch"};
+constexpr double flatShare = 0.03;  // of its length: skin of a joint that is no higher is a plate or a shadow
+constexpr double outsideShare = 0.1;  // of the reach: a foot outside the chain is no further from its end
 
 class LimbFinder {
  public:
-  LimbFinder(const Model& model, const glm::dvec3& up)
+  LimbFinder(const Model& model, const SkinOfNodes& skin, const glm::dvec3& up, double lowShare)
       : model_(model),
+        own_(skin),
         up_(up),
-        own_(model.nodes.size()),
+        lowShare_(lowShare),
         inTree_(model.nodes.size(), false),
         children_(model.nodes.size()) {}
 
-  std::vector<Limb> find() {
-    measure();
+  LimbSearch find() {
     growTree();
     if (std::count(inTree_.begin(), inTree_.end(), true) > static_cast<std::ptrdiff_t>(mostJoints)) return {};
+    measure();
     std::vector<Limb> limbs = groundLeaves();
     // Nothing that walks is so branched, and the search below takes its time by the cube.
     if (limbs.size() > mostLeaves) return {};
     limbs = mergeToes(std::move(limbs));
     const std::vector<size_t> count = countLeaves(limbs);
     for (Limb& limb : limbs) climb(limb, count);
+    addFeet(limbs);
+    limbs = withSkin(limbs);
     // What is no leg must not tell where legs begin, and where they begin says how long they are.
+    noteSingleBones(limbs);
     limbs = choose(limbs);
     skipShared(limbs);
-    return choose(limbs);
+    result_.limbs = choose(limbs);
+    return std::move(result_);
   }
 
  private:
   const Model::Node& node(int i) const { return model_.nodes[static_cast<size_t>(i)]; }
+  const std::vector<size_t>& skinOf(int i) const { return own_[static_cast<size_t>(i)]; }
   double height(const glm::dvec3& p) const { return glm::dot(p, up_); }
 
-  // The extent of the mesh, and each vertex with the node that it follows most.
+  // The extent of what may be legs, arms, heads: skin of joints that do not branch. What belongs to no joint
+  // or to the whole body may lie below the feet, as may a plate with a joint of its own.
   void measure() {
-    for (size_t v = 0; v < model_.vertices.size(); ++v) {
-      const Model::Vertex& vertex = model_.vertices[v];
-      const Model::Influence* heaviest = &model_.influences[vertex.firstInfluence];
-      for (uint32_t k = 1; k < vertex.influences; ++k) {
-        const Model::Influence& influence = model_.influences[vertex.firstInfluence + k];
-        if (influence.weight > heaviest->weight) heaviest = &influence;
+    std::vector<size_t> ends(model_.nodes.size(), 0);
+    for (size_t i = 0; i < model_.nodes.size(); ++i) {
+      if (!inTree_[i] || !children_[i].empty()) continue;
+      for (int k = static_cast<int>(i); k != -1 && inTree_[static_cast<size_t>(k)]; k = node(k).parent)
+        ++ends[static_cast<size_t>(k)];
+    }
+    bool any = false;
+    for (size_t i = 0; i < model_.nodes.size(); ++i) {
+      if (!inTree_[i] || ends[i] > 1 || own_[i].empty()) continue;
+      glm::dvec3 least(HUGE_VAL), most(-HUGE_VAL);
+      for (const size_t v : own_[i]) {
+        least = glm::min(least, model_.vertices[v].position);
+        most = glm::max(most, model_.vertices[v].position);
       }
-      own_[heaviest->node].push_back(v);
-      const double h = height(vertex.position);
-      lowest_ = v == 0 ? h : std::min(lowest_, h);
-      highest_ = v == 0 ? h : std::max(highest_, h);
+      const glm::dvec3 size = most - least;
+      if (std::fabs(height(size)) < flatShare * glm::length(size)) continue;
+      const double a = height(least), b = height(most);
+      lowest_ = any ? std::min({lowest_, a, b}) : std::min(a, b);
+      highest_ = any ? std::max({highest_, a, b}) : std::max(a, b);
+      any = true;
     }
   }
 
@@ -70,19 +86,119 @@ class LimbFinder {
       const auto index = static_cast<size_t>(i);
       const int parent = node(i).parent;
       const bool below = parent != -1 && inTree_[static_cast<size_t>(parent)];
-      const std::vector<std::string> words = wordsOf(node(i).name);
-      const bool helper =
-          own_[index].empty() && std::any_of(words.begin(), words.end(), [](const std::string& word) {
-            return std::find(helperWords.begin(), helperWords.end(), word) != helperWords.end();
-          });
+      const bool helper = own_[index].empty() && hasWord(wordsOf(node(i).name), helperWords);
       inTree_[index] = (node(i).joint || below) && !helper;
       if (inTree_[index] && below) children_[static_cast<size_t>(parent)].push_back(i);
     }
   }
 
+  bool hasSkin(int top) const {
+    if (!skinOf(top).empty()) return true;
+    const std::vector<int>& below = children_[static_cast<size_t>(top)];
+    return std::any_of(below.begin(), below.end(), [&](int child) { return hasSkin(child); });
+  }
+
+  // Feet whose skin hangs from a joint outside the chain that rests where the chain ends.
+  void addFeet(std::vector<Limb>& limbs) const {
+    // A foot is not the longest limb, so that limb chooses first.
+    std::stable_sort(limbs.begin(), limbs.end(),
+                     [](const Limb& a, const Limb& b) { return a.reach > b.reach; });
+    std::vector<int> feet;
+    const auto isFoot = [&](const Limb& limb) {
+      return std::any_of(feet.begin(), feet.end(), [&](int foot) {
+        return std::find(limb.chain.begin(), limb.chain.end(), foot) != limb.chain.end() ||
+               model_.isAncestor(foot, limb.chain.front());
+      });
+    };
+    std::vector<Limb> kept;
+    for (Limb& limb : limbs) {
+      if (isFoot(limb)) continue;
+      const int foot = limb.boneCount() > 0 ? footOf(limb, feet) : -1;
+      if (foot != -1) {
+        feet.push_back(foot);
+        endAt(limb, foot);
+      }
+      kept.push_back(std::move(limb));
+    }
+    limbs = std::move(kept);
+  }
+
+  void endAt(Limb& limb, int foot) const {
+    // The chain's own end is a marker without skin, or a part of the foot in the same place.
+    const double apart = glm::length(node(foot).position() - node(limb.joints.back()).position());
+    const bool marker = skinOf(limb.joints.back()).empty() || apart < 0.3 * outsideShare * limb.reach;
+    if (limb.joints.size() > 1 && marker) limb.joints.pop_back();
+    findTip(limb, foot, node(limb.joints.back()).position());
+    limb.joints.push_back(foot);
+    limb.chain.push_back(foot);
+    limb.measure(model_);
+  }
+
+  int footOf(const Limb& limb, const std::vector<int>& taken) const {
+    const int root = limb.joints.front(), side = sideOf(wordsOf(model_, limb.chain));
+    const glm::dvec3 last = node(limb.joints.back()).position();
+    const auto distance = [&](int i) {
+      const glm::dvec3 at = node(i).position();
+      return std::min(glm::length(at - last), glm::length(at - limb.tip));
+    };
+    const auto suits = [&](int i) {
+      const bool outside = i != root && !model_.isAncestor(i, root) && !model_.isAncestor(root, i);
+      if (!inTree_[static_cast<size_t>(i)] || !outside) return false;
+      if (std::find(taken.begin(), taken.end(), i) != taken.end()) return false;
+      if (side * sideOf(wordsOf(node(i).name)) < 0) return false;
+      return distance(i) <= outsideShare * limb.reach && hasSkin(i);
+    };
+    int best = -1;
+    for (const int i : model_.parentsFirst) {
+      // Of a foot's own joints the first that stands there counts.
+      if (!suits(i) || (best != -1 && model_.isAncestor(best, i))) continue;
+      if (best == -1 || distance(i) < distance(best) - 1e-9) best = i;
+    }
+    // Skin of the chain's own end reaches on: nothing has to be added.
+    const std::vector<size_t>& own = skinOf(limb.joints.back());
+    return best != -1 && own.size() > skinBelow(best) ? -1 : best;
+  }
+
+  size_t skinBelow(int top) const {
+    size_t count = skinOf(top).size();
+    for (const int child : children_[static_cast<size_t>(top)]) count += skinBelow(child);
+    return count;
+  }
+
+  // A chain that carries no skin steers something else, or is left of a body whose mesh is not here.
+  std::vector<Limb> withSkin(const std::vector<Limb>& limbs) {
+    std::vector<Limb> kept;
+    size_t bare = 0;
+    for (const Limb& limb : limbs) {
+      const bool skin = std::any_of(limb.joints.begin(), limb.joints.end(),
+                                    [&](int joint) { return !skinOf(joint).empty(); });
+      if (skin) kept.push_back(limb);
+      bare += !skin && limb.boneCount() >= leastBones;
+    }
+    if (bare > 0)
+      result_.notes.push_back(
+          fmt::format("{} chains that end near the ground carry no skin: they are no legs", bare));
+    return kept;
+  }
+
+  void noteSingleBones(const std::vector<Limb>& limbs) {
+    double longest = 0;
+    for (const Limb& limb : limbs) longest = std::max(longest, limb.reach);
+    std::vector<std::string> names;
+    for (const Limb& limb : limbs) {
+      if (limb.boneCount() == 1 && limb.reach > shortest * longest)
+        names.push_back(model_.reference(limb.joints.front()));
+    }
+    if (names.size() < 2) return;
+    result_.notes.push_back(
+        fmt::format("{} chains that end near the ground have one bone ({}): a leg needs two bones, so that "
+                    "its foot can come nearer to the body",
+                    names.size(), fmt::join(names, ", ")));
+  }
+
   std::vector<Limb> groundLeaves() const {
     std::vector<Limb> leaves;
-    const double low = lowest_ + lowShare * (highest_ - lowest_);
+    const double low = lowest_ + lowShare_ * (highest_ - lowest_);
     for (size_t i = 0; i < model_.nodes.size(); ++i) {
       if (!inTree_[i] || !children_[i].empty()) continue;
       Limb limb;
@@ -95,29 +211,33 @@ class LimbFinder {
 
   // Where the skin of the last joint ends, seen along the last bone and downward.
   void findTip(Limb& limb) const {
-    const int last = limb.joints.back();
+    const glm::dvec3 end = node(limb.joints.back()).position();
+    int parent = node(limb.joints.back()).parent;
+    while (parent != -1 && inTree_[static_cast<size_t>(parent)] &&
+           !(glm::length(end - node(parent).position()) > 1e-9))
+      parent = node(parent).parent;
+    const bool bone = parent != -1 && inTree_[static_cast<size_t>(parent)];
+    findTip(limb, limb.joints.back(), bone ? node(parent).position() : end);
+  }
+
+  void findTip(Limb& limb, int last, const glm::dvec3& boneStart) const {
     const glm::dvec3 end = node(last).position();
     limb.tip = end;
-    int parent = node(last).parent;
-    double bone = 0;
-    while (parent != -1 && inTree_[static_cast<size_t>(parent)] && !(bone > 1e-9)) {
-      bone = glm::length(end - node(parent).position());
-      if (bone > 1e-9) break;
-      parent = node(parent).parent;
-    }
+    limb.footJoint = true;
+    const double bone = glm::length(end - boneStart);
     glm::dvec3 axis = -up_;
     if (bone > 1e-9) {
-      const glm::dvec3 sum = (end - node(parent).position()) / bone - up_;
+      const glm::dvec3 sum = (end - boneStart) / bone - up_;
       if (glm::length(sum) > 0.1) axis = glm::normalize(sum);
     }
     double farthest = 0;
-    for (size_t v : own_[static_cast<size_t>(last)]) {
+    for (size_t v : skinOf(last)) {
       farthest = std::max(farthest, glm::dot(model_.vertices[v].position - end, axis));
     }
     if (!(farthest > offsetShare * bone) || !(farthest > 0)) return;
     glm::dvec3 sum(0);
     size_t count = 0;
-    for (size_t v : own_[static_cast<size_t>(last)]) {
+    for (size_t v : skinOf(last)) {
       const glm::dvec3& p = model_.vertices[v].position;
       if (glm::dot(p - end, axis) < 0.97 * farthest) continue;
       sum += p;
@@ -170,7 +290,7 @@ class LimbFinder {
   }
 
   bool isFoot(int fork, const glm::dvec3& tip, const std::vector<size_t>& count) const {
-    if (height(node(fork).position()) > lowest_ + lowShare * (highest_ - lowest_)) return false;
+    if (height(node(fork).position()) > lowest_ + footShare * (highest_ - lowest_)) return false;
     double above = 0;
     for (int i = fork; node(i).parent != -1 && inTree_[static_cast<size_t>(node(i).parent)];
          i = node(i).parent) {
@@ -253,8 +373,10 @@ class LimbFinder {
   }
 
   const Model& model_;
+  const SkinOfNodes& own_;
   const glm::dvec3 up_;
-  std::vector<std::vector<size_t>> own_;  // vertices that follow a node most
+  const double lowShare_;
+  LimbSearch result_;
   std::vector<bool> inTree_;
   std::vector<std::vector<int>> children_;
   double lowest_ = 0, highest_ = 0;
@@ -280,25 +402,22 @@ void Limb::measure(const Model& model) {
   if (!joints.empty()) reach += glm::length(tip - at(joints.size() - 1));
 }
 
-std::vector<Limb> findLimbs(const Model& model, const glm::dvec3& up) { return LimbFinder(model, up).find(); }
-
-std::vector<std::string> wordsOf(const std::string& name) {
-  const auto is = [](int (*kind)(int), char c) { return kind(static_cast<unsigned char>(c)) != 0; };
-  std::vector<std::string> words;
-  for (size_t i = 0; i < name.size(); ++i) {
-    const char c = name[i];
-    if (!is(std::isalnum, c)) continue;
-    const char before = i > 0 ? name[i - 1] : ' ';
-    // A word begins after anything else, where a capital follows a small letter, and where letters and digits
-    // meet; of capitals in a row the last begins the next word if a small letter follows.
-    const bool begins = !is(std::isalnum, before) || (is(std::isupper, c) && is(std::islower, before)) ||
-                        is(std::isdigit, c) != is(std::isdigit, before) ||
-                        (is(std::isupper, c) && is(std::isupper, before) && i + 1 < name.size() &&
-                         is(std::islower, name[i + 1]));
-    if (begins) words.emplace_back();
-    words.back().push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+SkinOfNodes skinOfNodes(const Model& model) {
+  SkinOfNodes skin(model.nodes.size());
+  for (size_t v = 0; v < model.vertices.size(); ++v) {
+    const Model::Vertex& vertex = model.vertices[v];
+    const Model::Influence* heaviest = &model.influences[vertex.firstInfluence];
+    for (uint32_t k = 1; k < vertex.influences; ++k) {
+      const Model::Influence& influence = model.influences[vertex.firstInfluence + k];
+      if (influence.weight > heaviest->weight) heaviest = &influence;
+    }
+    skin[heaviest->node].push_back(v);
   }
-  return words;
+  return skin;
+}
+
+LimbSearch findLimbs(const Model& model, const SkinOfNodes& skin, const glm::dvec3& up, double lowShare) {
+  return LimbFinder(model, skin, up, lowShare).find();
 }
 
 }  // namespace skitter

@@ -4,9 +4,20 @@
 
 namespace skitter {
 
-// Legs come in mirrored pairs where any do; what has no partner is a tail or an arm, and is left out. Needs
-// the body's axes.
+// Leaves out what joint names call arms, fingers, weapons, tails.
+void dropNamedLimbs(BodyPlan& plan);
+
+// Finds the mirrored pairs: by where limbs leave the body and how long their bones are, so that a model may
+// rest in mid-stride. A limb without a partner stays if it is built like one that has a partner, and if no
+// limb has one; else it is a tail or an arm, and is left out. Needs the axis across the body.
 void pairLimbs(BodyPlan& plan);
+
+// How the limbs would pair across a plane with this normal.
+struct Pairing {
+  double share = 0;   // of the limbs that have a partner, 0 to 1
+  double middle = 0;  // where along the normal the plane is
+};
+Pairing pairingAcross(const BodyPlan& plan, const glm::dvec3& side);
 
 struct LimbName {
   std::string name, group;  // L1, A

@@ -17,6 +17,7 @@ class Placer {
 
   Placement place() {
     for (size_t i = 0; i < setup_.legs.size(); ++i) findChain(i);
+    findCarriers();
     const glm::dvec3 up = glm::normalize(setup_.up);
     const glm::dvec3 forward = glm::normalize(setup_.forward - up * glm::dot(setup_.forward, up));
     result_.rotation = glm::transpose(glm::dmat3(glm::cross(up, forward), up, forward));
@@ -74,9 +75,12 @@ class Placer {
           fail("{}: \"{}\" is a joint of leg {} already", path, from.joints[j], setup_.legs[other].name);
         }
       }
-      if (j > 0 && !model_.isAncestor(chain.back(), node)) {
-        fail("{}: \"{}\" is no descendant of \"{}\"; joints run from root to foot", path, from.joints[j],
-             from.joints[j - 1]);
+      // A foot may hang from a joint outside the chain, as those of inverse kinematics do.
+      for (size_t before = 0; before < chain.size(); ++before) {
+        if (chain[before] != node && !model_.isAncestor(node, chain[before])) continue;
+        if (chain[before] == node) fail("{}: \"{}\" is named twice", path, from.joints[j]);
+        fail("{}: \"{}\" is above \"{}\"; joints run from root to foot", path, from.joints[j],
+             from.joints[before]);
       }
       chain.push_back(node);
       points.push_back(model_.nodes[static_cast<size_t>(node)].position());
@@ -84,6 +88,35 @@ class Placer {
     if (from.tipOffset) points.push_back(points.back() + *from.tipOffset);
     result_.chains.push_back(std::move(chain));
     result_.points.push_back(std::move(points));
+  }
+
+  void findCarriers() {
+    std::vector<Placement::Carrier> own(model_.nodes.size());
+    for (size_t leg = 0; leg < result_.chains.size(); ++leg) {
+      const size_t bones = result_.points[leg].size() - 1;
+      for (size_t j = 0; j < result_.chains[leg].size(); ++j) {
+        own[static_cast<size_t>(result_.chains[leg][j])] = {static_cast<int>(leg),
+                                                            static_cast<int>(std::min(j, bones - 1))};
+      }
+    }
+    const std::vector<Placement::Carrier> ofLegs = own;
+    for (const RigSetup::Follower& follower : setup_.followers) {
+      const std::string path = fmt::format("{}follow", path_);
+      const auto joint = static_cast<size_t>(findNode(follower.joint, path));
+      const auto bone = static_cast<size_t>(findNode(follower.bone, path));
+      if (ofLegs[joint].leg != -1) fail("{}: \"{}\" is a joint of a leg", path, follower.joint);
+      if (ofLegs[bone].leg == -1) {
+        fail("{}.{} is \"{}\", expected a joint of a leg", path, follower.joint, follower.bone);
+      }
+      own[joint] = ofLegs[bone];
+    }
+    result_.carriers = own;
+    for (const int i : model_.parentsFirst) {
+      const auto node = static_cast<size_t>(i);
+      const int parent = model_.nodes[node].parent;
+      if (own[node].leg == -1 && parent != -1)
+        result_.carriers[node] = result_.carriers[static_cast<size_t>(parent)];
+    }
   }
 
   const Model& model_;

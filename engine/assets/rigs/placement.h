@@ -15,6 +15,12 @@ struct Placement {
   std::vector<std::vector<int>> chains;  // a leg's joints, nodes from root to foot
   std::vector<std::vector<glm::dvec3>>
       points;  // where these rest, and the tip; in the model's units and axes
+  // What each node goes with: the leg's bone that begins at it or at its nearest ancestor with one, else the
+  // body.
+  struct Carrier {
+    int leg = -1, bone = -1;
+  };
+  std::vector<Carrier> carriers;
   glm::dmat3 rotation{1};
   glm::dvec3 origin{0};
   double scale = 1;

@@ -6,8 +6,10 @@
 
 #include "assets/rigs/body_axes.h"
 #include "assets/rigs/foot_homes.h"
+#include "assets/rigs/foot_soles.h"
 #include "assets/rigs/joint_cones.h"
 #include "assets/rigs/limb_pairs.h"
+#include "assets/rigs/loose_joints.h"
 #include "assets/rigs/rig_setup.h"
 #include "skitter/error.h"
 
@@ -15,18 +17,24 @@ namespace skitter {
 namespace {
 
 constexpr double straightShare = 0.93;  // of the reach, root to tip: a rest pose beyond it shows no knee
-constexpr double bendDegrees = 40;      // given to legs that rest straight
 
-// A leg that rests straight shows no knee: the way its joints leave the line from root to tip, however
-// little, else forward for legs below the body and upward for legs beside it.
-glm::dvec3 bendOf(const BodyPlan& plan, const std::vector<glm::dvec3>& points, double reach) {
+// A leg that rests straight shows no knee: the way its joints leave the line from root to ankle, however
+// little, else forward for legs below the body and upward for legs beside it. Knees of two legs with soles go
+// forward unless they plainly do not.
+std::optional<glm::dvec3> bendOf(const BodyPlan& plan, const Limb& limb, std::vector<glm::dvec3> points) {
+  if (limb.sole) points.pop_back();
+  if (points.size() < 3) return {};
+  double reach = 0;
+  for (size_t i = 0; i + 1 < points.size(); ++i) reach += glm::length(points[i + 1] - points[i]);
+  if (glm::length(points.back() - points.front()) <= straightShare * reach) return {};
   const glm::dvec3 chord = glm::normalize(points.back() - points.front());
   glm::dvec3 most(0);
   for (const glm::dvec3& p : points) {
     const glm::dvec3 off = (p - points.front()) - chord * glm::dot(p - points.front(), chord);
     if (glm::length(off) > glm::length(most)) most = off;
   }
-  if (glm::length(most) > 0.005 * reach) return glm::normalize(most);
+  const bool human = limb.sole && plan.limbs.size() == 2;
+  if (glm::length(most) > (human ? 0.05 : 0.005) * reach) return glm::normalize(most);
   return std::fabs(glm::dot(chord, plan.up)) > 0.7 ? plan.forward : plan.up;
 }
 
@@ -52,16 +60,33 @@ double bodyRadius(const BodyPlan& plan, const glm::dvec3& ground, double longest
 
 void noteChains(BodyPlan& plan, const RigSetup& setup) {
   size_t inBody = 0, offsets = 0, bent = 0;
+  std::vector<std::string> outside;
   for (size_t i = 0; i < plan.limbs.size(); ++i) {
-    inBody += plan.limbs[i].inBody > 0;
-    offsets += !plan.limbs[i].footJoint;
+    const Limb& limb = plan.limbs[i];
+    const size_t joints = limb.joints.size();
+    inBody += limb.inBody > 0;
+    offsets += !limb.footJoint;
+    if (joints > 1 && !plan.model.isAncestor(limb.joints[joints - 2], limb.joints.back()))
+      outside.push_back(plan.model.reference(limb.joints.back()));
     bent += setup.legs[i].bend.has_value();
   }
   if (inBody > 0) {
     plan.note(fmt::format("the first joints of {} chains share one place: they stay with the body", inBody));
   }
   if (offsets > 0)
-    plan.note(fmt::format("{} feet have no joint: tipOffset is where their skin ends", offsets));
+    plan.note(
+        fmt::format("{} feet have no joint where they stand: tipOffset is where their skin does", offsets));
+  if (!outside.empty()) {
+    plan.note(
+        fmt::format("feet that hang from joints outside their legs end them: {}", fmt::join(outside, ", ")));
+  }
+  for (const RigSetup::Follower& follower : setup.followers)
+    plan.note(fmt::format("{} rests on a leg and goes with its bone at {}", follower.joint, follower.bone));
+  const size_t settled =
+      static_cast<size_t>(std::count_if(setup.legs.begin(), setup.legs.end(),
+                                        [](const RigSetup::Leg& leg) { return leg.footBones.has_value(); }));
+  if (settled > 0)
+    plan.note(fmt::format("{} legs are posed so that their feet rest at home, soles as they are", settled));
   if (bent > 0) plan.note(fmt::format("{} legs rest straight: bend says which way their knees go", bent));
 }
 
@@ -69,7 +94,8 @@ void noteChains(BodyPlan& plan, const RigSetup& setup) {
 void limitJoints(BodyPlan& plan, RigSetup& setup) {
   try {
     const Rig rig = buildRig(plan.model, setup, plan.model.name);
-    for (size_t i = 0; i < setup.legs.size(); ++i) setup.legs[i].coneHalfAngleDegrees = conesOf(rig.legs[i]);
+    for (size_t i = 0; i < setup.legs.size(); ++i)
+      setup.legs[i].coneHalfAngleDegrees = conesOf(rig.legs[i], setup.legs[i].footBones.value_or(0));
   } catch (const Error& error) {
     plan.note(error.detail(plan.model.name));
     setup.legs.clear();
@@ -94,11 +120,10 @@ void describeLegs(BodyPlan& plan, const std::vector<LimbName>& names, RigSetup& 
     }
     if (!limb.footJoint) leg.tipOffset = limb.tip - plan.at(limb.joints.back());
     leg.home = feet.homes[i];
-    const bool straight = glm::length(points.back() - points.front()) > straightShare * limb.reach;
-    if (straight && points.size() > 2) {
-      leg.bend = bendOf(plan, points, limb.reach);
-      leg.bendDegrees = bendDegrees;
-    }
+    leg.bend = bendOf(plan, limb, points);
+    // One bone alone cannot bring its foot home.
+    const size_t foot = limb.sole ? 1 : 0;
+    if (points.size() > foot + 2 && (limb.sole || limb.strides || leg.bend)) leg.footBones = foot;
     setup.legs.push_back(std::move(leg));
     height +=
         (plan.height(points.front()) - plan.height(feet.origin)) / static_cast<double>(plan.limbs.size());
@@ -107,6 +132,7 @@ void describeLegs(BodyPlan& plan, const std::vector<LimbName>& names, RigSetup& 
   std::sort(setup.groups.begin(), setup.groups.end());
   setup.bodyHeight = std::max(height, 0.1 * longest);
   setup.bodyRadius = bodyRadius(plan, feet.origin, longest);
+  setup.followers = findFollowers(plan);
   noteChains(plan, setup);
   limitJoints(plan, setup);
 }
@@ -130,19 +156,47 @@ void chooseColour(BodyPlan& plan, RigSetup& setup) {
   plan.note("the model has no colours of its own: colour makes it grey");
 }
 
+void pairUp(BodyPlan& plan) {
+  const auto pairs = [](BodyPlan& with) {
+    dropNamedLimbs(with);
+    if (with.limbs.empty()) return;
+    findAcross(with);
+    pairLimbs(with);
+  };
+  const size_t found = plan.limbs.size();
+  BodyPlan lifted = plan;
+  pairs(plan);
+  if (found == 0 || (plan.limbs.size() == found && found % 2 == 0)) return;
+  // What was left out may have a partner in mid-stride.
+  lifted.limbs = findLimbs(plan.model, plan.skin, plan.up, liftedShare).limbs;
+  pairs(lifted);
+  const auto alone = [](const Limb& limb) { return limb.pair == -1; };
+  lifted.limbs.erase(std::remove_if(lifted.limbs.begin(), lifted.limbs.end(), alone), lifted.limbs.end());
+  if (lifted.limbs.size() <= plan.limbs.size()) return;
+  plan.limbs = std::move(lifted.limbs);
+  plan.notes = std::move(lifted.notes);
+  plan.left = lifted.left;
+  plan.middle = lifted.middle;
+}
+
 // Fills what it can; the notes say where it stops.
-void propose(BodyPlan& plan, RigProposal& result) {
+void propose(BodyPlan& plan, const std::optional<glm::dvec3>& forward, RigProposal& result) {
   RigSetup& setup = result.setup;
   setup.model = std::filesystem::path(plan.model.name).filename().string();
   chooseUp(plan);
   setup.up = plan.up;
+  pairUp(plan);
   if (plan.limbs.empty()) {
-    plan.note("no chain of joints ends near the ground: there is nothing to walk on");
+    if (plan.notes.empty()) plan.note("no chain of joints ends near the ground: there is nothing to walk on");
     return;
   }
-  chooseForward(plan);
+  if (forward && glm::length(plan.flat(*forward)) < 0.1 * glm::length(*forward)) {
+    plan.note(fmt::format("forward is given along up, which is {}: expected it across", describe(plan.up)));
+    return;
+  }
+  findSoles(plan);
+  chooseForward(plan, forward);
   setup.forward = plan.forward;
-  pairLimbs(plan);
   const std::vector<LimbName> names = nameLimbs(plan);
   for (size_t i = 0; i < names.size(); ++i) {
     const Limb& limb = plan.limbs[i];
@@ -157,10 +211,11 @@ void propose(BodyPlan& plan, RigProposal& result) {
 
 }  // namespace
 
-RigProposal proposeRig(const Model& model) {
+RigProposal proposeRig(const Model& model, const std::optional<glm::dvec3>& forward) {
   RigProposal result;
-  BodyPlan plan{.model = model};
-  propose(plan, result);
+  const SkinOfNodes skin = skinOfNodes(model);
+  BodyPlan plan{.model = model, .skin = skin};
+  propose(plan, forward, result);
   result.notes = std::move(plan.notes);
   return result;
 }

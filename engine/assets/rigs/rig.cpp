@@ -46,7 +46,11 @@ class RigBuilder {
     addSkin(rig);
     for (size_t i = 0; i < setup_.legs.size(); ++i) {
       const RigSetup::Leg& from = setup_.legs[i];
-      if (from.bend) bendLeg(rig, i, placement_.rotation * *from.bend, from.bendDegrees);
+      const glm::dvec3 bend = placement_.rotation * from.bend.value_or(glm::dvec3(0));
+      if (from.footBones)
+        settleLeg(rig, i, *from.footBones, bend);
+      else if (from.bend)
+        bendLeg(rig, i, bend, from.bendDegrees);
     }
     return rig;
   }
@@ -132,24 +136,11 @@ class RigBuilder {
     rig.bodyRadius = static_cast<float>(radius);
   }
 
-  // A node that is no joint of a leg moves with its nearest ancestor that is one, else with the body.
   std::vector<uint16_t> mapPalette(const Rig& rig) const {
-    std::vector<int> own(model_.nodes.size(), -1);
-    for (size_t leg = 0; leg < placement_.chains.size(); ++leg) {
-      const size_t bones = rig.legs[leg].bones.size();
-      for (size_t j = 0; j < placement_.chains[leg].size(); ++j) {
-        own[static_cast<size_t>(placement_.chains[leg][j])] =
-            1 + static_cast<int>(leg) * rig.maxBones() + static_cast<int>(std::min(j, bones - 1));
-      }
-    }
-    std::vector<uint16_t> palette(model_.nodes.size(), 0);
-    for (int i : model_.parentsFirst) {
-      const auto node = static_cast<size_t>(i);
-      const int parent = model_.nodes[node].parent;
-      palette[node] = own[node] != -1 ? static_cast<uint16_t>(own[node])
-                      : parent == -1  ? uint16_t{0}
-                                      : palette[static_cast<size_t>(parent)];
-    }
+    std::vector<uint16_t> palette;
+    for (const Placement::Carrier& carrier : placement_.carriers)
+      palette.push_back(
+          static_cast<uint16_t>(carrier.leg == -1 ? 0 : 1 + carrier.leg * rig.maxBones() + carrier.bone));
     return palette;
   }
 

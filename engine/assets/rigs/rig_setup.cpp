@@ -32,7 +32,7 @@ class SetupReader {
     if (sidecar) {
       checkKeys(json, path,
                 {"model", "scale", "legLength", "forward", "up", "origin", "bodyHeight", "bodyRadius",
-                 "colour", "groups", "legs"});
+                 "colour", "groups", "legs", "follow"});
       setup.model = text(member(json, "model", path), join(path, "model"));
       if (json.contains("scale") && json.contains("legLength")) {
         throw inputError(fmt::format("{}: scale and legLength both size the creature, expected one", name_));
@@ -53,7 +53,7 @@ class SetupReader {
           fail(join(path, "colour"), *colour, "no less than 0");
       }
     } else {
-      checkKeys(json, path, {"groups", "legs", "bodyHeight", "bodyRadius"});
+      checkKeys(json, path, {"groups", "legs", "bodyHeight", "bodyRadius", "follow"});
       for (const char* key : {"bodyHeight", "bodyRadius"}) member(json, key, path);
     }
     for (const auto& group : array(json, "groups", path, 1, Rig::maxLegs)) {
@@ -68,6 +68,7 @@ class SetupReader {
     for (const auto& leg : array(json, "legs", path, 1, Rig::maxLegs)) {
       readLeg(leg, fmt::format("{}[{}]", join(path, "legs"), setup.legs.size()), setup);
     }
+    readFollowers(json, path, setup);
     for (const std::string& group : setup.groups) {
       const auto inGroup = [&](const RigSetup::Leg& leg) { return leg.group == group; };
       if (std::none_of(setup.legs.begin(), setup.legs.end(), inGroup)) {
@@ -161,10 +162,19 @@ class SetupReader {
     return json.get_ref<const std::string&>();
   }
 
+  void readFollowers(const nlohmann::json& json, const std::string& path, RigSetup& setup) const {
+    const auto* follow = find(json, "follow");
+    if (!follow) return;
+    if (!follow->is_object()) fail(join(path, "follow"), *follow, "an object of joints");
+    for (const auto& [joint, bone] : follow->items()) {
+      setup.followers.push_back({joint, text(bone, fmt::format("{}.{}", join(path, "follow"), joint))});
+    }
+  }
+
   void readLeg(const nlohmann::json& json, const std::string& path, RigSetup& setup) const {
-    checkKeys(
-        json, path,
-        {"name", "group", "joints", "tipOffset", "home", "coneHalfAngleDegrees", "bend", "bendDegrees"});
+    checkKeys(json, path,
+              {"name", "group", "joints", "tipOffset", "home", "coneHalfAngleDegrees", "bend", "bendDegrees",
+               "footBones"});
     RigSetup::Leg leg;
     leg.name = text(member(json, "name", path), path + ".name");
     for (const RigSetup::Leg& other : setup.legs) {
@@ -192,8 +202,15 @@ class SetupReader {
       }
       leg.bendDegrees = degrees->get<double>();
     }
+    const size_t bones = leg.joints.size() - 1 + tip;
+    if (const auto* foot = find(json, "footBones")) {
+      if (!foot->is_number_unsigned() || foot->get<size_t>() >= bones) {
+        fail(path + ".footBones", *foot, fmt::format("a whole number less than the leg's {} bones", bones));
+      }
+      leg.footBones = foot->get<size_t>();
+    }
     if (const auto* cones = find(json, "coneHalfAngleDegrees")) {
-      readCones(*cones, path + ".coneHalfAngleDegrees", leg, leg.joints.size() - 1 + tip);
+      readCones(*cones, path + ".coneHalfAngleDegrees", leg, bones);
     }
     setup.legs.push_back(std::move(leg));
   }
@@ -310,14 +327,16 @@ std::string writeRigSetup(const RigSetup& setup) {
     if (from.home) leg["home"] = numbers(*from.home);
     if (from.bend) {
       leg["bend"] = numbers(*from.bend);
-      leg["bendDegrees"] = number(from.bendDegrees);
+      if (!from.footBones) leg["bendDegrees"] = number(from.bendDegrees);
     }
+    if (from.footBones) leg["footBones"] = *from.footBones;
     if (!from.coneHalfAngleDegrees.empty()) {
       auto& cones = leg["coneHalfAngleDegrees"] = nlohmann::ordered_json::array();
       for (double degrees : from.coneHalfAngleDegrees) cones.push_back(number(degrees));
     }
     json["legs"].push_back(std::move(leg));
   }
+  for (const RigSetup::Follower& follower : setup.followers) json["follow"][follower.joint] = follower.bone;
   std::string text;
   print(json, 0, text);
   return text + "\n";
