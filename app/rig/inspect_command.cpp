@@ -14,6 +14,8 @@
 #include "app/rig/look_report.h"
 #include "app/rig/rig_picture.h"
 #include "app/run/state_report.h"
+#include "assets/rigs/rig_setup.h"
+#include "assets/rigs/rig_source.h"
 #include "skitter/clip.h"
 #include "skitter/error.h"
 #include "skitter/rig_setup.h"
@@ -46,8 +48,9 @@ ClipSet bakeClips(const std::string& file, const Inspection& inspection) {
 
 Inspection look(const std::string& file) {
   Inspection inspection;
-  inspection.model = loadModel(file);
-  inspection.proposal = proposeRig(inspection.model);
+  RigSource source = loadBareModel(file);
+  inspection.proposal = proposeRig(source.model, &source.document, {});
+  inspection.model = std::move(source.model);
   try {
     inspection.rig = loadRig(file);
   } catch (const Error& error) {

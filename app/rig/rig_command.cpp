@@ -11,6 +11,8 @@
 #include "app/common/values.h"
 #include "app/common/warnings.h"
 #include "assets/files/partial_file.h"
+#include "assets/rigs/rig_setup.h"
+#include "assets/rigs/rig_source.h"
 #include "skitter/error.h"
 #include "skitter/rig_setup.h"
 
@@ -72,8 +74,9 @@ int propose(const RigOptions& options) {
   }
   const ModelWarnings warnings;
   std::optional<StopDeadline> deadline(std::in_place);
-  const Model model = loadModel(options.file);
-  RigProposal proposal = proposeRig(model, options.forward);
+  const RigSource source = loadBareModel(options.file);
+  const Model& model = source.model;
+  RigProposal proposal = proposeRig(model, &source.document, options.forward);
   if (proposal.setup.legs.empty()) {
     throw inputError(fmt::format("{}: {} (skitter inspect shows what there is; docs/rig.md)", options.file,
                                  proposal.notes.empty() ? "has no legs" : proposal.notes.back()));

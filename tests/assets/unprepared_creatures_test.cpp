@@ -4,6 +4,8 @@
 #include <functional>
 #include <numbers>
 
+#include "assets/rigs/rig_setup.h"
+#include "assets/rigs/rig_source.h"
 #include "creature.h"
 #include "files.h"
 #include "skitter/error.h"
@@ -325,6 +327,34 @@ TEST_F(Unprepared, TurnedHipsDoNotTurnTheCreature) {
     creature.limb({std::string("leg1") + side, std::string("leg2") + side}, body,
                   {{0.26 * x, 0.38, -0.04 * x}, {0.5 * x, 0.4, -0.14 * x}, {0.6 * x, 0, -0.28 * x}}, 0.04);
   EXPECT_EQ(propose(creature).setup.forward, ahead);
+}
+
+// A creature that nothing but its clip tells front from back of. Its feet go backward where they stand.
+TEST_F(Unprepared, FeetOfAWalkTellForward) {
+  for (const double way : {1.0, -1.0}) {
+    Creature creature;
+    const auto body = static_cast<int>(creature.joint("body", -1, {0, 1, -0.3}, {0, 1, 0.3}, 0.2));
+    std::vector<size_t> legs;
+    for (const double x : {1.0, -1.0})
+      legs.push_back(creature.limb({x > 0 ? "a1" : "b1", x > 0 ? "a2" : "b2"}, body,
+                                   {{0.2 * x, 1, 0}, {0.6 * x, 0.6, 0}, {0.3 * x, 0, 0}}, 0.04));
+    creature.clip("Walk", 1, 25, [&](test::Pose& pose, double time) {
+      for (size_t k = 0; k < 2; ++k) {
+        const double phase = std::fmod(time + 0.5 * static_cast<double>(k), 1.0), share = 2 * phase - 1;
+        const double swing = phase < 0.5 ? 0.3 - 1.2 * phase : -0.3 + 0.6 * share;
+        pose.turn(legs[k], glm::angleAxis(-way * swing, glm::dvec3(1, 0, 0)));
+        if (phase >= 0.5)
+          pose.turn(legs[k] + 1, glm::angleAxis(0.6 * std::sin(std::numbers::pi * share),
+                                                glm::dvec3(0, 0, k == 0 ? -1 : 1)));
+      }
+    });
+    test::writeBytes(folder_ / "walker.glb", creature.glb().bytes());
+    const RigSource source = loadBareModel(folder_ / "walker.glb");
+    const RigProposal proposal = proposeRig(source.model, &source.document, {});
+    EXPECT_EQ(proposal.setup.forward, way * ahead) << forwardNote(proposal);
+    EXPECT_NE(forwardNote(proposal).find("by clips that walk"), std::string::npos) << forwardNote(proposal);
+    EXPECT_NE(forwardNote(proposeRig(source.model)).find("doubtful"), std::string::npos);
+  }
 }
 
 // Legs that are brought home sideways carry their feet round, but not over.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "assets/rigs/clip_heading.h"
 #include "assets/rigs/joint_names.h"
 #include "assets/rigs/limb_pairs.h"
 
@@ -158,6 +159,7 @@ class ForwardVote {
   }
 
   void count() {
+    add("clips that walk", headingOfClips(plan_, axis_), 4);
     hearToes();
     hearLegNames();
     hearBodyNames();

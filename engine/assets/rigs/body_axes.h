@@ -13,8 +13,8 @@ void chooseUp(BodyPlan& plan);
 // limbs.
 void findAcross(BodyPlan& plan);
 
-// Which way along the body is forward: a vote of toes, names of head, tail, front, back, left and right,
-// knees and pole targets. `given` overrules it. Needs pairs and soles.
+// Which way along the body is forward: a vote of clips, toes, names of head, tail, front, back, left and
+// right, knees and pole targets. `given` overrules it. Needs pairs and soles.
 void chooseForward(BodyPlan& plan, const std::optional<glm::dvec3>& given);
 
 // "+X" for an axis, else three numbers.

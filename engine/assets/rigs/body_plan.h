@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "assets/models/gltf.h"
 #include "assets/rigs/leg_finder.h"
 
 namespace skitter {
@@ -14,6 +15,7 @@ namespace skitter {
 struct BodyPlan {
   const Model& model;
   const SkinOfNodes& skin;
+  const gltf::Document* document = nullptr;  // the model's, for its clips; may be absent
   std::vector<Limb> limbs = {};
   glm::dvec3 up{0, 1, 0}, forward{0, 0, 1}, left{1, 0, 0};
   double middle = 0;                    // of the body, along `left`

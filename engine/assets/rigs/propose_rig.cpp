@@ -211,13 +211,18 @@ void propose(BodyPlan& plan, const std::optional<glm::dvec3>& forward, RigPropos
 
 }  // namespace
 
-RigProposal proposeRig(const Model& model, const std::optional<glm::dvec3>& forward) {
+RigProposal proposeRig(const Model& model, const gltf::Document* document,
+                       const std::optional<glm::dvec3>& forward) {
   RigProposal result;
   const SkinOfNodes skin = skinOfNodes(model);
-  BodyPlan plan{.model = model, .skin = skin};
+  BodyPlan plan{.model = model, .skin = skin, .document = document};
   propose(plan, forward, result);
   result.notes = std::move(plan.notes);
   return result;
+}
+
+RigProposal proposeRig(const Model& model, const std::optional<glm::dvec3>& forward) {
+  return proposeRig(model, nullptr, forward);
 }
 
 }  // namespace skitter

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "assets/models/gltf.h"
 #include "skitter/rig_setup.h"
 
 namespace skitter {
@@ -14,5 +15,9 @@ RigSetup readRigSetup(const nlohmann::json& json, const std::string& name, const
 
 // As buildRig; paths in messages begin with `path`.
 Rig buildRig(const Model& model, const RigSetup& setup, const std::string& name, const std::string& path);
+
+// As the public one, with the model's clips as evidence of which way it walks.
+RigProposal proposeRig(const Model& model, const gltf::Document* document,
+                       const std::optional<glm::dvec3>& forward);
 
 }  // namespace skitter

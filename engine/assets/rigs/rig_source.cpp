@@ -47,6 +47,13 @@ RigSource fromSidecar(const std::filesystem::path& sidecar) {
 
 }  // namespace
 
+RigSource loadBareModel(const std::filesystem::path& file) {
+  RigSource source;
+  source.name = file.string();
+  readModel(file, source);
+  return source;
+}
+
 RigSource loadRigSource(const std::filesystem::path& file, NoLegs noLegs) {
   if (file.extension() == ".json") return fromSidecar(file);
   RigSource source;
@@ -62,8 +69,7 @@ RigSource loadRigSource(const std::filesystem::path& file, NoLegs noLegs) {
     readModel(file, source);
     return source;
   }
-  source.name = file.string();
-  readModel(file, source);
+  source = loadBareModel(file);
   if (!source.document.extras.is_null()) {
     useExtras(source);
     return source;
@@ -72,7 +78,7 @@ RigSource loadRigSource(const std::filesystem::path& file, NoLegs noLegs) {
     throw inputError(fmt::format("{}: has no legs: run `skitter rig {}` to propose {} (docs/rig.md)",
                                  source.name, source.name, sidecar.filename().string()));
   }
-  source.setup = proposeRig(source.model).setup;
+  source.setup = proposeRig(source.model, &source.document, {}).setup;
   return source;
 }
 

@@ -22,6 +22,8 @@ struct RigSource {
 // What becomes of a model with neither sidecar nor legs in its extras.
 enum class NoLegs { refused, proposed };
 
+// A model alone, without a setup. Throws Error(input) that names the file and the fault.
+RigSource loadBareModel(const std::filesystem::path& file);
 // A sidecar, a model with its sidecar beside it, or a model with legs in its extras. Throws Error(input) that
 // names the file and the fault. A proposed setup may have no legs.
 RigSource loadRigSource(const std::filesystem::path& file, NoLegs noLegs);
