@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "app/commands.h"
+#include "app/common/law_watch.h"
 #include "app/common/manifest.h"
 #include "app/common/scene_options.h"
 #include "app/common/signals.h"
@@ -91,6 +92,7 @@ class Run {
   void raiseObstacle();
   void watchCrowding();
   void watchDamage();
+  void watchLaws();
   bool watchesDamage() const { return !options_.json.empty() && DamageWatch::isOf(scene_); }
   CrowdOptions crowdOptions() const;
   void tellWhoCannotReach(uint32_t herd, uint32_t count);
@@ -126,6 +128,7 @@ class Run {
   std::optional<CrowdingWatch> crowdingWatch_;
   std::set<uint32_t> toldOf_;  // herds of which it was said that somebody cannot reach the goal
   std::optional<DamageWatch> damageWatch_;
+  std::optional<LawWatch> lawWatch_;
 };
 
 Run::Run(RunOptions options)
@@ -202,6 +205,7 @@ void Run::start() {
   foraging_ = ForageLog(*crowd_);
   watchCrowding();
   watchDamage();
+  watchLaws();
   starting.reset();
   manifest_.terrain = &terrain_;
   manifest_.add(device_->report());
@@ -216,7 +220,7 @@ void Run::start() {
   summary_.startSeconds = std::chrono::duration<double>(Clock::now() - began_).count();
   summary_.startCpuSeconds = base::processSeconds();
   summary_.device = device_->report().name;
-  summary_.terrain = describe(terrain_);
+  summary_.terrain = app::describe(terrain_);
   summary_.filledVoids = terrain_.filledVoids;
   summary_.cpuTold = !windowed_ && !target_.isEveryFrame();
 }
@@ -227,6 +231,11 @@ void Run::raiseObstacle() {
 
 void Run::watchCrowding() {
   if (options_.crowding) crowdingWatch_.emplace(*crowd_, options_.scene.dt);
+}
+
+void Run::watchLaws() {
+  lawWatch_.reset();
+  if (!options_.unjudged) lawWatch_.emplace(*crowd_, scene_, options_.scene.dt);
 }
 
 CrowdOptions Run::crowdOptions() const {
@@ -258,6 +267,7 @@ void Run::afterTick() {
   foraging_.append(*crowd_, options_.scene.dt);
   if (crowdingWatch_) crowdingWatch_->look(*crowd_);
   if (damageWatch_) damageWatch_->look(*crowd_);
+  if (lawWatch_) lawWatch_->look(*crowd_);
   if (obstacle_) obstacle_->move(*crowd_, static_cast<double>(crowd_->tick()) * options_.scene.dt);
   done_ = crowd_->tick();
   if (options_.saveEvery && crowd_->tick() % (*options_.saveEvery * options_.ticksPerFrame) == 0) save();
@@ -291,6 +301,7 @@ void Run::restart(std::optional<Controller> controller) {
   foraging_ = ForageLog(*crowd_);
   watchCrowding();
   watchDamage();
+  watchLaws();
 }
 
 void Run::runWindow() {
@@ -345,6 +356,7 @@ void Run::finish() {
     summary_.searches = searchFigures(*crowd_);
     if (crowdingWatch_) summary_.jams = crowdingWatch_->jams();
     if (damageWatch_) summary_.damage = damageWatch_->figures();
+    if (lawWatch_) summary_.warnings = brokenOf(lawWatch_->figures());
     summary_.levels = crowd_->levels();
     if (options_.sleep) summary_.sleeping = crowd_->sleeping();
     summary_.stateHash = crowd_->stateHash();
@@ -354,9 +366,11 @@ void Run::finish() {
   if (savedAt_ >= 0)
     summary_.files.push_back(fmt::format("{}: the state at tick {}", options_.save, savedAt_.load()));
   summary_.print();
+  if (summary_.warnings) warnOf(*summary_.warnings);
   if (fault) std::rethrow_exception(fault);
   failOnValidation(*device_);
   if (summary_.interrupted) throw Interrupted(stopped());
+  if (options_.strict) refuseBroken(*summary_.warnings);
 }
 
 int runScene(const RunOptions& options) {

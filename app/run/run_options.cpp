@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/common/drawing_options.h"
+#include "app/common/law_watch.h"
 #include "app/run/trace.h"
 #include "app/viewer/window.h"
 #include "skitter/error.h"
@@ -112,6 +113,7 @@ bool RunOptions::windowed(const OutTarget& target) const {
 void RunOptions::check(const OutTarget& target, bool inWindow) const {
   checkVideo(*this, target);
   if (saveEvery && save.empty()) throw inputError("--save-every needs --save FILE");
+  if (strict && unjudged) throw inputError("--strict with --no-laws, expected only one of them");
   if (inWindow && !trace.empty() && !frames)
     throw inputError("--trace needs --frames where a window runs until it is closed");
 }
@@ -186,9 +188,10 @@ CrowdOptions RunOptions::crowdOptions(const OutTarget& target, const Scene& of, 
   crowd.crowding = crowding;
   crowd.levels = levels.empty() ? savedLevels_ : loadLevels(levels);
   crowd.pageAgents = pageAgents;
-  crowd.feet = !trace.empty() || inWindow || crowding;
+  const bool judgesAll = !unjudged && of.capacity() <= LawWatch::mostPosed;
+  crowd.feet = !trace.empty() || inWindow || crowding || judgesAll;
   if (!footfalls.empty()) crowd.footfalls = UINT32_MAX;  // all that can be
-  crowd.pose = poses || inWindow || !trace.empty() || crowding ||
+  crowd.pose = poses || inWindow || !trace.empty() || crowding || judgesAll ||
                (target.kind != OutTarget::Kind::none && Renderer::needsPoses(of));
   return crowd;
 }
@@ -264,6 +267,9 @@ void RunOptions::addTo(CLI::App& command) {
   command.add_flag("--timings", timings, "time every stage on the device's clock (software devices may lie)");
   command.add_flag("--poses", poses, "pose every agent though nobody draws it, for what that costs");
   command.add_flag("--no-measure", unmeasured, "leave the fidelity figures out, for what they cost");
+  command.add_flag("--no-laws", unjudged,
+                   "do not judge the run by the laws of the visible world (docs/laws.md)");
+  command.add_flag("--strict", strict, "a law that is broken fails the run, with exit code 1");
   command.add_flag("--validation", validation, "run under Vulkan's validation layer; a complaint fails");
   command.add_flag("--quiet", quiet, "no progress on stderr");
   command.footer(

@@ -37,7 +37,7 @@ struct RunOptions {
   uint32_t pageAgents = 0;
   bool poses = false, unmeasured = false;
   bool headless = false, force = false, large = false, obstacle = false, timings = false, validation = false,
-       quiet = false, sleep = false, crowding = false, paused = false;
+       quiet = false, sleep = false, crowding = false, paused = false, unjudged = false, strict = false;
 
   double secondsAFrame() const { return scene.dt * static_cast<double>(ticksPerFrame); }
   uint64_t framesWithoutWindow() const { return frames.value_or(defaultFrames); }

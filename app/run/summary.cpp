@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "app/common/law_watch.h"
 #include "crowd/herd.h"
 
 namespace skitter::app {
@@ -327,6 +328,7 @@ nlohmann::ordered_json Summary::json() const {
           {"searches", jsonOf(searches)},
           {"levels", jsonOf(levels)},
           {"herds", perHerd},
+          {"warnings", warnings ? warningsJson(*warnings) : nlohmann::ordered_json(nullptr)},
           {"stateHash", fmt::format("{:016x}", stateHash)}};
 }
 

@@ -10,6 +10,7 @@
 #include "app/run/crowding_watch.h"
 #include "app/run/damage.h"
 #include "app/run/forage_log.h"
+#include "laws/tally.h"
 #include "skitter/crowd.h"
 #include "skitter/device.h"
 
@@ -73,9 +74,10 @@ struct Summary {
   std::vector<ReactionFigures> reactions;  // of the herds with reactions
   std::vector<SearchFigures> searches;     // of the herds that adapt
   Jams jams;
-  std::vector<LevelFigures> levels;     // where there are levels of rate
-  std::optional<DamageFigures> damage;  // where events hurt legs, and it was asked for
-  std::optional<uint64_t> sleeping;     // agents at the end; none where they may not
+  std::vector<LevelFigures> levels;                   // where there are levels of rate
+  std::optional<DamageFigures> damage;                // where events hurt legs, and it was asked for
+  std::optional<std::vector<laws::Figure>> warnings;  // laws that were broken; none where nobody judged
+  std::optional<uint64_t> sleeping;                   // agents at the end; none where they may not
   uint64_t stateHash = 0;
   std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times
   double startSeconds = 0, startCpuSeconds = 0;  // before the first tick; told likewise

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "app/common/law_watch.h"
 #include "app/common/signals.h"
 #include "app/validate/outcome.h"
 #include "assets/files/partial_file.h"
@@ -15,9 +16,9 @@ void addFault(XMLElement& test, const char* kind, const std::string& message) {
   test.InsertNewChildElement(kind)->SetAttribute("message", message.c_str());
 }
 
-XMLElement& addCase(XMLElement& suite, const std::string& name) {
+XMLElement& addCase(XMLElement& suite, const std::string& name, const char* of = "skitter.validate") {
   XMLElement& test = *suite.InsertNewChildElement("testcase");
-  test.SetAttribute("classname", "skitter.validate");
+  test.SetAttribute("classname", of);
   test.SetAttribute("name", name.c_str());
   return test;
 }
@@ -56,6 +57,24 @@ void addSuite(XMLElement& suites, const Outcome& outcome, const nlohmann::ordere
     addFault(addCase(suite, "ticks"), "error", interruptedAfter(outcome.ticks, outcome.wanted, "ticks"));
 }
 
+// A case a herd and law.
+void addLaws(XMLElement& suites, const Outcome& outcome) {
+  if (outcome.laws.empty()) return;
+  XMLElement& suite = *suites.InsertNewChildElement("testsuite");
+  suite.SetAttribute("name", fmt::format("{}: laws of the visible world", outcome.device).c_str());
+  suite.SetAttribute("tests", static_cast<int64_t>(outcome.laws.size()));
+  suite.SetAttribute("failures", static_cast<int64_t>(brokenOf(outcome.laws).size()));
+  for (const laws::Figure& figure : outcome.laws) {
+    XMLElement& test =
+        addCase(suite, fmt::format("{} of herd {}", laws::nameOf(figure.law), figure.herd), "skitter.laws");
+    if (!figure.isKept) addFault(test, "failure", figure.text);
+    test.InsertNewChildElement("system-out")
+        ->SetText(fmt::format("{} samples of {} agents: {:.3g} {}, worst {:.3g}", figure.samples,
+                              figure.judged, figure.value, laws::infoOf(figure.law).unit, figure.worst)
+                      .c_str());
+  }
+}
+
 }  // namespace
 
 void writeJunit(const std::string& file, std::span<const Outcome> outcomes, const Manifest& manifest) {
@@ -64,7 +83,10 @@ void writeJunit(const std::string& file, std::span<const Outcome> outcomes, cons
   XMLElement* suites = document.NewElement("testsuites");
   document.InsertEndChild(suites);
   suites->SetAttribute("name", "skitter validate");
-  for (const Outcome& outcome : outcomes) addSuite(*suites, outcome, manifest.json());
+  for (const Outcome& outcome : outcomes) {
+    addSuite(*suites, outcome, manifest.json());
+    addLaws(*suites, outcome);
+  }
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
   writeText(file, printer.CStr());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/common/manifest.h"
+#include "laws/tally.h"
 #include "skitter/scene.h"
 #include "validation/judge.h"
 
@@ -20,13 +21,16 @@ inline constexpr double freeRunTolerance = 0.01;
 struct Outcome {
   std::string device = {};
   std::vector<validation::StageResult> stages = {};
+  std::vector<laws::Figure> laws = {};   // of the visible world, herd by herd
   uint64_t ticks = 0, wanted = 0;        // done, and asked for
   std::optional<uint64_t> edits = {};    // of the ground, rectangles
   std::optional<double> freeShare = {};  // of a free run: agents that stay within freeRunTolerance
   double seconds = 0;                    // wall
 
   bool isWhole() const { return ticks >= wanted; }
-  std::string failed() const;  // the names of stages that differ from the reference; empty: none
+  std::string failed() const;      // the names of stages that differ from the reference; empty: none
+  std::string brokenLaws() const;  // each once; empty: all are kept
+  // Its laws are told beside that.
   bool passes() const { return isWhole() && failed().empty(); }
 };
 

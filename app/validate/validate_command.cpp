@@ -11,6 +11,7 @@
 
 #include "app/commands.h"
 #include "app/common/files.h"
+#include "app/common/law_watch.h"
 #include "app/common/manifest.h"
 #include "app/common/progress.h"
 #include "app/common/scene_options.h"
@@ -42,7 +43,7 @@ struct ValidateOptions {
   std::string json, junit, levels;
   std::vector<crowd::StageId> stages;  // that are compared; none: all
   std::optional<double> timeout;       // seconds
-  bool apart = false, edits = false, freeRun = false, quiet = false, sleep = false;
+  bool apart = false, edits = false, freeRun = false, quiet = false, sleep = false, strict = false;
   uint32_t pageAgents = 0;  // 0: as many as the device allows
 };
 
@@ -155,6 +156,7 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
     edits.emplace(crowd.terrain(), scene.seed, options.scene.dt);
     outcome.edits = 0;
   }
+  LawWatch laws(crowd, scene, options.scene.dt, defaultAgents);
   const std::optional<LevelSweep> sweep = LevelSweep::of(crowd);
   Progress progress("ticks", options.frames, options.quiet);
   while (crowd.tick() < options.frames && !stopRequested()) {
@@ -171,11 +173,13 @@ Outcome replay(Validation& validation, Device& device, Crowd& crowd) {
     if (sweep) crowd.lookFrom(sweep->cameraAt(crowd.tick() + 1));
     runTick(ring, crowd, dt, times);
     const std::vector<HerdState>& after = lockstep.end();
+    laws.look(crowd);
     if (freeRuns) freeRuns->tick(after);
     validation.done = crowd.tick();
     progress.update(validation.done);
   }
   outcome.stages = lockstep.results();
+  outcome.laws = laws.figures();
   outcome.ticks = crowd.tick();
   if (freeRuns) outcome.freeShare = freeRuns->shareWithin(crowd, download(crowd));
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -270,6 +274,8 @@ int validate(const ValidateOptions& options) {
   }
   if (!failed.empty())
     throw Error(Error::Kind::check, fmt::format("stages differ from the reference: {}", failed));
+  if (options.strict)
+    for (const Outcome& outcome : outcomes) refuseBroken(brokenOf(outcome.laws));
   return 0;
 }
 
@@ -309,7 +315,7 @@ void addValidate(CLI::App& app, Command& chosen) {
   command->add_option("--json", options->json, "write the table to a file")->type_name("FILE");
   command
       ->add_option("--junit", options->junit,
-                   "write a report in JUnit's XML: a suite a device, a case a stage")
+                   "write a report in JUnit's XML: a suite a device, a case a stage; and a suite of its laws")
       ->type_name("FILE");
   command->add_flag("--edits", options->edits,
                     "raise and lower the ground under the crowd: blocks and pits near agents, four times in "
@@ -333,6 +339,8 @@ void addValidate(CLI::App& app, Command& chosen) {
           },
           "most agents of a page of records [as many as the device's limits allow]")
       ->type_name("N");
+  command->add_flag("--strict", options->strict,
+                    "a law of the visible world that is broken (docs/laws.md) fails, too");
   command->add_flag("--quiet", options->quiet, "no progress on stderr");
   command->footer(fmt::format(
       "Of more than {} agents of one size in a herd a part is compared, another one in each tick.\n"

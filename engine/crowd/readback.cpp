@@ -183,12 +183,13 @@ HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<con
   return recordsOf(crowd, partsOf(crowd, herd), records, sample);
 }
 
-std::vector<HerdState> downloadRecords(const Crowd::Impl& crowd, std::span<const Record> records) {
+std::vector<HerdState> downloadRecords(const Crowd::Impl& crowd, std::span<const Record> records,
+                                       const AgentSample& sample) {
   crowd.context->waitIdle();
   Gathering gathering(*crowd.context);
   std::vector<Reading> readings;
   for (uint32_t herd = 0; herd < crowd.herds.size(); ++herd)
-    readings.emplace_back(crowd, partsOf(crowd, herd), kAll);
+    readings.emplace_back(crowd, partsOf(crowd, herd), sample);
   for (Reading& reading : readings) reading.addRecords(records, gathering);
   gathering.finish();
   std::vector<HerdState> states;

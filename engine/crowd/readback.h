@@ -14,8 +14,9 @@ namespace skitter::crowd {
 HerdState downloadRecords(const Crowd::Impl& crowd, uint32_t herd, std::span<const Record> records,
                           const AgentSample& sample = {});
 
-// The same of every herd, all agents, with one submission.
-std::vector<HerdState> downloadRecords(const Crowd::Impl& crowd, std::span<const Record> records);
+// The same of every herd, with one submission. The sample is of each herd.
+std::vector<HerdState> downloadRecords(const Crowd::Impl& crowd, std::span<const Record> records,
+                                       const AgentSample& sample = {});
 
 // How many of the run's places somebody was in, in the last tick.
 uint32_t presentIn(const Crowd::Impl& crowd, const SizeRun& run);

@@ -135,6 +135,7 @@ TEST_F(Running, JsonHasTheDocumentedFields) {
                                                 "searches",
                                                 "herds",
                                                 "levels",
+                                                "warnings",
                                                 "sleeping",
                                                 "stateHash",
                                                 "ticksWanted",

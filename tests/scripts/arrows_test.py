@@ -6,7 +6,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # From the bottom to the top. A file may include what is in its own folder or in one before it.
 FOLDERS = ["include", "shaders", "engine/base", "engine/gpu", "engine/assets", "engine/ik", "engine/spline", "engine/ways",
-           "engine/crowd", "engine/evolve", "render", "cpu_reference", "validation", "bench", "experiments", "bindings", "app"]
+           "engine/crowd", "engine/evolve", "render", "cpu_reference", "validation", "laws", "bench", "experiments", "bindings", "app"]
 # Within these the same holds of their own folders; "" is the folder itself.
 INNER = {
     "engine/assets": ["files", "materials", "models", "rigs", "clips", "heights", "scenes"],
@@ -45,10 +45,11 @@ class Arrows(unittest.TestCase):
               for path in files() for other in included(path) if place(other) and place(other) > place(path)]
         self.assertEqual(up, [])
 
-    def test_of_the_reference_stay_in_it(self):
+    def test_of_the_reference_and_of_the_laws_stay_in_them(self):
         out = [f"{path.relative_to(ROOT)} includes {other.relative_to(ROOT)}"
-               for path in files() if (ROOT / "cpu_reference") in path.parents
-               for other in included(path) if (ROOT / "cpu_reference") not in other.parents]
+               for folder in (ROOT / "cpu_reference", ROOT / "laws")
+               for path in files() if folder in path.parents
+               for other in included(path) if folder not in other.parents]
         self.assertEqual(out, [])
 
     def test_are_found(self):
