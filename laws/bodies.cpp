@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <unordered_map>
+#include <tuple>
+#include <utility>
 
 namespace skitter::laws {
 namespace {
@@ -58,13 +60,8 @@ BodyJudge::BodyJudge(std::vector<const Anatomy*> anatomies, std::vector<const Cr
                      Tally& tally)
     : anatomies_(std::move(anatomies)), creatures_(std::move(creatures)), tally_(tally) {}
 
-void BodyJudge::look(uint64_t tick, double seconds, const Ground& ground, const std::vector<Body>& bodies,
-                     const std::vector<uint32_t>& agents, const std::vector<uint32_t>& sizes) {
-  for (size_t i = 0; i < bodies.size(); ++i) follow(agents[i], tick, seconds, ground, bodies[i], sizes[i]);
-}
-
-void BodyJudge::follow(uint32_t agent, uint64_t tick, double seconds, const Ground& ground, const Body& body,
-                       size_t size) {
+void BodyJudge::look(uint64_t tick, double seconds, const Ground& ground, const Body& body, uint32_t agent,
+                     size_t size) {
   if (trails_.size() <= agent) trails_.resize(size_t{agent} + 1);
   Trail& trail = trails_[agent];
   if (!body.present) {
@@ -143,34 +140,42 @@ double depthOf(const Solid& a, const Solid& b, const glm::dvec3& between) {
 
 }  // namespace
 
+// Bodies are sorted into rows along x, so that those that are near each other are near in the list.
 void judgeApart(uint64_t tick, const std::vector<Solid>& solids) {
+  struct Entry {
+    int64_t row;
+    double x;
+    size_t solid;
+
+    bool operator<(const Entry& other) const { return std::tie(row, x) < std::tie(other.row, other.x); }
+  };
   double widest = 0;
   for (const Solid& solid : solids) widest = std::max(widest, 2 * solid.anatomy->hull.radius);
   if (widest <= 0) return;
-  const auto cellOf = [&](double v) { return static_cast<int64_t>(std::floor(v / widest)); };
-  const auto keyOf = [](int64_t x, int64_t z) { return x * 0x10000019 + z; };
-  std::unordered_multimap<int64_t, size_t> cells;
   std::vector<glm::dvec3> centres;
+  std::vector<Entry> entries;
   for (size_t i = 0; i < solids.size(); ++i) {
     centres.push_back(centreOf(solids[i]));
-    cells.emplace(keyOf(cellOf(centres[i].x), cellOf(centres[i].z)), i);
+    entries.push_back({static_cast<int64_t>(std::floor(centres[i].z / widest)), centres[i].x, i});
   }
+  std::ranges::sort(entries, std::less());
   std::vector<double> deepest(solids.size(), 0);
-  for (size_t i = 0; i < solids.size(); ++i)
-    for (int64_t dx = -1; dx <= 1; ++dx)
-      for (int64_t dz = -1; dz <= 1; ++dz) {
-        const auto [first, last] =
-            cells.equal_range(keyOf(cellOf(centres[i].x) + dx, cellOf(centres[i].z) + dz));
-        for (auto each = first; each != last; ++each) {
-          const size_t j = each->second;
-          if (j <= i || glm::length(centres[i] - centres[j]) >
-                            solids[i].anatomy->hull.radius + solids[j].anatomy->hull.radius)
-            continue;
-          const double depth = depthOf(solids[i], solids[j], centres[j] - centres[i]);
-          deepest[i] = std::max(deepest[i], depth);
-          deepest[j] = std::max(deepest[j], depth);
-        }
-      }
+  const auto compare = [&](size_t i, size_t j) {
+    const glm::dvec3 between = centres[j] - centres[i];
+    const double reach = solids[i].anatomy->hull.radius + solids[j].anatomy->hull.radius;
+    if (glm::dot(between, between) > reach * reach) return;
+    const double depth = depthOf(solids[i], solids[j], between);
+    deepest[i] = std::max(deepest[i], depth);
+    deepest[j] = std::max(deepest[j], depth);
+  };
+  for (auto one = entries.begin(); one != entries.end(); ++one) {
+    const auto scan = [&](std::vector<Entry>::iterator other, int64_t row) {
+      for (; other != entries.end() && other->row == row && other->x <= one->x + widest; ++other)
+        compare(one->solid, other->solid);
+    };
+    scan(one + 1, one->row);
+    scan(std::lower_bound(one, entries.end(), Entry{one->row + 1, one->x - widest, 0}), one->row + 1);
+  }
   for (size_t i = 0; i < solids.size(); ++i)
     solids[i].tally->add(Law::apart, solids[i].agent, tick, deepest[i] / solids[i].creature->legLength);
 }

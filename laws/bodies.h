@@ -23,16 +23,15 @@ struct Body {
   bool isSteady = true;  // it neither stumbles nor lies
 };
 
-// Judges the bodies of a herd, all at a time: grounded, upright, facing and progress.
+// Judges the bodies of a herd: grounded, upright, facing and progress.
 class BodyJudge {
  public:
   // `anatomies` of its sizes; they and the tally outlive this.
   BodyJudge(std::vector<const Anatomy*> anatomies, std::vector<const Creature*> creatures, Tally& tally);
 
-  // `seconds` is the time of the tick, `first` the number of the first agent, `stride` that from one to the
-  // next. `size` of an agent counts through the anatomies.
-  void look(uint64_t tick, double seconds, const Ground& ground, const std::vector<Body>& bodies,
-            const std::vector<uint32_t>& agents, const std::vector<uint32_t>& sizes);
+  // Looks at one of them: `seconds` is the time of the tick, `size` counts through the anatomies.
+  void look(uint64_t tick, double seconds, const Ground& ground, const Body& body, uint32_t agent,
+            size_t size);
   // Agents are elsewhere: they were put there.
   void forget() { trails_.clear(); }
 
@@ -42,9 +41,6 @@ class BodyJudge {
     Body body;
     double askedBefore = -1;  // at the look before that one
   };
-  void follow(uint32_t agent, uint64_t tick, double seconds, const Ground& ground, const Body& body,
-              size_t size);
-
   std::vector<const Anatomy*> anatomies_;
   std::vector<const Creature*> creatures_;
   Tally& tally_;

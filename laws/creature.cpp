@@ -180,7 +180,9 @@ Anatomy::Anatomy(const Creature& creature) {
           const Leg &one = creature.legs[a], &other = creature.legs[b];
           if (distanceOf(one[i].rest, one[i + 1].rest, other[j].rest, other[j + 1].rest) >
               limbs[a].radii[i] + limbs[b].radii[j])
-            pairs.push_back({a, i, b, j});
+            pairs.push_back({a, i, b, j,
+                             0.5 * (glm::length(one[i + 1].rest - one[i].rest) +
+                                    glm::length(other[j + 1].rest - other[j].rest))});
         }
 }
 

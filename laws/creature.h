@@ -57,6 +57,7 @@ struct Anatomy {
   // Pairs of bones of two legs, as leg and bone, that lie apart at rest.
   struct Pair {
     uint32_t legA, boneA, legB, boneB;
+    double reach;  // metres: half of both bones' lengths
   };
   std::vector<Pair> pairs;
   double footprint = 0;  // metres: from the origin to the farthest foot at rest

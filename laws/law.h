@@ -71,7 +71,7 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
       "Jacobs and Shiffrar 2005, Walking perception by walking observers; issue 55") \
   LAW(jerk, "jerk", "normalised", -unbounded, 6500, 0.01, \
       "", "move by jerks", \
-      "T^5 integral(jerk^2) dt / path^2 of the body's origin over windows of 0.4 s and of soles over a swing each, means over three seconds weighted by path^2", \
+      "T^5 integral(jerk^2) dt / path^2 of the body's origin over windows of 0.4 s and of soles over each swing but the first ones from rest, means over the time of a look weighted by path^2", \
       "the smoothest motion has 720, and more than 6,500 counts as jerky", \
       "Teulings et al. 1997; [measure](stages/measure.md#figures)") \
   LAW(apart, "apart", "leg lengths", -unbounded, 0.05, 0, \

@@ -9,7 +9,9 @@ namespace skitter::laws {
 namespace {
 
 constexpr double jerkSeconds = 0.4;
-constexpr double leastPath = 0.05;      // leg lengths in a window: less is standing
+constexpr double leastPath = 0.05;  // leg lengths in a window: less is standing
+constexpr double leastSpeed = 0.1;  // leg lengths a second: less is standing
+constexpr double startSeconds = 0.75;
 constexpr double leastStanding = 0.75;  // seconds
 constexpr double turnedBy = 10;         // degrees beyond straight
 constexpr uint64_t everyFew = 4;        // ticks from one look at the whole skin to the next
@@ -27,6 +29,7 @@ SkinJudge::SkinJudge(const Creature& creature, const Anatomy& anatomy, Tally& ta
       stances_(anatomy.limbs.size()),
       soles_(anatomy.limbs.size()),
       crossed_(anatomy.pairs.size(), 0) {
+  for (const Leg& leg : creature.legs) joints_.emplace_back(leg.size());
   for (const Anatomy::Limb& limb : anatomy.limbs) turned_.emplace_back(limb.knees.size(), false);
 }
 
@@ -47,8 +50,12 @@ void SkinJudge::look(const Moment& moment, const Ground& ground) {
   moment_ = &moment;
   if (moments_ == 0) first_ = moment.tick;
   last_ = moment.tick;
+  for (size_t leg = 0; leg < joints_.size(); ++leg)
+    for (size_t j = 0; j < joints_[leg].size(); ++j) joints_[leg][j] = place(creature_.legs[leg][j]);
   follow(body_, moment.position);
   if (body_.ticks == window_) endStretch(body_);
+  const bool goes = glm::length(body_.differences[0]) > leastSpeed * creature_.legLength * dt_;
+  going_ = goes ? going_ + 1 : 0;
   for (size_t leg = 0; leg < anatomy_.limbs.size(); ++leg) {
     if (!carries(leg)) continue;
     look(leg, ground);
@@ -62,10 +69,24 @@ void SkinJudge::look(const Moment& moment, const Ground& ground) {
   ++moments_;
 }
 
+double SkinJudge::heightOf(std::span<const uint32_t> vertices, const Ground& ground) const {
+  double least = std::numeric_limits<double>::infinity();
+  glm::dvec3 lowest(0);
+  for (const uint32_t v : vertices) {
+    const glm::dvec3 at = place(v);
+    if (const double over = at.y - ground.at(at.x, at.z); over < least) {
+      least = over;
+      lowest = at;
+    }
+  }
+  return ground.over(lowest);
+}
+
 void SkinJudge::look(size_t leg, const Ground& ground) {
   const Anatomy::Limb& limb = anatomy_.limbs[leg];
   if (limb.foot.empty()) return;
-  std::vector<glm::dvec3> sole;
+  std::vector<glm::dvec3>& sole = sole_;
+  sole.clear();
   glm::dvec3 centre(0);
   for (const uint32_t v : limb.sole) {
     sole.push_back(place(v));
@@ -86,15 +107,15 @@ void SkinJudge::look(size_t leg, const Ground& ground) {
     stance.stands = false;
     return;
   }
-  if (stance.swings) endStretch(soles_[leg]);
+  // The first steps from rest are steps of another kind.
+  if (stance.swings && static_cast<double>(going_) * dt_ > startSeconds) endStretch(soles_[leg]);
   if (!stance.stands) stance = {.wasSeen = moments_ > 0, .stands = true, .begin = sole};
-  double slid = 0, lowest = std::numeric_limits<double>::infinity();
+  double slid = 0;
   for (size_t i = 0; i < sole.size(); ++i)
     slid += std::hypot(sole[i].x - stance.begin[i].x, sole[i].z - stance.begin[i].z) /
             static_cast<double>(sole.size());
   stance.slid = std::max(stance.slid, slid);
-  for (const uint32_t v : limb.foot) lowest = std::min(lowest, ground.over(place(v)));
-  stance.heights.push_back(lowest);
+  stance.heights.push_back(heightOf(limb.foot, ground));
 }
 
 void SkinJudge::endStance(Stance& stance, uint64_t tick, bool hasEnded) {
@@ -133,10 +154,9 @@ void SkinJudge::endStretch(Trail& trail) const {
 void SkinJudge::judgeKnees(size_t leg) {
   const std::vector<Anatomy::Knee>& knees = anatomy_.limbs[leg].knees;
   for (size_t k = 0; k < knees.size(); ++k) {
-    const Leg& joints = creature_.legs[leg];
     const size_t j = knees[k].joint;
-    const glm::dvec3 a = place(joints[j - 1]), b = place(joints[j]), c = place(joints[j + 1]);
-    const glm::dvec3 rest = glm::dmat3(moment_->bones[joints[j - 1].bone]) * knees[k].axis;
+    const glm::dvec3 &a = joints_[leg][j - 1], &b = joints_[leg][j], &c = joints_[leg][j + 1];
+    const glm::dvec3 rest = glm::dmat3(moment_->bones[creature_.legs[leg][j - 1].bone]) * knees[k].axis;
     const double along = glm::dot(b - a, c - b);
     const double bend = glm::degrees(std::atan2(glm::dot(glm::cross(b - a, c - b), rest), along));
     const bool isTurned = bend < -turnedBy;
@@ -158,30 +178,23 @@ void SkinJudge::judgeStretch() {
 
 void SkinJudge::judgeBody(const Ground& ground) {
   if (anatomy_.body.empty()) return;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const uint32_t v : anatomy_.body) lowest = std::min(lowest, ground.over(place(v)));
-  tally_.add(Law::bodyDepth, agent_, moment_->tick, -lowest / creature_.legLength);
+  tally_.add(Law::bodyDepth, agent_, moment_->tick, -heightOf(anatomy_.body, ground) / creature_.legLength);
 }
 
 void SkinJudge::judgeCrossing() {
   if (anatomy_.pairs.empty()) return;
-  std::vector<std::vector<glm::dvec3>> joints;
-  for (const Leg& leg : creature_.legs) {
-    std::vector<glm::dvec3>& places = joints.emplace_back();
-    for (const LegJoint& joint : leg) places.push_back(place(joint));
-  }
   for (size_t p = 0; p < anatomy_.pairs.size(); ++p) {
     const Anatomy::Pair& pair = anatomy_.pairs[p];
-    const std::vector<glm::dvec3>&one = joints[pair.legA], &other = joints[pair.legB];
+    const std::vector<glm::dvec3>&one = joints_[pair.legA], &other = joints_[pair.legB];
     const glm::dvec3 &a = one[pair.boneA], &b = one[pair.boneA + 1], &c = other[pair.boneB],
                      &d = other[pair.boneB + 1];
     const double thick =
         0.5 * (anatomy_.limbs[pair.legA].radii[pair.boneA] + anatomy_.limbs[pair.legB].radii[pair.boneB]);
-    // Spheres about them are cheaper, and mostly enough.
-    const double apart = glm::length(a + b - c - d),
-                 reach = glm::length(b - a) + glm::length(d - c) + 2 * thick;
-    const bool crosses =
-        apart < reach && carries(pair.legA) && carries(pair.legB) && distanceOf(a, b, c, d) < thick;
+    // Spheres about both are mostly enough, and cheaper.
+    const glm::dvec3 middles = 0.5 * (a + b - c - d);
+    const double far = pair.reach + thick;
+    const bool crosses = glm::dot(middles, middles) < far * far && carries(pair.legA) && carries(pair.legB) &&
+                         distanceOf(a, b, c, d) < thick;
     crossed_[p] = crosses ? crossed_[p] + 1 : 0;
     if (crossed_[p] > crossedMost_) {
       crossedMost_ = crossed_[p];

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "laws/creature.h"
@@ -60,6 +60,8 @@ class SkinJudge {
   void judgeStretch();
   void judgeBody(const Ground& ground);
   void judgeCrossing();
+  // Of the lowest one of these vertices, square to the ground.
+  double heightOf(std::span<const uint32_t> vertices, const Ground& ground) const;
   bool carries(size_t leg) const { return moment_->carries.empty() || moment_->carries[leg]; }
 
   const Creature& creature_;
@@ -69,9 +71,12 @@ class SkinJudge {
   double dt_;
   uint32_t window_;  // ticks
   const Moment* moment_ = nullptr;
+  std::vector<std::vector<glm::dvec3>> joints_;  // of each leg, where they are in this moment
+  std::vector<glm::dvec3> sole_;                 // the same of the vertices of one sole
   uint64_t first_ = 0, last_ = 0, moments_ = 0;
   std::vector<Stance> stances_;
   Trail body_;
+  uint64_t going_ = 0;  // moments in a row in which the body went
   std::vector<Trail> soles_;
   std::vector<std::vector<bool>> turned_;  // of each leg's knees: whether it bends to the wrong side
   uint64_t flips_ = 0, firstFlip_ = 0;

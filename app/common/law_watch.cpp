@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "app/common/drawn.h"
+#include "base/clock.h"
 #include "crowd/damage.h"
 #include "crowd/events.h"
 #include "crowd/herd.h"
@@ -24,12 +25,24 @@ namespace {
 
 using namespace shared;
 
-constexpr double windowSeconds = 3;
-constexpr uint64_t fewAgents = 256, someAgents = 2048, manyAgents = 4096;
-constexpr uint64_t looksToAll = 10;  // in a large crowd every so many-th look is at all bodies
-constexpr double nearEdge = 2;       // seconds of the way that is asked for
-constexpr double nearOthers = 3;     // times as far as footprints reach
-constexpr double nearObstacles = 4;  // leg lengths
+// How much of a crowd is looked at: about a hundredth of what 10,000 agents cost, and all of a small crowd.
+struct Effort {
+  uint64_t agents;       // up to so many
+  double bodySeconds;    // from one look at bodies to the next
+  uint32_t skins;        // at a time
+  double windowSeconds;  // for which a skin is looked at
+  uint64_t pauses;       // windows that pass until the next one
+};
+constexpr std::array efforts = {Effort{256, 0.5, 8, 3, 0}, Effort{2048, 0.5, 4, 3, 3},
+                                Effort{UINT64_MAX, 2, 2, 1.5, 8}};
+const Effort& effortFor(uint64_t agents) {
+  return *std::ranges::find_if(efforts, [&](const Effort& each) { return agents <= each.agents; });
+}
+constexpr uint64_t manyAgents = 2048;  // of more, only some are judged
+constexpr uint64_t looksToAll = 10;    // but all in every so many-th look
+constexpr double nearEdge = 2;         // seconds of the way that is asked for
+constexpr double nearOthers = 6;       // times as far as footprints reach
+constexpr double nearObstacles = 4;    // leg lengths
 
 uint64_t ticksOf(double seconds, double dt) {
   return std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(seconds / dt)));
@@ -70,21 +83,22 @@ double askedOf(const HerdState& state, size_t agent) {
   return std::hypot(double{steer[0]}, double{steer[1]});
 }
 
-// Whether each body is alone: nobody within a few footprints, as far as all bodies were read.
+// Whether each body is alone among those that were looked at.
 class Neighbours {
  public:
-  Neighbours(const std::vector<glm::dvec2>& places, double widest)
-      : places_(places), cell_(std::max(widest, 0.01)) {
-    for (uint32_t i = 0; i < places.size(); ++i) cells_[keyOf(places[i])].push_back(i);
+  // `widest`: metres, no less than what isAlone() is asked for.
+  Neighbours(const std::vector<SeenBody>& seen, double widest) : seen_(seen), cell_(std::max(widest, 0.01)) {
+    for (uint32_t i = 0; i < seen.size(); ++i)
+      if (seen[i].body.present) cells_[keyOf(seen[i].place())].push_back(i);
   }
   bool isAlone(uint32_t body, double within) const {
-    const glm::dvec2 place = places_[body];
+    const glm::dvec2 place = seen_[body].place();
     for (int dx = -1; dx <= 1; ++dx)
       for (int dz = -1; dz <= 1; ++dz) {
         const auto cell = cells_.find(keyOf(place + cell_ * glm::dvec2(dx, dz)));
         if (cell == cells_.end()) continue;
         for (const uint32_t other : cell->second)
-          if (other != body && glm::distance(place, places_[other]) < within) return false;
+          if (other != body && glm::distance(place, seen_[other].place()) < within) return false;
       }
     return true;
   }
@@ -95,7 +109,7 @@ class Neighbours {
     return {static_cast<int64_t>(std::floor(place.x / cell_)),
             static_cast<int64_t>(std::floor(place.y / cell_))};
   }
-  const std::vector<glm::dvec2>& places_;
+  const std::vector<SeenBody>& seen_;
   double cell_;
   std::map<Key, std::vector<uint32_t>> cells_;
 };
@@ -103,18 +117,49 @@ class Neighbours {
 // Whether its herd goes around what is near.
 bool givesWay(const Herd& herd) { return herd.avoid || herd.ways || herd.forage; }
 
+bool isNear(std::span<const Obstacle> obstacles, const glm::dvec2& place, double within) {
+  return std::ranges::any_of(obstacles,
+                             [&](const Obstacle& each) { return crowd::distanceTo(each, place) <= within; });
+}
+
+laws::Body drawnBody(const HerdState& state, size_t agent, const crowd::Kind& kind, double footprint,
+                     const laws::Ground& ground) {
+  const BodyState now = bodyOf(recordOf(state.body, agent, BODY_STRIDE));
+  const double asked = askedOf(state, agent);
+  return {.present = now.present,
+          .position = now.position,
+          .rotation = glm::mat3_cast(glm::dquat(now.rotation)),
+          .asked = asked,
+          .isFree = !isHandicapped(state, agent, kind) &&
+                    ground.holds(now.position.x, now.position.z, nearEdge * asked + footprint),
+          .isSteady = isSteady(state, agent)};
+}
+
+// Who gives way and is near others is not free, or, where not all were looked at, nobody knows.
+void blockCrowded(const Crowd::Impl& crowd, bool isOfAll, std::vector<SeenBody>& seen) {
+  const auto gives = [&](const SeenBody& each) { return givesWay(crowd.herds[each.herd].from); };
+  if (std::ranges::none_of(seen, gives)) return;
+  double widest = 0;
+  for (const SeenBody& each : seen) widest = std::max(widest, each.footprint);
+  const Neighbours neighbours(seen, 2 * nearOthers * widest);
+  for (uint32_t i = 0; i < seen.size(); ++i)
+    if (gives(seen[i]) && !(isOfAll && neighbours.isAlone(i, 2 * nearOthers * seen[i].footprint)))
+      seen[i].body.isFree = false;
+}
+
 }  // namespace
 
 LawWatch::LawWatch(const Crowd& crowd, const Scene& scene, double dt, uint32_t skins)
-    : scene_(scene), dt_(dt), agents_(crowd.capacity()) {
-  const bool isFew = agents_ <= fewAgents;
-  bodyTicks_ = ticksOf(agents_ <= someAgents ? 0.5 : 1, dt);
-  windowTicks_ = ticksOf(windowSeconds, dt);
-  pauseTicks_ = isFew ? 0 : 3 * windowTicks_;
-  skins_ = skins > 0 ? skins : isFew ? 8 : 4;
-  bodyStride_ = static_cast<uint32_t>((agents_ + manyAgents - 1) / manyAgents);
+    : scene_(scene), dt_(dt) {
+  const uint64_t agents = crowd.capacity();
+  const Effort& effort = effortFor(agents);
+  bodyTicks_ = ticksOf(effort.bodySeconds, dt);
+  windowTicks_ = ticksOf(effort.windowSeconds, dt);
+  pauseTicks_ = effort.pauses * windowTicks_;
+  skins_ = skins > 0 ? skins : effort.skins;
+  bodyStride_ = static_cast<uint32_t>((agents + manyAgents - 1) / manyAgents);
   bodyStride_ = std::max(bodyStride_, 1u);
-  skinStride_ = std::max(1u, static_cast<uint32_t>((agents_ + skins_ - 1) / skins_));
+  skinStride_ = std::max(1u, static_cast<uint32_t>((agents + skins_ - 1) / skins_));
   for (const Event& event : scene.events)
     if (jumps(event)) jumps_.insert(crowd::tickOf(event, dt));
 }
@@ -130,8 +175,11 @@ void LawWatch::look(const Crowd& crowd) {
     windowOpen_ = false;
     for (auto& [key, judged] : herds_) judged.bodies->forget();
   }
-  if (tick % bodyTicks_ == 0) lookAtBodies(crowd);
-  lookAtSkins(crowd);
+  const base::Seconds spent = base::timed([&] {
+    if (tick % bodyTicks_ == 0) lookAtBodies(crowd);
+    lookAtSkins(crowd);
+  });
+  cpuSeconds_ += spent.cpu;
 }
 
 // Herds have come or gone, and their kinds with them.
@@ -172,141 +220,112 @@ LawWatch::Judged& LawWatch::judgedOf(const Crowd& crowd, uint32_t herd) {
   return herds_.at({herd, implOf(crowd).herds[herd].generation});
 }
 
+// The bodies of a herd's agents whose turn it is.
+void LawWatch::survey(const Crowd& crowd, uint32_t herd, const HerdState& state, const laws::Ground& ground,
+                      const AgentSample& sample, std::vector<SeenBody>& seen) {
+  const Crowd::Impl& impl = implOf(crowd);
+  const crowd::Herd& of = impl.herds[herd];
+  for (uint32_t r = 0; r < of.runs.size(); ++r) {
+    const crowd::SizeRun& run = of.runs[r];
+    const crowd::Kind& kind = impl.kinds[run.kind];
+    const double footprint = double{crowd::footprintRadius(kind.rig)};
+    for (uint32_t agent = run.firstOfHerd; agent < run.firstOfHerd + run.agents; ++agent) {
+      if (agent % sample.stride != sample.first) continue;
+      SeenBody body{herd, agent, r, footprint, drawnBody(state, agent, kind, footprint, ground)};
+      if (givesWay(of.from) &&
+          isNear(scene_.obstacles, body.place(), nearObstacles * double{kind.rig.legLength}))
+        body.body.isFree = false;
+      seen.push_back(body);
+    }
+  }
+}
+
 void LawWatch::lookAtBodies(const Crowd& crowd) {
   constexpr std::array records = {Record::body, Record::steer, Record::hurt, Record::carried,
                                   Record::reaction};
   const Crowd::Impl& impl = implOf(crowd);
   const uint64_t number = bodyLooks_++;
-  const bool isOfAll = bodyStride_ == 1 || number % looksToAll == 2;
+  const bool isOfAll = bodyStride_ == 1 || number % looksToAll == 1;
   // The same agents for a while, so that there are ways between looks.
   AgentSample sample;
   if (!isOfAll) sample = {static_cast<uint32_t>(number / looksToAll % bodyStride_), bodyStride_};
-  const std::vector<HerdState> states = crowd::downloadRecords(impl, records, sample);
+  // All of them in few copies: one for each agent would take longer.
+  const std::vector<HerdState> states = crowd::downloadRecords(impl, records);
   const laws::Ground ground = groundOf(crowd.terrain());
-
-  std::vector<laws::Solid> solids;
-  std::vector<glm::dvec2> places;
-  std::vector<double> footprints;
-  std::vector<std::vector<uint32_t>> numbers(states.size());  // of each herd's agents among `places`
-  struct Seen {
-    std::vector<laws::Body> bodies;
-    std::vector<uint32_t> agents, sizes;
-  };
-  std::vector<Seen> seen(states.size());
-  for (uint32_t h = 0; h < states.size(); ++h) {
-    if (impl.herds[h].isGone()) continue;
-    const crowd::Herd& herd = impl.herds[h];
-    Judged& judged = judgedOf(crowd, h);
-    size_t at = 0;
-    for (uint32_t r = 0; r < herd.runs.size(); ++r) {
-      const crowd::SizeRun& run = herd.runs[r];
-      const crowd::Kind& kind = impl.kinds[run.kind];
-      const double footprint = double{crowd::footprintRadius(kind.rig)};
-      for (uint32_t agent = run.firstOfHerd; agent < run.firstOfHerd + run.agents; ++agent) {
-        if (agent % sample.stride != sample.first) continue;
-        const HerdState& state = states[h];
-        const BodyState now = bodyOf(recordOf(state.body, at, BODY_STRIDE));
-        laws::Body body{.present = now.present,
-                        .position = now.position,
-                        .rotation = glm::mat3_cast(glm::dquat(now.rotation)),
-                        .asked = askedOf(state, at),
-                        .isFree = !isHandicapped(state, at, kind),
-                        .isSteady = isSteady(state, at)};
-        const double margin = nearEdge * body.asked + footprint;
-        body.isFree = body.isFree && ground.holds(now.position.x, now.position.z, margin);
-        if (body.isFree && givesWay(herd.from)) {
-          body.isFree = isOfAll;
-          for (const Obstacle& obstacle : scene_.obstacles)
-            body.isFree = body.isFree && crowd::distanceTo(obstacle, {now.position.x, now.position.z}) >
-                                             nearObstacles * double{kind.rig.legLength};
-        }
-        if (body.present) {
-          numbers[h].push_back(static_cast<uint32_t>(places.size()));
-          places.emplace_back(now.position.x, now.position.z);
-          footprints.push_back(footprint);
-          solids.push_back(
-              {&judged.sizes[r]->anatomy, &judged.sizes[r]->creature, &judged.tally, agent, body});
-        } else {
-          numbers[h].push_back(UINT32_MAX);
-        }
-        seen[h].bodies.push_back(body);
-        seen[h].agents.push_back(agent);
-        seen[h].sizes.push_back(r);
-        ++at;
-      }
-    }
-  }
-  const bool someGiveWay = std::ranges::any_of(
-      impl.herds, [](const crowd::Herd& herd) { return !herd.isGone() && givesWay(herd.from); });
-  if (someGiveWay && isOfAll && !places.empty()) {
-    const Neighbours neighbours(places, 2 * nearOthers * std::ranges::max(footprints));
-    for (uint32_t h = 0; h < states.size(); ++h)
-      for (size_t i = 0; i < numbers[h].size(); ++i)
-        if (const uint32_t n = numbers[h][i]; n != UINT32_MAX && givesWay(impl.herds[h].from))
-          seen[h].bodies[i].isFree =
-              seen[h].bodies[i].isFree && neighbours.isAlone(n, 2 * nearOthers * footprints[n]);
-  }
-  const double seconds = static_cast<double>(crowd.tick()) * dt_;
+  std::vector<SeenBody> seen;
   for (uint32_t h = 0; h < states.size(); ++h)
-    if (!impl.herds[h].isGone())
-      judgedOf(crowd, h).bodies->look(crowd.tick(), seconds, ground, seen[h].bodies, seen[h].agents,
-                                      seen[h].sizes);
+    if (!impl.herds[h].isGone()) survey(crowd, h, states[h], ground, sample, seen);
+  blockCrowded(impl, isOfAll, seen);
+  std::vector<laws::Solid> solids;
+  for (const SeenBody& each : seen) {
+    Judged& judged = judgedOf(crowd, each.herd);
+    judged.bodies->look(crowd.tick(), static_cast<double>(crowd.tick()) * dt_, ground, each.body, each.agent,
+                        each.run);
+    const Model& model = *judged.sizes[each.run];
+    if (isOfAll && each.body.present)
+      solids.push_back({&model.anatomy, &model.creature, &judged.tally, each.agent, each.body});
+  }
   if (isOfAll) laws::judgeApart(crowd.tick(), solids);
+}
+
+// Opens and closes windows; whether this tick is in one.
+bool LawWatch::isInWindow(uint64_t tick) {
+  if (windowOpen_ && tick >= windowBegan_ + windowTicks_) endWindow();
+  if (windowOpen_) return true;
+  if (windows_ > 0 && tick < windowBegan_ + windowTicks_ + pauseTicks_) return false;
+  windowOpen_ = true;
+  windowBegan_ = tick;
+  ++windows_;
+  return true;
 }
 
 void LawWatch::lookAtSkins(const Crowd& crowd) {
   const Crowd::Impl& impl = implOf(crowd);
   // Agents that tick more rarely than the clock have no motion from tick to tick.
-  if (impl.rates) return;
-  const uint64_t tick = crowd.tick();
-  if (windowOpen_ && tick >= windowBegan_ + windowTicks_) endWindow();
-  if (!windowOpen_) {
-    if (windows_ > 0 && tick < windowBegan_ + windowTicks_ + pauseTicks_) return;
-    windowOpen_ = true;
-    windowBegan_ = tick;
-    ++windows_;
-  }
+  if (impl.rates || !isInWindow(crowd.tick())) return;
   constexpr std::array records = {Record::body, Record::pose, Record::chain,
                                   Record::foot, Record::hurt, Record::reaction};
   const AgentSample sample{static_cast<uint32_t>((windows_ - 1) % skinStride_), skinStride_};
   const std::vector<HerdState> states = crowd::downloadRecords(impl, records, sample);
   const laws::Ground ground = groundOf(crowd.terrain());
-  // Feet whose ground moved are told to step, and stand in the air until they do.
-  const bool groundMoves = impl.watchUntil > 0 && tick <= impl.watchUntil;
   for (uint32_t h = 0; h < states.size(); ++h) {
     if (impl.herds[h].isGone()) continue;
-    Judged& judged = judgedOf(crowd, h);
-    size_t at = 0;
+    size_t number = 0;
     for (uint32_t r = 0; r < impl.herds[h].runs.size(); ++r) {
       const crowd::SizeRun& run = impl.herds[h].runs[r];
-      const crowd::Kind& kind = impl.kinds[run.kind];
-      const HerdState& state = states[h];
-      for (uint32_t agent = run.firstOfHerd; agent < run.firstOfHerd + run.agents; ++agent) {
-        if (agent % sample.stride != sample.first) continue;
-        const size_t number = at++;
-        const AgentKey key{h, agent};
-        const BodyState body = bodyOf(recordOf(state.body, number, BODY_STRIDE));
-        if (!body.present || !isSteady(state, number)) {
-          judges_.erase(key);
-          unfit_.insert(key);
-        }
-        if (unfit_.contains(key)) continue;
-        laws::Moment moment{
-            .tick = tick, .position = body.position, .bones = drawnBones(state, kind, number, body)};
-        if (moment.bones.empty()) continue;
-        const uint32_t idle = idleLegsOf(state, number, kind);
-        for (size_t l = 0; l < kind.rig.legs.size(); ++l) {
-          moment.carries.push_back((idle >> l & 1u) == 0);
-          if (!state.foot.empty() && !groundMoves)
-            moment.stands.push_back(recordOf(state.foot, number * kind.rig.legs.size() + l, FOOT_STRIDE)[3] >=
-                                    1);
-        }
-        const Model& model = *judged.sizes[r];
-        judges_.try_emplace(key, model.creature, model.anatomy, judged.tally, agent, dt_)
-            .first->second.look(moment, ground);
-      }
+      for (uint32_t agent = run.firstOfHerd; agent < run.firstOfHerd + run.agents; ++agent)
+        if (agent % sample.stride == sample.first)
+          lookAtSkin(crowd, {h, agent}, r, states[h], number++, ground);
     }
   }
+}
+
+// `number` is the agent's in the state.
+void LawWatch::lookAtSkin(const Crowd& crowd, const AgentKey& key, uint32_t run, const HerdState& state,
+                          size_t number, const laws::Ground& ground) {
+  const Crowd::Impl& impl = implOf(crowd);
+  const crowd::Kind& kind = impl.kinds[impl.herds[key.first].runs[run].kind];
+  const BodyState body = bodyOf(recordOf(state.body, number, BODY_STRIDE));
+  if (!body.present || !isSteady(state, number)) {
+    judges_.erase(key);
+    unfit_.insert(key);
+  }
+  if (unfit_.contains(key)) return;
+  laws::Moment moment{
+      .tick = crowd.tick(), .position = body.position, .bones = drawnBones(state, kind, number, body)};
+  if (moment.bones.empty()) return;
+  // Feet whose ground moved are told to step, and stand in the air until they do.
+  const bool groundMoves = impl.watchUntil > 0 && crowd.tick() <= impl.watchUntil;
+  const uint32_t idle = idleLegsOf(state, number, kind);
+  for (size_t l = 0; l < kind.rig.legs.size(); ++l) {
+    moment.carries.push_back((idle >> l & 1u) == 0);
+    if (!state.foot.empty() && !groundMoves)
+      moment.stands.push_back(recordOf(state.foot, number * kind.rig.legs.size() + l, FOOT_STRIDE)[3] >= 1);
+  }
+  Judged& judged = judgedOf(crowd, key.first);
+  const Model& model = *judged.sizes[run];
+  judges_.try_emplace(key, model.creature, model.anatomy, judged.tally, key.second, dt_)
+      .first->second.look(moment, ground);
 }
 
 void LawWatch::endWindow() {

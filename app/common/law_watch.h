@@ -18,6 +18,15 @@
 
 namespace skitter::app {
 
+// An agent's body as it was looked at.
+struct SeenBody {
+  uint32_t herd, agent, run;  // `run` of the herd's sizes
+  double footprint;           // metres, how far its feet reach
+  laws::Body body;
+
+  glm::dvec2 place() const { return {body.position.x, body.position.z}; }
+};
+
 // Judges a crowd by the laws of the visible world as it goes (docs/laws.md): now and then the bodies, and the
 // skin of a few agents for three seconds at a time. Waits for the device in the ticks in which it looks.
 class LawWatch {
@@ -31,6 +40,8 @@ class LawWatch {
 
   // After each tick.
   void look(const Crowd& crowd);
+  // CPU time of the process that it took so far.
+  double cpuSeconds() const { return cpuSeconds_; }
   // How the laws that were judged were kept so far, herd by herd.
   std::vector<laws::Figure> figures();
 
@@ -50,13 +61,17 @@ class LawWatch {
 
   void follow(const Crowd& crowd);
   void lookAtBodies(const Crowd& crowd);
+  void survey(const Crowd& crowd, uint32_t herd, const HerdState& state, const laws::Ground& ground,
+              const AgentSample& sample, std::vector<SeenBody>& seen);
+  bool isInWindow(uint64_t tick);
   void lookAtSkins(const Crowd& crowd);
+  void lookAtSkin(const Crowd& crowd, const AgentKey& key, uint32_t run, const HerdState& state,
+                  size_t number, const laws::Ground& ground);
   void endWindow();
   Judged& judgedOf(const Crowd& crowd, uint32_t herd);
 
   const Scene scene_;
   const double dt_;
-  uint64_t agents_ = 0;
   uint64_t bodyTicks_, windowTicks_, pauseTicks_;
   uint32_t skins_;
   uint32_t bodyStride_ = 1, skinStride_ = 1;
@@ -66,6 +81,7 @@ class LawWatch {
   std::map<HerdKey, Judged> herds_;
   uint64_t bodyLooks_ = 0, windows_ = 0, windowBegan_ = 0;
   bool windowOpen_ = false;
+  double cpuSeconds_ = 0;
   std::map<AgentKey, laws::SkinJudge> judges_;  // of the window
   std::set<AgentKey> unfit_;                    // who fell during the window
 };

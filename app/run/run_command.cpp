@@ -356,7 +356,10 @@ void Run::finish() {
     summary_.searches = searchFigures(*crowd_);
     if (crowdingWatch_) summary_.jams = crowdingWatch_->jams();
     if (damageWatch_) summary_.damage = damageWatch_->figures();
-    if (lawWatch_) summary_.warnings = brokenOf(lawWatch_->figures());
+    if (lawWatch_) {
+      summary_.warnings = brokenOf(lawWatch_->figures());
+      if (options_.timings) summary_.lawSeconds = lawWatch_->cpuSeconds();
+    }
     summary_.levels = crowd_->levels();
     if (options_.sleep) summary_.sleeping = crowd_->sleeping();
     summary_.stateHash = crowd_->stateHash();

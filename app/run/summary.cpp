@@ -265,6 +265,7 @@ void Summary::print() const {
     printRow("CPU", fmt::format("{:.3f} us an agent and tick", *cpu));
   printStages(times.stages, times.milliseconds.size(), "tick");
   printStages(drawing, frames, "frame");
+  if (lawSeconds) printStages({{"laws (CPU)", 1e3 * *lawSeconds}}, times.milliseconds.size(), "tick");
   if (!times.stages.empty()) {
     printRow("start", fmt::format("{:.3f} s, {:.3f} s of CPU", startSeconds, startCpuSeconds));
     printMemory(memory, agents);

@@ -137,7 +137,7 @@ std::vector<laws::Figure> walk(double seconds, const Fault& fault) {
     }
     skin->look(step.moment, ground);
     if (tick % lookTicks != 0) continue;
-    bodies.look(tick, step.seconds, ground, {step.body}, {0}, {0});
+    bodies.look(tick, step.seconds, ground, step.body, 0, 0);
     std::vector<laws::Solid> solids = {{&anatomy, &creature, &tally, 0, step.body}};
     if (fault.other)
       solids.push_back({&anatomy, &creature, &tally, 1, step.body}),
