@@ -73,7 +73,7 @@ void BodyJudge::look(uint64_t tick, double seconds, const Ground& ground, const 
   const Trail before = trail;
   trail = {.seconds = seconds, .body = body, .askedBefore = before.body.asked};
   if (!body.isSteady) {
-    trail.seconds = -1;
+    trail = {};
     return;
   }
   tally_.add(Law::upright, agent, tick, leanOf(ground, body, footprint));

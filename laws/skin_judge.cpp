@@ -9,7 +9,7 @@ namespace skitter::laws {
 namespace {
 
 constexpr double jerkSeconds = 0.4;
-constexpr double leastPath = 0.05;  // leg lengths in a window: less is standing
+constexpr double leastPath = 0.2;   // leg lengths in a window or a swing: less is shuffling
 constexpr double leastSpeed = 0.1;  // leg lengths a second: less is standing
 constexpr double startSeconds = 0.75;
 constexpr double leastStanding = 0.75;  // seconds

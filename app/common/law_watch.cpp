@@ -40,6 +40,8 @@ const Effort& effortFor(uint64_t agents) {
 }
 constexpr uint64_t manyAgents = 2048;  // of more, only some are judged
 constexpr uint64_t looksToAll = 10;    // but all in every so many-th look
+constexpr double editSeconds = 2;      // for which gait looks at the ground after an edit
+constexpr double settleSeconds = 0.5;  // after an edit of the ground, in which bodies follow it
 constexpr double nearEdge = 2;         // seconds of the way that is asked for
 constexpr double nearOthers = 6;       // times as far as footprints reach
 constexpr double nearObstacles = 4;    // leg lengths
@@ -61,6 +63,12 @@ laws::Ground groundOf(const Heightfield& terrain) {
           .columns = terrain.columns,
           .rows = terrain.rows,
           .heights = terrain.heights};
+}
+
+// Seconds since the ground was edited last, while feet step anew for that; else none.
+std::optional<double> sinceEdit(const Crowd::Impl& crowd, double dt) {
+  if (crowd.watchUntil == 0 || crowd.tick > crowd.watchUntil) return {};
+  return editSeconds - static_cast<double>(crowd.watchUntil - crowd.tick) * dt;
 }
 
 // Masks of its legs that are lost, and that are stuck.
@@ -244,6 +252,8 @@ void LawWatch::lookAtBodies(const Crowd& crowd) {
   constexpr std::array records = {Record::body, Record::steer, Record::hurt, Record::carried,
                                   Record::reaction};
   const Crowd::Impl& impl = implOf(crowd);
+  const std::optional<double> edited = sinceEdit(impl, dt_);
+  if (edited && *edited < settleSeconds) return;
   const uint64_t number = bodyLooks_++;
   const bool isOfAll = bodyStride_ == 1 || number % looksToAll == 1;
   // The same agents for a while, so that there are ways between looks.
@@ -256,6 +266,8 @@ void LawWatch::lookAtBodies(const Crowd& crowd) {
   for (uint32_t h = 0; h < states.size(); ++h)
     if (!impl.herds[h].isGone()) survey(crowd, h, states[h], ground, sample, seen);
   blockCrowded(impl, isOfAll, seen);
+  if (edited)
+    for (SeenBody& each : seen) each.body.isFree = false;
   std::vector<laws::Solid> solids;
   for (const SeenBody& each : seen) {
     Judged& judged = judgedOf(crowd, each.herd);
@@ -315,7 +327,7 @@ void LawWatch::lookAtSkin(const Crowd& crowd, const AgentKey& key, uint32_t run,
       .tick = crowd.tick(), .position = body.position, .bones = drawnBones(state, kind, number, body)};
   if (moment.bones.empty()) return;
   // Feet whose ground moved are told to step, and stand in the air until they do.
-  const bool groundMoves = impl.watchUntil > 0 && crowd.tick() <= impl.watchUntil;
+  const bool groundMoves = sinceEdit(impl, dt_).has_value();
   const uint32_t idle = idleLegsOf(state, number, kind);
   for (size_t l = 0; l < kind.rig.legs.size(); ++l) {
     moment.carries.push_back((idle >> l & 1u) == 0);

@@ -32,7 +32,7 @@ struct SeenBody {
 class LawWatch {
  public:
   // In larger crowds poses are not made for the laws alone.
-  static constexpr uint64_t mostPosed = 1024;
+  static constexpr uint64_t mostPosed = 256;
 
   // `skins`: agents whose skin is judged at a time.
   LawWatch(const Crowd& crowd, const Scene& scene, double dt, uint32_t skins = 0);

@@ -78,7 +78,7 @@ struct Summary {
   std::optional<DamageFigures> damage;                // where events hurt legs, and it was asked for
   std::optional<std::vector<laws::Figure>> warnings;  // laws that were broken; none where nobody judged
   std::optional<uint64_t> sleeping;                   // agents at the end; none where they may not
-  std::optional<double> lawSeconds;     // CPU time that judging took; told with the stages' times
+  std::optional<double> lawSeconds;  // CPU time that judging took; told with the stages' times
   uint64_t stateHash = 0;
   std::vector<MemoryUse> memory;                 // of all herds; told with the stages' times
   double startSeconds = 0, startCpuSeconds = 0;  // before the first tick; told likewise
