@@ -23,22 +23,22 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
       "sank into the ground", "left the ground", \
       "height of the body's origin over the highest ground below its footprint, or below the lowest", \
       "the origin rests at height 0; no foot of a body that is 1.2 legs up reaches the ground, and one that is 0.2 legs down wades in it", \
-      "issue 55") \
+      "the bounds of [body](stages/body.md#bounds)") \
   LAW(soleSlide, "sole-slide", "leg lengths a stance", -unbounded, 0.02, 0.01, \
       "", "slide on standing feet", \
       "way of the skin of a sole over the ground, from touchdown to the end of a stance or, if it is longer, to any time between", \
       "2 % of a leg is 1.8 cm of a person; viewers notice slides of about 2 cm", \
-      "Prazak, Hoyet and O'Sullivan 2011, Perceptual evaluation of footskate cleanup; issue 55") \
+      "Prazak, Hoyet and O'Sullivan 2011, Perceptual evaluation of footskate cleanup") \
   LAW(soleDepth, "sole-depth", "leg lengths", -unbounded, 0.02, 0.01, \
       "", "stand with their soles in the ground", \
       "depth of the deepest vertex of a standing foot below the ground, square to it; the median over a stance", \
       "as much as a sole may slide; at both ends of a stance a stiff foot rolls over its edge and is deeper than amid it", \
-      "issue 55; the dead zone of [measure](stages/measure.md#figures) is 0.005") \
+      "the dead zone of [measure](stages/measure.md#figures) is 0.005") \
   LAW(soleAir, "sole-air", "leg lengths", -unbounded, 0.02, 0.01, \
       "", "stand on air", \
       "gap between the lowest vertex of a standing foot and the ground, square to it; the median over a stance", \
       "as much as a sole may be deep", \
-      "issue 55; the dead zone of [measure](stages/measure.md#figures) is 0.005") \
+      "the dead zone of [measure](stages/measure.md#figures) is 0.005") \
   LAW(bodyDepth, "body-depth", "leg lengths", -unbounded, 0.02, 0.01, \
       "", "have their bodies in the ground", \
       "depth of the deepest vertex of the body, which no leg moves, below the ground, square to it", \
@@ -63,12 +63,12 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
       "", "do not face the way they go", \
       "angle between the way that the body went in half a second, a tenth of a leg or more, and the model's forward", \
       "at 20 degrees a third of the way goes sideways; a model whose forward is 25 degrees askew must be told", \
-      "issue 55") \
+      "sine of the angle") \
   LAW(progress, "progress", "of the speed asked for", 0.9, 1.1, 0.01, \
       "are slower than asked with nothing in the way", "are faster than asked", \
       "speed over the ground in half a second or more, over the speed asked for; only where that speed and the heading stay, the ground about the feet is less steep than 35 degrees, and nobody and nothing is near", \
       "viewers tell walkers apart whose speeds differ by 0.5 km/h, a tenth of a usual pace", \
-      "Jacobs and Shiffrar 2005, Walking perception by walking observers; issue 55") \
+      "Jacobs and Shiffrar 2005, Walking perception by walking observers") \
   LAW(jerk, "jerk", "normalised", -unbounded, 6500, 0.01, \
       "", "move by jerks", \
       "T^5 integral(jerk^2) dt / path^2 of the body's origin over windows of 0.4 s and of soles over each swing but the first ones from rest, means over the time of a look weighted by path^2", \
@@ -83,7 +83,7 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
       "", "have their own legs through each other", \
       "time for which bones of two legs are nearer than half of the thickness of their skin", \
       "what lasts for less than a tenth of a second is not seen as an event of its own", \
-      "issue 55")
+      "this project")
 // clang-format on
 
 enum class Law : uint8_t {
