@@ -73,8 +73,9 @@ double twistEnd(double tanHalf, double twist, double otherwise) {
 }  // namespace
 
 Limit freeLimit() {
-  Limit limit = coneLimit(widestAngle);
+  Limit limit;
   limit.kind = LimitKind::free;
+  limit.tanHalfCone = widestFree;
   return limit;
 }
 
@@ -113,7 +114,7 @@ glm::dvec2 clampSwing(const Limit& limit, const glm::dvec2& xy) {
   if (length == 0) return xy;
   const double sine = 2 * length / (1 + length * length);
   // Straight against the rest direction every way is as good.
-  const bool reversed = sine < 1e-3 && length > 1;
+  const bool reversed = limit.kind != LimitKind::free && sine < 1e-3 && length > 1;
   const double most = edge(limit, reversed ? glm::dvec2(1, 0) : xy / length);
   if (length <= most) return xy;
   return reversed ? glm::dvec2(most, 0) : xy * (most / length);
@@ -133,6 +134,7 @@ Room swingRoom(const Limit& limit, const glm::dvec3& d, double s, const glm::dve
   if (limit.kind == LimitKind::hinge)
     return {.low = hingeEnd(limit.tanHalfLow, d, -unlimited),
             .high = hingeEnd(limit.tanHalfHigh, d, unlimited)};
+  if (limit.kind == LimitKind::free) return {};
   return limit.kind == LimitKind::ellipse ? ellipseRoom(limit, d, s, h) : coneRoom(limit, d, s);
 }
 

@@ -12,6 +12,8 @@ enum class LimitKind { free, cone, ellipse, hinge };
 
 // Radians. Stereographic coordinates are singular at pi.
 inline constexpr double widestAngle = 3.1;
+// tan(theta / 2) of a free ball, which crosses the point opposite to its rest direction.
+inline constexpr double widestFree = 1e4;
 
 struct Limit {
   LimitKind kind = LimitKind::cone;

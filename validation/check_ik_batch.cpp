@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "cpu_reference/ik/columns.h"
@@ -126,6 +127,7 @@ class BatchComparison {
   struct Input {
     IkState start;
     glm::dvec3 target;
+    std::optional<glm::dvec3> last;
   };
   struct Spread {
     std::vector<double> joints;
@@ -135,7 +137,8 @@ class BatchComparison {
   };
 
   Input inputOf(size_t c) const {
-    Input input{reference::restState(chain_), targetOf(c)};
+    Input input{reference::restState(chain_), targetOf(c), {}};
+    if (!run_.lastTargets.empty()) input.last = inward(c, run_.lastTargets[c]);
     if (run_.before.empty()) return input;
     const auto record = std::span(run_.before).subspan(c * layout_.stateStride(), layout_.stateStride());
     input.start = stateOf(chain_, layout_, record);
@@ -152,6 +155,7 @@ class BatchComparison {
 
   Solved solve(const reference::IkChain& chain, const Input& input) const {
     reference::IkMemory memory;
+    memory.target = input.last;
     Solved solved{solveIk(chain, settings_, input.target, input.start, memory), {}};
     solved.joints = solved.result.state.joints;
     return solved;
@@ -165,7 +169,9 @@ class BatchComparison {
 
   Input disturbed(const Input& input, double by) {
     Input other = input;
-    other.target += nudge(by);
+    const glm::dvec3 moved = nudge(by);
+    other.target += moved;
+    if (other.last) *other.last += moved;
     for (size_t i = 1; i < other.start.joints.size(); ++i) other.start.joints[i] += nudge(by);
     for (size_t i = 0; i < other.start.pose.swing.size(); ++i) {
       if (chain_.bones[i].length == 0) continue;

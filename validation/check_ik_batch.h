@@ -20,7 +20,8 @@ struct IkRun {
   std::vector<glm::vec4> before =
       {};  // Batch::downloadStates() before the solve; none: every chain began at rest
   std::vector<glm::vec3> targets = {};
-  std::vector<ik::Base> bases = {};  // none: all at 0
+  std::vector<glm::vec3> lastTargets = {};  // those of the solve before, which then was the first; or none
+  std::vector<ik::Base> bases = {};         // none: all at 0
   std::vector<glm::vec3> joints = {};
   std::vector<ik::Report> reports = {};
 };

@@ -15,6 +15,10 @@ using glm::dvec3;
 constexpr double infiniteError = std::numeric_limits<double>::infinity();
 // Shorter than this, a bone has no direction that could be measured.
 constexpr double noLength = 1e-12;
+// Of the difference of two joints, a share of the chain's length.
+constexpr double jointRounding = 0x1p-23;
+// Sine of an angle from rest beyond which there are free balls only.
+constexpr double nearlyAgainst = 0.04;
 
 bool isFinite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -80,7 +84,7 @@ bool IkJudge::needsRotations() const {
 }
 
 double IkJudge::worstLimit(std::span<const dvec3> joints) const {
-  double worst = 0;
+  double worst = 0, unsure = 0;
   dmat3 carried(1);  // the rotation of the bone before, from rest
   for (size_t i = 0; i < bones_.size(); ++i) {
     const RestBone& bone = bones_[i];
@@ -90,8 +94,13 @@ double IkJudge::worstLimit(std::span<const dvec3> joints) const {
     const dmat3 frame = carried * bone.frame;
     const dvec3 d = glm::transpose(frame) * (along / measured);
     const dvec3 rest = glm::transpose(bone.frame) * bone.direction;
-    worst = std::max(worst, judged::beyond(bone.limit, d, rest));
+    worst = std::max(worst, judged::beyond(bone.limit, d, rest) - unsure);
     carried = frame * turnOf(bone, d) * glm::transpose(bone.frame);
+    // A ball's turn is as sure as the way in which it leans, and joints are float32: where a free one points
+    // nearly against rest, their roundings turn everything beyond it.
+    const double leaning = std::hypot(d.x, d.y);
+    if (std::holds_alternative<judged::Free>(bone.limit) && d.z < 0 && leaning < nearlyAgainst)
+      unsure += 2 * jointRounding * length_ / measured / leaning;
   }
   return worst;
 }

@@ -23,6 +23,10 @@ ik::Stop stopOf(reference::IkStop stop) {
       return ik::Stop::stall;
     case reference::IkStop::unreachable:
       return ik::Stop::unreachable;
+    case reference::IkStop::held:
+      return ik::Stop::held;
+    case reference::IkStop::jumped:
+      return ik::Stop::jumped;
     default:
       return ik::Stop::skipped;
   }

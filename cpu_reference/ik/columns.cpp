@@ -7,7 +7,8 @@ namespace {
 
 JointColumns jointAt(const Posture& posture, size_t i, const glm::dvec3& attached) {
   JointColumns joint;
-  joint.d = direction(posture.swing(i));
+  joint.swing = posture.swing(i);
+  joint.d = direction(joint.swing);
   joint.s = std::hypot(joint.d.x, joint.d.y);
   if (joint.s >= 1e-6) joint.h = glm::dvec2(joint.d.x, joint.d.y) / joint.s;
   joint.twist = posture.twist(i);
@@ -25,7 +26,9 @@ JointColumns jointAt(const Posture& posture, size_t i, const glm::dvec3& attache
   const glm::dvec2& h = joint.h;
   add(h.x * a[1] - h.y * a[0]);
   // Twist-free: the frame rolls about the rest direction as the bone goes round it.
-  add(a[2] * (joint.s / std::max(1 + joint.d.z, 1e-6)) - (h.x * a[0] + h.y * a[1]));
+  const double tangent = glm::length(joint.swing);
+  const glm::dvec3 around = a[2] * tangent - (h.x * a[0] + h.y * a[1]);
+  add(bone.kind == LimitKind::free ? around / std::sqrt(1 + tangent * tangent) : around);
   if (bone.twists()) add(posture.turned(i)[2]);
   return joint;
 }
@@ -34,6 +37,15 @@ glm::dvec2 steppedHinge(const JointColumns& joint) {
   const glm::dvec3& d = joint.d;
   const double x = joint.columns[0].step;
   return stereographic(normalized(glm::dvec3(0, d.y - x * d.z, d.z + x * d.y)));
+}
+
+// A radian of the frame's rotation either way: the quaternion (1, -Y, X, 0) / |..|, up to its sign.
+glm::dvec2 steppedFree(const JointColumns& joint) {
+  const double x0 = joint.columns[0].step, x1 = joint.columns[1].step, tangent = glm::length(joint.swing);
+  const glm::dvec2 &h = joint.h, around(-h.y, h.x);
+  const glm::dvec2 to = joint.swing + (x0 * h + x1 * std::sqrt(1 + tangent * tangent) * around) / 2.0;
+  const double w = 1 - x0 * tangent / 2, least = glm::length(to) / widestFree;
+  return to / (std::abs(w) < least ? std::copysign(least, w) : w);
 }
 
 glm::dvec2 steppedBall(const JointColumns& joint) {
@@ -78,7 +90,9 @@ void applySteps(const std::vector<JointColumns>& joints, Posture& posture) {
     glm::dvec2 swing = posture.swing(i);
     double twist = posture.twist(i);
     if (!joint.columns.empty()) {
-      swing = bone.kind == LimitKind::hinge ? steppedHinge(joint) : steppedBall(joint);
+      swing = bone.kind == LimitKind::hinge  ? steppedHinge(joint)
+              : bone.kind == LimitKind::free ? steppedFree(joint)
+                                             : steppedBall(joint);
       swing = clampSwing(bone, swing);
     }
     if (joint.columns.size() == 3) {

@@ -19,6 +19,7 @@ struct Column {
 // The joint of one bone with what it was when the columns were made.
 struct JointColumns {
   glm::dvec3 d{0, 0, 1};  // the bone's direction in its frame
+  glm::dvec2 swing{0};    // its (X, Y)
   double s = 0;           // sine of the angle from rest
   glm::dvec2 h{1, 0};     // the way it is turned from rest
   double twist = 0;       // tan(tau / 2)

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cpu_reference/ik/deadlock.h"
+#include "cpu_reference/ik/pace.h"
 #include "cpu_reference/ik/pole.h"
 #include "cpu_reference/ik/seeds.h"
 
@@ -17,6 +18,7 @@ constexpr double stillShare = 0.999;  // of the error before a step: the pose st
 constexpr int stillSteps = 4;         // in a row: of an attempt that nothing can follow
 constexpr double poseWeight = 0.1;    // of a seed's distance from the start pose against its tip's
 constexpr double leapShare = 0.5;     // of the first attempt's error: worth leaving the last solve's pose for
+constexpr double leapGain = 0.02;     // likewise, of the error, where the target is slow
 constexpr int longestPause = 32;      // solves
 constexpr double bendsAway = -1e-3;
 constexpr double cells = 16;  // each way, of the cube from -1 to 1
@@ -37,6 +39,8 @@ class RestartSearch {
     }
   }
 
+  bool replaced() const { return replaced_; }
+
   IkResult run(IkMemory& memory) {
     const IkState* wanted = bendsWrong(origin_) ? nearestSeed() : isFarFromRest() ? seedOfCell() : nullptr;
     const IkState& first = wanted ? *wanted : origin_;
@@ -44,6 +48,7 @@ class RestartSearch {
     const bool paused = settings_.continues && memory.pause > 0;
     const bool mayRestart = settings_.restarts && !paused && untried();
 
+    isSlow_ = memory.target && glm::length(target_ - *memory.target) < fastTarget;
     attempt(first, shape, mayRestart ? Ends::whenSlow : Ends::whenStill,
             std::numeric_limits<double>::infinity());
     const bool restarted = mayRestart && restart();
@@ -125,11 +130,12 @@ class RestartSearch {
   bool restart() {
     const double firstError = error_;
     bool any = false;
-    while (error_ > settings_.tolerance && iterations_ < most(Ends::whenSlow)) {
+    const double leap = isSlow_ ? leapGain : 0;
+    while (error_ > settings_.tolerance && firstError > leap && iterations_ < most(Ends::whenSlow)) {
       const IkState* seed = nearestSeed();
       if (!seed) break;
       any = true;
-      const double bound = settings_.continues ? leapShare * firstError : error_;
+      const double bound = settings_.continues ? std::min(leapShare * firstError, firstError - leap) : error_;
       replaced_ = attempt(*seed, shapes_, Ends::whenSlow, std::min(bound, error_)) || replaced_;
     }
     if (error_ > settings_.tolerance) attempt(IkState(best_), false, Ends::whenStill, error_);
@@ -153,7 +159,7 @@ class RestartSearch {
     if (iterations_ > 0) state.damping = 1;
     double least = best.error(goal), error = state.error(goal);
     int slow = 0;
-    for (int k = 0; (least > settings_.tolerance || isPulled()) && iterations_ < most(ends); ++k) {
+    for (int k = 0; (isOpen(settings_, iterations_, least) || isPulled()) && iterations_ < most(ends); ++k) {
       if (ends == Ends::whenSlow ? slow >= 1 || k >= longestAttempt : slow >= stillSteps) break;
       iterate(chain_, settings_, goal, iterations_++, state);
       const double before = error;
@@ -182,7 +188,7 @@ class RestartSearch {
 
   static void remember(bool well, bool restarted, IkMemory& memory) {
     if (well) {
-      memory = {};
+      memory.pause = memory.nextPause = 0;
     } else if (restarted) {
       memory.pause = memory.nextPause;
       memory.nextPause = std::clamp(2 * memory.nextPause, 1, longestPause);
@@ -201,13 +207,17 @@ class RestartSearch {
   double error_ = 0;
   int iterations_ = 0;
   bool replaced_ = false;
+  bool isSlow_ = false;  // the target
 };
 
 }  // namespace
 
 IkResult solveWithRestarts(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
-                           const IkState& start, IkMemory& memory) {
-  return RestartSearch(chain, settings, target, start).run(memory);
+                           const IkState& start, IkMemory& memory, bool& jumped) {
+  RestartSearch search(chain, settings, target, start);
+  const IkResult result = search.run(memory);
+  jumped = search.replaced();
+  return result;
 }
 
 }  // namespace skitter::reference

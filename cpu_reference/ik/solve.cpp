@@ -10,6 +10,7 @@
 #include "cpu_reference/ik/fabrik.h"
 #include "cpu_reference/ik/jacobian.h"
 #include "cpu_reference/ik/loop.h"
+#include "cpu_reference/ik/pace.h"
 #include "cpu_reference/ik/pole.h"
 #include "cpu_reference/ik/restarts.h"
 #include "cpu_reference/ik/stretch_align.h"
@@ -33,7 +34,7 @@ OutOfCone outOfCone(IkSolver solver) {
 void stretchOrKeep(const IkChain& chain, const IkSettings& settings, const glm::dvec3& target,
                    Joints& joints) {
   Joints stretched = joints;
-  stretchAlign(chain, target, settings.tolerance, stretched);
+  stretchAlign(chain, target, settings.tolerance, settings.continues, stretched);
   if (glm::length(target - stretched.back()) < glm::length(target - joints.back())) joints = stretched;
 }
 
@@ -84,11 +85,6 @@ void iteratePose(const IkChain& chain, const IkSettings& settings, const glm::dv
   state.joints = posture.joints();
 }
 
-// Whether the state is joints: of free chains, and of the dissertation, which knows no frames.
-bool movesJoints(const IkChain& chain, const IkSettings& settings) {
-  return chain.free || isDissertation(settings.solver);
-}
-
 IkState begun(const IkChain& chain, const IkSettings& settings, const IkState& start) {
   IkState state =
       movesJoints(chain, settings) ? IkState{start.pose, start.joints} : stateAt(chain, start.pose);
@@ -118,7 +114,7 @@ IkResult solveOnce(const IkChain& chain, const IkSettings& settings, const glm::
   if (settings.solver != IkSolver::stretchAlign) bendStraight(chain, settings, target, state);
   const bool closed = settings.solver == IkSolver::twoBone;
   const auto loop = iterateUntilDone(
-      settings.tolerance, closed ? std::min(settings.iterations, 1) : settings.iterations, start, state,
+      settings, closed ? std::min(settings.iterations, 1) : settings.iterations, start, state,
       [&](const IkState& s) { return s.error(target); },
       [&](int k, IkState& s) { iterate(chain, settings, target, k, s); },
       settings.solver == IkSolver::stretchAlign ? 1 : 0);
@@ -142,6 +138,10 @@ Jacobian methodOf(IkSolver solver) {
     default:
       return Jacobian::dls;
   }
+}
+
+bool movesJoints(const IkChain& chain, const IkSettings& settings) {
+  return chain.free || isDissertation(settings.solver);
 }
 
 bool accepts(const IkChain& chain, IkSolver solver) {
@@ -169,13 +169,18 @@ IkResult solveIk(const IkChain& chain, const IkSettings& settings, const glm::dv
   if (!accepts(chain, settings.solver)) throw std::invalid_argument("the solver does not accept this chain");
   const IkState state = begun(chain, settings, start);
   if (!isFinite(target)) return {state, 0, 0, IkStop::skipped};
-  if (settings.solver == IkSolver::activeSet)
-    return solveWithRestarts(chain, settings, target, state, memory);
-  const bool arrived = state.error(target) <= settings.tolerance;
-  IkResult result = movesJoints(chain, settings) && glm::length(target) >= 1 && !arrived
-                        ? straightToward(chain, settings, target)
-                        : solveOnce(chain, settings, target, state);
-  if (chain.free && chain.pole) turnToPole(*chain.pole, result.state.joints);
+  IkResult result;
+  bool jumped = false;
+  if (settings.solver == IkSolver::activeSet) {
+    result = solveWithRestarts(chain, settings, target, state, memory, jumped);
+  } else {
+    result =
+        movesJoints(chain, settings) && glm::length(target) >= 1 && isOpen(settings, 0, state.error(target))
+            ? straightToward(chain, settings, target)
+            : solveOnce(chain, settings, target, state);
+    if (chain.free && chain.pole) turnToPole(*chain.pole, result.state.joints);
+  }
+  if (settings.continues) keepPace(chain, settings, target, state, jumped, result, memory);
   return result;
 }
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
+#include <optional>
+
 #include "cpu_reference/ik/chain.h"
 #include "cpu_reference/ik/jacobian.h"
 
@@ -20,7 +24,7 @@ enum class IkSolver {
   activeSet,
 };
 
-enum class IkStop { tolerance, cap, stall, unreachable, skipped };
+enum class IkStop { tolerance, cap, stall, unreachable, skipped, held, jumped };
 
 struct IkSettings {
   IkSolver solver = IkSolver::activeSet;
@@ -31,10 +35,20 @@ struct IkSettings {
   double restPull = 0;      // of the active set, share of the angle from rest
 };
 
+// Whether a solve goes on at `error` after `iterations`. One that continues another makes an iteration even
+// within the tolerance, so that a slow target does not leave the chain standing and then have it step.
+inline bool isOpen(const IkSettings& settings, int iterations, double error) {
+  constexpr double rounding = 2e-6;
+  return error > (settings.continues && iterations == 0 ? std::min(rounding, settings.tolerance)
+                                                        : settings.tolerance);
+}
+
 // What a solve that continues another one knows of it.
 struct IkMemory {
-  int pause = 0;      // solves to come without a restart
-  int nextPause = 0;  // after restarts in vain; 0, 1, 2, 4 up to 32
+  int pause = 0;                                          // solves to come without a restart
+  int nextPause = 0;                                      // after restarts in vain; 0, 1, 2, 4 up to 32
+  std::optional<glm::dvec3> target;                       // of the last solve
+  double pace = std::numeric_limits<double>::infinity();  // how far targets go in a solve
 };
 
 struct IkResult {
@@ -47,6 +61,9 @@ struct IkResult {
 // Whether `solver` can solve `chain`: two bones in closed form and stretch-align are for free chains, the
 // active set is for limited ones, the dissertation's are for cones and free bones without twist.
 bool accepts(const IkChain& chain, IkSolver solver);
+
+// Whether the state is joints: of free chains, and of the dissertation, which knows no frames.
+bool movesJoints(const IkChain& chain, const IkSettings& settings);
 
 // The Jacobian family's member of a solver's name.
 Jacobian methodOf(IkSolver solver);

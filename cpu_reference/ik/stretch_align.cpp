@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "cpu_reference/ik/deadlock.h"
 #include "cpu_reference/rotation.h"
@@ -17,11 +18,11 @@ struct Bends {
 };
 
 // Gives a chain that hardly bends an arc.
-void bend(const IkChain& chain, Bends& bends) {
+void bend(const IkChain& chain, double wanted, Bends& bends) {
   const size_t n = bends.along.size();
   double squares = 0;
   for (const glm::dvec3& b : bends.across) squares += glm::dot(b, b);
-  if (squares >= static_cast<double>(n) * 0.02 * 0.02) return;
+  if (squares >= static_cast<double>(n) * 0.02 * 0.02 * std::min(1.0, 100 * (1 - wanted))) return;
   const glm::dvec3 side = perpendicular(chain.pole.value_or(glm::dvec3(0)), bends.line);
   for (size_t i = 0; i < n; ++i) {
     glm::dvec3& b = bends.across[i];
@@ -31,7 +32,7 @@ void bend(const IkChain& chain, Bends& bends) {
   }
 }
 
-Bends bendsOf(const IkChain& chain, const Joints& joints) {
+Bends bendsOf(const IkChain& chain, double wanted, const Joints& joints) {
   const std::vector<glm::dvec3> directions = directionsOf(joints);
   Bends bends;
   bends.line = glm::length(joints.back()) < 1e-6 ? directions[0] : glm::normalize(joints.back());
@@ -39,7 +40,7 @@ Bends bendsOf(const IkChain& chain, const Joints& joints) {
     bends.along.push_back(glm::dot(u, bends.line));
     bends.across.push_back(u - bends.line * bends.along.back());
   }
-  bend(chain, bends);
+  bend(chain, wanted, bends);
   return bends;
 }
 
@@ -49,12 +50,14 @@ struct Stretched {
   double g = 0;
   glm::dvec3 h{0};
   double distance = 0, slope = 0;
+  double dg = 0;
+  glm::dvec3 dh{0};
 };
 
 Stretched stretched(const IkChain& chain, const Bends& bends, double lambda) {
   Stretched tip;
-  double dg = 0;
-  glm::dvec3 dh(0);
+  double& dg = tip.dg;
+  glm::dvec3& dh = tip.dh;
   for (size_t i = 0; i < chain.bones.size(); ++i) {
     const double l = chain.bones[i].length, v = bends.along[i] + lambda;
     const glm::dvec3& b = bends.across[i];
@@ -69,31 +72,40 @@ Stretched stretched(const IkChain& chain, const Bends& bends, double lambda) {
   return tip;
 }
 
-// Where the distance is `wanted`. Newton's method on 1 / sqrt(1 - distance), which is nearly linear in lambda
-// near full stretch.
-double stretchFor(const IkChain& chain, const Bends& bends, double wanted, double tolerance) {
+// The tip, and by how much the chain is stretched for it, where the distance is `wanted`. Newton's method on
+// 1 / sqrt(1 - distance), which is nearly linear in lambda near full stretch.
+std::pair<Stretched, double> stretchFor(const IkChain& chain, const Bends& bends, double wanted,
+                                        double tolerance, bool onward) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr int steps = 8;
   double lambda = 0, low = -infinity, high = infinity;
-  for (int step = 0; step < 8; ++step) {
-    const Stretched tip = stretched(chain, bends, lambda);
-    if (std::abs(tip.distance - wanted) < 0.9 * tolerance) break;
+  for (int step = 0;; ++step) {
+    Stretched tip = stretched(chain, bends, lambda);
+    const bool done = std::abs(tip.distance - wanted) < 0.9 * tolerance;
     (tip.distance < wanted ? low : high) = lambda;
     const double f = 1 / std::sqrt(std::max(1 - tip.distance, 1e-9));
     double next = lambda - (f - 1 / std::sqrt(1 - wanted)) / (f * f * f * tip.slope / 2);
-    if (!(next > low && next < high)) {
-      next = low == -infinity ? high - 1 : high == infinity ? low + 1 : (low + high) / 2;
+    const bool inside = next > low && next < high;
+    // A straight chain's slope is rounding, and a step by it may be anything.
+    if (done && onward && inside && std::abs(next - lambda) < (1 + std::abs(lambda)) / 2) {
+      next = std::max(next, -3.0);
+      tip.g += (next - lambda) * tip.dg;
+      tip.h += (next - lambda) * tip.dh;
+      lambda = next;
     }
+    if (done || step == steps) return {tip, lambda};
+    if (!inside) next = low == -infinity ? high - 1 : high == infinity ? low + 1 : (low + high) / 2;
     lambda = std::max(next, -3.0);
   }
-  return lambda;
 }
 
 }  // namespace
 
-void stretchAlign(const IkChain& chain, const glm::dvec3& target, double tolerance, Joints& joints) {
-  const Bends bends = bendsOf(chain, joints);
-  const double lambda = stretchFor(chain, bends, std::min(glm::length(target), 0.99999), tolerance);
-  const Stretched tip = stretched(chain, bends, lambda);
+void stretchAlign(const IkChain& chain, const glm::dvec3& target, double tolerance, bool onward,
+                  Joints& joints) {
+  const double wanted = std::min(glm::length(target), 0.99999);
+  const Bends bends = bendsOf(chain, wanted, joints);
+  const auto [tip, lambda] = stretchFor(chain, bends, wanted, tolerance, onward);
   const glm::dmat3 turn = shortest(normalized(bends.line * tip.g + tip.h), normalized(target));
   std::vector<glm::dvec3> directions = directionsOf(joints);
   for (size_t i = 0; i < directions.size(); ++i) {

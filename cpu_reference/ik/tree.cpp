@@ -66,7 +66,8 @@ IkTreeResult solveTree(const IkTree& tree, std::span<const glm::dvec3> targets, 
   });
   if (!finite) return {start, 0, 0, IkStop::skipped};
   const auto loop = iterateUntilDone(
-      tolerance, iterations, start, start, [&](const IkTreeState& s) { return treeError(tree, targets, s); },
+      {.tolerance = tolerance}, iterations, start, start,
+      [&](const IkTreeState& s) { return treeError(tree, targets, s); },
       [&](int, IkTreeState& s) { iterateTree(tree, targets, s); });
   return {loop.best, loop.error, loop.iterations, loop.stop};
 }

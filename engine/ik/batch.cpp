@@ -97,7 +97,7 @@ void clearList(const gpu::Buffer& list, vk::CommandBuffer cmd) {
 struct Batch::Impl {
   struct Page {
     uint32_t chains = 0;
-    gpu::Buffer target, base, state, joint, rotation, report, list;
+    gpu::Buffer target, base, state, joint, rotation, report, pace, list;
     gpu::Buffer sink;  // of what is not written; each page has its own, as dispatches of pages may overlap
     gpu::Bindings bindings;
   };
@@ -138,6 +138,7 @@ struct Batch::Impl {
   const gpu::Buffer& jointOf(const Page& page) const { return given[2] ? given[2] : page.joint; }
   const gpu::Buffer& reportOf(const Page& page) const { return given[4] ? given[4] : page.report; }
   void resetPage(Page&);
+  void forgetPace();
   // One record of `each` vec4 a chain, from all pages.
   std::vector<glm::vec4> download(const gpu::Buffer Page::*buffer, size_t use, uint32_t each) const;
   void upload(const gpu::Buffer Page::*buffer, size_t use, uint32_t each, std::span<const glm::vec4> data);
@@ -221,7 +222,8 @@ gpu::Kernel Batch::Impl::makeKernel(int pass) const {
   gpu::KernelInfo info{.name = fmt::format("ik {}", nameOf(solver)), .code = code()};
   info.bindings = {{BATCH_RIG, load4},          {BATCH_TARGET, load4},     {BATCH_BASE, load4},
                    {BATCH_STATE, load4},        {BATCH_STATE_OUT, store},  {BATCH_JOINT_OUT, store},
-                   {BATCH_ROTATION_OUT, store}, {BATCH_REPORT_OUT, store}, {BATCH_LIST, store}};
+                   {BATCH_ROTATION_OUT, store}, {BATCH_REPORT_OUT, store}, {BATCH_LIST, store},
+                   {BATCH_PACE, load4},         {BATCH_PACE_OUT, store}};
   if (!positional) {
     info.bindings.push_back({BATCH_SEED, load4});
     info.bindings.push_back({BATCH_REPORT, load4});
@@ -261,6 +263,7 @@ void Batch::Impl::makePages() {
   uint64_t stride = 2 + bones;
   if (options.bases) stride += shared::BASE_STRIDE;
   if (options.rotations) stride += bones;
+  if (options.start == Start::previous) ++stride;
   if (ownState) stride += stateStride();
   const uint64_t needed = stride * 16 * chains;
   if (needed > limits.availableBytes)
@@ -278,6 +281,7 @@ void Batch::Impl::makePages() {
     page.joint = make(bones, "ik joints");
     page.rotation = make(options.rotations ? bones : 0, "ik rotations");
     page.report = make(1, "ik reports");
+    page.pace = make(options.start == Start::previous ? 1 : 0, "ik paces");
     page.sink = make(0, "ik sink");
     page.list = gpu::Buffer(*context, (shared::LIST_FIRST + (quick ? page.chains : 0)) * 4, "ik list",
                             gpu::BufferUse::indirect);
@@ -306,6 +310,8 @@ void Batch::Impl::bind(Page& page) {
       {BATCH_ROTATION_OUT, options.rotations ? pick(3, page.rotation) : &page.sink},
       {BATCH_REPORT_OUT, &reportOf(page)},
       {BATCH_LIST, &page.list},
+      {BATCH_PACE, options.start == Start::previous ? &page.pace : &unused},
+      {BATCH_PACE_OUT, options.start == Start::previous ? &page.pace : &page.sink},
   };
   if (!positional) {
     list.push_back({BATCH_SEED, &seeds});
@@ -326,11 +332,17 @@ void Batch::Impl::resetPage(Page& page) {
   }
   gpu::upload(*context, jointOf(page), joints);
   gpu::upload(*context, reportOf(page), unpausedReports(page.chains));
+  gpu::clear(*context, page.pace);
   if (!ownState) return;
   if (positional)
     gpu::upload(*context, page.state, joints);
   else
     gpu::upload(*context, page.state, states);
+}
+
+// A pose that is given is no last solve's.
+void Batch::Impl::forgetPace() {
+  for (const Page& page : pages) gpu::clear(*context, page.pace);
 }
 
 std::vector<glm::vec4> Batch::Impl::download(const gpu::Buffer Page::*buffer, size_t use,
@@ -370,7 +382,7 @@ uint64_t Batch::memoryBytes() const {
   uint64_t bytes = 0;
   for (const Impl::Page& page : impl_->pages)
     for (const gpu::Buffer* buffer :
-         {&page.target, &page.base, &page.state, &page.joint, &page.rotation, &page.report})
+         {&page.target, &page.base, &page.state, &page.joint, &page.rotation, &page.report, &page.pace})
       bytes += buffer->size();
   return bytes;
 }
@@ -434,6 +446,7 @@ void Batch::setStates(std::span<const glm::vec4> states) {
   expectCount("vec4 of states", states.size(), size_t{impl_->chains} * stride);
   impl_->ownState ? impl_->upload(&Impl::Page::state, 5, stride, states)
                   : impl_->upload(&Impl::Page::joint, 2, stride, states);
+  impl_->forgetPace();
 }
 
 std::vector<glm::vec4> Batch::downloadSeeds() const {

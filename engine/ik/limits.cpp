@@ -56,6 +56,7 @@ void checkLimits(size_t number, const Bone& bone) {
 }
 
 int kindOf(const Limit& limit) {
+  if (std::holds_alternative<Free>(limit)) return 0;
   if (std::holds_alternative<Ellipse>(limit)) return shared::LIMIT_ELLIPSE;
   if (std::holds_alternative<Hinge>(limit)) return shared::LIMIT_HINGE;
   return shared::LIMIT_CONE;
@@ -87,6 +88,7 @@ glm::dvec3 clamped(const Limit& limit, const glm::dvec3& d) {
     const double q = std::clamp<double>(std::atan2(-d.y, d.z), hinge->min, hinge->max);
     return {0, -std::sin(q), std::cos(q)};
   }
+  if (std::holds_alternative<Free>(limit)) return d;
   const double theta = std::atan2(std::hypot(d.x, d.y), d.z), phi = std::atan2(d.y, d.x);
   const double most = greatestAngle(limit, phi);
   return theta <= most ? d : leaning(most, phi);

@@ -20,7 +20,7 @@ void expectCount(const char* name, size_t found, size_t expected);
 // Refuses a limit or a twist range that cannot be, by faultOf.
 void checkLimits(size_t number, const Bone& bone);
 
-// LIMIT_CONE, LIMIT_ELLIPSE or LIMIT_HINGE. A free ball is a cone as wide as can be.
+// LIMIT_CONE, LIMIT_ELLIPSE or LIMIT_HINGE; 0: free.
 int kindOf(const Limit& limit);
 // Vec4 [3] of the bone's record, in which kinds keep numbers of their own; `along` is the bone in its frame.
 glm::dvec4 numbersOf(const Limit& limit, const glm::dvec3& along);

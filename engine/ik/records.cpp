@@ -38,15 +38,16 @@ std::vector<float> boneRecords(const Skeleton& skeleton) {
   const std::vector<glm::dvec3> rest = skeleton.place(skeleton.rest());
   for (size_t i = 0; i < skeleton.bones(); ++i) {
     const Skeleton::Joint& joint = skeleton.joints()[i];
-    const double edge = std::tan(std::min(greatestAngle(joint.limit, 0), widestAngle) / 2);
+    const double edge = std::holds_alternative<Free>(joint.limit)
+                            ? shared::WIDEST_FREE
+                            : std::tan(std::min(greatestAngle(joint.limit, 0), widestAngle) / 2);
     append(records, joint.frame[0], joint.length);
     append(records, joint.frame[2], edge);
     append(records, start, joint.stiffness);
     const glm::dvec4 numbers = numbersOf(joint.limit, joint.axis);
     append(records, numbers, numbers.w);
     // The dissertation asks whether there is a cone at all.
-    const int kind = std::holds_alternative<Free>(joint.limit) ? 0 : kindOf(joint.limit);
-    append(records, {kind, std::tan(joint.twistMin / 2), std::tan(joint.twistMax / 2)}, 0);
+    append(records, {kindOf(joint.limit), std::tan(joint.twistMin / 2), std::tan(joint.twistMax / 2)}, 0);
     const glm::dmat3 carry =
         i == 0 ? joint.frame : glm::transpose(skeleton.joints()[i - 1].frame) * joint.frame;
     append(records, carry[0], joint.length);

@@ -73,10 +73,12 @@ enum class Start {
   previous,  // from the result of the solve before it; the first from rest
 };
 
-// Why a solve ended.
-enum class Stop : uint32_t { tolerance, cap, stall, unreachable, skipped };
-inline constexpr std::array<const char*, 5> stopNames = {"tolerance", "cap", "stall", "unreachable",
-                                                         "skipped"};
+// Why a solve ended. `held`: it would have moved a joint by more than 8 times its target's way, and the chain
+// is still on the way there. `jumped`: a limit kept the chain from its target, and it left its pose for
+// another one (docs/ik.md, Pace).
+enum class Stop : uint32_t { tolerance, cap, stall, unreachable, skipped, held, jumped };
+inline constexpr std::array<const char*, 7> stopNames = {"tolerance", "cap",  "stall", "unreachable",
+                                                         "skipped",   "held", "jumped"};
 
 // Another shader for an entry point: SPIR-V of shaders/ik/<entry>.comp changed, in both load paths.
 struct Shader {

@@ -25,6 +25,12 @@ void iterate(float bone[BONES], vec3 rest[BONES], float cosLimit[BONES], float s
   }
 }
 
+float farthest(FreePose a, FreePose b) {
+  float most = 0.0;
+  for (int i = 1; i <= BONES; ++i) most = max(most, distance(a.joint[i], b.joint[i]));
+  return most;
+}
+
 // Turned about the line base-tip, so that the bend points to the pole.
 void turnToPole(vec3 pole, inout FreePose pose) {
   vec3 line = unit(pose.joint[BONES]), bend = vec3(0.0);
@@ -36,6 +42,21 @@ void turnToPole(vec3 pole, inout FreePose pose) {
     vec4 turn = c < 0.0 ? vec4((1.0 - c) * line, s) : vec4(s * line, 1.0 + c);
     turn *= inversesqrt(dot(turn, turn));
     for (int i = 1; i < BONES; ++i) pose.joint[i] = rotate(turn, pose.joint[i]);
+  }
+}
+
+// Held to the target's pace: on the way from `a` to `b`, as far as no joint moves by more than `most`.
+void holdTo(float bone[BONES], FreePose a, float moved, float most, inout FreePose b) {
+  vec3 from[BONES], to[BONES], u[BONES];
+  toDirections(bone, a, from);
+  toDirections(bone, b, to);
+  float share = most / moved;
+  for (int k = 0; k <= PACE_CORRECTIONS; ++k) {
+    for (int i = 0; i < BONES; ++i) u[i] = between(from[i], to[i], share);
+    fromDirections(bone, u, b);
+    float way = 0.0;
+    for (int i = 1; i <= BONES; ++i) way = max(way, distance(a.joint[i], b.joint[i]));
+    share *= way > most && k + 1 <= PACE_CORRECTIONS ? most / way : 1.0;
   }
 }
 
@@ -66,10 +87,13 @@ void main() {
   target = nearEnough(target);
   target = lost ? pose.joint[BONES] : target;
 
-  float error = distance(target, pose.joint[BONES]), last = error;
+  Pace pace = paceOf(PREVIOUS ? LOAD4(paces, chain) : vec4(0.0), target);
+  FreePose start;
+  for (int i = 0; i <= BONES; ++i) start.joint[i] = pose.joint[i];
+  float error = distance(target, pose.joint[BONES]), last = error, startError = error;
   float reason = lost ? STOP_SKIPPED : STOP_TOLERANCE;
   int k = 0;
-  bool far = dot(target, target) >= 1.0, open = error > constants.tolerance && iterations > 0;
+  bool far = dot(target, target) >= 1.0, open = error > leastError() && iterations > 0;
   reason = error > constants.tolerance && !open ? STOP_CAP : reason;
   // A target out of reach: straight toward it.
   vec3 toward = unit(target), p = vec3(0.0);
@@ -92,7 +116,7 @@ void main() {
   bool aligned = true;
   if (SOLVER == SOLVER_STRETCH_ALIGN) {
     // Not in an `if` on `open`, which would not skip it on a device that masks lanes.
-    aligned = stretchAlign(bone, target, pole, constants.tolerance, PASS == PASS_QUICK ? STEPS : 0, pose) || !open;
+    aligned = stretchAlign(bone, target, pole, constants.tolerance, PREVIOUS, PASS == PASS_QUICK ? STEPS : 0, pose) || !open;
     last = distance(target, pose.joint[BONES]);
     k = open ? 1 : k;
     bool nearer = open && last < error;
@@ -101,7 +125,7 @@ void main() {
     open = open && error > constants.tolerance;
   }
   if (PASS == PASS_QUICK) {
-    bool needsMore = !aligned || far || (open && k < iterations);
+    bool needsMore = !aligned || far || (open && k < iterations) || (PREVIOUS && (POLE || isHeld(pace, farthest(start, pose))));
     enlist(needsMore, chain);
     if (needsMore) return;
   }
@@ -122,6 +146,19 @@ void main() {
   reason = open && error > constants.tolerance ? (SOLVER == SOLVER_TWO_BONE ? STOP_UNREACHABLE : STOP_CAP) : reason;
 
   if (POLE && !lost && BONES > 1) turnToPole(pole, best);
+  if (PREVIOUS && PASS != PASS_QUICK) {
+    float moved = farthest(start, best);
+    bool idle = !lost && isIdle(pace, moved, startError - error, error);
+    if (idle) {
+      for (int i = 1; i <= BONES; ++i) best.joint[i] = start.joint[i];
+      error = distance(target, best.joint[BONES]);
+    } else if (!lost && isHeld(pace, moved)) {
+      holdTo(bone, start, moved, GEAR * pace.pace, best);
+      error = distance(target, best.joint[BONES]);
+      reason = error > constants.tolerance ? STOP_HELD : STOP_TOLERANCE;
+    }
+  }
+  if (PREVIOUS && !lost) STORE4(pacesOut, chain, vec4(target, pace.pace));
   for (int i = 1; i <= BONES; ++i) {
     vec3 p = constants.reach * best.joint[i];
     // What a lost target keeps is kept to the bit.

@@ -17,6 +17,7 @@ const float SLOW = 0.8;          // of the error left by a step: the attempt has
 const float IDLE = 0.999;        // of the error left by a step that hardly moves
 const int IDLE_STEPS = 4;        // in a row: a last attempt has stalled
 const float WORTH_A_JUMP = 0.5;  // of the error, for an attempt to replace a pose that is seen
+const float LEAP_GAIN = 0.02;    // that must be less, too, where the target is slow
 const float PULL_WITHIN = 0.05;  // and where the last step was not undone
 // The active set never leaves a pose for a worse one.
 const bool ATTEMPTS_ALONE_IMPROVE = SOLVER == SOLVER_ACTIVE_SET;
@@ -41,6 +42,34 @@ float foldOf(vec3 pole, Pose pose) {
   vec3 line = unit(pose.tip), sum = vec3(0.0);
   for (int i = 1; i < BONES; ++i) sum += pose.joint[i] - line * dot(pose.joint[i], line);
   return dot(sum, pole);
+}
+
+// How far the farthest joint is from where the bones ended.
+float farthest(vec3 ends[BONES], Pose pose) {
+  float most = distance(ends[BONES - 1], pose.tip);
+  for (int i = 1; i < BONES; ++i) most = max(most, distance(ends[i - 1], pose.joint[i]));
+  return most;
+}
+
+// Held to the target's pace: on the way from `a` to `b`, as far as no joint moves by more than `most` from where the
+// bones ended.
+// Balls by their directions, which leads past the point where (X, Y) have none.
+void holdTo(Limb limb, Pose a, vec3 ends[BONES], float moved, float most, inout Pose b) {
+  Pose to;
+  keepIf(true, to, b);
+  float share = most / moved;
+  for (int k = 0; k <= PACE_CORRECTIONS; ++k) {
+    for (int i = 0; i < BONES; ++i) {
+      vec3 d = between(fromStereographic(a.swing[i]), fromStereographic(to.swing[i]), share);
+      b.swing[i] = isKind(i, LIMIT_HINGE) ? mix(a.swing[i], to.swing[i], share)
+                   : limb.bone[i] > 0.0   ? clampSwing(limb, i, d)
+                                          : a.swing[i];
+      b.twist[i] = mix(a.twist[i], to.twist[i], share);
+    }
+    forwardKinematics(limb, b);
+    float way = farthest(ends, b);
+    share *= way > most && k + 1 <= PACE_CORRECTIONS ? most / way : 1.0;
+  }
 }
 
 // How far an attempt has come.
@@ -154,10 +183,13 @@ void main() {
   target = nearEnough(target);
   target = lost ? pose.tip : target;
 
-  float error = distance(target, pose.tip), damping = memory.y;
+  Pace pace = paceOf(PREVIOUS ? LOAD4(paces, chain) : vec4(0.0), target);
+  vec3 ends[BONES];  // where each bone ended
+  for (int i = 0; i < BONES; ++i) ends[i] = i + 1 < BONES ? pose.joint[min(i + 1, BONES - 1)] : pose.tip;
+  float error = distance(target, pose.tip), damping = memory.y, startError = error;
   int k = 0, budget = int(constants.iterations), spent = budget - budget / 4;
   bool folded = POLE && foldOf(pole, pose) < -1e-3;
-  bool open = (error > constants.tolerance || folded || PULL) && budget > 0 && !lost;
+  bool open = (error > leastError() || folded || PULL) && budget > 0 && !lost;
   bool stuck = STRAIGHT && open && deadlocked(target, pose), needsMore = stuck || folded;
   if (PASS != PASS_QUICK && stuck) {
     bend(limb, pose);
@@ -165,9 +197,9 @@ void main() {
   }
   bool follows = SOLVER == SOLVER_ACTIVE_SET && constants.seeds > 0u && pause <= 0.0;
   // What takes the place of a pose that is seen must be worth the jump.
-  float worth = PREVIOUS && !folded ? WORTH_A_JUMP : 1.0;
-  vec3 start[BONES];  // where each bone ended
-  for (int i = 0; i < BONES; ++i) start[i] = compared(i + 1 < BONES ? pose.joint[min(i + 1, BONES - 1)] : pose.tip);
+  float worth = PREVIOUS && !folded ? WORTH_A_JUMP : 1.0, leap = pace.slow && !folded ? LEAP_GAIN : 0.0;
+  vec3 start[BONES];
+  for (int i = 0; i < BONES; ++i) start[i] = compared(ends[i]);
   Pose best;  // of the attempts before; of this one too where a step may make it worse
   keepIf(true, best, pose);
   float bestError = ATTEMPTS_ALONE_IMPROVE ? 1e30 : error;
@@ -193,7 +225,7 @@ void main() {
   bool again = open && folded && follows;
   // The steps that most chains need stand in a row: on a device that masks lanes a loop's body is run once more after
   // the last lane has left it, and what it changes is blended twice.
-  Attempt attempt = Attempt(open && !again && (PULL || error > constants.tolerance), error, 0, 0);
+  Attempt attempt = Attempt(open && !again && (PULL || error > leastError()), error, 0, 0);
   if (PASS == PASS_QUICK) {
     [[unroll]] for (int i = 0; i < STEPS; ++i)
       advance(limb, goal, follows, follows ? spent : budget, attempt, pose, best, error, bestError, damping, k);
@@ -214,7 +246,7 @@ void main() {
       forwardKinematics(limb, pose);
       error = distance(target, pose.tip);
     }
-    bool better = error < (first ? bestError : worth * bestError);
+    bool better = error < (first ? bestError : min(worth * bestError, bestError - leap));
     // An attempt that arrives without being worth the jump leaves the chain where it was, not there yet.
     open = open && follows && k < budget && (again || error > constants.tolerance || !better);
     if (open) {
@@ -222,10 +254,12 @@ void main() {
       keepIf(keep, best, pose);
       bestError = keep ? error : bestError;
       worth = keep && !first ? 1.0 : worth;
+      leap = keep && !first ? 0.0 : leap;
       first = first && again;
-      if (queued == 0) findSeeds(compared(target), start, untried, queue, queued);
+      bool worthwhile = bestError > leap;
+      if (queued == 0 && worthwhile) findSeeds(compared(target), start, untried, queue, queued);
       int nearest = queue.x;
-      bool seeded = queued > 0 && (k < spent || bestError > 1e29);
+      bool seeded = worthwhile && queued > 0 && (k < spent || bestError > 1e29);
       queue = queue.yzww;
       queued = max(queued - 1, 0);
       untried &= allBut(nearest);
@@ -244,21 +278,37 @@ void main() {
       attempt = Attempt(true, error, 0, 0);
     }
   }
-  bool jumped = !first && error < worth * bestError && bestError < 1e30;
-  if (PASS != PASS_QUICK && !(error < (first ? bestError : worth * bestError))) {
+  bool jumped = !first && error < min(worth * bestError, bestError - leap) && bestError < 1e30;
+  if (PASS != PASS_QUICK && !(error < (first ? bestError : min(worth * bestError, bestError - leap)))) {
     keepIf(true, pose, best);
     forwardKinematics(limb, pose);
     error = distance(target, pose.tip);
   }
+  float moved = PREVIOUS ? farthest(ends, pose) : 0.0;
   if (PASS == PASS_QUICK) {
+    needsMore = needsMore || (PREVIOUS && isHeld(pace, moved));
     enlist(needsMore, chain);
     if (needsMore) return;
   }
   bool arrived = error <= constants.tolerance;
   float reason = arrived ? STOP_TOLERANCE : (dot(target, target) > 1.0 ? STOP_UNREACHABLE : (k < budget ? STOP_STALL : STOP_CAP));
+  bool replaced = pace.known && !folded && (jumped || worth >= 1.0);
+  bool idle = PREVIOUS && isIdle(pace, moved, startError - error, error), held = !idle && !replaced && isHeld(pace, moved);
+  reason = replaced && !idle ? STOP_JUMPED : reason;
+  RARELY(PREVIOUS && PASS != PASS_QUICK && !lost && (idle || held)) {
+    Pose origin;
+    LOAD_SWINGS(origin.swing, states, at);
+    LOAD_TWISTS(origin.twist, states, at + stateTwists(BONES));
+    if (held) holdTo(limb, origin, ends, moved, GEAR * pace.pace, pose);
+    keepIf(idle, pose, origin);
+    forwardKinematics(limb, pose);
+    error = distance(target, pose.tip);
+    reason = !held ? reason : error > constants.tolerance ? STOP_HELD : STOP_TOLERANCE;
+  }
   reason = lost ? STOP_SKIPPED : reason;
 
   if (PREVIOUS && !lost) {
+    STORE4(pacesOut, chain, vec4(target, pace.pace));
     // After attempts in vain, a pause: longer each time, so that a target out of reach costs little.
     bool paused = inVain && !arrived && !jumped && worth < 1.0;
     pause = paused ? nextPause : max(pause - 1.0, 0.0);

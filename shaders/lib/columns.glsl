@@ -13,6 +13,16 @@ struct Columns {
   vec3 x[BONES], y[BONES], twist[BONES];
 };
 
+// A free ball's ways, changed to a radian of its frame's turn: the way around grows without bound in radians of its
+// direction as that comes to point against rest.
+void evenWays(vec2 s, inout vec3 x, inout vec3 y) {
+  float s2 = dot(s, s);
+  vec2 around = vec2(-s.y, s.x) * inversesqrt(max(s2, 1e-20));
+  vec3 less = (1.0 - inversesqrt(1.0 + s2)) * (around.x * x + around.y * y);
+  x -= around.x * less;
+  y -= around.y * less;
+}
+
 // `end` is the tip, or what stands for it.
 void columnsOf(Limb limb, Pose pose, vec3 end, inout Columns c) {
   for (int i = 0; i < BONES; ++i) {
@@ -22,6 +32,7 @@ void columnsOf(Limb limb, Pose pose, vec3 end, inout Columns c) {
     if (PADDED) r = limb.bone[i] == 0.0 ? vec3(0.0) : r;
     c.x[i] = isKind(i, LIMIT_HINGE) ? vec3(0.0) : cross(pose.aboutX[i], r);
     c.y[i] = cross(pose.aboutY[i], r);
+    if (isFree(i)) evenWays(pose.swing[i], c.x[i], c.y[i]);
     c.twist[i] = isKind(i, LIMIT_TWIST) && limb.twists[i].y > limb.twists[i].x ? cross(pose.aboutBone[i], r) : vec3(0.0);
   }
 }
@@ -45,8 +56,17 @@ vec4 stepped(vec2 s, vec2 x) {
   return vec4(m * s + x, n + m - 1.0, n);
 }
 
+// The same of a free ball: the quaternion of its turn, (1, -Y, X, 0), goes on past the point opposite to rest.
+vec4 steppedFree(vec2 s, vec2 x) {
+  float s2 = dot(s, s);
+  vec2 around = vec2(-s.y, s.x) * inversesqrt(max(s2, 1e-20));
+  vec2 xy = s + 0.5 * (x + (sqrt(1.0 + s2) - 1.0) * dot(x, around) * around);
+  float w = 1.0 - 0.5 * dot(s, x);
+  return vec4(w < 0.0 ? -xy : xy, abs(w), 1.0);
+}
+
 vec2 turned(Limb limb, int i, vec2 s, vec2 x) {
-  vec4 to = stepped(s, x);
+  vec4 to = isFree(i) ? steppedFree(s, x) : stepped(s, x);
   return clampSwing(limb, i, to.xy, to.z, to.w);
 }
 

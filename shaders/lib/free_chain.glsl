@@ -150,7 +150,7 @@ struct Stretch {
 };
 
 // One step of Newton, from lambda = 0 where it is the `first`.
-void stretchStep(float bone[BONES], float wanted, float goal, float enough, bool first, inout Stretch at) {
+void stretchStep(float bone[BONES], float wanted, float goal, float enough, bool first, bool onward, inout Stretch at) {
   float g = 0.0, dg = 0.0;
   vec3 h = vec3(0.0), dh = vec3(0.0);
   for (int i = 0; i < BONES; ++i) {
@@ -171,13 +171,21 @@ void stretchStep(float bone[BONES], float wanted, float goal, float enough, bool
   float next = at.lambda - (f - goal) / (0.5 * f * f * f * slope);
   bool inside = next > at.low && next < at.high;
   float middle = at.low < -1e8 ? at.high - 1.0 : (at.high > 1e8 ? at.low + 1.0 : 0.5 * (at.low + at.high));
-  at.lambda = at.done ? at.lambda : max(inside ? next : middle, -3.0);
+  float before = at.lambda;
+  // A straight chain's slope is rounding, and a step by it may be anything.
+  bool sound = onward && inside && abs(next - before) < 0.5 + 0.5 * abs(before);
+  at.lambda = at.done ? (sound ? max(next, -3.0) : at.lambda) : max(inside ? next : middle, -3.0);
+  if (onward && at.done) {
+    at.g += (at.lambda - before) * dg;
+    at.h += (at.lambda - before) * dh;
+  }
 }
 
 // The bends keep their directions; how far the chain must be stretched or folded along its own line for its tip
-// to be as far as the target is one number, found by Newton (docs/ik.md, Stretch-align). With `steps` those are made
-// in a row, and a chain that needs more, or is straight, is given up: false. Without, as many as it takes.
-bool stretchAlign(float bone[BONES], vec3 target, vec3 pole, float tolerance, int steps, inout FreePose pose) {
+// to be as far as the target is one number, found by Newton (docs/ik.md, Stretch-align); `onward`, Newton's step is
+// taken once more where the distance is near enough. With `steps` those are made in a row, and a chain that needs more, or is straight,
+// is given up: false. Without, as many as it takes.
+bool stretchAlign(float bone[BONES], vec3 target, vec3 pole, float tolerance, bool onward, int steps, inout FreePose pose) {
   vec3 u[BONES];
   Stretch at;
   toDirections(bone, pose, u);
@@ -188,13 +196,13 @@ bool stretchAlign(float bone[BONES], vec3 target, vec3 pole, float tolerance, in
     at.across[i] = u[i] - line * at.along[i];
     spread += dot(at.across[i], at.across[i]);
   }
-  bool straight = BONES > 1 && spread < float(BONES) * 0.0004;
+  bool straight = BONES > 1 && spread < float(BONES) * 0.0004 * min(1.0, 100.0 * (1.0 - wanted));
   at.lambda = 0.0;
   at.low = -1e9;
   at.high = 1e9;
   at.done = false;
   if (steps > 0) {
-    [[unroll]] for (int k = 0; k < steps; ++k) stretchStep(bone, wanted, goal, enough, k == 0, at);
+    [[unroll]] for (int k = 0; k < steps; ++k) stretchStep(bone, wanted, goal, enough, k == 0, onward && k + 1 == steps, at);
   } else {
     vec3 w = acrossLine(line, pole);
     for (int i = 0; i < BONES; ++i) {
@@ -205,8 +213,8 @@ bool stretchAlign(float bone[BONES], vec3 target, vec3 pole, float tolerance, in
     // The ninth only measures.
     for (int k = 0; k <= 8 && !at.done; ++k) {
       float lambda = at.lambda;
-      stretchStep(bone, wanted, goal, enough, false, at);
-      at.lambda = k == 8 ? lambda : at.lambda;
+      stretchStep(bone, wanted, goal, enough, false, onward, at);
+      at.lambda = k == 8 && !at.done ? lambda : at.lambda;
     }
   }
   Frame align = frameOf(shortestArc(unit(line * at.g + at.h), unit(target)));

@@ -10,11 +10,14 @@ layout(constant_id = CONSTANT_LIMITS_HIGH) const uint LIMITS_HIGH = 0x11111111u;
 #ifdef ONLY_CONES
 // Known to every compiler, where specialization alone leaves the other kinds' code to drivers that do not unroll.
 bool isKind(int bone, int kind) { return kind == LIMIT_CONE; }
+bool isFree(int bone) { return false; }
 #else
 // A bone's kind of limit, or whether it has a twist: known when the pipeline is made, so what a bone has not costs nothing.
 bool isKind(int bone, int kind) {
   return (((bone < 8 ? LIMITS_LOW : LIMITS_HIGH) >> uint(4 * (bone & 7))) & uint(kind)) != 0u;
 }
+// A ball without limit.
+bool isFree(int bone) { return !isKind(bone, LIMIT_CONE | LIMIT_ELLIPSE | LIMIT_HINGE); }
 #endif
 
 // Whether a bone's limit keeps numbers of its own in the bone's record, a limb's `ends`.
@@ -73,7 +76,8 @@ vec2 clampHinge(float y, float below, vec2 range) {
 vec2 clampToLimit(int i, float edge, vec4 ends, vec2 xy, float below, float n) {
   if (isKind(i, LIMIT_HINGE)) return clampHinge(xy.y, below, ends.xy);
   float s2 = dot(xy, xy);
-  bool against = isAgainst(s2, below, n);
+  // A free ball keeps its way as long as it has any.
+  bool against = isFree(i) ? s2 == 0.0 && below <= 0.0 : isAgainst(s2, below, n);
   if (isKind(i, LIMIT_ELLIPSE)) edge = ellipseEdge(ends, against ? vec2(1.0, 0.0) : xy * inversesqrt(max(s2, 1e-20)));
   return clampBall(xy, below, s2, against, edge);
 }
@@ -121,7 +125,7 @@ void roomOf(int i, float edge, vec4 ends, vec2 s, out vec2 along, out vec2 room)
     if (isKind(i, LIMIT_ELLIPSE))
       room.y = ellipseRoom(ends, s2, r, along);
     else
-      room.y = coneRoom(edge, r);
+      room.y = isFree(i) ? UNLIMITED : coneRoom(edge, r);
   }
 }
 

@@ -31,6 +31,8 @@ BATCH float STOP_CAP = 1.0;
 BATCH float STOP_STALL = 2.0;
 BATCH float STOP_UNREACHABLE = 3.0;
 BATCH float STOP_SKIPPED = 4.0;
+BATCH float STOP_HELD = 5.0;
+BATCH float STOP_JUMPED = 6.0;
 
 BATCH int BATCH_RIG = 0;
 BATCH int BATCH_TARGET = 1;
@@ -43,6 +45,8 @@ BATCH int BATCH_REPORT_OUT = 7;
 BATCH int BATCH_SEED = 8;
 BATCH int BATCH_REPORT = 9;
 BATCH int BATCH_LIST = 10;  // uint: an indirect dispatch, then how many chains, then which
+BATCH int BATCH_PACE = 11;
+BATCH int BATCH_PACE_OUT = 12;
 
 // Beside CONSTANT_BONES, CONSTANT_LIMITS_LOW, CONSTANT_LIMITS_HIGH and CONSTANT_SOLVER.
 BATCH int CONSTANT_PREVIOUS = 8;     // solves continue
@@ -82,12 +86,26 @@ BATCH_FUNCTION int seedStride(int bones, bool twists) { return stateStride(bones
 BATCH int SEED_CELLS = 16;  // each way
 // report: error, iterations, stop + STOPS * (solves to come without restarts + PAUSES * the next pause),
 // damping.
+// pace, where solves continue: the last target about a base at 0, lengths in units of the reach; how far
+// targets go in a solve, or 0: there was no solve yet.
 BATCH float STOPS = 8.0;
 BATCH float PAUSES = 64.0;
 BATCH float LONGEST_PAUSE = 32.0;
 BATCH int BASE_STRIDE = 2;
 BATCH int SEEDS_MOST = 64;
 BATCH int CHORDS_MOST = 3;
+
+// What docs/ik.md calls the pace.
+BATCH float GEAR = 8.0;          // of a joint's way to its target's
+BATCH float FAST_TARGET = 0.01;  // its way in a solve, from which on joints are not held
+BATCH float RECOVERY = 1.5;      // of the pace, a solve whose target stands still
+BATCH float UNHELD = 1000.0;     // a pace at which nothing is held
+BATCH float LEAST_GAIN = 0.05;   // of a joint's way, where the target stands still
+BATCH float STILL = 1e-6;        // a way that may be rounding
+BATCH float ROUNDING = 2e-6;     // an error that may be
+BATCH int PACE_CORRECTIONS = 4;
+// tan(theta / 2) of a free ball, which crosses the point opposite to its rest direction.
+BATCH float WIDEST_FREE = 1e4;
 
 struct BatchConstants {
 #ifdef __cplusplus

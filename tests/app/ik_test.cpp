@@ -119,11 +119,11 @@ TEST_F(Ik, JsonHasTheDocumentedFields) {
   EXPECT_GT(figures.at("nanosecondsPerSolve"), 0);
   EXPECT_GT(figures.at("cpuNanosecondsPerSolve"), 0);
   uint64_t stopped = 0;
-  for (const char* why : {"tolerance", "cap", "stall", "unreachable", "skipped"}) {
+  for (const char* why : {"tolerance", "cap", "stall", "unreachable", "skipped", "held", "jumped"}) {
     stopped += figures.at("stopped").at(why).get<uint64_t>();
   }
   EXPECT_EQ(stopped, 100u);
-  EXPECT_EQ(figures.at("stopped").size(), 5u);
+  EXPECT_EQ(figures.at("stopped").size(), 7u);
 }
 
 TEST_F(Ik, TableAndQuiet) {

@@ -127,6 +127,24 @@ TEST_F(LengthTest, PulledToRest) {
   }
 }
 
+// Nearly every chain is held to its target's pace, or left where it was.
+TEST_F(LengthTest, HeldToTheTargetsPace) {
+  using enum ik::Solver;
+  uint64_t seed = 800;
+  const auto compare = [&](const std::string& limits, size_t joints, ik::Solver solver) {
+    Random random(++seed);
+    const ik::Chain chain = randomChain(limits, joints, random);
+    const validation::IkRun run =
+        pacedRun(device(), limits, chain, chains, {.solver = solver, .iterations = 1}, seed);
+    expectParity(run, iterationTies);
+    const auto held = std::count_if(run.reports.begin(), run.reports.end(),
+                                    [](const ik::Report& report) { return report.stop == ik::Stop::held; });
+    EXPECT_GT(held, 16) << run.name;
+  };
+  for (const ik::Solver solver : {fabrik, ccd}) compare("free", 4, solver);
+  for (const char* limits : {"cone", "mixed", "free-base"}) compare(limits, 4, ccd);
+}
+
 using StartTest = GpuLoadTest;
 
 TEST_P(StartTest, FromRest) {

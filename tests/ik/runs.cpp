@@ -54,6 +54,39 @@ validation::IkRun randomRun(Device& device, const std::string& name, const ik::C
   return run;
 }
 
+validation::IkRun pacedRun(Device& device, const std::string& name, const ik::Chain& chain, size_t chains,
+                           ik::Options options, uint64_t seed) {
+  options.start = ik::Start::previous;
+  ik::Batch batch(device, chain, static_cast<uint32_t>(chains), options);
+  options.solver = batch.solver();
+  options.iterations = batch.iterations();
+  validation::IkRun run{.name = name + ", paced, " + ik::nameOf(options.solver),
+                        .chain = chain,
+                        .options = options,
+                        .seed = seed,
+                        .seeds = batch.downloadSeeds()};
+  const reference::IkChain expected = validation::referenceOf(chain);
+  const validation::IkLayout layout(expected, validation::referenceOf(options.solver));
+  Random random(seed);
+  std::vector<glm::vec4> states;
+  for (size_t c = 0; c < chains; ++c) {
+    run.lastTargets.emplace_back(expected.length * randomTarget(expected, random));
+    // A quarter stands still.
+    const double way = expected.length * std::max(uniform(random, -0.003, 0.009), 0.0);
+    run.targets.emplace_back(glm::dvec3(run.lastTargets[c]) + way * randomDirection(random));
+    validation::append(expected, layout, randomState(expected, random), states);
+  }
+  batch.setStates(states);
+  batch.setTargets(run.lastTargets);
+  batch.solve();
+  run.before = batch.downloadStates();
+  batch.setTargets(run.targets);
+  batch.solve();
+  run.joints = batch.downloadJoints();
+  run.reports = batch.downloadReports();
+  return run;
+}
+
 validation::IkRun runToward(Device& device, const std::string& name, const ik::Chain& chain,
                             const ik::Options& options, const std::vector<glm::vec3>& targets) {
   validation::IkRun run{.name = name, .chain = chain, .options = options, .targets = targets};

@@ -17,6 +17,9 @@ namespace skitter::test {
 // random bases.
 validation::IkRun randomRun(Device& device, const std::string& name, const ik::Chain& chain, size_t chains,
                             ik::Options options, uint64_t seed);
+// The second of two solves, toward targets that moved little since the first, if at all.
+validation::IkRun pacedRun(Device& device, const std::string& name, const ik::Chain& chain, size_t chains,
+                           ik::Options options, uint64_t seed);
 
 // Solves from rest toward the targets.
 validation::IkRun runToward(Device& device, const std::string& name, const ik::Chain& chain,

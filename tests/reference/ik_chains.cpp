@@ -32,7 +32,7 @@ double outside(double value, double low, double high) { return std::max({0.0, lo
 double beyondSwing(const BoneSpec& bone, const glm::dvec3& v) {
   const glm::dvec3 rest = glm::normalize(bone.direction);
   const double theta = angleBetween(rest, v);
-  if (bone.kind == LimitKind::free) return std::max(0.0, theta - 3.1);
+  if (bone.kind == LimitKind::free) return 0;
   if (bone.kind == LimitKind::cone) return std::max(0.0, theta - std::min(bone.cone, 3.1));
   const glm::dvec3 x = shortestArc({0, 0, 1}, rest) * glm::dvec3(1, 0, 0), y = glm::cross(rest, x);
   const double way = std::atan2(glm::dot(v, y), glm::dot(v, x));

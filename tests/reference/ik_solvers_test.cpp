@@ -4,6 +4,7 @@
 #define GLM_ENABLE_EXPERIMENTAL
 #include <glm/gtx/quaternion.hpp>
 
+#include "cpu_reference/ik/columns.h"
 #include "cpu_reference/ik/seeds.h"
 #include "cpu_reference/ik/stretch_align.h"
 #include "cpu_reference/ik/two_bone.h"
@@ -171,7 +172,7 @@ TEST(StretchAlign, arrivesInOneIteration) {
     for (int trial = 0; trial < 200; ++trial) {
       reference::Joints joints = reference::restState(chain).joints;
       const glm::dvec3 target = randomPoint(random, 0.1, 0.98);
-      reference::stretchAlign(chain, target, 9e-4, joints);
+      reference::stretchAlign(chain, target, 9e-4, false, joints);
       ASSERT_LE(length(joints.back() - target), 9e-4) << bones << " bones, target at " << length(target);
     }
   }
@@ -181,7 +182,7 @@ TEST(StretchAlign, arrivesInOneIteration) {
 TEST(StretchAlign, keepsABoneThatNothingStretches) {
   const IkChain chain = chainOf(bentSpec(1));
   reference::Joints joints = reference::restState(chain).joints;
-  reference::stretchAlign(chain, {0, 0, 0}, 9e-4, joints);
+  reference::stretchAlign(chain, {0, 0, 0}, 9e-4, false, joints);
   EXPECT_NEAR(length(joints[1]), 1, 1e-12);
 }
 
@@ -235,6 +236,54 @@ TEST(Dissertation, laysAChainStraightTowardWhatIsOutOfReach) {
   const IkResult result = solve(chain, {.solver = IkSolver::dissertationEdge}, {0, -1.5, 0});
   EXPECT_EQ(result.stop, IkStop::unreachable);
   EXPECT_NEAR(length(result.state.joints.back() - glm::dvec3(0, -1, 0)), 0, 1e-12);
+}
+
+// Poses of every kind of limit, and a free base that points anywhere.
+class Columns : public testing::Test {
+ protected:
+  Columns() {
+    ChainSpec spec = mixedSpec();
+    spec.insert(spec.begin(), BoneSpec{});
+    chain = chainOf(spec);
+  }
+
+  reference::Posture randomPosture() {
+    return reference::Posture(chain.bones, reference::randomLegalPose(chain.bones, random));
+  }
+
+  IkChain chain;
+  reference::IkRandom random{19};
+};
+
+TEST_F(Columns, areTheTipsMovementARadian) {
+  constexpr double step = 1e-6;
+  for (int trial = 0; trial < 100; ++trial) {
+    const reference::Posture start = randomPosture();
+    const auto joints = reference::columnsAt(start, start.tip());
+    for (size_t i = 0; i < joints.size(); ++i)
+      for (size_t c = 0; c < joints[i].columns.size(); ++c) {
+        auto moved = joints;
+        moved[i].columns[c].step = step;
+        reference::Posture posture = start;
+        reference::applySteps(moved, posture);
+        ASSERT_LE(length((posture.tip() - start.tip()) / step - joints[i].columns[c].movement), 1e-5)
+            << "bone " << i << ", column " << c << ", tan(theta / 2) " << glm::length(start.swing(i));
+      }
+  }
+}
+
+// Chord steps add up.
+TEST_F(Columns, stepsCountFromThePoseOfTheColumns) {
+  for (int trial = 0; trial < 100; ++trial) {
+    reference::Posture posture = randomPosture();
+    auto joints = reference::columnsAt(posture, posture.tip());
+    for (reference::JointColumns& joint : joints)
+      for (reference::Column& column : joint.columns) column.step = 0.1;
+    reference::applySteps(joints, posture);
+    const glm::dvec3 once = posture.tip();
+    reference::applySteps(joints, posture);
+    ASSERT_NEAR(length(posture.tip() - once), 0, 1e-12);
+  }
 }
 
 // The crowd's active set is this one with chord steps; near the target and asked to, it draws the chain to
