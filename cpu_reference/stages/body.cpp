@@ -251,7 +251,7 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
   const double breath =
       std::pow(4 * phase * (1 - phase), 2) * std::min(1.0, previous.still / tuning.settleTime);
   const double lowest =
-      ground.atOrigin + std::max(-tuning.sinkMost, tuning.bellyClearance - tuning.bodyHeight);
+      ground.atOrigin + std::max(-tuning.sinkMost - drop, tuning.bellyClearance - tuning.bodyHeight);
   const double wanted =
       std::max({planeHeight() - drop + tuning.breathHeight * breath, lowest,
                 std::min(std::max(ground.ahead, ground.behind), planeHeight() + tuning.climbMost)});

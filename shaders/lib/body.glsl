@@ -101,8 +101,8 @@ float breathing(float phase) {
 // 6. The ground below a body.
 struct Underneath {
   float highest;  // of the ground below the origin and the ends of the middle line
-  float lowest;   // where the origin may be for the ground below itself,
-  float belly;    // for both ends,
+  float below;    // below the origin
+  float belly;    // where the origin may be for both ends,
   float ahead;    // and for the front end alone
 };
 

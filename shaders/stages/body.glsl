@@ -34,7 +34,7 @@ Underneath underneath(Body body, vec2 moved, vec3 normal, vec3 forward) {
   float clear = parameters.bellyClearance - middle.y;
   Underneath ground;
   ground.highest = max(below, max(behind, ahead));
-  ground.lowest = below + max(-parameters.sinkMost, parameters.bellyClearance - parameters.bodyHeight);
+  ground.below = below;
   ground.ahead = ahead + clear - front.y;
   ground.belly = max(behind + clear + front.y, ground.ahead);
   return ground;
@@ -143,16 +143,18 @@ Body makeBody(int agent, Body body, vec4 steer) {
     walked *= share;
   }
   float planeHeight = body.local.y + plane.height + dot(slope, moved);
-  float lowest = max(ground.lowest, min(ground.belly, planeHeight + parameters.climbMost));
+  float standing = planeHeight;
 #ifdef HURT
   planeHeight -= hurt.shift.y;  // the body is so much lower
 #endif
 #ifdef REACTS
   planeHeight -= reaction.drop;
 #endif
+  float least = ground.below + max(planeHeight - standing - parameters.sinkMost, parameters.bellyClearance - parameters.bodyHeight);
+  float lowest = max(least, min(ground.belly, standing + parameters.climbMost));
   float height = max(planeHeight + parameters.breathHeight * breath, lowest);
   height = mix(body.local.y + dot(slope, moved), height, parameters.heightBlend);
-  body.local.y = min(max(height, ground.lowest - 0.5 * parameters.sinkMost), ground.highest + parameters.riseMost);
+  body.local.y = min(max(height, least - 0.5 * parameters.sinkMost), ground.highest + parameters.riseMost);
 
   body.local.xz += moved;
   vec2 crossed = floor(body.local.xz / TILE_SIZE);

@@ -147,7 +147,7 @@ class Zoo(unittest.TestCase):
         self.assertEqual(self.reds(), 1)
         # The eye of picture n looks at agent n, after 2 (n + 1) of 8 ticks.
         keys = json.loads((self.fake / "drawn.json").read_text())["camera"]["keys"][1:]
-        self.assertEqual([key["target"] for key in keys], [[10 * n + 2 * (n + 1), 2.5, 3] for n in range(4)])
+        self.assertEqual([key["target"] for key in keys], [[10 * n + 2 * (n + 1), 2.6, 3] for n in range(4)])
         self.assertEqual([round(60 * key["time"]) for key in keys], [2, 4, 6, 8])
 
     def test_more_ticks_than_a_frame_may_have(self):
