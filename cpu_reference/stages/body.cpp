@@ -255,8 +255,10 @@ void move(const Tuning& tuning, const Heights& heights, const AgentBody& previou
   const double wanted =
       std::max({planeHeight() - drop + tuning.breathHeight * breath, lowest,
                 std::min(std::max(ground.ahead, ground.behind), planeHeight() + tuning.climbMost)});
-  next.y = std::min(std::max(glm::mix(predicted, wanted, tuning.heightBlend), lowest - tuning.sinkMost / 2),
-                    ground.highest + tuning.riseMost);
+  const double blended = glm::mix(predicted, wanted, tuning.heightBlend),
+               least = lowest - tuning.sinkMost / 2, most = ground.highest + tuning.riseMost;
+  next.y = std::min(std::max(blended, least), most);
+  result.heightMargin = std::min(blended - least, most - blended);
   result.rise = std::abs(wanted - predicted);
   advance(next, (walks + pushed) * tuning.dt);
 

@@ -45,6 +45,7 @@ struct BodyResult {
   double passes = 1;           // share of its speed that the ground ahead leaves
   double unhinderedSpeed = 0;  // that it would have without it
   double rise = 0;             // |y_want - y_pred|
+  double heightMargin = 0;     // of the blended height from its bounds, negative where these hold the body
   glm::dvec2 ways{0};          // m left along the new heading to the terrain's edges in x and z
   bool isStill = false;
   double stillMargin = 0;  // nearest of the three thresholds of standing still, as a share of it

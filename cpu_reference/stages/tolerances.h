@@ -242,11 +242,12 @@ inline BodyBounds body(const Tuning& t, const Heights& heights, double extent, c
     const glm::dvec3 q = next.orientation * glm::dvec3(0, ends * t.bodyHeight, k * t.bodyRadius);
     below = std::max(below, groundAt(position + glm::dvec2(q.x, q.z)));
   }
-  // Where the ground holds the body it is not blended with where that was.
-  bound.height =
-      std::max(t.heightBlend * (std::max(planeHeight(), below) + 24 * roundoff * t.breathHeight), below) +
-      t.dt * ((next.speed + pushed) * bound.slope + slope * bound.speed) + 6 * roundoff * std::abs(next.y) +
-      4 * roundoff + inputs.blend * result.rise;
+  bound.height = t.heightBlend * (std::max(planeHeight(), below) + 24 * roundoff * t.breathHeight) +
+                 t.dt * ((next.speed + pushed) * bound.slope + slope * bound.speed) +
+                 6 * roundoff * std::abs(next.y) + 4 * roundoff + inputs.blend * result.rise;
+  // Where the ground holds the body, its error is not blended with what the body had.
+  const double held = below + 6 * roundoff * std::abs(next.y);
+  if (result.heightMargin < bound.height + held) bound.height = std::max(bound.height, held);
   return bound;
 }
 

@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-#include "assets/clips/clip_sampler.h"
+#include "assets/models/clip_sampler.h"
 #include "assets/rigs/placement.h"
 #include "assets/rigs/rig_source.h"
 #include "files.h"

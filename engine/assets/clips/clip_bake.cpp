@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "assets/clips/clip_sampler.h"
+#include "assets/models/clip_sampler.h"
 #include "skitter/error.h"
 
 namespace skitter {

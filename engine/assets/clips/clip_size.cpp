@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "assets/clips/clip_sampler.h"
+#include "assets/models/clip_sampler.h"
 
 namespace skitter {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "assets/clips/clip_sampler.h"
+#include "assets/models/clip_sampler.h"
 #include "assets/rigs/joint_names.h"
 
 namespace skitter {

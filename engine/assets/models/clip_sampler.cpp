@@ -1,4 +1,4 @@
-#include "assets/clips/clip_sampler.h"
+#include "assets/models/clip_sampler.h"
 
 #include <algorithm>
 #include <cmath>
