@@ -24,7 +24,7 @@ double degreesBetween(const glm::dvec3& a, const glm::dvec3& b) {
 
 glm::dvec3 level(const glm::dvec3& v) { return {v.x, 0, v.z}; }
 
-// What keeps a law by what lies below the middle alone is looked at no further: that is nearly everybody.
+// Nearly all bodies keep the law by the ground below their middle alone, and are looked at no further.
 double heightOver(const Ground& ground, const glm::dvec3& place, double footprint, double legLength) {
   const double middle = place.y - ground.at(place.x, place.z);
   if (infoOf(Law::grounded).bound.isKept(middle / legLength)) return middle;

@@ -11,7 +11,7 @@
 
 namespace skitter::app {
 
-// What agents of a kind are drawn as, for laws/.
+// The creature, as laws/ knows it, that agents of a kind are drawn as.
 laws::Creature drawnCreature(const crowd::Kind& kind);
 
 // The transforms that an agent of the kind is drawn with, world from rest. `agent` is a number in `state`.

@@ -65,7 +65,7 @@ laws::Ground groundOf(const Heightfield& terrain) {
           .heights = terrain.heights};
 }
 
-// Seconds since the ground was edited last, while feet step anew for that; else none.
+// Seconds since the last edit of the ground, while feet still step because of it.
 std::optional<double> sinceEdit(const Crowd::Impl& crowd, double dt) {
   if (crowd.watchUntil == 0 || crowd.tick > crowd.watchUntil) return {};
   return editSeconds - static_cast<double>(crowd.watchUntil - crowd.tick) * dt;
@@ -143,7 +143,8 @@ laws::Body drawnBody(const HerdState& state, size_t agent, const crowd::Kind& ki
           .isSteady = isSteady(state, agent)};
 }
 
-// Who gives way and is near others is not free, or, where not all were looked at, nobody knows.
+// An agent that gives way and is near others is not free. Where not all agents were looked at, none that
+// gives way is.
 void blockCrowded(const Crowd::Impl& crowd, bool isOfAll, std::vector<SeenBody>& seen) {
   const auto gives = [&](const SeenBody& each) { return givesWay(crowd.herds[each.herd].from); };
   if (std::ranges::none_of(seen, gives)) return;

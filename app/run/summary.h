@@ -76,7 +76,7 @@ struct Summary {
   Jams jams;
   std::vector<LevelFigures> levels;                   // where there are levels of rate
   std::optional<DamageFigures> damage;                // where events hurt legs, and it was asked for
-  std::optional<std::vector<laws::Figure>> warnings;  // laws that were broken; none where nobody judged
+  std::optional<std::vector<laws::Figure>> warnings;  // laws that were broken; none without a judge
   std::optional<uint64_t> sleeping;                   // agents at the end; none where they may not
   std::optional<double> lawSeconds;  // CPU time that judging took; told with the stages' times
   uint64_t stateHash = 0;

@@ -47,8 +47,8 @@ class Comparison {
     }
   }
 
-  // Of the whole clip; nothing where the size is not the same at its begin, middle and end. Where only the
-  // spread is not, nodes move along their bones, which is no matter of units.
+  // The ratio of the whole clip; none where the size differs between its begin, middle and end. Where only
+  // the spread is not, nodes move along their bones, which is no matter of units.
   std::optional<Ratio> of(const gltf::Clip& clip) const {
     ClipSampler sampler(document_, clip, skin_.nodes, glm::dmat4(1));
     std::vector<Ratio> ratios;

@@ -22,7 +22,7 @@ Opened& opened() {
   return all;
 }
 
-// What a clone holds in place of a large file that was not fetched: a few lines of text, of which these are
+// A clone holds a pointer in place of a large file that was not fetched: a few lines of text, and these are
 // the first words (Git LFS specification, docs/spec.md; the second is the name that it had before).
 bool isLfsPointer(std::string_view start) {
   return start.starts_with("version https://git-lfs.github.com/spec/") ||

@@ -27,7 +27,7 @@ void checkSkinning(const Source& source, const Document& document, const Node& n
   }
 }
 
-// What no node of the scene has need not be right.
+// A part that no node of the scene has need not be right.
 template <typename Part, typename Read>
 void readPart(Source& source, std::vector<Part>& parts, bool placed, const Read& read) {
   try {

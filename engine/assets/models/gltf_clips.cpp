@@ -30,7 +30,7 @@ int accessorAt(const Source& source, const nlohmann::json& sampler, const char* 
   return indexAt(source, sampler, key, source.model.accessors.size(), part + "." + key);
 }
 
-// What a key of a sampler is made of: its time, and the values that it has, tangents included.
+// The keys of a sampler: their times and their values, tangents included.
 struct Keys {
   std::vector<double> times, values;
   size_t width = 0;   // numbers a key
