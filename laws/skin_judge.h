@@ -17,7 +17,7 @@ struct Moment {
   uint64_t tick = 0;
   glm::dvec3 position{0};                // world metres, of model space's origin
   std::vector<glm::dmat4x3> bones = {};  // each takes a vertex at rest to the world
-  // Of each leg: whether its foot is told to stand. Empty: nobody knows, and soles are not judged.
+  // A flag for each leg: its foot stands. Empty: unknown, and soles are not judged.
   std::vector<bool> stands = {};
   std::vector<bool> carries = {};  // of each leg, false: it is lost or stuck; empty: all carry
 };

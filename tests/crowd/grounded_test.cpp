@@ -39,7 +39,7 @@ Heightfield groundOf(float spacing, const std::function<double(double, double)>&
   return terrain;
 }
 
-// One of the kinds of ground that nobody can walk on, or hardly.
+// Ground of a random kind that can hardly be walked on, or not at all.
 Heightfield randomGround(std::mt19937_64& random, float legLength) {
   std::uniform_real_distribution<double> unit;
   const double high = legLength * std::exp2(8 * unit(random) - 4);

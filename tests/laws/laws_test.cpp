@@ -193,7 +193,7 @@ std::string textOf(const laws::Bound& bound) {
   return text.str();
 }
 
-// The page has the tables as the code has them. After a change of laws/law.h the failure prints them anew.
+// The page has the tables as the code has them. After a change of laws/law.h the failure prints them again.
 TEST(LawPage, HasEveryLawAndException) {
   std::ifstream file(SKITTER_ROOT "/docs/laws.md");
   const std::string page = std::string(std::istreambuf_iterator<char>(file), {}) + "\n";

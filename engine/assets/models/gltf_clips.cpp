@@ -131,7 +131,7 @@ Sampler sampler(Source& source, const nlohmann::json& from, Path path, const std
   return sampler;
 }
 
-// What a channel drives: a node's property or something that is not played.
+// A channel drives a property of a node, or something that is not played.
 struct Target {
   int node = -1;  // none: nothing in the file
   std::optional<Path> path;

@@ -163,7 +163,7 @@ class BufferReader {
                                    length == buffer.end() ? "missing" : describeJson(*length)));
     }
     const auto wanted = length->get<uint64_t>();
-    if (wanted == 0) return {};  // a placeholder, which matters only to what is read of it
+    if (wanted == 0) return {};  // an empty buffer is legal until something reads it
     const auto uri = buffer.find("uri");
     if (uri == buffer.end()) {
       if (index > 0 || binary_.empty()) return {};
@@ -252,7 +252,7 @@ std::vector<uint8_t> readUri(const File& file, const std::string& uri, const std
 
 namespace {
 
-// What a file is that is no glTF, where its first bytes show it, and the way out.
+// Names the format of a file that is no glTF, if its first bytes show it, and the way out.
 const char* otherKind(std::string_view bytes) {
   constexpr std::pair<std::string_view, const char*> kinds[] = {
       {"\x1f\x8b", "gzip: unpack it"},

@@ -21,11 +21,11 @@ inline constexpr size_t maxObjects = size_t{1} << 16;  // nodes, meshes, skins, 
 // though they may be sparse or empty, and files whose unused meshes name one that is not there.
 inline constexpr const char* indexAttribute = "_INDICES";
 
-// What is odd about a file, a line each.
+// The oddities of a file, a line each.
 struct Notes {
   std::vector<std::string> lines = {};
 
-  // Of notes of one kind the first is kept, which in the end says how many more there were.
+  // Keeps the first note of a kind, and counts the others, which it names in the end.
   void add(const std::string& kind, std::string line);
   std::vector<std::string> finished() const;
 

@@ -19,7 +19,7 @@ constexpr const char* walkWords[] = {"walk*",   "run*",   "trot*",  "gallop*", "
                                      "sprint*", "crawl*", "march*", "creep*"};
 constexpr const char* otherWays[] = {"back*", "reverse*", "left*", "right*", "strafe*", "side*", "turn*"};
 
-// What standing feet and the body say, each along the axis.
+// The ways of standing feet and of the body along the axis.
 struct Steps {
   double forward = 0, all = 0;
 };
